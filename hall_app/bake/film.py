@@ -1,0 +1,123 @@
+"""The film of a drape: filmed while it is simulated, then once round the garment at rest. And stills."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .encode import encode_film
+
+__all__ = ["Film", "Look", "SIZE", "filming"]
+
+SIZE = (720, 540)  # pixels
+RATE = 25  # pictures per second, of the film and of the simulation
+ROUND = 75  # pictures of the walk round the finished garment
+STILLS = {"front": 18.0, "side": 74.0, "back": 196.0}  # [deg] about +y from the front
+
+Picture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What stays the same in every picture: cloth faces (F, 3), stand, colours sRGB 0..1, height seen [m]."""
+
+    faces: NDArray[np.int32]
+    stand_vertices: NDArray[np.float64]
+    stand_faces: NDArray[np.int32]
+    colour: tuple[float, float, float]
+    alpha: float
+    height: float
+
+
+def picture(look: Look, positions: NDArray[np.floating], angle: float, size: tuple[int, int]) -> Picture:
+    """The garment seen from `angle` [deg] about +y, 0 = the front."""
+    from sim_core.picture import Camera, Surface, render
+
+    turn, middle = math.radians(angle), look.height / 2
+    away = 1.28 * look.height / (2 * math.tan(math.radians(15)))
+    eye = (away * math.sin(turn), middle + 0.12 * look.height, away * math.cos(turn))
+    cloth = Surface(
+        np.asarray(positions, float), look.faces, look.colour, alpha=look.alpha, sheen=0.5, through=0.3
+    )
+    stand = Surface(look.stand_vertices, look.stand_faces, (0.28, 0.13, 0.10), gloss=0.35)
+    return render([cloth, stand], Camera(eye, (0.0, middle, 0.0), 30.0), size)
+
+
+class Film:
+    """Pictures under way in a second process, while the first one simulates."""
+
+    def __init__(self, look: Look, pool: ProcessPoolExecutor, folder: Path) -> None:
+        self._look, self._pool, self._folder = look, pool, folder
+        self._pictures: list[Future[None]] = []
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def shoot(self, positions: NDArray[np.floating], angle: float = STILLS["front"]) -> None:
+        """Take the next picture; one that lies there from an interrupted build is kept."""
+        path = self._folder / f"{len(self._pictures):05d}.png"
+        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), angle, path))
+
+    def walk_round(self, positions: NDArray[np.floating]) -> None:
+        """Once round the finished garment, slowly beginning and ending."""
+        for index in range(1, ROUND + 1):
+            share = index / ROUND
+            eased = share * share * (3 - 2 * share)
+            self.shoot(positions, STILLS["front"] + 360.0 * eased)
+
+    def write(
+        self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
+    ) -> None:
+        """Encode what was shot into every one of `paths`."""
+        from PIL import Image
+
+        count = len(self._pictures)
+        for number, future in enumerate(self._pictures):
+            future.result()
+            tick(0.8 * number / count)
+
+        def shown(index: int) -> Picture:
+            with Image.open(self._folder / f"{index:05d}.png") as image:
+                return np.asarray(image.convert("RGB"))
+
+        for number, path in enumerate(paths):
+            encode_film(path, shown, count, rate=RATE, sound=sound)
+            tick(0.8 + 0.2 * (number + 1) / len(paths))
+
+
+def _shoot(look: Look, positions: NDArray[np.floating], angle: float, path: Path) -> None:
+    from PIL import Image
+
+    if path.is_file():
+        return
+    partial = path.with_suffix(".part")
+    Image.fromarray(picture(look, positions, angle, SIZE)).save(partial, format="png", compress_level=1)
+    partial.replace(path)
+
+
+@contextmanager
+def filming(look: Look, folder: Path) -> Iterator[Film]:
+    """A film whose pictures are drawn beside the simulation; on an error what is under way is given up."""
+    pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+    try:
+        yield Film(look, pool, folder)
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def stills(look: Look, positions: NDArray[np.floating], folder: Path) -> None:
+    """Pictures from front, side and back, and the film's poster, as JPEG."""
+    from PIL import Image
+
+    poster = picture(look, positions, STILLS["front"], SIZE)
+    Image.fromarray(poster).save(folder / "drape.jpg", quality=88, optimize=True)
+    for name, angle in STILLS.items():
+        Image.fromarray(picture(look, positions, angle, (900, 1125))).save(
+            folder / f"still-{name}.jpg", quality=88, optimize=True
+        )

@@ -1,0 +1,49 @@
+"""Where bakes lie: beside the exhibit (made by `hall build`) or in the data folder (made by `hall serve`)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..content.loading import Content, Exhibit
+from .key import bake_key
+
+__all__ = ["bake_folder", "baked_here", "data_bake", "read_record", "RECORD"]
+
+RECORD = "bake.json"
+NEEDED = ("garment.npz", "hall.glb", "close.glb")
+
+
+def read_record(folder: Path) -> dict[str, Any] | None:
+    """The bake's record, None where there is no complete bake."""
+    try:
+        record = json.loads((folder / RECORD).read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not isinstance(record, dict) or not all((folder / name).is_file() for name in NEEDED):
+        return None
+    return record
+
+
+def baked_here(exhibit: Exhibit) -> Path:
+    """The exhibit's own bake folder."""
+    return exhibit.folder / "baked"
+
+
+def data_bake(data: Path, exhibit: str, key: str) -> Path:
+    """The folder in which the server keeps a bake of its own."""
+    return data / "bakes" / f"{exhibit}-{key}"
+
+
+def bake_folder(content: Content, exhibit: Exhibit, data: Path, *, stale: bool = True) -> Path | None:
+    """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one."""
+    key = bake_key(content, exhibit)
+    here = baked_here(exhibit)
+    record = read_record(here)
+    if record is not None and record.get("key") == key:
+        return here
+    fresh = data_bake(data, exhibit.id, key)
+    if read_record(fresh) is not None:
+        return fresh
+    return here if stale and record is not None else None

@@ -1,0 +1,49 @@
+"""What exhibits do. A new behaviour is one small function here; a curator names it in exhibit.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .stage import Stage
+
+__all__ = ["BEHAVIOURS", "Behaviour", "behaviour"]
+
+Behaviour = Callable[["Stage", str], None]
+
+BEHAVIOURS: dict[str, Behaviour] = {}
+
+NEAR = 2.6  # [m] from which an exhibit notices its visitor
+TURN_RATE = 0.25  # [rad/s]
+TURN_PERIOD = 1 / 15  # [s]
+
+
+def behaviour(act: Behaviour) -> Behaviour:
+    """Register `act(stage, exhibit_id)` under its own name."""
+    BEHAVIOURS[act.__name__] = act
+    return act
+
+
+@behaviour
+def open_on_click(stage: Stage, exhibit: str) -> None:
+    """A click on the model opens its close-up."""
+    stage.on_click(exhibit, lambda visitor: stage.open(visitor, exhibit))
+
+
+@behaviour
+def glow_when_near(stage: Stage, exhibit: str) -> None:
+    """The model lights up and its caption appears while a visitor stands before it."""
+    stage.on_near(exhibit, NEAR, lambda visitor, on: stage.notice(visitor, exhibit, on, glow=True))
+
+
+@behaviour
+def turn_slowly(stage: Stage, exhibit: str) -> None:
+    """The model turns on its stand while somebody is in the hall to see it."""
+    stage.every(TURN_PERIOD, lambda seconds: stage.turn(exhibit, TURN_RATE * seconds))
+
+
+@behaviour
+def play_clip(stage: Stage, exhibit: str) -> None:
+    """The exhibit's film starts, muted, when its close-up opens."""
+    stage.on_open(exhibit, {"play": True})

@@ -1,0 +1,23 @@
+"""What `hall check` looks at beyond loading: each function takes the content and returns problems."""
+
+from collections.abc import Callable
+
+from ..loading import Content
+from ..problems import Problem
+from .bakes import bake_problems
+from .budget import budget_problems
+from .reach import reach_problems
+from .scale import scale_problems
+from .unused import unused_problems
+from .words import word_problems
+
+__all__ = ["CHECKS"]
+
+CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
+    word_problems,
+    scale_problems,
+    budget_problems,
+    reach_problems,
+    bake_problems,
+    unused_problems,
+)

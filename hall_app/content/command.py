@@ -1,0 +1,58 @@
+"""`hall check`: say what is wrong in a content folder, one line a problem."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from .lookup import content_folder
+from .problems import ContentError, Problem
+
+__all__ = ["add_parser", "run"]
+
+DESCRIPTION = """\
+Look through a content folder: form of the TOML files, files named and present, both languages, descriptions
+of media, models (readable, in metres, within budget), exhibits inside the hall and reachable on foot,
+licences, bakes, unused files. One line a problem: file, key, what is wrong, how to put it right.
+
+Exit status: 0 no problem, 1 problems, 2 wrong arguments."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction) -> None:
+    """Add `hall check` to the commands."""
+    parser = subparsers.add_parser(
+        "check",
+        help="say what is wrong in a content folder",
+        description=DESCRIPTION,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "folder", nargs="?", type=Path, metavar="FOLDER", help="default: ./assets, else packaged"
+    )
+    parser.add_argument("--content", type=Path, metavar="FOLDER", help="the same as FOLDER")
+    parser.add_argument("--json", action="store_true", help="write the problems as JSON")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Check the folder and write the result: 0 no problem, 1 problems."""
+    from .check import check
+
+    problems: list[Problem]
+    folder: Path | None = args.folder or args.content
+    try:
+        folder = content_folder(folder)
+        problems = check(folder)
+    except ContentError as error:
+        problems = list(error.problems)
+    if args.json:
+        result = {"folder": str(folder or ""), "problems": [problem.as_json() for problem in problems]}
+        sys.stdout.write(json.dumps(result, ensure_ascii=False, indent=1) + "\n")
+    else:
+        for problem in problems:
+            sys.stdout.write(f"{problem}\n")
+        count = "1 problem" if len(problems) == 1 else f"{len(problems)} problems"
+        sys.stdout.write(f"{folder or 'no content folder'}: {count}\n")
+    return 1 if problems else 0

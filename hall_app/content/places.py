@@ -1,0 +1,118 @@
+"""Do plan, start and exhibits fit together on the floor? Exact polygon tests, no walking."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from .exhibit_file import ExhibitFile
+from .floor import Footprint, body_footprint, plan_footprints, solid_footprint
+from .hall_file import HallFile
+from .plan_file import PlanFile
+from .problems import Problem
+from .values import Point
+
+TOUCHING = 1e-4  # [m2], overlap of footprints that only touch
+
+
+def ring_fault(ring: Iterable[Point]) -> str | None:
+    """What is wrong with an outline [[x, z], …], or None."""
+    from shapely import Polygon
+    from shapely.validation import explain_validity
+
+    polygon = Polygon(tuple(ring))
+    if not polygon.is_valid:
+        reason, _, spot = explain_validity(polygon).partition("[")
+        crossing = reason.startswith(("Self-intersection", "Ring Self-intersection"))
+        what = "the outline crosses itself" if crossing else f"the outline is not simple ({reason.lower()})"
+        x, _, z = spot.rstrip("]").partition(" ")
+        return f"{what} at x = {float(x):.2f}, z = {float(z):.2f}" if spot else what
+    return "the outline encloses no floor" if polygon.area < TOUCHING else None
+
+
+def plan_problems(plan: PlanFile) -> list[Problem]:
+    """Outlines that cross themselves, ids given twice, solids and walls off the floor."""
+    rings = [("outline", plan.outline)]
+    rings += [(f"solid[{n}].polygon", s.polygon) for n, s in enumerate(plan.solid, 1) if s.polygon]
+    rings += [(f"bay[{n}].polygon", bay.polygon) for n, bay in enumerate(plan.bay, 1)]
+    fix = "list the corners in order round the floor, each once"
+    found = [Problem("plan.toml", key, fault, fix) for key, ring in rings if (fault := ring_fault(ring))]
+    for table, ids in (("solid", [s.id for s in plan.solid]), ("bay", [b.id for b in plan.bay])):
+        for name, times in Counter(ids).items():
+            if times > 1:
+                what = f"the id {name!r} is given {times} times"
+                found.append(
+                    Problem("plan.toml", f"{table}[{ids.index(name) + 1}].id", what, "rename all but one")
+                )
+    return found or _off_floor(plan)
+
+
+def _off_floor(plan: PlanFile) -> list[Problem]:
+    from shapely import Polygon
+
+    floor = Polygon(plan.outline)
+    found = []
+    for number, solid in enumerate(plan.solid, 1):
+        if not floor.intersects(solid_footprint(solid).shape().centroid):
+            what = f"{solid.id!r} stands outside the outline"
+            found.append(
+                Problem("plan.toml", f"solid[{number}]", what, "move it inside or widen the outline")
+            )
+    return found
+
+
+def start_problems(hall: HallFile, plan: PlanFile, bodies: Iterable[Footprint] = ()) -> list[Problem]:
+    """Is a visitor's circle free where the hall begins?"""
+    from shapely import Point as Spot
+    from shapely import Polygon
+
+    from ..walking import BODY
+
+    reach = BODY.radius + BODY.skin
+    start = hall.start
+    visitor = Spot(start.x, start.z)
+    fix = "move start.x and start.z to free floor"
+    if not Polygon(plan.outline).contains(visitor.buffer(reach)):
+        return [Problem("hall.toml", "start", "a visitor would begin outside the outline", fix)]
+    for footprint in (*plan_footprints(plan), *bodies):
+        if footprint.shape().distance(visitor) < reach:
+            what = f"a visitor would begin inside {footprint.kind} {footprint.id!r}"
+            return [Problem("hall.toml", "start", what, fix)]
+    return []
+
+
+def place_faults(plan: PlanFile, identity: str, file: ExhibitFile) -> list[tuple[str, str, str]]:
+    """(key, what, fix) of an exhibit that cannot stand where it says."""
+    from shapely import Polygon
+
+    on = file.place.on
+    if on is not None and on not in {solid.id for solid in plan.solid}:
+        known = ", ".join(s.id for s in plan.solid if s.kind in ("booth", "stand")) or "none"
+        return [("place.on", f"plan.toml has no solid {on!r}", f"use one of its booths and stands: {known}")]
+    body = body_footprint(identity, file).shape()
+    if not Polygon(plan.outline).covers(body):
+        at = f"x = {file.place.x:g}, z = {file.place.z:g}"
+        return [
+            ("place", f"outside the hall's outline ({at})", "change place.x and place.z to a spot inside")
+        ]
+    faults = []
+    for footprint in plan_footprints(plan):
+        if footprint.id == on:
+            continue
+        if footprint.shape().intersection(body).area > TOUCHING:
+            fix = "move it with place.x, place.z"
+            if footprint.kind in ("booth", "stand"):
+                fix += f', or write place.on = "{footprint.id}" if it stands on top'
+            faults.append(("place", f"stands inside {footprint.kind} {footprint.id!r}", fix))
+    return faults
+
+
+def overlapping_bodies(exhibits: Iterable[tuple[str, ExhibitFile]]) -> list[tuple[str, str]]:
+    """Pairs of exhibits whose rigid bodies overlap."""
+    bodies = [(name, body_footprint(name, file).shape()) for name, file in exhibits]
+    return [
+        (first, second)
+        for index, (first, shape) in enumerate(bodies)
+        for second, other in bodies[index + 1 :]
+        if shape.intersection(other).area > TOUCHING
+    ]

@@ -1,0 +1,206 @@
+"""The running hall: content, floor, drawn scene and visitors, kept in step when a curator changes a file."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, Literal
+
+from .bake.key import bake_key
+from .content.floor import Footprint, foot_height, solids_of
+from .content.loading import Content, Exhibit
+from .content.problems import Problem
+from .models import ExhibitModels, models_of
+from .scene.nodes import Figure, HallScene
+from .stage import Actor, Stage
+from .visitors import Visitor, Visitors
+from .walking import Floor, Grid, Pose, Prism, Round, WalkSession, cached_grid
+
+__all__ = ["House", "floor_of"]
+
+WalkMode = Literal["predict", "server"]
+
+
+def floor_of(content: Content) -> Floor:
+    """What a visitor walks on and cannot walk through."""
+    solids = solids_of(content.plan, content.exhibits)
+    return Floor(content.plan.outline, tuple(_solid(footprint) for footprint in solids))
+
+
+def _solid(footprint: Footprint) -> Prism | Round:
+    if footprint.round is not None:
+        return Round(*footprint.round, footprint.height)
+    return Prism(footprint.polygon or (), footprint.height)
+
+
+@dataclass
+class House:
+    """One hall being served. Lives on the server's event loop; not thread-safe."""
+
+    content: Content
+    data: Path
+    walk_mode: WalkMode = "predict"
+    progress: Callable[[float, str], None] | None = None
+    scene: HallScene = field(default_factory=HallScene)
+    visitors: Visitors = field(default_factory=Visitors)
+    unbaked: tuple[Problem, ...] = ()
+    survey_problems: Callable[[], Iterable[Any]] = tuple
+
+    def __post_init__(self) -> None:
+        self.stage = Stage(self.scene, self.visitors)
+        self.floor: Floor = floor_of(self.content)
+        self.grid: Grid = cached_grid(self.floor, self._grids, progress=self.progress)
+        self._models: dict[str, ExhibitModels] = {}
+        self._failed: dict[str, Problem] = {}
+        self.scene.show_room(self.content.plan)
+        self._show()
+
+    @property
+    def _grids(self) -> Path:
+        return self.data / "grids"
+
+    def attach(self, loop: asyncio.AbstractEventLoop) -> None:
+        """Take clicks from viser's threads onto the server's loop."""
+        self.scene.when_clicked(
+            lambda client, exhibit: loop.call_soon_threadsafe(self._clicked, client, exhibit)
+        )
+
+    def _clicked(self, client: int, exhibit: str) -> None:
+        visitor = self.visitors.of_client(client)
+        if visitor is not None and visitor.opened is None:
+            self.stage.clicked(visitor, exhibit)
+
+    def close(self) -> None:
+        self.scene.stop()
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong with the content now."""
+        asked = (Problem(p.file, p.key, p.what, p.fix) for p in self.survey_problems())
+        return (*self.content.problems, *self.unbaked, *asked)
+
+    def baked(self, exhibit: Exhibit, failure: str | None) -> None:
+        """A bake of the exhibit's garment ended; `failure` says why it did not succeed."""
+        if failure is not None:
+            problem = Problem(
+                exhibit.toml, "garment", f"baking failed: {failure}", "correct pattern or weave"
+            )
+            self._failed[bake_key(self.content, exhibit)] = problem
+
+    def given_up(self, exhibit: Exhibit) -> bool:
+        """True when baking these very inputs has failed before."""
+        return bake_key(self.content, exhibit) in self._failed
+
+    @property
+    def start(self) -> Pose:
+        """Where a visitor comes in."""
+        start = self.content.hall.start
+        return Pose(start.x, start.z, heading(start.facing), self.content.hall.eye.default)
+
+    def models(self, exhibit: str) -> ExhibitModels | None:
+        """What an exhibit is drawn with."""
+        return self._models.get(exhibit)
+
+    def shown(self) -> tuple[Exhibit, ...]:
+        """The exhibits that stand in the hall."""
+        return tuple(exhibit for exhibit in self.content.exhibits if exhibit.id in self._models)
+
+    async def replace(self, content: Content) -> None:
+        """Show changed content, without a restart; visitors stay where they are if they can."""
+        floor = floor_of(content)
+        moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
+        grid = await self._bake_grid(floor) if moved else self.grid
+        before, self.content = self.content, content
+        if content.plan != before.plan:
+            self.scene.show_room(content.plan)
+        if moved:
+            self.floor, self.grid = floor, grid
+            for visitor in self.visitors:
+                if visitor.walk.change_floor(floor, self.grid):
+                    visitor.say(visitor.walk.moved().message())
+        self._show()
+        news = {"t": "content", "revision": content.revision, "problems": len(self.problems)}
+        for visitor in self.visitors:
+            if visitor.opened is not None and visitor.opened not in self._models:
+                self.stage.close(visitor)
+            visitor.say(news)
+
+    async def _bake_grid(self, floor: Floor) -> Grid:
+        """The clearance grid of a changed floor, baked in a process of its own."""
+        loop = asyncio.get_running_loop()
+        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+            return await loop.run_in_executor(pool, cached_grid, floor, self._grids)
+
+    def _show(self) -> None:
+        """Draw the exhibits; one whose garment is not baked yet is left out and named."""
+        found = {e.id: models_of(self.content, e, self.data) for e in self.content.exhibits}
+        self._models = {name: models for name, models in found.items() if models is not None}
+        self.unbaked = tuple(
+            self._failed.get(bake_key(self.content, e))
+            or Problem(e.toml, "garment", "has not been baked", "run hall build")
+            for e in self.content.exhibits
+            if e.file.garment is not None and (e.id not in self._models or self.given_up(e))
+        )
+        shown = self.shown()
+        self.scene.show(
+            tuple(self._figure(exhibit) for exhibit in shown),
+            frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours),
+        )
+        start = self.start
+        self.scene.place_camera(start.x, start.z, start.yaw, start.eye)
+        self.stage.play(
+            tuple(Actor(e.id, e.file.place.x, e.file.place.z, tuple(e.file.behaviours)) for e in shown)
+        )
+
+    def _figure(self, exhibit: Exhibit) -> Figure:
+        models, place = self._models[exhibit.id], exhibit.file.place
+        low, high = models.bounds()
+        radius = 0.5 * math.dist(low, high)
+        return Figure(
+            id=exhibit.id,
+            hall=models.hall.read_bytes(),
+            close=models.close.read_bytes,
+            x=place.x,
+            y=foot_height(self.content.plan, exhibit.file),
+            z=place.z,
+            facing=place.facing,
+            centre=(low[1] + high[1]) / 2,
+            radius=radius,
+        )
+
+    # Visitors.
+
+    def welcome(self, now: float, mode: WalkMode, display: str, at: Any = None) -> Visitor:
+        """A visitor comes in, or comes back to the place `at` after a lost connection."""
+        walk = WalkSession(self.floor, self.grid, self.start, now=now, mode=mode)
+        if isinstance(at, dict):
+            walk.goto(at.get("x"), at.get("z"))
+        visitor = Visitor(walk, display=display)
+        self.visitors.enter(visitor)
+        return visitor
+
+    def farewell(self, visitor: Visitor) -> None:
+        self.visitors.leave(visitor)
+
+    def walk_json(self) -> dict[str, Any]:
+        """What the page needs for walking."""
+        body = self.grid.body
+        grid = {"url": f"/grid.bin?v={self.content.revision}", **self.grid.meta()}
+        return {"mode": self.walk_mode, **walk_constants(body.radius, body.skin), "grid": grid}
+
+
+def walk_constants(radius: float, skin: float) -> dict[str, float]:
+    """Speed and sizes the page predicts with: the server's own."""
+    from .walking import MAX_INPUT_DT, SPEED
+
+    return {"speed": SPEED, "radius": radius, "skin": skin, "max_dt": MAX_INPUT_DT}
+
+
+def heading(facing: float) -> float:
+    """Yaw [rad] (0 looks to -z, positive left) of a facing [deg] about +y (0 looks to +z)."""
+    return math.remainder(math.radians(facing) + math.pi, 2 * math.pi)

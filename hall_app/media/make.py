@@ -1,0 +1,116 @@
+"""All of the hall's own media at once: music, drawings, the ready-made mirror."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..content.exhibit_file import ExhibitFile
+from ..content.loading import read_table
+from ..content.problems import ContentError
+
+if TYPE_CHECKING:
+    from sim_core.weave import Weave
+
+    from .drawings import Interlacing
+
+Progress = Callable[[float, str], None]
+QUALITY = 88  # of JPEG
+
+
+def make_media(folder: Path, progress: Progress = lambda fraction, label: None) -> None:
+    """Write the media of hall, pibo and mirror into the content folder; the same bytes from the same sources.
+
+    progress: called with a fraction 0..1 and a label. Raises ImportError without the extra `bake`.
+    """
+    steps: tuple[tuple[str, Callable[[Path], None]], ...] = (
+        ("music of the hall", _hall_music),
+        ("music of the scarf", _scarf_music),
+        ("drawing of the weave", _weave),
+        ("drawing of the pattern", _pattern),
+        ("the mirror", _mirror),
+    )
+    for number, (label, step) in enumerate(steps):
+        progress(number / len(steps), label)
+        step(folder)
+    progress(1.0, "media")
+
+
+def _place(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return path
+
+
+def _hall_music(folder: Path) -> None:
+    from .encode import write_sound
+    from .music import hall_music
+
+    sound = hall_music()
+    for ending in (".webm", ".mp3"):
+        write_sound(_place(folder / f"media/music{ending}"), sound)
+
+
+def _scarf_music(folder: Path) -> None:
+    from .encode import write_sound
+    from .music import falling_gauze
+
+    sound = falling_gauze()
+    for ending in (".webm", ".mp3"):
+        write_sound(_place(folder / f"exhibits/pibo/media/listening{ending}"), sound)
+
+
+def _weave(folder: Path) -> None:
+    from sim_core.garment import Pattern
+    from sim_core.weave import Weave
+
+    from .drawings import weave_drawing
+
+    pattern, weave = (folder / path for path in _recipe(folder))
+    picture = weave_drawing(interlacing(Weave.load(weave), Pattern.load(pattern).dye))
+    picture.save(_place(folder / "exhibits/pibo/media/weave.jpg"), quality=QUALITY)
+
+
+def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> Interlacing:
+    """What the drawing needs of a weave; `dye`: sRGB 0..1 of the dyed cloth, else the yarns' own colours."""
+    from .drawings import Interlacing
+
+    tones = [dye or yarn.colour for yarn in (weave.warp, weave.weft)]
+    colours = ["#" + "".join(f"{round(255 * part):02x}" for part in tone) for tone in tones]
+    return Interlacing(
+        np.asarray(weave.draft.lift, bool),
+        (weave.end_spacing, weave.pick_spacing),
+        (weave.warp.width, weave.weft.width),
+        (colours[0], colours[1]),
+    )
+
+
+def _pattern(folder: Path) -> None:
+    from sim_core.garment import Pattern
+
+    from .drawings import pattern_drawing
+
+    pattern = Pattern.load(folder / _recipe(folder)[0])
+    picture = pattern_drawing([pattern.outline])
+    picture.save(_place(folder / "exhibits/pibo/media/pattern.jpg"), quality=QUALITY)
+
+
+def _recipe(folder: Path) -> tuple[str, str]:
+    """Pattern and weave files of the scarf, relative to the content folder."""
+    file, problems = read_table(folder, "exhibits/pibo/exhibit.toml", ExhibitFile)
+    if file is None:
+        raise ContentError(problems)
+    assert file.garment is not None  # the scarf is simulated
+    return file.garment.pattern, file.garment.weave
+
+
+def _mirror(folder: Path) -> None:
+    from .drawings import mirror_drawing
+    from .foreign import write_mirror
+
+    home = folder / "exhibits/mirror/media"
+    home.mkdir(parents=True, exist_ok=True)
+    write_mirror(home)
+    mirror_drawing().save(home / "drawing.jpg", quality=QUALITY)

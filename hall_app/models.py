@@ -1,0 +1,37 @@
+"""Which GLBs an exhibit is drawn with: its own files, or the newest bake of its garment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from .bake.places import bake_folder
+from .content.glb import read_glb
+from .content.loading import Content, Exhibit
+
+__all__ = ["ExhibitModels", "models_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class ExhibitModels:
+    """Paths of both precisions; `baked` is the folder its baked media lie in, None for a ready-made model."""
+
+    hall: Path
+    close: Path
+    baked: Path | None
+
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """Lowest and highest corner of the close model [m]."""
+        facts = read_glb(self.close)
+        return facts.low, facts.high
+
+
+def models_of(content: Content, exhibit: Exhibit, data: Path) -> ExhibitModels | None:
+    """What to draw `exhibit` with, or None while its garment has not been baked."""
+    if exhibit.file.garment is None:
+        hall, close = exhibit.model_path("hall"), exhibit.model_path("close")
+        return ExhibitModels(hall, close or hall, None) if hall is not None else None
+    folder = bake_folder(content, exhibit, data)
+    if folder is None:
+        return None
+    return ExhibitModels(folder / "hall.glb", folder / "close.glb", folder)

@@ -1,0 +1,153 @@
+// The camera: viser's page hooks (pinned to viser 1.1.1, asserted in tests/browser) behind five small verbs.
+// World: y up, metres. three.js sees it through the orientation of viser's root node.
+
+const ROTATE = 1, DOLLY = 16, TOUCH_ROTATE = 64, TOUCH_DOLLY = 1024;
+const PITCH_LIMIT = (75 * Math.PI) / 180;
+
+const mutable = () => window.__viserMutable;
+
+/** True when every hook this page needs is there. */
+export function hooksPresent() {
+  const m = mutable();
+  return Boolean(m && m.cameraControl && m.camera && m.canvas && m.nodePoseData && window.__viserSceneTree);
+}
+
+/** Names of the scene nodes the page has received. */
+export function nodeNames() {
+  const tree = window.__viserSceneTree;
+  return tree ? Object.keys(tree.getState()) : [];
+}
+
+/** The drawn meshes below a node; empty while its model is still being read. */
+export function meshesOf(name) {
+  const found = [];
+  const object = mutable()?.nodeRefFromName?.[name];
+  if (object) object.traverse((child) => { if (child.isMesh) found.push(child); });
+  return found;
+}
+
+export function drawnOnce() {
+  const info = window.__viserTestpoints?.rendererInfo;
+  return Boolean(info && info.render.calls > 0 && info.render.triangles > 0);
+}
+
+export function requestRender() { mutable()?.requestRender?.(); }
+
+// v rotated by the unit quaternion (w, x, y, z).
+function rotate([w, x, y, z], [a, b, c]) {
+  const tx = 2 * (y * c - z * b), ty = 2 * (z * a - x * c), tz = 2 * (x * b - y * a);
+  return [a + w * tx + y * tz - z * ty, b + w * ty + z * tx - x * tz, c + w * tz + x * ty - y * tx];
+}
+
+function toThree(point) {
+  const root = mutable().nodePoseData[""];
+  return root ? rotate(root.wxyz, point) : point;
+}
+
+function fromThree(point) {
+  const root = mutable().nodePoseData[""];
+  if (!root) return point;
+  const [w, x, y, z] = root.wxyz;
+  return rotate([w, -x, -y, -z], point);
+}
+
+/** Direction of view for a heading and pitch; yaw 0 looks to -z, positive turns left. */
+export function direction(yaw, pitch) {
+  const flat = Math.cos(pitch);
+  return [-Math.sin(yaw) * flat, Math.sin(pitch), -Math.cos(yaw) * flat];
+}
+
+export function clampPitch(pitch) { return Math.max(-PITCH_LIMIT, Math.min(PITCH_LIMIT, pitch)); }
+
+/** Walking: viser's own gestures are switched off, every frame; React may have mounted new controls meanwhile. */
+export function holdGestures() {
+  const control = mutable()?.cameraControl;
+  if (!control) return;
+  for (const button of ["left", "middle", "right", "wheel"]) control.mouseButtons[button] = 0;
+  for (const fingers of ["one", "two", "three"]) control.touches[fingers] = 0;
+}
+
+/** Close-up: one button or finger turns the exhibit, the wheel or two fingers come nearer. */
+export function orbitGestures(near, far) {
+  const control = mutable()?.cameraControl;
+  if (!control) return;
+  Object.assign(control.mouseButtons, { left: ROTATE, middle: DOLLY, right: 0, wheel: DOLLY });
+  Object.assign(control.touches, { one: TOUCH_ROTATE, two: TOUCH_DOLLY, three: 0 });
+  control.minDistance = near;
+  control.maxDistance = far;
+  mutable().configuredMaxOrbitDistance = far;
+}
+
+export function freeDistances() {
+  const control = mutable()?.cameraControl;
+  if (!control) return;
+  control.minDistance = 0.01;
+  control.maxDistance = 1e4;
+  mutable().configuredMaxOrbitDistance = 1e4;
+}
+
+/** Place the camera at `eye` [m], looking along `ahead`. */
+export function look(eye, ahead) {
+  const control = mutable()?.cameraControl;
+  if (!control) return;
+  const from = toThree(eye), to = toThree([eye[0] + ahead[0], eye[1] + ahead[1], eye[2] + ahead[2]]);
+  control.setLookAt(...from, ...to, false);
+}
+
+/** Look at `target` from `eye`, both [m]. */
+export function lookAt(eye, target) {
+  const control = mutable()?.cameraControl;
+  if (control) control.setLookAt(...toThree(eye), ...toThree(target), false);
+}
+
+export function orbit(azimuth, polar) { mutable()?.cameraControl?.rotate(azimuth, polar, false); }
+
+export function dolly(metres) { mutable()?.cameraControl?.dolly(metres, false); }
+
+/** Where the picture is seen from now, in world metres: what a visitor really sees, used by tests. */
+export function displayed() {
+  const camera = mutable()?.camera;
+  return camera ? fromThree([camera.position.x, camera.position.y, camera.position.z]) : null;
+}
+
+/** Move the picture's middle into what a panel at the right or a sheet at the bottom [px] leaves free. */
+export function leaveRoom({ panel, sheet }) {
+  const m = mutable();
+  if (!m?.camera || !m.canvas) return;
+  const width = m.canvas.clientWidth, height = m.canvas.clientHeight;
+  if (panel > 0 || sheet > 0) m.camera.setViewOffset(width, height, panel / 2, sheet / 2, width, height);
+  else m.camera.clearViewOffset();
+  requestRender();
+}
+
+/** Colours as the palette has them: viser's client maps tones by default, which greys warm whites. */
+export function plainTones() {
+  const gl = mutable()?.scene?.__r3f?.root?.getState?.().gl;
+  if (!gl || gl.toneMapping === 0) return;
+  gl.toneMapping = 0;
+  mutable().scene.traverse((object) => {
+    for (const material of [object.material ?? []].flat()) material.needsUpdate = true;
+  });
+  requestRender();
+}
+
+/** Text the server left in the page to say which of its clients this page is: "<id>.<token>". */
+export function clientMark() {
+  const prefix = "/_visitor/";
+  const name = nodeNames().find((candidate) => candidate.startsWith(prefix));
+  return name ? name.slice(prefix.length) : null;
+}
+
+/** Light an exhibit up, or let it be. */
+export function glow(name, on) {
+  for (const mesh of meshesOf(name)) {
+    for (const material of [mesh.material].flat()) {
+      if (!material.emissive) continue;
+      material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
+      const still = material.userData.still;
+      material.emissive.setHex(on ? 0xffd9a0 : still.hex);
+      material.emissiveIntensity = on ? 0.16 : still.strength;
+    }
+  }
+  requestRender();
+}

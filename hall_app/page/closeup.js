@@ -1,0 +1,65 @@
+// The close-up: the fine model in its own studio, turned by dragging, by wheel, by two fingers or by keys.
+
+import * as camera from "./camera.js";
+
+const TURN = 0.12; // [rad] a key press
+const STEP = 0.08; // of the exhibit's size, a key press
+
+export function createCloseup(ui) {
+  let studio = null, drawnAt = null;
+  const root = document.documentElement;
+
+  // The model comes over viser's socket: two frames after its meshes stand in the scene it has been drawn.
+  function awaitModel(node, patience = performance.now() + 60000) {
+    if (!studio || performance.now() > patience) return;
+    if (camera.meshesOf(node).length === 0) {
+      requestAnimationFrame(() => awaitModel(node, patience));
+      return;
+    }
+    camera.requestRender();
+    requestAnimationFrame(() => requestAnimationFrame((now) => {
+      drawnAt = now;
+      if (studio) root.dataset.closeup = "drawn";
+    }));
+  }
+
+  function place() {
+    const { x, y, z, radius } = studio;
+    const distance = radius * 2.5;
+    camera.orbitGestures(radius * 0.25, radius * 5);
+    camera.lookAt([x + distance * 0.25, y + radius * 0.15, z + distance * 0.97], [x, y, z]);
+    camera.leaveRoom(ui.visible);
+  }
+
+  addEventListener("keydown", (event) => {
+    if (!studio || event.target.closest?.("input, textarea, [role=tablist], video, audio, dialog[open]")) return;
+    const act = {
+      ArrowLeft: () => camera.orbit(-TURN, 0), ArrowRight: () => camera.orbit(TURN, 0),
+      ArrowUp: () => camera.orbit(0, -TURN), ArrowDown: () => camera.orbit(0, TURN),
+      KeyA: () => camera.orbit(-TURN, 0), KeyD: () => camera.orbit(TURN, 0),
+      KeyW: () => camera.dolly(studio.radius * STEP), KeyS: () => camera.dolly(-studio.radius * STEP),
+      Equal: () => camera.dolly(studio.radius * STEP), Minus: () => camera.dolly(-studio.radius * STEP),
+    }[event.code];
+    if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    act();
+  }, true);
+  addEventListener("resize", () => { if (studio) camera.leaveRoom(ui.visible); });
+
+  return {
+    drawnAt: () => drawnAt,
+    enter(message) {
+      studio = message.studio;
+      root.dataset.closeup = "loading";
+      place();
+      awaitModel(message.node);
+    },
+    leave() {
+      studio = null;
+      delete root.dataset.closeup;
+      camera.freeDistances();
+      camera.leaveRoom({ panel: 0, sheet: 0 });
+    },
+  };
+}

@@ -1,0 +1,81 @@
+// Help: every key and gesture, the music's volume, the catalogue and the hall's own questionnaire.
+
+import { createDialog } from "./dialogs.js";
+import { el, setAttribute } from "./elements.js";
+import { createVolume } from "./top_bar.js";
+
+// [keys, text]; a key in {braces} is a text of the group "help".
+const SECTIONS = {
+  keyboard: [
+    [["W", "↑"], "forward"],
+    [["S", "↓"], "backward"],
+    [["A", "←"], "left"],
+    [["D", "→"], "right"],
+    [["Enter"], "open"],
+    [["Esc"], "back"],
+    [["?"], "show_help"],
+  ],
+  mouse: [
+    [["{left_drag}"], "look"],
+    [["{middle_drag}"], "eye"],
+    [["{click_key}"], "click"],
+    [["{map_key}"], "map"],
+  ],
+  touch: [
+    [["{stick_key}"], "stick"],
+    [["{swipe_key}"], "look"],
+    [["{tap_key}"], "click"],
+  ],
+};
+
+function section(words, name) {
+  const rows = SECTIONS[name].flatMap(([keys, text]) => [
+    el("dt", {}, ...keys.map((key) => keycap(words, key))),
+    words.text(el("dd"), `help.${text}`),
+  ]);
+  return el(
+    "section",
+    { class: `help-${name}` },
+    words.text(el("h3"), `help.${name}`),
+    el("dl", { class: "keys" }, ...rows),
+  );
+}
+
+function keycap(words, key) {
+  return key.startsWith("{")
+    ? words.text(el("kbd", { class: "long" }), `help.${key.slice(1, -1)}`)
+    : el("kbd", { text: key });
+}
+
+/** createHelp({words, music, scene, onSurvey}) -> {element, open, updateScene} */
+export function createHelp({ words, music, scene, onSurvey }) {
+  const dialog = createDialog({ words, titleKey: "help.title", testid: "help-dialog", kind: "help" });
+  const volume = el(
+    "label",
+    { class: "help-volume" },
+    words.text(el("span"), "help.volume"),
+    createVolume({ words, music, testid: "help-volume" }),
+  );
+  const survey = words.text(
+    el("button", { type: "button", class: "button quiet-button", testid: "help-survey" }),
+    "help.survey",
+  );
+  survey.addEventListener("click", () => {
+    dialog.close();
+    onSurvey();
+  });
+  const catalogue = words.text(el("a", { href: "/catalogue" }), "help.catalogue");
+  dialog.body.append(
+    el(
+      "div",
+      { class: "help-columns" },
+      section(words, "keyboard"),
+      el("div", {}, section(words, "mouse"), section(words, "touch")),
+    ),
+    el("footer", { class: "help-foot" }, volume, catalogue, survey),
+  );
+  music.follow(() => setAttribute(volume, "hidden", !music.available));
+  const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);
+  updateScene(scene);
+  return { element: dialog.element, open: dialog.open, updateScene };
+}

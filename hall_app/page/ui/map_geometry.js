@@ -1,0 +1,72 @@
+// Plane geometry of the floor plan. Points are [x, z] in metres; the plan's up is -z, its right +x. No DOM here.
+
+/** Smallest box around the outline, widened by `margin` [m]: {x, z, width, depth}. */
+export function planBounds(outline, margin = 0.4) {
+  const xs = outline.map(([x]) => x);
+  const zs = outline.map(([, z]) => z);
+  const x = Math.min(...xs) - margin;
+  const z = Math.min(...zs) - margin;
+  return { x, z, width: Math.max(...xs) + margin - x, depth: Math.max(...zs) + margin - z };
+}
+
+/** Even-odd rule: whether [x, z] lies inside the polygon. */
+export function insidePolygon([x, z], polygon) {
+  let inside = false;
+  for (let i = 0, j = polygon.length - 1; i < polygon.length; j = i++) {
+    const [xi, zi] = polygon[i];
+    const [xj, zj] = polygon[j];
+    if (zi > z !== zj > z && x < ((xj - xi) * (z - zi)) / (zj - zi) + xi) inside = !inside;
+  }
+  return inside;
+}
+
+function segmentDistance([x, z], [ax, az], [bx, bz]) {
+  const [dx, dz] = [bx - ax, bz - az];
+  const along = ((x - ax) * dx + (z - az) * dz) / (dx * dx + dz * dz || 1);
+  const t = Math.max(0, Math.min(1, along));
+  return Math.hypot(x - ax - t * dx, z - az - t * dz);
+}
+
+/** Distance [m] from a point to a solid of the plan (polygon or round), 0 inside it. */
+export function solidDistance(point, solid) {
+  if (solid.round) {
+    const [x, z, radius] = solid.round;
+    return Math.max(0, Math.hypot(point[0] - x, point[1] - z) - radius);
+  }
+  const { polygon } = solid;
+  if (insidePolygon(point, polygon)) return 0;
+  return Math.min(
+    ...polygon.map((corner, i) => segmentDistance(point, corner, polygon[(i + 1) % polygon.length])),
+  );
+}
+
+/**
+ * Where a visitor stands to see an exhibit: in front of it, as near as the solids leave `room` [m].
+ * Returns {x, z, yaw}; the yaw looks at the exhibit (facing is degrees about +y, 0 = +z).
+ */
+export function standBefore(exhibit, { outline, solids }, room = 0.5) {
+  const yaw = ((exhibit.facing ?? 0) * Math.PI) / 180;
+  const at = (distance) => [exhibit.x + distance * Math.sin(yaw), exhibit.z + distance * Math.cos(yaw)];
+  const free = (point) =>
+    insidePolygon(point, outline) && solids.every((solid) => solidDistance(point, solid) >= room);
+  let distance = 1.8;
+  while (distance < 4 && !free(at(distance))) distance += 0.1;
+  const [x, z] = at(distance < 4 ? distance : 1.8);
+  return { x, z, yaw };
+}
+
+/** The bay that holds [x, z], or null. */
+export function bayAt(point, bays) {
+  return bays.find((bay) => insidePolygon(point, bay.polygon)) ?? null;
+}
+
+/** The exhibit nearest to [x, z] within `reach` [m], or null. */
+export function nearestExhibit([x, z], exhibits, reach) {
+  let best = null;
+  let least = reach;
+  for (const exhibit of exhibits) {
+    const distance = Math.hypot(exhibit.x - x, exhibit.z - z);
+    if (distance <= least) [best, least] = [exhibit, distance];
+  }
+  return best;
+}

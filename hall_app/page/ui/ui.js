@@ -1,0 +1,250 @@
+// The overlay over the hall: builds its parts, keeps language, exhibit and connection in step between them.
+
+import { createCaption } from "./caption.js";
+import { el, ownsEnter } from "./elements.js";
+import { createEnter } from "./enter.js";
+import { createExhibitsList } from "./exhibits_list.js";
+import { createHelp } from "./help.js";
+import { createHints } from "./hints.js";
+import { createMinimap } from "./minimap.js";
+import { createMusic } from "./music.js";
+import { createConnection, createProblems, createToasts, createVoice } from "./notices.js";
+import { createPanel } from "./panel.js";
+import { createViewer } from "./panel_pictures.js";
+import { createSurveyDialog } from "./survey_dialog.js";
+import { createBrand, createLanguageSwitch, createTools } from "./top_bar.js";
+import { createStick, noticeTouch } from "./touch.js";
+import { createWords } from "./words.js";
+
+const SHEET = "(max-width: 720px)"; // the panel lies at the bottom instead of standing at the right
+
+/**
+ * createUi({root, scene, texts, lang, actions}) -> ui
+ *
+ * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
+ * actions: enter(), open(id), close(), goTo(x, z, yaw?), setLang(lang), move(forward, right).
+ */
+export function createUi({ root, scene, texts, lang, actions }) {
+  const words = createWords(texts, lang);
+  const parts = createParts({ words, scene, actions });
+  const overlay = arrange(parts);
+  root.append(overlay);
+  followLanguage(words, parts, overlay);
+  listenToKeys(parts, actions);
+  noticeTouch(() => {
+    overlay.classList.add("is-touch");
+    parts.hints.touch();
+    parts.caption.touch();
+  });
+  return face(parts, overlay, words);
+}
+
+function createParts({ words, scene, actions }) {
+  const parts = { words, scene };
+  const music = createMusic(scene);
+  const titleOf = (id) => words.pick(parts.scene.exhibits.find((exhibit) => exhibit.id === id)?.title);
+  const choose = (next) => {
+    if (words.setLang(next)) actions.setLang(next);
+  };
+  const hallSurvey = () => parts.survey.open(parts.scene.questionnaire, null);
+  const goTo = (x, z, yaw) => {
+    if (parts.panel.detail()) actions.close();
+    if (matchMedia(SHEET).matches) parts.minimap.fold(true);
+    actions.goTo(x, z, yaw);
+  };
+  return Object.assign(parts, {
+    music,
+    titleOf,
+    stage: el("div", { class: "stage", testid: "stage", role: "application", tabindex: 0 }),
+    languages: createLanguageSwitch({ words, onChoose: choose }),
+    enter: createEnter({ words, scene, onEnter: () => enterHall(parts, actions) }),
+    brand: createBrand({ words, scene }),
+    tools: createTools({
+      words,
+      music,
+      scene,
+      onList: () => parts.list.open(),
+      onHelp: () => parts.help.open(),
+      onSurvey: hallSurvey,
+    }),
+    minimap: createMinimap({ words, scene, goTo, onBay: (bay) => announceBay(parts, bay) }),
+    list: createExhibitsList({ words, scene, onOpen: actions.open, onGo: goTo }),
+    help: createHelp({ words, music, scene, onSurvey: hallSurvey }),
+    panel: createPanel({
+      words,
+      onClose: actions.close,
+      onSurvey: (detail) => parts.survey.open(detail.questionnaire, detail.id),
+      onEnlarge: (pictures, index) => parts.viewer.open(pictures, index),
+      onSounding: (sounding) => music.duck(sounding),
+    }),
+    viewer: createViewer({ words }),
+    survey: createSurveyDialog({
+      words,
+      onSubmitted(exhibit) {
+        if (exhibit) parts.panel.answered(exhibit);
+        parts.toasts.toast(words.t("survey.thanks"));
+      },
+    }),
+    caption: createCaption({ words, scene, onOpen: actions.open }),
+    hints: createHints(words),
+    stick: createStick({ words, move: actions.move }),
+    toasts: createToasts(),
+    connection: createConnection({
+      words,
+      onRestored: () => parts.toasts.toast(words.t("connection.restored")),
+    }),
+    problems: createProblems(words),
+    voice: createVoice(),
+  });
+}
+
+function arrange(parts) {
+  const {
+    enter,
+    languages,
+    stage,
+    brand,
+    tools,
+    minimap,
+    caption,
+    hints,
+    panel,
+    toasts,
+    connection,
+    problems,
+    voice,
+  } = parts;
+  enter.actions.append(languages);
+  const dialogs = [parts.list, parts.help, parts.viewer, parts.survey].map(({ element }) => element);
+  const top = el("header", { class: "top" }, brand.element, tools.element);
+  const low = el(
+    "div",
+    { class: "low" },
+    minimap.element,
+    parts.stick,
+    el("div", { class: "middle" }, problems.element, caption.element, hints.element),
+  );
+  const chrome = el("div", { class: "chrome", inert: true }, top, low, panel.element);
+  const notices = el("div", { class: "announcements" }, connection.element, toasts.element, voice.element);
+  return el("div", { id: "hall-ui", class: "is-outside" }, stage, chrome, enter.element, notices, ...dialogs);
+}
+
+function followLanguage(words, parts, overlay) {
+  words.follow(() => {
+    document.documentElement.lang = words.lang === "zh" ? "zh-Hans" : "en";
+    document.title = words.pick(parts.scene.title);
+    overlay.lang = document.documentElement.lang;
+    parts.stage.setAttribute("aria-label", words.t("stage.label"));
+  });
+}
+
+function enterHall(parts, actions) {
+  const overlay = parts.stage.parentElement;
+  overlay.classList.remove("is-outside");
+  overlay.querySelector(".chrome").inert = false;
+  parts.tools.element.prepend(parts.languages);
+  parts.enter.leave();
+  focusStage(parts.stage);
+  parts.music.start();
+  actions.enter();
+}
+
+/** Gives the hall the focus without a frame around it; coming back by Tab shows the frame. */
+function focusStage(stage) {
+  stage.classList.add("is-quiet");
+  stage.addEventListener("blur", () => stage.classList.remove("is-quiet"), { once: true });
+  stage.focus({ preventScroll: true });
+}
+
+function announceBay({ words, voice }, bay) {
+  if (bay) voice?.say(words.t("stage.entered", { place: words.pick(bay.name) }));
+}
+
+/** Esc leaves the close-up (an open dialog takes Esc for itself), Enter opens what is near, ? shows the help. */
+function listenToKeys(parts, actions) {
+  addEventListener("keydown", (event) => {
+    const inside = parts.stage.parentElement.classList.contains("is-outside");
+    if (inside || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (document.querySelector("dialog[open]")) return;
+    if (event.key === "Escape" && parts.panel.detail()) actions.close();
+    else if (
+      event.key === "Enter" &&
+      parts.caption.id() &&
+      !parts.panel.detail() &&
+      !ownsEnter(event.target)
+    ) {
+      event.preventDefault();
+      actions.open(parts.caption.id());
+    } else if (event.key === "?" && !event.target.closest?.("input, textarea")) parts.help.open();
+  });
+}
+
+/** What the page's script may call. */
+function face(parts, overlay, words) {
+  const { enter, minimap, hints, caption, panel, voice, titleOf } = parts;
+  const closeup = (open) => {
+    overlay.classList.toggle("has-panel", open);
+    hints.closeup(open);
+  };
+  return Object.freeze({
+    progress: enter.progress,
+    ready: enter.ready,
+    fail: enter.fail,
+    pose(pose) {
+      minimap.pose(pose);
+      hints.pose(pose);
+    },
+    showExhibit(detail, options) {
+      panel.show(detail, options);
+      closeup(true);
+      voice.say(words.t("stage.opened", { title: words.pick(detail.title) }));
+    },
+    hideExhibit() {
+      if (!panel.detail()) return;
+      panel.hide();
+      closeup(false);
+      if (document.activeElement === document.body) focusStage(parts.stage);
+      voice.say(words.t("stage.closed"));
+    },
+    updateExhibit: panel.update,
+    near(id) {
+      caption.near(id);
+      minimap.mark(id);
+      if (id) voice.say(words.t("stage.near", { title: titleOf(id) }));
+    },
+    hover(id) {
+      caption.hover(id);
+      document.documentElement.classList.toggle("hall-hover", Boolean(id));
+    },
+    toast: parts.toasts.toast,
+    connection: parts.connection.set,
+    problems: parts.problems.set,
+    updateScene(scene) {
+      parts.scene = scene;
+      for (const part of [
+        enter,
+        parts.brand,
+        parts.tools,
+        minimap,
+        parts.list,
+        parts.help,
+        caption,
+        parts.music,
+      ])
+        part.updateScene(scene);
+      document.title = words.pick(scene.title);
+    },
+    setLang: words.setLang,
+    get lang() {
+      return words.lang;
+    },
+    /** What covers the picture [px]: the panel's width at the right, or the sheet's height at the bottom. */
+    get visible() {
+      const { offsetLeft, offsetHeight } = panel.element; // layout, not the sliding picture of it
+      if (!panel.detail()) return { panel: 0, sheet: 0 };
+      return matchMedia(SHEET).matches
+        ? { panel: 0, sheet: offsetHeight }
+        : { panel: overlay.clientWidth - offsetLeft, sheet: 0 };
+    },
+  });
+}

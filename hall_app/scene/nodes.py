@@ -1,0 +1,192 @@
+"""What viser draws: room, exhibits, lights, and one studio for close-ups. The only module that talks to viser."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import socket
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ..visitors import Marks, Visitor
+from .build import hall_glb, studio_glb
+
+if TYPE_CHECKING:
+    import viser
+
+    from ..content.models import PlanFile
+
+__all__ = ["STUDIO", "Figure", "HallScene"]
+
+# The studio lies far outside the hall: one WebGL context, no second page, and the walker's pose is untouched.
+STUDIO = (500.0, 0.0, 0.0)
+FIELD_OF_VIEW = math.radians(58)  # 75 degrees, the client's own, stretches dress at the rim
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One exhibit as drawn: models as GLB bytes, foot at (x, y, z) [m], `facing` [deg] about +y."""
+
+    id: str
+    hall: bytes
+    close: Callable[[], bytes]
+    x: float
+    y: float
+    z: float
+    facing: float
+    centre: float
+    radius: float
+
+
+def node_name(exhibit: str) -> str:
+    return f"/exhibits/{exhibit}"
+
+
+def about_y(angle: float) -> tuple[float, float, float, float]:
+    """Unit quaternion (w, x, y, z) of a turn about +y [rad]."""
+    return (math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0)
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class HallScene:
+    """viser's server on a port of its own behind 127.0.0.1, with the hall in it."""
+
+    def __init__(self) -> None:
+        import viser
+
+        # viser announces itself on standard output, whatever `verbose` says.
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.server: viser.ViserServer = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
+        self.port: int = self.server.get_port()
+        self.marks = Marks()
+        self._handles: dict[str, viser.GlbHandle] = {}
+        self._figures: dict[str, Figure] = {}
+        self._on_click: Callable[[int, str], None] = lambda client, exhibit: None
+        self._configure()
+
+    def _configure(self) -> None:
+        scene, gui = self.server.scene, self.server.gui
+        scene.set_up_direction("+y")
+        scene.configure_environment_map(None)
+        scene.configure_default_lights(False, False)
+        # viser's lamps shine from their position towards the origin, the hemisphere's sky lies where it stands.
+        scene.add_light_hemisphere(
+            "/light/sky",
+            sky_color=(255, 247, 232),
+            ground_color=(128, 108, 88),
+            intensity=1.5,
+            position=(0.0, 10.0, 0.0),
+        )
+        scene.add_light_directional(
+            "/light/key", color=(255, 244, 226), intensity=1.7, position=(4.5, 7.5, 5.0)
+        )
+        gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
+        self.server.initial_camera.fov = FIELD_OF_VIEW
+        self.server.on_client_connect(self._mark)
+        self.server.on_client_disconnect(self._forget)
+
+    async def _mark(self, client: viser.ClientHandle) -> None:
+        mark = self.marks.make(client.client_id)
+        client.scene.add_frame(f"/_visitor/{mark}", show_axes=False, visible=False)
+        # The same mark for a page whose hooks are missing: plain HTML in viser's (hidden) panel.
+        client.gui.add_html(f'<i data-hall-client="{mark}"></i>')
+
+    async def _forget(self, client: viser.ClientHandle) -> None:
+        self.marks.forget(client.client_id)
+
+    # The hall.
+
+    def show_room(self, plan: PlanFile) -> None:
+        """Draw (again) the room of `plan`."""
+        self.server.scene.add_glb("/room", hall_glb(plan), cast_shadow=False, receive_shadow=False)
+        self.server.scene.add_glb(
+            "/studio", studio_glb(), position=STUDIO, cast_shadow=False, receive_shadow=False
+        )
+
+    def place_camera(self, x: float, z: float, yaw: float, eye: float) -> None:
+        """Where a page that has not said hello yet looks from."""
+        self.server.initial_camera.position = (x, eye, z)
+        self.server.initial_camera.look_at = (x - math.sin(yaw), eye, z - math.cos(yaw))
+
+    def show(self, figures: tuple[Figure, ...], clickable: frozenset[str]) -> None:
+        """Draw these exhibits; what is unchanged stays as it is."""
+        for gone in set(self._figures) - {figure.id for figure in figures}:
+            self._handles.pop(gone).remove()
+            del self._figures[gone]
+        for figure in figures:
+            known = self._figures.get(figure.id)
+            self._figures[figure.id] = figure
+            if known is None or known.hall != figure.hall:
+                self._add(figure, clickable)
+            handle = self._handles[figure.id]
+            handle.position = (figure.x, figure.y, figure.z)
+            handle.wxyz = about_y(math.radians(figure.facing))
+
+    def _add(self, figure: Figure, clickable: frozenset[str]) -> None:
+        handle = self.server.scene.add_glb(
+            node_name(figure.id), figure.hall, cast_shadow=False, receive_shadow=False
+        )
+        self._handles[figure.id] = handle
+        if figure.id in clickable:
+            handle.on_click(lambda event, exhibit=figure.id: self._clicked(event, exhibit))
+
+    def _clicked(self, event: Any, exhibit: str) -> None:
+        if event.client_id is not None:
+            self._on_click(event.client_id, exhibit)
+
+    def when_clicked(self, act: Callable[[int, str], None]) -> None:
+        """Call `act(viser client id, exhibit id)`, on one of viser's threads."""
+        self._on_click = act
+
+    def nodes(self) -> list[str]:
+        """Names of all nodes a page waits for."""
+        return ["/room", *(node_name(exhibit) for exhibit in self._figures)]
+
+    # What a behaviour may ask for (stage.Figures).
+
+    def node(self, exhibit: str) -> str:
+        return node_name(exhibit)
+
+    def turn(self, exhibit: str, angle: float) -> None:
+        figure, handle = self._figures.get(exhibit), self._handles.get(exhibit)
+        if figure is not None and handle is not None:
+            handle.wxyz = about_y(math.radians(figure.facing) + angle)
+
+    def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]:
+        """Put the fine model into the studio, for this visitor alone."""
+        figure = self._figures[exhibit]
+        client = self.server.get_clients().get(visitor.client) if visitor.client is not None else None
+        if client is not None:
+            client.scene.add_glb(
+                "/closeup", figure.close(), position=STUDIO, cast_shadow=False, receive_shadow=False
+            )
+            client.flush()
+        x, y, z = STUDIO
+        studio = {"x": x, "y": y + figure.centre, "z": z, "radius": figure.radius}
+        return {"node": "/closeup", "studio": studio}
+
+    def hide_closeup(self, visitor: Visitor) -> None:
+        client = self.server.get_clients().get(visitor.client) if visitor.client is not None else None
+        if client is not None:
+            client.scene.remove_by_name("/closeup")
+
+    def aim_camera(self, client_id: int, eye: tuple[float, float, float], yaw: float) -> None:
+        """Move a page's camera from here, for a page without hooks."""
+        client = self.server.get_clients().get(client_id)
+        if client is None:
+            return
+        x, y, z = eye
+        with client.atomic():
+            client.camera.position = (x, y, z)
+            client.camera.look_at = (x - math.sin(yaw), y, z - math.cos(yaw))
+
+    def stop(self) -> None:
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.server.stop()

@@ -1,0 +1,203 @@
+"""`hall serve`: prepare what is missing, open the hall, follow the curator's edits, leave nothing behind."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import contextlib
+import socket
+import sys
+import time
+from collections.abc import AsyncIterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .content.loading import Content, Exhibit, load
+from .content.lookup import content_folder
+from .content.problems import ContentError
+from .preparing import Preparation, stale_garments
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+    from .house import House
+
+__all__ = ["add_parser", "run"]
+
+_POLL = 1.0  # [s] between two looks at the content folder
+_BEAT = 1 / 15  # [s] between two movements on stage
+
+_EPILOG = """\
+The hall needs no network, no database server and no torch. Answers, accounts of baking and caches go to --data.
+A change in the content folder shows on reloading the page; a faulty file keeps its last good version on show.
+Ctrl-C ends everything. Exit status: 0 ended by the user, 1 no hall (the message names the file), 2 wrong arguments."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare `hall serve`."""
+    parser = subparsers.add_parser(
+        "serve",
+        help="open the hall in the browser",
+        description="Open the hall at http://HOST:PORT until Ctrl-C.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--port", type=int, default=8000, help="port of the page (default 8000)")
+    parser.add_argument(
+        "--host", default="127.0.0.1", help="address to listen on (default 127.0.0.1: this machine alone)"
+    )
+    parser.add_argument("--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)")
+    parser.add_argument(
+        "--data",
+        type=Path,
+        default=Path("hall-data"),
+        metavar="FOLDER",
+        help="answers and caches (default ./hall-data)",
+    )
+    parser.add_argument(
+        "--walk",
+        choices=("predict", "server"),
+        default="predict",
+        help="predict: the page walks at once, the server has the last word (default); server: the server walks",
+    )
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve until interrupted."""
+    import uvicorn
+
+    try:
+        content = load(content_folder(arguments.content))
+    except ContentError as error:
+        for problem in error.problems:
+            print(f"hall serve: {problem}", file=sys.stderr)
+        return 1
+    _check_port(arguments.host, arguments.port)
+    arguments.data.mkdir(parents=True, exist_ok=True)
+    _say(f"Content  {content.folder}")
+    for problem in content.problems:
+        _say(f"  left out: {problem}")
+    _bake_missing(content, arguments.data)
+    app = _open(content, arguments)
+    config = uvicorn.Config(
+        app,
+        host=arguments.host,
+        port=arguments.port,
+        log_level="warning",
+        access_log=False,
+        ws="websockets-sansio",
+        ws_max_size=1 << 26,
+        timeout_graceful_shutdown=2,
+    )
+    server = uvicorn.Server(config)
+    with contextlib.suppress(KeyboardInterrupt):
+        server.run()
+    return 0
+
+
+def _check_port(host: str, port: int) -> None:
+    """Say at once that the port is taken, before anything is prepared."""
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            raise OSError(
+                f"cannot listen on {host}:{port} ({error.strerror}) – choose another with --port"
+            ) from error
+
+
+def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
+    from survey import mount
+
+    from .house import House
+    from .server.app import create_app
+
+    _say("Opening the hall …")
+    house = House(content, arguments.data, walk_mode=arguments.walk, progress=_show_progress)
+
+    @contextlib.asynccontextmanager
+    async def living(app: FastAPI) -> AsyncIterator[None]:
+        house.attach(asyncio.get_running_loop())
+        tasks = [asyncio.create_task(_follow_edits(house)), asyncio.create_task(_play(house))]
+        _greet(house, arguments)
+        try:
+            yield
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            survey.close()
+            house.close()
+
+    app = create_app(house, lifespan=living)
+    survey = mount(app, content=content.folder, data=arguments.data, problems=[])
+    house.survey_problems = lambda: survey.problems
+    for problem in survey.problems:
+        _say(f"  left out: {problem}")
+    return app
+
+
+def _greet(house: House, arguments: argparse.Namespace) -> None:
+    count, wrong = len(house.shown()), len(house.problems)
+    exhibits = f"{count} exhibit{'' if count == 1 else 's'}"
+    for problem in house.unbaked:
+        _say(f"  left out: {problem}")
+    shown = f"[{arguments.host}]" if ":" in arguments.host else arguments.host
+    _say(f"{exhibits}, {wrong} problem{'' if wrong == 1 else 's'}")
+    _say(f"Open     http://{shown}:{arguments.port}   (Ctrl-C ends)")
+
+
+def _bake_missing(content: Content, data: Path) -> None:
+    """Bake garments that have no bake yet, in a process of their own, before the doors open."""
+    for exhibit in stale_garments(content, data):
+        with Preparation(content.folder, data, exhibit.id) as preparation:
+            while preparation.poll() is None:
+                _say(f"\rPreparing {exhibit.id}: {preparation.line()}", end="")
+                time.sleep(0.3)
+        _say(f"\rPreparing {exhibit.id}: {preparation.outcome()}")
+
+
+async def _follow_edits(house: House) -> None:
+    """Show edits within a second or two; bake changed garments beside the serving process."""
+    from .content.reload import Watcher
+
+    watcher = Watcher(house.content.folder, house.content)
+    while True:
+        await asyncio.sleep(_POLL)
+        content = await asyncio.to_thread(watcher.poll)
+        if content is not None:
+            before = set(house.problems)
+            await house.replace(content)
+            for problem in house.problems:
+                if problem not in before:
+                    _say(f"Problem: {problem}")
+        for exhibit in stale_garments(house.content, house.data):
+            if not house.given_up(exhibit):
+                await _bake_beside(house, exhibit)
+
+
+async def _bake_beside(house: House, exhibit: Exhibit) -> None:
+    with Preparation(house.content.folder, house.data, exhibit.id) as preparation:
+        _say(f"Preparing {exhibit.id} …")
+        while preparation.poll() is None:
+            await asyncio.sleep(0.5)
+    outcome = preparation.outcome().strip()
+    _say(f"Preparing {exhibit.id}: {outcome}")
+    house.baked(exhibit, None if preparation.returncode == 0 else outcome)
+    await house.replace(house.content)
+
+
+async def _play(house: House) -> None:
+    while True:
+        await asyncio.sleep(_BEAT)
+        house.stage.tick(time.monotonic())
+
+
+def _show_progress(fraction: float, label: str) -> None:
+    _say(f"\rPreparing {label} {fraction:4.0%}", end="\n" if fraction >= 1 else "")
+
+
+def _say(text: str, end: str = "\n") -> None:
+    print(text, end=end, flush=True)

@@ -1,0 +1,155 @@
+"""One process, one port: the page, viser's socket, the walk, the media, the survey."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from fastapi.staticfiles import StaticFiles
+
+from ..content.views import exhibit_json, media_type, scene_json
+from ..house import House
+from .catalogue import catalogue_html
+from .page import PAGE_FOLDER, content_security_policy, hall_page
+from .relay import add_relay
+from .walk_socket import add_walk_socket
+
+__all__ = ["create_app"]
+
+_HEADERS = {
+    "Content-Security-Policy": content_security_policy(),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+
+
+def create_app(house: House, *, lifespan: Callable[[FastAPI], Any] | None = None) -> FastAPI:
+    """The hall's web application round a running house. The caller mounts the survey."""
+    app = FastAPI(
+        title="Hall", docs_url="/api/docs", openapi_url="/api/openapi.json", lifespan=lifespan or _still
+    )
+
+    @app.middleware("http")
+    async def guard(request: Request, call_next):
+        response = await call_next(request)
+        for name, value in _HEADERS.items():
+            response.headers.setdefault(name, value)
+        return response
+
+    _add_page(app, house)
+    _add_api(app, house)
+    _add_media(app, house)
+    add_relay(app, house.scene.port)
+    add_walk_socket(app, house)
+    app.mount("/static", _Revalidated(directory=PAGE_FOLDER), name="static")
+    return app
+
+
+@asynccontextmanager
+async def _still(app: FastAPI) -> AsyncIterator[None]:
+    yield
+
+
+class _Revalidated(StaticFiles):
+    """Static files a browser asks for again: an update of the program shows on reloading."""
+
+    def file_response(self, *args: Any, **kwargs: Any) -> Response:
+        response = super().file_response(*args, **kwargs)
+        response.headers["Cache-Control"] = "no-cache"
+        return response
+
+
+@lru_cache(maxsize=1)
+def _page_stamp() -> str:
+    """A name for this version of style and script."""
+    total = sha256()
+    for path in sorted(PAGE_FOLDER.rglob("*")):
+        if path.is_file():
+            total.update(path.read_bytes())
+    return total.hexdigest()[:10]
+
+
+def _add_page(app: FastAPI, house: House) -> None:
+    @app.get("/", response_class=HTMLResponse, include_in_schema=False)
+    async def page(withoutHooks: bool = False) -> HTMLResponse:
+        hall = house.content.hall
+        title = getattr(hall.title, hall.language)
+        settings = {"withoutHooks": withoutHooks}
+        text = hall_page(title, _page_stamp(), language=hall.language, settings=settings)
+        return HTMLResponse(text, headers={"Cache-Control": "no-cache"})
+
+    @app.get("/catalogue", response_class=HTMLResponse, include_in_schema=False)
+    async def catalogue(lang: str | None = None) -> HTMLResponse:
+        return HTMLResponse(catalogue_html(house.content, house.shown(), lang))
+
+
+def _add_api(app: FastAPI, house: House) -> None:
+    @app.get("/api/scene")
+    async def scene() -> dict[str, Any]:
+        """What the hall holds: plan, exhibits, walking constants."""
+        answer = scene_json(house.content, nodes=house.scene.nodes())
+        answer["exhibits"] = [entry for entry in answer["exhibits"] if house.models(entry["id"])]
+        return {**answer, "walk": house.walk_json(), "problems": len(house.problems)}
+
+    @app.get("/api/exhibits/{exhibit}")
+    async def exhibit(exhibit: str) -> dict[str, Any]:
+        """Texts, media, record and measured figures of one exhibit."""
+        answer = exhibit_json(house.content, exhibit)
+        if answer is None or house.models(exhibit) is None:
+            raise HTTPException(404, f"no exhibit {exhibit!r} in the hall")
+        return answer
+
+    @app.get("/api/problems")
+    async def problems() -> list[dict[str, str]]:
+        """What is wrong with the content now; the last good version stays on show."""
+        return [problem.as_json() for problem in house.problems]
+
+    @app.get("/api/texts")
+    async def texts() -> JSONResponse:
+        """Interface texts in both languages."""
+        return JSONResponse(tomllib.loads((PAGE_FOLDER / "texts.toml").read_text("utf-8")))
+
+    @app.get("/grid.bin")
+    async def grid() -> Response:
+        """Clearance samples, int16 little endian; their frame is in /api/scene."""
+        return Response(house.grid.to_bytes(), media_type="application/octet-stream")
+
+
+def _add_media(app: FastAPI, house: House) -> None:
+    @app.get("/media/{owner}/{path:path}", include_in_schema=False)
+    async def media(owner: str, path: str) -> FileResponse:
+        found = _media_file(house, owner, path)
+        if found is None:
+            raise HTTPException(404, "no such file in the hall")
+        # The address carries the file's digest, so a browser may keep it; FileResponse answers Range requests.
+        return FileResponse(
+            found,
+            media_type=media_type(found.name),
+            headers={"Cache-Control": "public, max-age=31536000, immutable"},
+        )
+
+
+def _media_file(house: House, owner: str, path: str) -> Path | None:
+    """A file of the hall or of an exhibit, None for anything outside or of a kind that is not shown."""
+    if owner == "hall":
+        base = house.content.folder
+    else:
+        exhibit = house.content.exhibit(owner)
+        if exhibit is None:
+            return None
+        base = exhibit.folder
+        models = house.models(owner)
+        if path.startswith("baked/") and models is not None and models.baked is not None:
+            base, path = models.baked, path.removeprefix("baked/")
+    full = (base / path).resolve()
+    plain = full.is_relative_to(base.resolve()) and full.is_file()
+    shown = media_type(full.name) != "application/octet-stream"
+    return full if plain and shown else None

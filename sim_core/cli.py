@@ -1,0 +1,116 @@
+"""The `simcore` command: builds the parser, finds the room of a command and reports its errors in one line."""
+
+import argparse
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+from sim_core.errors import SimCoreError
+
+__all__ = ["main"]
+
+ROOMS = ("weave", "mesh", "cloth", "garment")
+BENCHES = ("weave", "mesh", "cloth")
+
+DESCRIPTION = """\
+The simulation core, one stage at a time: files in, files out.
+
+  weave    a weave file (TOML) becomes tileable texture maps and cloth parameters
+  mesh     a panel outline (JSON) becomes a triangle mesh
+  cloth    a mesh falls onto a collider under gravity
+  garment  a pattern and a weave become a draped garment and its GLB models
+  bench    time and error of the engines, side by side with a reference
+
+Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed
+(one line on stderr says what, where and the remedy), 2 wrong arguments.
+"""
+
+BENCH_DESCRIPTION = """\
+Run the benchmark programs of tests/bench, each of which measures time AND error in one run and writes
+JSON. They live in a checkout of the repository; elsewhere this command exits with 2.
+Arguments behind `--` go to the programs, e.g. `simcore bench mesh -- --quick`.
+"""
+
+
+def _room_command(room: str):
+    """Import `sim_core.<room>.command`, or None where that room is not installed."""
+    try:
+        return import_module(f"sim_core.{room}.command")
+    except ModuleNotFoundError as error:
+        if error.name in (f"sim_core.{room}", f"sim_core.{room}.command"):
+            return None
+        raise
+
+
+def _wanted_rooms(arguments: list[str]) -> tuple[str, ...]:
+    """Only the room that is called is imported; the general help needs all of them."""
+    named = tuple(word for word in arguments if not word.startswith("-"))[:1]
+    if named and named[0] in ROOMS:
+        return named
+    return () if named == ("bench",) else ROOMS
+
+
+def _parser(arguments: list[str]) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="simcore", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for room in _wanted_rooms(arguments):
+        module = _room_command(room)
+        if module is not None:
+            module.add_parser(subparsers)
+            subparsers.choices[room].set_defaults(run=module.run)
+    bench = subparsers.add_parser(
+        "bench",
+        help="time and error of the engines",
+        description=BENCH_DESCRIPTION,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    bench.add_argument("engine", nargs="?", choices=BENCHES, help="one engine; all of them when left out")
+    bench.add_argument("rest", nargs=argparse.REMAINDER, metavar="-- ARGUMENTS", help="for the program")
+    bench.set_defaults(run=_bench)
+    return parser
+
+
+def _bench(args: argparse.Namespace) -> int:
+    folder = Path(__file__).resolve().parent.parent / "tests" / "bench"
+    if not folder.is_dir():
+        print(
+            f"simcore bench: {folder}: no such folder – benches run in a checkout of the repository, "
+            "not from an installed package",
+            file=sys.stderr,
+        )
+        return 2
+    rest = [word for word in args.rest if word != "--"]
+    engines = [args.engine] if args.engine else [name for name in BENCHES if _program(folder, name).is_file()]
+    for engine in engines:
+        done = subprocess.run([sys.executable, str(_program(folder, engine)), *rest], check=False)
+        if done.returncode:
+            return 1
+    return 0
+
+
+def _program(folder: Path, engine: str) -> Path:
+    return folder / f"bench_{engine}.py"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one `simcore` command and return its exit status."""
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    args = _parser(words).parse_args(words)
+    try:
+        return args.run(args)
+    except (SimCoreError, OSError) as error:
+        if args.debug:
+            raise
+        print(f"simcore {args.command}: {' '.join(str(error).split())}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print(f"simcore {args.command}: interrupted", file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,22 @@
+"""Cloth: an explicit edge-tension solver with contact, friction and self-contact. See README.md."""
+
+from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
+from sim_core.cloth.draping import Contact, Drape, Phase, drape
+from sim_core.cloth.material import Material
+from sim_core.cloth.sheet import Sheet
+
+__all__ = [
+    "Box",
+    "Capsule",
+    "Contact",
+    "Cylinder",
+    "Drape",
+    "GridSdf",
+    "HalfSpace",
+    "Material",
+    "Phase",
+    "Sheet",
+    "Solid",
+    "Union",
+    "drape",
+]

@@ -1,0 +1,78 @@
+"""The state of a run on disk: written whole or not at all, read only by the run it belongs to."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass
+class RunState:
+    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety."""
+
+    positions: np.ndarray
+    velocities: np.ndarray
+    frame: int = 0
+    last_step: float = 0.0
+    safety: float = 1.0
+    rollbacks: int = 0
+    substeps: int = 0
+    trace: list[tuple[float, float]] = field(default_factory=list)  # displacement p99, max per frame [m]
+    film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
+
+
+def run_key(parts: Iterable[object]) -> str:
+    """A hash of everything a run depends on; arrays by their bytes, the rest by its text."""
+    digest = hashlib.sha256()
+    for part in parts:
+        data = np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode()
+        digest.update(str(len(data)).encode() + b":" + data)
+    return digest.hexdigest()
+
+
+def save_checkpoint(path: Path, key: str, state: RunState) -> None:
+    """Writes the state beside `path` and renames it over: an interrupt leaves the old or the new one."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    beside = path.with_name(path.name + ".part")
+    numbers = np.array([state.frame, state.last_step, state.safety, state.rollbacks, state.substeps], float)
+    with beside.open("wb") as stream:
+        np.savez(
+            stream,
+            key=np.array(key),
+            positions=state.positions,
+            velocities=state.velocities,
+            numbers=numbers,
+            trace=np.array(state.trace, float).reshape(-1, 2),
+            film=np.array(state.film, np.float32).reshape(-1, *state.positions.shape),
+        )
+        stream.flush()
+        os.fsync(stream.fileno())
+    beside.replace(path)
+
+
+def load_checkpoint(path: Path, key: str) -> RunState | None:
+    """The state saved at `path`, or None if there is none, it is damaged, or belongs to other inputs."""
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            if str(data["key"]) != key:
+                return None
+            frame, last, safety, rollbacks, substeps = data["numbers"]
+            return RunState(
+                positions=data["positions"],
+                velocities=data["velocities"],
+                frame=int(frame),
+                last_step=float(last),
+                safety=float(safety),
+                rollbacks=int(rollbacks),
+                substeps=int(substeps),
+                trace=[(float(p), float(m)) for p, m in data["trace"]],
+                film=list(data["film"]),
+            )
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):
+        return None

@@ -1,0 +1,129 @@
+"""Compiled signed distances and their gradients, one function per kind of solid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE
+
+
+@njit(cache=True, error_model="numpy")
+def _capsule(r, x, y, z):
+    ax, ay, az = r[3] - r[0], r[4] - r[1], r[5] - r[2]
+    px, py, pz = x - r[0], y - r[1], z - r[2]
+    long2 = ax * ax + ay * ay + az * az
+    t = 0.0
+    if long2 > 0.0:
+        t = min(1.0, max(0.0, (px * ax + py * ay + pz * az) / long2))
+    px, py, pz = px - t * ax, py - t * ay, pz - t * az
+    far = math.sqrt(px * px + py * py + pz * pz)
+    if far < 1e-12:
+        return -r[6], 0.0, 1.0, 0.0
+    return far - r[6], px / far, py / far, pz / far
+
+
+@njit(cache=True, error_model="numpy")
+def _cylinder(r, x, y, z):
+    px, py, pz = x - r[0], y - r[1], z - r[2]
+    along = px * r[3] + py * r[4] + pz * r[5]
+    px, py, pz = px - along * r[3], py - along * r[4], pz - along * r[5]
+    radial = math.sqrt(px * px + py * py + pz * pz)
+    side = 1.0 if along >= 0.0 else -1.0
+    # In the (radial, axial) half plane a rounded cylinder is a rounded box.
+    out = radial - (r[7] - r[8])
+    up = abs(along) - (r[6] - r[8])
+    if out > 0.0 and up > 0.0:
+        far = math.sqrt(out * out + up * up)
+        go, gu, d = out / far, up / far, far
+    elif out > up:
+        go, gu, d = 1.0, 0.0, out
+    else:
+        go, gu, d = 0.0, 1.0, up
+    if radial < 1e-12:
+        return d - r[8], gu * side * r[3], gu * side * r[4], gu * side * r[5]
+    go, gu = go / radial, gu * side
+    return d - r[8], go * px + gu * r[3], go * py + gu * r[4], go * pz + gu * r[5]
+
+
+@njit(cache=True, error_model="numpy")
+def _box(r, x, y, z):
+    px, py, pz = x - r[0], y - r[1], z - r[2]
+    c, s = r[7], r[8]
+    px, pz = c * px - s * pz, s * px + c * pz
+    sx, sy, sz = math.copysign(1.0, px), math.copysign(1.0, py), math.copysign(1.0, pz)
+    qx, qy, qz = abs(px) - (r[3] - r[6]), abs(py) - (r[4] - r[6]), abs(pz) - (r[5] - r[6])
+    top = max(qx, qy, qz)
+    if top > 0.0:
+        ox, oy, oz = max(qx, 0.0), max(qy, 0.0), max(qz, 0.0)
+        d = math.sqrt(ox * ox + oy * oy + oz * oz)
+        gx, gy, gz = ox / d, oy / d, oz / d
+    else:
+        d = top
+        gx, gy, gz = 1.0 * (qx == top), 1.0 * (qy == top and qx != top), 1.0 * (qz == top and qx != top and qy != top)
+    gx, gy, gz = gx * sx, gy * sy, gz * sz
+    return d - r[6], c * gx + s * gz, gy, -s * gx + c * gz
+
+
+@njit(cache=True, error_model="numpy")
+def _grid(r, grid, x, y, z):
+    """Trilinear value and gradient; outside the box the value at its border plus the way there."""
+    nx, ny, nz = grid.shape
+    u, v, w = (x - r[0]) / r[3], (y - r[1]) / r[3], (z - r[2]) / r[3]
+    cu, cv, cw = min(max(u, 0.0), nx - 1.000001), min(max(v, 0.0), ny - 1.000001), min(max(w, 0.0), nz - 1.000001)
+    ox, oy, oz = (u - cu) * r[3], (v - cv) * r[3], (w - cw) * r[3]
+    i, j, k = int(cu), int(cv), int(cw)
+    a, b, c = cu - i, cv - j, cw - k
+    g = grid[i : i + 2, j : j + 2, k : k + 2]
+    lo = (1 - a) * ((1 - b) * g[0, 0, 0] + b * g[0, 1, 0]) + a * ((1 - b) * g[1, 0, 0] + b * g[1, 1, 0])
+    hi = (1 - a) * ((1 - b) * g[0, 0, 1] + b * g[0, 1, 1]) + a * ((1 - b) * g[1, 0, 1] + b * g[1, 1, 1])
+    dx = (1 - c) * ((1 - b) * (g[1, 0, 0] - g[0, 0, 0]) + b * (g[1, 1, 0] - g[0, 1, 0]))
+    dx += c * ((1 - b) * (g[1, 0, 1] - g[0, 0, 1]) + b * (g[1, 1, 1] - g[0, 1, 1]))
+    dy = (1 - c) * ((1 - a) * (g[0, 1, 0] - g[0, 0, 0]) + a * (g[1, 1, 0] - g[1, 0, 0]))
+    dy += c * ((1 - a) * (g[0, 1, 1] - g[0, 0, 1]) + a * (g[1, 1, 1] - g[1, 0, 1]))
+    away = math.sqrt(ox * ox + oy * oy + oz * oz)
+    if away > 0.0:
+        return (1 - c) * lo + c * hi + away, ox / away, oy / away, oz / away
+    return (1 - c) * lo + c * hi, dx / r[3], dy / r[3], (hi - lo) / r[3]
+
+
+@njit(cache=True, error_model="numpy")
+def signed_distance(packed, x, y, z):
+    """Distance [m] and unit gradient at a point. The gradient is 0 where a grid has none (medial axis)."""
+    best, bx, by, bz = np.inf, 0.0, 1.0, 0.0
+    for p in range(len(packed.kind)):
+        kind, row = packed.kind[p], packed.data[p]
+        reach = best + row[19]
+        if row[19] >= 0.0 and (x - row[16]) ** 2 + (y - row[17]) ** 2 + (z - row[18]) ** 2 > reach * abs(reach):
+            continue  # not even the ball around it is nearer than the best
+        if kind == CAPSULE:
+            d, gx, gy, gz = _capsule(row, x, y, z)
+        elif kind == CYLINDER:
+            d, gx, gy, gz = _cylinder(row, x, y, z)
+        elif kind == BOX:
+            d, gx, gy, gz = _box(row, x, y, z)
+        elif kind == HALFSPACE:
+            gx, gy, gz = row[0], row[1], row[2]
+            d = (x - row[3]) * gx + (y - row[4]) * gy + (z - row[5]) * gz
+        else:
+            d, gx, gy, gz = _grid(row, packed.grid, x, y, z)
+            size = math.sqrt(gx * gx + gy * gy + gz * gz)
+            # Between two surfaces the sampled gradient shrinks; pushing along it throws vertices to and fro.
+            if size < 0.75:
+                gx, gy, gz = 0.0, 0.0, 0.0
+            else:
+                gx, gy, gz = gx / size, gy / size, gz / size
+        if d < best:
+            best, bx, by, bz = d, gx, gy, gz
+    return best, bx, by, bz
+
+
+@njit(cache=True, error_model="numpy")
+def distances(packed, points):
+    """Signed distance (N,) at points (N, 3)."""
+    out = np.zeros(len(points))
+    for i in range(len(points)):
+        out[i] = signed_distance(packed, points[i, 0], points[i, 1], points[i, 2])[0]
+    return out

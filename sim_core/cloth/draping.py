@@ -1,0 +1,248 @@
+"""Runs a sheet through phases of gravity, damping and friction, frame by frame, and can be interrupted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from sim_core.cloth.checkpoint import RunState, load_checkpoint, run_key, save_checkpoint
+from sim_core.cloth.collider import Packed, Solid
+from sim_core.cloth.contact import contact_samples
+from sim_core.cloth.forces import energies, stable_step
+from sim_core.cloth.repulsion import Shell
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.stepping import Surroundings, advance
+from sim_core.errors import SimCoreError
+
+FRAME = 1 / 25  # [s]
+ENGINE_VERSION = 1  # raise when equal inputs give other bits: old checkpoints are then left alone
+_NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2)))
+_MAX_HALVINGS = 8
+
+Progress = Callable[[float, str], None]
+OnFrame = Callable[[int, np.ndarray], None]
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of a run: seconds, gravity [m/s2] from..to, mass damping [1/s], friction (None: the material's)."""
+
+    seconds: float
+    gravity: tuple[float, float] = (9.81, 9.81)
+    damping: float | None = None
+    friction: float | None = None
+    label: str = "draping"
+    rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How the cloth touches: clearance [m] of vertices and of midpoints and centroids, self-contact shell.
+
+    thickness [m] is the distance two layers of cloth keep (0: no self-contact).
+    """
+
+    clearance: float = 0.003
+    sample_clearance: float = 0.001
+    thickness: float = 0.0
+    skin: float = 0.008
+    spring: float = 0.01
+    self_friction: float = 0.2
+    every: int = 2
+    cap: float = 0.0005
+    speed_limit: float = 1e3
+
+
+@dataclass(frozen=True)
+class Drape:
+    """A finished run: positions, velocities (V, 3), frames, substeps, seconds, rest displacement per frame [m]."""
+
+    positions: np.ndarray
+    velocities: np.ndarray
+    frames: int
+    substeps: int
+    rollbacks: int
+    seconds: float
+    rest_p99: float
+    rest_max: float
+    trace: tuple[tuple[float, float], ...] = field(repr=False)
+
+
+def drape(
+    sheet: Sheet,
+    positions: np.ndarray,
+    phases: Sequence[Phase],
+    *,
+    collider: Solid | None = None,
+    contact: Contact | None = None,
+    pins: Sequence[int] = (),
+    down: Sequence[float] = (0.0, -1.0, 0.0),
+    substeps: int | None = None,
+    velocities: np.ndarray | None = None,
+    progress: Progress | None = None,
+    on_frame: OnFrame | None = None,
+    checkpoint: Path | None = None,
+    checkpoint_seconds: float = 5.0,
+) -> Drape:
+    """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
+
+    substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
+    on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
+    checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits.
+    Raises SimCoreError on bad input or when the step had to be halved 8 times in one frame.
+    """
+    start = time.perf_counter()
+    x, v = _checked_state(sheet, positions, velocities)
+    run = _Run(sheet, phases, collider, contact or Contact(), pins, np.asarray(down, float), substeps)
+    key = run_key((ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None))
+    state = (load_checkpoint(checkpoint, key) if checkpoint else None) or RunState(x, v)
+    for index, frame in enumerate(state.film):
+        if on_frame:
+            on_frame(index, frame)
+    saved = time.perf_counter()
+    schedule = run.schedule()
+    while state.frame < len(schedule):
+        phase, gravity = schedule[state.frame]
+        if progress:
+            progress(state.frame / len(schedule), phase.label)
+        run.frame(state, phase, gravity)
+        if on_frame:
+            state.film.append(state.positions.astype(np.float32)) if checkpoint else None
+            on_frame(state.frame - 1, state.positions.astype(np.float32))
+        if phase.rest is not None and state.trace[-1][0] < phase.rest:
+            state.frame = _end_of(schedule, state.frame, phase)
+        if checkpoint and time.perf_counter() - saved > checkpoint_seconds:
+            save_checkpoint(checkpoint, key, state)
+            saved = time.perf_counter()
+    if checkpoint:
+        checkpoint.unlink(missing_ok=True)
+    return _result(state, time.perf_counter() - start)
+
+
+def _result(state: RunState, seconds: float) -> Drape:
+    p99, most = state.trace[-1] if state.trace else (0.0, 0.0)
+    return Drape(
+        state.positions,
+        state.velocities,
+        len(state.trace),
+        state.substeps,
+        state.rollbacks,
+        seconds,
+        p99,
+        most,
+        tuple(state.trace),
+    )
+
+
+def _end_of(schedule: list[tuple[Phase, float]], frame: int, phase: Phase) -> int:
+    while frame < len(schedule) and schedule[frame][0] is phase:
+        frame += 1
+    return frame
+
+
+def _checked_state(sheet: Sheet, x: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    shape = (len(sheet.rest), 3)
+    x = np.array(x, float, order="C")
+    v = np.zeros(shape) if v is None else np.array(v, float, order="C")
+    for name, array in (("positions", x), ("velocities", v)):
+        if array.shape != shape:
+            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
+        if not np.isfinite(array).all():
+            raise SimCoreError(f"{name}: vertex {np.flatnonzero(~np.isfinite(array).all(1))[0]} is not finite")
+    return x, v
+
+
+class _Run:
+    """The unchanging part of a run, and one frame of it."""
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        phases: Sequence[Phase],
+        collider: Solid | None,
+        contact: Contact,
+        pins: Sequence[int],
+        down: np.ndarray,
+        substeps: int | None,
+    ) -> None:
+        if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
+            raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
+        self.sheet, self.phases, self.contact, self.fixed = sheet, tuple(phases), contact, substeps
+        self.pins = np.unique(np.asarray(pins, np.int64))
+        self.stencil = sheet.pinned(self.pins)
+        self.packed = collider.packed() if collider else _NOTHING
+        self.vertices, self.middles = contact_samples(sheet.edges, sheet.faces, len(sheet.rest))
+        self.down = down
+        c = contact
+        self.shell = Shell(float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every))
+
+    def identity(self) -> tuple[object, ...]:
+        """What, beside sheet and start, decides the bits of the result."""
+        return (self.phases, self.contact, self.pins, self.down, self.fixed, *self.packed)
+
+    def schedule(self) -> list[tuple[Phase, float]]:
+        """Per frame its phase and gravity; gravity is constant within a frame, so that energies compare."""
+        frames: list[tuple[Phase, float]] = []
+        for phase in self.phases:
+            count = max(1, round(phase.seconds / FRAME))
+            low, high = phase.gravity
+            frames += [(phase, low + (high - low) * (k + 1) / count) for k in range(count)]
+        return frames
+
+    def frame(self, state: RunState, phase: Phase, gravity: float) -> None:
+        """One frame at 0.7 of the stable step of the current tangent; rolled back and halved if it blows up."""
+        before_x = state.positions
+        for _ in range(_MAX_HALVINGS):
+            x, v = before_x.copy(), state.velocities.copy()
+            count = self.fixed or self._substeps(x, state.safety)
+            self._advance(state, phase, gravity, x, v, count)
+            if self.fixed or self._healthy(state, gravity, x, v):
+                break
+            state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
+        else:
+            raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**_MAX_HALVINGS} of the stable step")
+        step = np.sqrt(((x - before_x) ** 2).sum(1))
+        state.trace.append((float(np.percentile(step, 99)), float(step.max())))
+        state.positions, state.velocities, state.last_step = x, v, FRAME / count
+        state.frame, state.substeps = state.frame + 1, state.substeps + count
+        state.safety = min(1.0, state.safety * 1.1)
+
+    def _substeps(self, x: np.ndarray, safety: float) -> int:
+        step = 0.7 * safety * stable_step(self.stencil, x, self.sheet.material.stiffness_damping)
+        if not np.isfinite(step) or step <= 0:
+            raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
+        return int(np.ceil(FRAME / step))
+
+    def _advance(
+        self, state: RunState, phase: Phase, gravity: float, x: np.ndarray, v: np.ndarray, count: int
+    ) -> None:
+        material, c = self.sheet.material, self.contact
+        around = Surroundings(
+            self.down * gravity,
+            float(material.mass_damping if phase.damping is None else phase.damping),
+            float(material.stiffness_damping),
+            float(material.friction if phase.friction is None else phase.friction),
+            float(c.clearance),
+            float(c.sample_clearance),
+            float(c.cap),
+            float(c.speed_limit),
+        )
+        args = (self.stencil, self.sheet.rest, self.sheet.faces, self.packed, self.vertices, self.middles, self.shell, around)
+        advance(*args, x, v, state.last_step, FRAME / count, count)
+
+    def _healthy(self, state: RunState, gravity: float, x: np.ndarray, v: np.ndarray) -> bool:
+        """Finite, and no more energy than before (contact may add a little: it lifts and separates)."""
+        if not (np.isfinite(x).all() and np.isfinite(v).all()):
+            return False
+
+        def energy(px: np.ndarray, pv: np.ndarray) -> tuple[float, float]:
+            stored = sum(energies(self.stencil, px, pv))
+            return stored, -gravity * float(self.sheet.mass @ (px @ self.down))
+
+        (stored, height), (stored_after, height_after) = energy(state.positions, state.velocities), energy(x, v)
+        weight = float(self.sheet.mass.sum()) * max(gravity, 1.0)
+        return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + 0.02 * weight

@@ -1,0 +1,85 @@
+"""What the solver has to know about a cloth: mass, stiffness, damping, friction."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from sim_core.errors import SimCoreError
+
+
+class ParametersLike(Protocol):
+    """The part of `sim_core.weave.ClothParameters` a material is made from."""
+
+    @property
+    def density(self) -> float: ...
+    @property
+    def stretch_warp(self) -> float: ...
+    @property
+    def stretch_weft(self) -> float: ...
+    @property
+    def shear(self) -> float: ...
+    @property
+    def poisson(self) -> float: ...
+    @property
+    def bend(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
+
+
+@dataclass(frozen=True)
+class Material:
+    """A thin elastic sheet; the warp runs along pattern y, the weft along pattern x.
+
+    density [kg/m2], stretch [N/m] along the weft (and along the warp unless `stretch_warp` is given),
+    shear [N/m] (None: isotropic, stretch / (2 (1 + poisson))), bend [N m], friction: Coulomb's mu,
+    mass_damping [1/s], stiffness_damping [s]. Raises SimCoreError on a value that has no meaning.
+    """
+
+    density: float
+    stretch: float
+    poisson: float = 0.3
+    bend: float = 5e-5
+    friction: float = 0.3
+    mass_damping: float = 0.5
+    stiffness_damping: float = 2e-5
+    stretch_warp: float | None = None
+    shear: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("density", "stretch", "stretch_warp", "shear"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise SimCoreError(f"material.{name}: {value} – must be a finite number above 0")
+        for name in ("bend", "friction", "mass_damping", "stiffness_damping"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0):
+                raise SimCoreError(f"material.{name}: {value} – must be a finite number, 0 or more")
+        if not -1.0 < self.poisson < 1.0:
+            raise SimCoreError(f"material.poisson: {self.poisson} – must lie between -1 and 1 (plane stress)")
+
+    @staticmethod
+    def of(parameters: ParametersLike, *, mass_damping: float = 0.5, stiffness_damping: float = 2e-5) -> Material:
+        """The material of a weave's homogenised parameters."""
+        return Material(
+            density=float(parameters.density),
+            stretch=float(parameters.stretch_weft),
+            stretch_warp=float(parameters.stretch_warp),
+            shear=float(parameters.shear),
+            poisson=float(parameters.poisson),
+            bend=float(parameters.bend),
+            friction=float(parameters.friction),
+            mass_damping=mass_damping,
+            stiffness_damping=stiffness_damping,
+        )
+
+    def elasticity(self) -> np.ndarray:
+        """D (3, 3) [N/m] of W = g.D.g/2 per area, g = (G00, G11, G01) the Green strain (St. Venant-Kirchhoff)."""
+        weft, warp = self.stretch, self.stretch if self.stretch_warp is None else self.stretch_warp
+        shear = math.sqrt(weft * warp) / (2 * (1 + self.poisson)) if self.shear is None else self.shear
+        scale = 1 / (1 - self.poisson**2)
+        cross = self.poisson * math.sqrt(weft * warp) * scale
+        return np.array([[weft * scale, cross, 0.0], [cross, warp * scale, 0.0], [0.0, 0.0, 4 * shear]])

@@ -1,0 +1,231 @@
+"""Candidates for self-contact: vertex-triangle and edge-edge pairs nearer than a reach, found on a hash grid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy")
+def segment_parameters(p1, q1, p2, q2):
+    """Closest parameters (s, t) of the segments p1 q1 and p2 q2 (Ericson 2005, 5.1.9)."""
+    d1x, d1y, d1z = q1[0] - p1[0], q1[1] - p1[1], q1[2] - p1[2]
+    d2x, d2y, d2z = q2[0] - p2[0], q2[1] - p2[1], q2[2] - p2[2]
+    rx, ry, rz = p1[0] - p2[0], p1[1] - p2[1], p1[2] - p2[2]
+    a, e = d1x * d1x + d1y * d1y + d1z * d1z, d2x * d2x + d2y * d2y + d2z * d2z
+    b, c = d1x * d2x + d1y * d2y + d1z * d2z, d1x * rx + d1y * ry + d1z * rz
+    f = d2x * rx + d2y * ry + d2z * rz
+    denominator = a * e - b * b
+    s = 0.5
+    if denominator > 1e-12 * a * e:
+        s = min(1.0, max(0.0, (b * f - c * e) / denominator))
+    t = (b * s + f) / e
+    if t < 0.0:
+        t, s = 0.0, min(1.0, max(0.0, -c / a))
+    elif t > 1.0:
+        t, s = 1.0, min(1.0, max(0.0, (b - c) / a))
+    return s, t
+
+
+@njit(cache=True, error_model="numpy")
+def triangle_weights(p, a, b, c):
+    """Barycentric weights of the point of triangle a b c closest to p (Ericson 2005, 5.1.5)."""
+    abx, aby, abz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    acx, acy, acz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    x, y, z = p[0] - a[0], p[1] - a[1], p[2] - a[2]
+    d1, d2 = abx * x + aby * y + abz * z, acx * x + acy * y + acz * z
+    if d1 <= 0.0 and d2 <= 0.0:
+        return 1.0, 0.0, 0.0
+    x, y, z = p[0] - b[0], p[1] - b[1], p[2] - b[2]
+    d3, d4 = abx * x + aby * y + abz * z, acx * x + acy * y + acz * z
+    if d3 >= 0.0 and d4 <= d3:
+        return 0.0, 1.0, 0.0
+    vc = d1 * d4 - d3 * d2
+    if vc <= 0.0 and d1 >= 0.0 and d3 <= 0.0:
+        v = d1 / (d1 - d3)
+        return 1.0 - v, v, 0.0
+    x, y, z = p[0] - c[0], p[1] - c[1], p[2] - c[2]
+    d5, d6 = abx * x + aby * y + abz * z, acx * x + acy * y + acz * z
+    if d6 >= 0.0 and d5 <= d6:
+        return 0.0, 0.0, 1.0
+    vb = d5 * d2 - d1 * d6
+    if vb <= 0.0 and d2 >= 0.0 and d6 <= 0.0:
+        w = d2 / (d2 - d6)
+        return 1.0 - w, 0.0, w
+    va = d3 * d6 - d5 * d4
+    if va <= 0.0 and d4 - d3 >= 0.0 and d5 - d6 >= 0.0:
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        return 0.0, 1.0 - w, w
+    v, w = vb / (va + vb + vc), vc / (va + vb + vc)
+    return 1.0 - v - w, v, w
+
+
+@njit(cache=True, error_model="numpy")
+def hash_points(points, cell):
+    """Sorts points (N, 3) into cells; returns order (N,), start of each cell, dims (3,) and the low corner."""
+    low = np.zeros(3)
+    dims = np.zeros(3, np.int64)
+    for c in range(3):
+        low[c] = points[:, c].min()
+        dims[c] = int((points[:, c].max() - low[c]) / cell) + 1
+    key = np.zeros(len(points), np.int64)
+    start = np.zeros(dims[0] * dims[1] * dims[2] + 1, np.int64)
+    for i in range(len(points)):
+        k = 0
+        for c in range(3):
+            k = k * dims[c] + int((points[i, c] - low[c]) / cell)
+        key[i] = k
+        start[k + 1] += 1
+    start[:] = np.cumsum(start)
+    fill, order = start.copy(), np.zeros(len(points), np.int32)
+    for i in range(len(points)):
+        order[fill[key[i]]] = i
+        fill[key[i]] += 1
+    return order, start, dims, low
+
+
+@njit(cache=True, error_model="numpy")
+def _grown(pairs, count):
+    if count < len(pairs):
+        return pairs
+    wider = np.zeros((2 * len(pairs), 2), np.int32)
+    wider[:count] = pairs
+    return wider
+
+
+@njit(cache=True, error_model="numpy")
+def normals_of(x, faces):
+    """Unit normals of faces (F, 3) and vertices (V, 3)."""
+    face, vertex = np.zeros((len(faces), 3)), np.zeros_like(x)
+    for f in range(len(faces)):
+        i, j, k = faces[f]
+        ax, ay, az = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+        bx, by, bz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
+        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        for c in (i, j, k):
+            vertex[c, 0] += nx
+            vertex[c, 1] += ny
+            vertex[c, 2] += nz
+        size = math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-30
+        face[f, 0], face[f, 1], face[f, 2] = nx / size, ny / size, nz / size
+    for i in range(len(x)):
+        vertex[i] /= math.sqrt((vertex[i] ** 2).sum()) + 1e-30
+    return face, vertex
+
+
+@njit(cache=True, error_model="numpy")
+def _one_sheet(rest, i, j, near2, n, m):
+    """Neighbours on a stretch that is not folded cannot touch: close at rest, normals within 60 degrees."""
+    if (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2 > near2:
+        return False
+    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.5
+
+
+@njit(cache=True, error_model="numpy")
+def _vertex_near_face(x, i, face, reach):
+    a, b, c = face
+    if i == a or i == b or i == c:
+        return False
+    u, v, w = triangle_weights(x[i], x[a], x[b], x[c])
+    gap = 0.0
+    for k in range(3):
+        gap += (x[i, k] - u * x[a, k] - v * x[b, k] - w * x[c, k]) ** 2
+    return gap < reach * reach
+
+
+@njit(cache=True, error_model="numpy")
+def vertex_face_pairs(x, rest, faces, reach, near):
+    """(vertex, face) pairs (K, 2) int32 nearer than `reach`, without the faces around the vertex.
+
+    near [m]: pairs closer than this at rest (V, 2) count as one sheet while their normals agree.
+    """
+    centre = (x[faces[:, 0]] + x[faces[:, 1]] + x[faces[:, 2]]) / 3.0
+    face_normal, vertex_normal = normals_of(x, faces)
+    size2 = 0.0
+    for f in range(len(faces)):
+        for k in range(3):
+            j = faces[f, k]
+            gap = (x[j, 0] - centre[f, 0]) ** 2 + (x[j, 1] - centre[f, 1]) ** 2 + (x[j, 2] - centre[f, 2]) ** 2
+            size2 = max(size2, gap)
+    cell = math.sqrt(size2) + reach
+    order, start, dims, low = hash_points(x, cell)
+    sorted_x = x[order]
+    pairs, count = np.zeros((4 * len(x) + 64, 2), np.int32), 0
+    for f in range(len(faces)):
+        px, py, pz = centre[f]
+        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
+        for cx in range(max(ax - 1, 0), min(ax + 2, dims[0])):
+            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
+                row = (cx * dims[1] + cy) * dims[2]
+                for q in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
+                    gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
+                    i = order[q]
+                    if gap > cell * cell or _one_sheet(rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]):
+                        continue
+                    if _vertex_near_face(x, i, faces[f], reach):
+                        pairs = _grown(pairs, count)
+                        pairs[count, 0], pairs[count, 1] = i, f
+                        count += 1
+    return pairs[:count]
+
+
+@njit(cache=True, error_model="numpy")
+def _edges_near(x, first, second, reach):
+    a, b = first
+    c, d = second
+    if a == c or a == d or b == c or b == d:
+        return False
+    s, t = segment_parameters(x[a], x[b], x[c], x[d])
+    gap = 0.0
+    for k in range(3):
+        gap += (x[a, k] + s * (x[b, k] - x[a, k]) - x[c, k] - t * (x[d, k] - x[c, k])) ** 2
+    return gap < reach * reach
+
+
+@njit(cache=True, error_model="numpy")
+def _balls(x, faces, edges):
+    """Midpoint, half length and mean normal of every edge in columns (E, 7)."""
+    _, normal = normals_of(x, faces)
+    out = np.zeros((len(edges), 7))
+    for e in range(len(edges)):
+        i, j = edges[e]
+        length2 = 0.0
+        for c in range(3):
+            out[e, c] = 0.5 * (x[i, c] + x[j, c])
+            out[e, 4 + c] = 0.5 * (normal[i, c] + normal[j, c])
+            length2 += (x[i, c] - x[j, c]) ** 2
+        out[e, 3] = 0.5 * math.sqrt(length2)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def edge_edge_pairs(x, rest, faces, edges, reach, near):
+    """(edge, edge) pairs (K, 2) int32 nearer than `reach` that share no vertex; `near` as for vertices and faces."""
+    balls = _balls(x, faces, edges)
+    cell = 2.0 * balls[:, 3].max() + reach
+    order, start, dims, low = hash_points(balls[:, :3].copy(), cell)
+    balls = balls[order]
+    pairs, count = np.zeros((4 * len(x) + 64, 2), np.int32), 0
+    for s in range(len(edges)):
+        px, py, pz, half = balls[s, 0], balls[s, 1], balls[s, 2], balls[s, 3] + reach
+        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
+        e = order[s]
+        for cx in range(ax, min(ax + 2, dims[0])):
+            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
+                row = (cx * dims[1] + cy) * dims[2]
+                # Only what comes later in the order, so that every pair is met once.
+                for q in range(max(start[row + max(az - 1, 0)], s + 1), start[row + min(az + 2, dims[2])]):
+                    gap = (balls[q, 0] - px) ** 2 + (balls[q, 1] - py) ** 2 + (balls[q, 2] - pz) ** 2
+                    span = half + balls[q, 3]
+                    if gap > span * span:
+                        continue
+                    g = order[q]
+                    if _one_sheet(rest, edges[e, 0], edges[g, 0], near * near, balls[s, 4:], balls[q, 4:]):
+                        continue
+                    if _edges_near(x, edges[e], edges[g], reach):
+                        pairs = _grown(pairs, count)
+                        pairs[count, 0], pairs[count, 1] = e, g
+                        count += 1
+    return pairs[:count]

@@ -1,0 +1,19 @@
+"""The errors of the simulation core: each message is one line that names what, where and the remedy."""
+
+__all__ = ["FileProblem", "OutlineError", "SimCoreError", "WeaveError"]
+
+
+class SimCoreError(ValueError):
+    """Anything the simulation core refuses to do; the command line prints it as one line and exits with 1."""
+
+
+class WeaveError(SimCoreError):
+    """A draft, yarn or sett that cannot be woven, or a weave file that does not say what it must."""
+
+
+class OutlineError(SimCoreError):
+    """A panel outline that cannot be meshed (too few points, self-crossing, zero area, ...)."""
+
+
+class FileProblem(SimCoreError):
+    """A file that cannot be read or written; the message begins with its path."""

@@ -1,0 +1,20 @@
+"""Staggered points: the equilateral lattice of Eq. 1-8."""
+
+import numpy as np
+
+__all__ = ["staggered_points"]
+
+
+def staggered_points(low: np.ndarray, high: np.ndarray, edge: float) -> np.ndarray:
+    """Equilateral lattice over a rectangle, row by row from its upper left corner (y down).
+
+    low, high: (2,) [m] corners with the least and largest coordinates; edge: [m] L.  Returns (n, 2) [m].
+    Row i lies at y0 + i L sqrt(3)/2 (Eq. 8), column j at x0 + j L, moved by -L/2 in odd rows (Eq. 1-7). The paper
+    prints the parity condition of Eq. 7 for the column j; its own Eq. 3 and 5 stagger the row, as done here.
+    """
+    rows = int(np.floor((high[1] - low[1]) / (edge * np.sqrt(3) / 2))) + 1
+    columns = int(np.floor((high[0] - low[0]) / edge)) + 2
+    i, j = np.divmod(np.arange(rows * columns), columns)
+    x = low[0] + j * edge - (i % 2) * edge / 2
+    y = low[1] + i * edge * np.sqrt(3) / 2
+    return np.column_stack([x, y])

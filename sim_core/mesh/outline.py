@@ -1,0 +1,221 @@
+"""Outlines: what may be meshed, and sampling at equal steps that keeps the corners."""
+
+from math import isfinite
+
+import numpy as np
+from numba import njit
+
+from sim_core.errors import OutlineError
+from sim_core.mesh.exact import orient, snap_frame
+
+__all__ = [
+    "check_edge",
+    "clean_contour",
+    "clean_contours",
+    "outline_samples",
+    "sharpest_corner",
+    "signed_area",
+]
+
+CORNER_DEGREES = 20.0
+FLAT = 1e-9  # of the squared extent: less area than this is none
+
+
+def signed_area(contour: np.ndarray) -> float:
+    """Area [m2] of a closed contour (n, 2), y down: positive where it runs counter-clockwise in (x, -y)."""
+    moved = contour - contour[0]
+    x, y = moved[:, 0], -moved[:, 1]
+    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def check_edge(edge: float, contours: list[np.ndarray]) -> None:
+    """Raise OutlineError unless edge [m] is a positive length no longer than the panel."""
+    if not (isfinite(edge) and edge > 0):
+        raise OutlineError(f"edge {edge} m – give a positive length in metres")
+    extent = float(np.ptp(contours[0], axis=0).max())
+    if edge > extent:
+        raise OutlineError(f"edge {edge} m is longer than the panel ({extent:.4g} m) – give a smaller edge")
+
+
+def clean_contour(points, name: str) -> np.ndarray:
+    """A contour as (n, 2) float64 [m] without repeated points.
+
+    Raises OutlineError naming the contour where it is empty, not finite, of fewer than three points or without area.
+    """
+    try:
+        contour = np.array(points, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise OutlineError(f"{name}: not a list of [x, y] pairs of numbers") from error
+    if contour.size == 0:
+        raise OutlineError(f"{name}: 0 points – give at least three [x, y] pairs in metres")
+    if contour.ndim != 2 or contour.shape[1] != 2:
+        raise OutlineError(f"{name}: shape {contour.shape} – give [x, y] pairs, shape (N, 2)")
+    bad = np.flatnonzero(~np.isfinite(contour).all(axis=1))
+    if bad.size:
+        raise OutlineError(
+            f"{name}: point {bad[0]} is {contour[bad[0]].tolist()} – coordinates must be finite"
+        )
+    extent = float(np.ptp(contour, axis=0).max())
+    gaps = np.hypot(*(contour - np.roll(contour, 1, axis=0)).T)
+    contour = contour[gaps > 1e-7 * extent] if extent > 0 else contour[:1]
+    if len(contour) < 3:
+        raise OutlineError(f"{name}: {len(contour)} different points – a contour needs at least three")
+    arms = contour - contour[0]
+    longest = arms[(arms**2).sum(axis=1).argmax()]
+    if np.abs(arms[:, 0] * longest[1] - arms[:, 1] * longest[0]).max() < FLAT * extent**2:
+        raise OutlineError(f"{name}: zero area – its points lie on one line")
+    return contour
+
+
+def clean_contours(outline, holes) -> list[np.ndarray]:
+    """The outline and its holes, checked and turned so that the cloth lies to their left in (x, -y).
+
+    Raises OutlineError for crossing or touching contours (naming the segments), zero area, and holes outside.
+    """
+    named = [("outline", clean_contour(outline, "outline"))]
+    named += [(f"hole {k}", clean_contour(hole, f"hole {k}")) for k, hole in enumerate(holes)]
+    _check_crossings(named)
+    contours = []
+    for name, contour in named:
+        area = signed_area(contour)
+        if abs(area) < FLAT * float(np.ptp(contour, axis=0).max()) ** 2:
+            raise OutlineError(f"{name}: zero area – it runs back along itself")
+        outer = not contours
+        contours.append(contour if (area > 0) == outer else contour[::-1].copy())
+    _check_nesting([name for name, _ in named], contours)
+    return contours
+
+
+def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
+    contours = [contour for _, contour in named]
+    points = np.concatenate(contours)
+    owner = np.repeat(np.arange(len(contours)), [len(c) for c in contours])
+    first = np.concatenate([[0], np.cumsum([len(c) for c in contours])])
+    following = np.concatenate(
+        [np.roll(np.arange(len(c)), -1) + s for c, s in zip(contours, first, strict=False)]
+    )
+    snapped = snap_frame(points).snap(points)
+    left = np.minimum(snapped[:, 0], snapped[following, 0])
+    i, j = _first_crossing(snapped, following, np.argsort(left, kind="stable"))
+    if i < 0:
+        return
+    i, j = min(i, j), max(i, j)
+    k, m = owner[i], owner[j]
+    here, there = i - first[k], j - first[m]
+    spot = f"near ({points[i, 0]:.4f}, {points[i, 1]:.4f}) m"
+    if k == m:
+        raise OutlineError(
+            f"{named[k][0]}: crosses or touches itself, segment {here} (point {here} to {here + 1}) and segment "
+            f"{there}, {spot} – draw it as a simple closed curve"
+        )
+    raise OutlineError(
+        f"{named[k][0]} segment {here} and {named[m][0]} segment {there} cross or touch {spot} – keep them apart"
+    )
+
+
+@njit(cache=True)
+def _first_crossing(points, following, order):
+    """Two segments that meet elsewhere than at the point they share, or (-1, -1). Sweep over the left ends."""
+    for s in range(order.size):
+        i = order[s]
+        i2 = following[i]
+        right = max(points[i, 0], points[i2, 0])
+        low, high = min(points[i, 1], points[i2, 1]), max(points[i, 1], points[i2, 1])
+        for t in range(s + 1, order.size):
+            j = order[t]
+            j2 = following[j]
+            if min(points[j, 0], points[j2, 0]) > right:
+                break
+            if min(points[j, 1], points[j2, 1]) > high or max(points[j, 1], points[j2, 1]) < low:
+                continue
+            if i2 == j:
+                meet = _folds_back(points, i, i2, j2)
+            elif j2 == i:
+                meet = _folds_back(points, j, i, i2)
+            else:
+                meet = _meet(points, i, i2, j, j2)
+            if meet:
+                return i, j
+    return -1, -1
+
+
+@njit(cache=True)
+def _folds_back(points, a, b, c):
+    """Whether b -> c runs back along a -> b."""
+    if orient(points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]) != 0:
+        return False
+    ux, uy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
+    vx, vy = points[c, 0] - points[b, 0], points[c, 1] - points[b, 1]
+    return ux * vx + uy * vy < 0
+
+
+@njit(cache=True)
+def _meet(points, a, b, c, d):
+    """Whether the closed segments a b and c d, whose bounding boxes overlap, have a common point. Exact."""
+    ax, ay, bx, by = points[a, 0], points[a, 1], points[b, 0], points[b, 1]
+    cx, cy, dx, dy = points[c, 0], points[c, 1], points[d, 0], points[d, 1]
+    s1, s2 = orient(ax, ay, bx, by, cx, cy), orient(ax, ay, bx, by, dx, dy)
+    s3, s4 = orient(cx, cy, dx, dy, ax, ay), orient(cx, cy, dx, dy, bx, by)
+    return not ((s1 > 0 and s2 > 0) or (s1 < 0 and s2 < 0) or (s3 > 0 and s4 > 0) or (s3 < 0 and s4 < 0))
+
+
+def _check_nesting(names: list[str], contours: list[np.ndarray]) -> None:
+    from sim_core.mesh.raycast import inside
+
+    for k in range(1, len(contours)):
+        if not inside(contours[k][:1], contours[:1])[0]:
+            raise OutlineError(f"{names[k]}: lies outside the outline – holes belong inside it")
+        for m in range(1, len(contours)):
+            if m != k and inside(contours[k][:1], [contours[m]])[0]:
+                raise OutlineError(f"{names[k]}: lies inside {names[m]} – holes must not be nested")
+
+
+def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:
+    """Samples of a closed contour: every corner, and equal arc steps of at most `edge` between corners.
+
+    contour: (n, 2) [m], closing point not repeated; a corner turns by more than 20 degrees.  edge: [m].
+    Returns (m, 2) [m] in the same direction; smooth closed curves start at their first point.
+    """
+    corners = np.flatnonzero(_turning(contour) > CORNER_DEGREES)
+    if corners.size == 0:
+        corners = np.array([0])
+    turned = np.roll(contour, -corners[0], axis=0)
+    marks = np.append(corners - corners[0], len(contour))
+    closed = np.vstack([turned, turned[:1]])
+    least = max(1, -(-3 // corners.size))
+    chains = [
+        _equal_steps(closed[a : b + 1], edge, least) for a, b in zip(marks[:-1], marks[1:], strict=True)
+    ]
+    return np.concatenate(chains)
+
+
+def _turning(contour: np.ndarray) -> np.ndarray:
+    """Angle [degrees] by which a closed contour turns at each point."""
+    ahead = np.roll(contour, -1, axis=0) - contour
+    behind = contour - np.roll(contour, 1, axis=0)
+    cross = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
+    return np.degrees(np.abs(np.arctan2(cross, (behind * ahead).sum(axis=1))))
+
+
+def sharpest_corner(contours: list[np.ndarray]) -> float:
+    """Smallest angle [degrees] on the cloth's side between neighbouring steps; contours have the cloth on their left.
+
+    No triangle there can have a larger smallest angle.
+    """
+    least = 180.0
+    for contour in contours:
+        ahead = np.roll(contour, -1, axis=0) - contour
+        behind = np.roll(contour, 1, axis=0) - contour
+        # y points down, so the turn from ahead to behind is counter-clockwise in (x, -y) with this sign
+        cross = ahead[:, 1] * behind[:, 0] - ahead[:, 0] * behind[:, 1]
+        inner = np.degrees(np.arctan2(cross, (ahead * behind).sum(axis=1))) % 360
+        least = min(least, float(inner.min()))
+    return least
+
+
+def _equal_steps(chain: np.ndarray, edge: float, least: int) -> np.ndarray:
+    """Points at equal arc length along an open chain, its last point left out."""
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(chain, axis=0).T))])
+    steps = max(least, int(np.ceil(arc[-1] / edge - 1e-9)))
+    at = np.linspace(0.0, arc[-1], steps + 1)[:-1]
+    return np.column_stack([np.interp(at, arc, chain[:, 0]), np.interp(at, arc, chain[:, 1])])

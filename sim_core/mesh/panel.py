@@ -1,0 +1,152 @@
+"""Outline to panel mesh: samples, staggered points, redundant points out, growth, check."""
+
+from time import perf_counter
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from sim_core.errors import OutlineError
+from sim_core.mesh.exact import snap_frame
+from sim_core.mesh.growth import grow_snapped
+from sim_core.mesh.lattice import staggered_points
+from sim_core.mesh.model import PanelMesh
+from sim_core.mesh.outline import check_edge, clean_contours, sharpest_corner
+from sim_core.mesh.quality import quality
+from sim_core.mesh.raycast import keep_points
+from sim_core.mesh.report import measured
+from sim_core.mesh.sampling import sampled_contours
+from sim_core.mesh.smoothing import smoothed
+from sim_core.mesh.verify import fills, verify
+
+__all__ = ["grow", "panel_mesh"]
+
+DUPLICATE = 1e-7  # of the bounding box: points closer than this are one point
+ENOUGH_DEGREES = 30.0
+OTHER_THRESHOLDS = (0.76, 0.64, 0.82)
+
+
+def grow(points: np.ndarray, edges: np.ndarray | None = None) -> np.ndarray:
+    """Growth triangulation of a point set (Eq. 9).
+
+    points: (n, 2) [m], y down; points nearer to each other than 1e-7 of the bounding box count as one (the first).
+    edges: (m, 2) int, outline steps with the cloth on their left in (x, -y); None grows to the convex hull.
+    Returns faces (F, 3) int32 with positive area in (x, -y). Raises OutlineError where growth cannot close.
+    """
+    points = np.asarray(points, dtype=float)
+    if len(points) < 3:
+        raise OutlineError(f"{len(points)} points – a triangle needs three")
+    keep, unique = _without_duplicates(points)
+    if len(keep) < 3:
+        raise OutlineError(f"{len(keep)} different points – a triangle needs three")
+    place = points[keep]
+    seeds = None if edges is None else unique[np.asarray(edges)]
+    faces, status, where = grow_snapped(snap_frame(place).snap(place), seeds)
+    if status:
+        x, y = place[where]
+        raise OutlineError(
+            f"growth does not close near ({x:.4f}, {y:.4f}) m – the outline crosses or is too fine"
+        )
+    return keep[faces].astype(np.int32)
+
+
+def _without_duplicates(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of the points kept, and for every point its position among those."""
+    reach = DUPLICATE * float(np.ptp(points, axis=0).max())
+    first = np.arange(len(points))
+    for i, j in np.sort(KDTree(points).query_pairs(reach, output_type="ndarray"), axis=1)[::-1]:
+        first[j] = min(first[j], i)
+    while not np.array_equal(first, first[first]):
+        first = first[first]
+    keep = np.flatnonzero(first == np.arange(len(points)))
+    return keep, np.searchsorted(keep, first)
+
+
+def panel_mesh(outline, *, edge: float, holes=(), threshold: float = 0.7, smooth: int = 3) -> PanelMesh:
+    """Triangulate one pattern panel.
+
+    outline: (N, 2) [m], y down, in either direction, closed without repeating the first point.  edge: [m] length L of
+    a lattice step; outline steps are at most that.  holes: contours inside the outline.  threshold: lattice points
+    nearer to the outline than threshold * edge are redundant; 0.5 to 0.9. Other thresholds are tried where the
+    smallest angle stays below 30 degrees (or below the outline's own sharpest corner).  smooth: most smoothing passes
+    tried; a pass is kept only where it raises the smallest angle.
+    Raises OutlineError saying what is wrong with the outline, where, and what to do.
+    """
+    begin = perf_counter()
+    if not 0.5 <= threshold <= 0.9:
+        raise OutlineError(f"threshold {threshold} – give a fraction of the edge between 0.5 and 0.9")
+    contours = clean_contours(outline, holes)
+    check_edge(edge, contours)
+    samples = sampled_contours(contours, edge)
+    boundary = _loops(samples)
+    vertices, faces = _best_fill(samples, boundary, edge, threshold, smooth)
+    verify(vertices, faces, boundary, edge)
+    report = measured(vertices, faces, boundary, contours, perf_counter() - begin)
+    return PanelMesh(vertices, faces, boundary, report)
+
+
+def _best_fill(
+    samples, boundary, edge: float, threshold: float, smooth: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Fill the contours for one threshold after the other until the smallest angle is good enough; the best counts."""
+    lattice = staggered_points(samples[0].min(axis=0), samples[0].max(axis=0), edge)
+    enough = min(ENOUGH_DEGREES, sharpest_corner(samples))
+    others = [t for t in OTHER_THRESHOLDS if smooth and abs(t - threshold) > 0.02]
+    tried = []
+    for fraction in (threshold, *others):
+        inner = keep_points(lattice, samples, edge=edge, threshold=fraction)
+        vertices = np.concatenate([*samples, inner])
+        tried.append(_improved(vertices, _fill(vertices, boundary), boundary, smooth))
+        if tried[-1][0] >= enough:
+            break
+    _, vertices, faces = max(tried, key=lambda found: found[0])
+    return vertices, faces
+
+
+def _loops(samples: list[np.ndarray]) -> tuple[np.ndarray, ...]:
+    ends = np.cumsum([len(loop) for loop in samples])
+    return tuple(
+        np.arange(end - len(loop), end, dtype=np.int32) for loop, end in zip(samples, ends, strict=True)
+    )
+
+
+def _fill(vertices: np.ndarray, boundary: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Grow inward from the oriented outline, so that nothing outside, in holes or across notches needs culling.
+
+    Outline steps are Delaunay edges nearly always; where a spike or slit is so fine that one is not, growth runs again
+    with the steps as walls.
+    """
+    steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in boundary])
+    snapped = snap_frame(vertices).snap(vertices)
+    faces, status, where = grow_snapped(snapped, steps)
+    if status or not fills(vertices, faces, boundary):
+        faces, status, where = grow_snapped(snapped, steps, walls=True)
+    if status:
+        x, y = vertices[where]
+        raise OutlineError(
+            f"outline: the mesh does not close near ({x:.4f}, {y:.4f}) m – the outline has a feature finer than the "
+            "edge there; give a smaller edge"
+        )
+    return faces
+
+
+def _improved(vertices, faces, boundary, passes: int) -> tuple[float, np.ndarray, np.ndarray]:
+    """The best of the mesh and its smoothed forms, by the smallest angle: (angle, vertices, faces)."""
+    fixed = sum(len(loop) for loop in boundary)
+    best = _angle(vertices, faces, boundary), vertices, faces
+    for _ in range(passes if fixed < len(vertices) else 0):
+        vertices = smoothed(vertices, faces, fixed)
+        try:
+            faces = _fill(vertices, boundary)
+        except OutlineError:
+            break  # a point has come too close to the outline; what was found before stands
+        angle = _angle(vertices, faces, boundary)
+        if angle > best[0]:
+            best = angle, vertices, faces
+        if angle < 0:
+            break
+    return best
+
+
+def _angle(vertices, faces, boundary) -> float:
+    """Smallest angle [degrees], or -1 where the faces do not fill the contours."""
+    return float(quality(vertices, faces).min_angle.min()) if fills(vertices, faces, boundary) else -1.0

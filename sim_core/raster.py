@@ -1,0 +1,175 @@
+"""Compiled triangle rasteriser behind `picture`: depth maps, and shaded fragments of opaque and sheer cloth."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+LAYERS = 8  # sheer layers kept per pixel, the nearest ones
+
+
+@njit(cache=True, error_model="numpy")
+def _bounds(a, b, c, width, height):
+    """Pixel box of a screen triangle, clipped, and twice its signed area."""
+    x0 = max(int(math.floor(min(a[0], b[0], c[0]))), 0)
+    x1 = min(int(math.ceil(max(a[0], b[0], c[0]))), width - 1)
+    y0 = max(int(math.floor(min(a[1], b[1], c[1]))), 0)
+    y1 = min(int(math.ceil(max(a[1], b[1], c[1]))), height - 1)
+    return x0, x1, y0, y1, (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+@njit(cache=True, error_model="numpy")
+def depth_map(screen, faces, depth):
+    """Smallest screen z per pixel into depth (h, w); screen (V, 3): x, y [pixel], z."""
+    height, width = depth.shape
+    for f in range(len(faces)):
+        a, b, c = screen[faces[f, 0]], screen[faces[f, 1]], screen[faces[f, 2]]
+        x0, x1, y0, y1, area = _bounds(a, b, c, width, height)
+        if area == 0.0:
+            continue
+        for py in range(y0, y1 + 1):
+            for px in range(x0, x1 + 1):
+                x, y = px + 0.5, py + 0.5
+                u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
+                v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
+                w = 1.0 - u - v
+                if u >= 0.0 and v >= 0.0 and w >= 0.0:
+                    z = u * a[2] + v * b[2] + w * c[2]
+                    if z < depth[py, px]:
+                        depth[py, px] = z
+
+
+@njit(cache=True, error_model="numpy")
+def lit(screen, depth, bias, radius):
+    """Fraction of the depth map's taps around each point (N, 3) that do not hide it, (N,)."""
+    out = np.zeros(len(screen))
+    for i in range(len(screen)):
+        out[i] = _lit_at(screen[i, 0], screen[i, 1], screen[i, 2], depth, bias, radius)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def _lit_at(x, y, z, depth, bias, radius):
+    height, width = depth.shape
+    seen, taps = 0.0, 0
+    for dy in range(-radius, radius + 1):
+        for dx in range(-radius, radius + 1):
+            px, py = int(x) + dx, int(y) + dy
+            taps += 1
+            if px < 0 or py < 0 or px >= width or py >= height or z <= depth[py, px] + bias:
+                seen += 1.0
+    return seen / taps
+
+
+@njit(cache=True, error_model="numpy")
+def _place(matrix, p):
+    """An affine map (3, 4) of a point (3,)."""
+    out = matrix[:, 3].copy()
+    for k in range(3):
+        for c in range(3):
+            out[k] += matrix[k, c] * p[c]
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def _shade(n, p, open_sky, colour, look, scene):
+    """Linear colour of a fragment with normal n turned to the eye; scene rows: eye, key, key colour, sky, ground."""
+    ex, ey, ez = scene[0, 0] - p[0], scene[0, 1] - p[1], scene[0, 2] - p[2]
+    far = math.sqrt(ex * ex + ey * ey + ez * ez)
+    ex, ey, ez = ex / far, ey / far, ez / far
+    facing = n[0] * ex + n[1] * ey + n[2] * ez
+    if look[4] > 0.0:  # a floor that only shows shadows, else the backdrop's own colour
+        shade = (0.55 + 0.45 * open_sky[1]) * (0.72 + 0.28 * open_sky[0])
+        return colour * shade, 1.0
+    key = n[0] * scene[1, 0] + n[1] * scene[1, 1] + n[2] * scene[1, 2]
+    through = look[2]  # part of the light that comes through from behind: thin cloth glows
+    diffuse = max(key, 0.0) + through * max(-key, 0.0)
+    hx, hy, hz = ex + scene[1, 0], ey + scene[1, 1], ez + scene[1, 2]
+    size = math.sqrt(hx * hx + hy * hy + hz * hz)
+    gloss = look[0] * max(0.0, (n[0] * hx + n[1] * hy + n[2] * hz) / size) ** 24
+    sheen = look[1] * (1.0 - min(1.0, max(facing, 0.0))) ** 3
+    up = 0.5 + 0.5 * n[1]
+    r = np.zeros(3)
+    for k in range(3):
+        ambient = open_sky[1] * (up * scene[3, k] + (1.0 - up) * scene[4, k])
+        white = (gloss * max(key, 0.0) ** 0.5 * open_sky[0]) * scene[2, k]
+        light = open_sky[0] * diffuse * scene[2, k] + ambient
+        r[k] = colour[k] * light + white + sheen * (0.35 + 0.65 * colour[k]) * (0.5 * ambient + 0.4 * light)
+    return r, max(facing, 0.05)
+
+
+@njit(cache=True, error_model="numpy")
+def _insert(layer_depth, layer_colour, z, r, alpha):
+    """Keeps the nearest layers of a pixel, sorted from near to far."""
+    k = LAYERS - 1
+    if z >= layer_depth[k]:
+        return
+    while k > 0 and layer_depth[k - 1] > z:
+        layer_depth[k] = layer_depth[k - 1]
+        layer_colour[k] = layer_colour[k - 1]
+        k -= 1
+    layer_depth[k] = z
+    layer_colour[k, 0], layer_colour[k, 1], layer_colour[k, 2], layer_colour[k, 3] = r[0], r[1], r[2], alpha
+
+
+@njit(cache=True, error_model="numpy")
+def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour):
+    """Draws one surface. mesh: (screen (V, 3) with z = 1 / distance, faces, world, normals, sky (V,)).
+
+    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. shadow: (matrix (3, 4), map of the opaque (h, w), of the sheer (h, w), what these hold back, bias).
+    depth holds -1/distance of the opaque; sheer surfaces (alpha < 1) go to the layers.
+    """
+    screen, faces, world, normals, sky = mesh
+    matrix, shadows, veils, veil, bias = shadow
+    height, width = depth.shape
+    for f in range(len(faces)):
+        i, j, k = faces[f]
+        a, b, c = screen[i], screen[j], screen[k]
+        if a[2] <= 0.0 or b[2] <= 0.0 or c[2] <= 0.0:
+            continue
+        x0, x1, y0, y1, area = _bounds(a, b, c, width, height)
+        if area == 0.0:
+            continue
+        for py in range(y0, y1 + 1):
+            for px in range(x0, x1 + 1):
+                x, y = px + 0.5, py + 0.5
+                u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
+                v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
+                w = 1.0 - u - v
+                if u < 0.0 or v < 0.0 or w < 0.0:
+                    continue
+                near = u * a[2] + v * b[2] + w * c[2]
+                if -near >= depth[py, px]:
+                    continue
+                u, v, w = u * a[2] / near, v * b[2] / near, w * c[2] / near
+                p = u * world[i] + v * world[j] + w * world[k]
+                n = u * normals[i] + v * normals[j] + w * normals[k]
+                n /= math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
+                if n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2]) < 0.0:
+                    n = -n
+                at = _place(matrix, p)
+                seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)
+                seen *= 1.0 - veil * (1.0 - _lit_at(at[0], at[1], at[2], veils, bias, 3))
+                r, facing = _shade(n, p, (seen, u * sky[i] + v * sky[j] + w * sky[k]), colour, look, scene)
+                if look[3] >= 1.0:
+                    depth[py, px] = -near
+                    image[py, px] = r
+                else:
+                    # More threads lie in a slanting line of sight.
+                    alpha = 1.0 - (1.0 - look[3]) ** (1.0 / facing)
+                    _insert(layer_depth[py, px], layer_colour[py, px], -near, r, alpha)
+
+
+@njit(cache=True, error_model="numpy")
+def compose(image, depth, layer_depth, layer_colour):
+    """Lays the sheer layers over the opaque image, far to near, in place."""
+    height, width = depth.shape
+    for y in range(height):
+        for x in range(width):
+            for k in range(LAYERS - 1, -1, -1):
+                if layer_depth[y, x, k] < depth[y, x]:
+                    a = layer_colour[y, x, k, 3]
+                    for c in range(3):
+                        image[y, x, c] = a * layer_colour[y, x, k, c] + (1.0 - a) * image[y, x, c]

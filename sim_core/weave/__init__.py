@@ -1,0 +1,28 @@
+"""Weaving: drafts -> periodic yarn geometry -> tileable texture maps and cloth parameters."""
+
+from sim_core.errors import WeaveError
+from sim_core.weave.draft import Draft, plain, satin, twill
+from sim_core.weave.drawing import lit_picture
+from sim_core.weave.geometry import ClothParameters, TextureMaps, YarnGeometry
+from sim_core.weave.maps import texture_maps
+from sim_core.weave.model import Weave
+from sim_core.weave.parameters import cloth_parameters
+from sim_core.weave.relaxation import relax
+from sim_core.weave.yarn import Yarn
+
+__all__ = [
+    "ClothParameters",
+    "Draft",
+    "TextureMaps",
+    "Weave",
+    "WeaveError",
+    "Yarn",
+    "YarnGeometry",
+    "cloth_parameters",
+    "lit_picture",
+    "plain",
+    "relax",
+    "satin",
+    "texture_maps",
+    "twill",
+]

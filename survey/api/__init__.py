@@ -1,0 +1,5 @@
+"""The questionnaire's HTTP interface."""
+
+from survey.api.router import router
+
+__all__ = ["router"]

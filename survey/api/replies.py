@@ -1,0 +1,83 @@
+"""Refusals as JSON {"field", "problem", "remedy"}, and the models that document what the API takes and gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Annotated, Any, Literal
+
+from fastapi import Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.routing import APIRoute
+from pydantic import BaseModel, ConfigDict, Field
+
+from survey.answer import TEXT_LIMIT
+from survey.errors import AnswerError, StoreError
+from survey.slug import SLUG
+
+__all__ = ["ExplainingRoute", "Refusal", "Submission", "refused"]
+
+RETRY_SECONDS = 5
+
+
+class Refusal(BaseModel):
+    """Why a request was refused: which field, what is wrong, what to do."""
+
+    field: str
+    problem: str
+    remedy: str
+
+
+class Submission(BaseModel):
+    """What to send. This model documents; the questionnaire itself decides which items and points exist."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: str = Field(
+        json_schema_extra={"format": "uuid"}, description="made by the sender; repeat it to retry"
+    )
+    version: int = Field(ge=1)
+    language: Literal["zh", "en"]
+    consent: Literal[True]
+    scores: dict[str, Annotated[int, Field(ge=1)] | None] = Field(description="every item; null: not seen")
+    suggestions: dict[str, Annotated[str, Field(max_length=TEXT_LIMIT)]] = Field(
+        default={}, description="by module"
+    )
+    exhibit: str | None = Field(
+        default=None, pattern=f"^{SLUG}$", description="at which exhibit it was asked"
+    )
+
+
+def refused(error: AnswerError) -> JSONResponse:
+    """The refusal as a response. After a body that was not read to its end the connection is closed."""
+    headers = {"Connection": "close"} if error.status in (413, 415) else {}
+    if error.status == 401:
+        headers["WWW-Authenticate"] = "Bearer"
+    body = {"field": error.field, "problem": error.problem, "remedy": error.remedy}
+    return JSONResponse(body, error.status, headers)
+
+
+class ExplainingRoute(APIRoute):
+    """A route that answers every foreseeable failure with a Refusal, so that any app can mount the router."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        handle = super().get_route_handler()
+
+        async def explaining(request: Request) -> Response:
+            try:
+                return await handle(request)
+            except AnswerError as error:
+                return refused(error)
+            except RequestValidationError as error:
+                first = error.errors()[0]
+                field = str(first["loc"][-1])
+                return refused(AnswerError(field, str(first["msg"]).lower(), f"correct {field}"))
+            except StoreError as error:
+                body = {
+                    "field": "",
+                    "problem": str(error),
+                    "remedy": "nothing was stored; send the same again later",
+                }
+                return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})
+
+        return explaining

@@ -1,0 +1,176 @@
+"""The routes: read a questionnaire, submit an answer, take it back, see results; rows only with a token."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse
+
+from survey.answer import Answer, submission_id
+from survey.api.body import read_json
+from survey.api.replies import ExplainingRoute, Refusal, Submission
+from survey.errors import AnswerError
+from survey.export import write_csv
+from survey.questionnaire import Questionnaire
+from survey.results import public_results
+from survey.store import Store, Stored
+
+__all__ = ["described", "find_questionnaire", "router"]
+
+BASE = "/api/v1"
+_REFUSALS: dict[int | str, dict[str, Any]] = {"4XX": {"model": Refusal}, 503: {"model": Refusal}}
+_TAKES_SUBMISSION = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/json": {"schema": Submission.model_json_schema()}},
+    }
+}
+
+Questionnaires = Mapping[str, Questionnaire]
+Version = Annotated[int | None, Query(ge=1, le=10_000, description="the current one when left out")]
+
+
+def router(store: Store, questionnaires: Questionnaires) -> APIRouter:
+    """All routes below /api/v1, to be included in any FastAPI app, with a prefix or without.
+
+    questionnaires: looked up anew at each request, so a mapping that reloads its files is served as it is then.
+    """
+    routes = APIRouter(prefix=BASE, route_class=ExplainingRoute, tags=["survey"], responses=_REFUSALS)
+    _add_reading(routes, store, questionnaires)
+    _add_submitting(routes, store, questionnaires)
+    _add_research(routes, store, questionnaires)
+    return routes
+
+
+def find_questionnaire(questionnaires: Questionnaires, key: str) -> Questionnaire:
+    """Raises AnswerError 404."""
+    try:
+        return questionnaires[key]
+    except KeyError:
+        remedy = "choose one of " + (", ".join(questionnaires) or "none yet")
+        raise AnswerError("questionnaire", "no such questionnaire", remedy, status=404) from None
+
+
+def described(questionnaire: Questionnaire) -> dict[str, Any]:
+    """A questionnaire as the API and the form page hand it out: items spelled out, nothing left to expand."""
+    head = questionnaire.model_dump(
+        mode="json", include={"id", "version", "title", "intro", "consent", "scale"}
+    )
+    modules = [
+        module.model_dump(mode="json", include={"id", "title", "intro", "suggestion"})
+        | {"items": [item.model_dump(mode="json") for item in questionnaire.items_of(module)]}
+        for module in questionnaire.modules
+    ]
+    return head | {"points": questionnaire.points, "modules": modules}
+
+
+def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
+    @routes.get("/healthz", summary="Is the store there?")
+    def healthz() -> dict[str, str]:
+        store.alive()
+        return {"status": "ok"}
+
+    @routes.get("/questionnaires", summary="All questionnaires")
+    def listed() -> list[dict[str, Any]]:
+        wanted = {"id", "version", "title"}
+        return [found.model_dump(mode="json", include=wanted) for found in list(questionnaires.values())]
+
+    @routes.get("/questionnaires/{key}", summary="One questionnaire with its items")
+    def one(key: str) -> dict[str, Any]:
+        return described(find_questionnaire(questionnaires, key))
+
+    @routes.get("/questionnaires/{key}/results", summary="Means, from five answers on")
+    def results(key: str) -> dict[str, Any]:
+        questionnaire = find_questionnaire(questionnaires, key)
+        return public_results(questionnaire, [row.answer for row in store.rows(questionnaire)])
+
+
+def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
+    path = "/questionnaires/{key}/submissions"
+
+    @routes.post(path, status_code=201, summary="Submit an answer", openapi_extra=_TAKES_SUBMISSION)
+    async def submit(key: str, request: Request) -> JSONResponse:
+        """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
+        questionnaire = await run_in_threadpool(find_questionnaire, questionnaires, key)
+        answer = Answer.of(questionnaire, await read_json(request))
+        receipt = await run_in_threadpool(store.submit, questionnaire, answer)
+        body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
+        return JSONResponse(body, 200 if receipt.replayed else 201)
+
+    @routes.delete(path + "/{submission}", status_code=204, summary="Take an answer back by its code")
+    def withdraw(key: str, submission: str) -> Response:
+        known = submission_id(submission)
+        # Answers to a questionnaire that has left the hall can still be taken back.
+        if not store.withdraw(key, known):
+            raise AnswerError(
+                "id", "no such answer", "check the code that was shown after sending", status=404
+            )
+        return Response(status_code=204)
+
+
+def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
+    # Declared beside the store, so that a route of this group cannot be written without its guard.
+    research = APIRouter(route_class=ExplainingRoute, dependencies=[Depends(_token_guard(store))])
+
+    def asked(key: str, version: int | None) -> tuple[Questionnaire, tuple[Stored, ...]]:
+        current = questionnaires.get(key)
+        if current is None or (version is not None and version != current.version):
+            current = store.frozen(key, version) if version is not None else None
+        if current is None:
+            raise AnswerError(
+                "version", "no such version has answers", "leave it out for the current one", status=404
+            )
+        return current, store.rows(current)
+
+    @research.get("/questionnaires/{key}/rows", summary="All answers (token)")
+    def rows(key: str, version: Version = None) -> list[dict[str, Any]]:
+        return [_row(row) for row in asked(key, version)[1]]
+
+    @research.get("/questionnaires/{key}/suggestions", summary="All suggestions (token)")
+    def suggestions(key: str, version: Version = None) -> list[dict[str, Any]]:
+        found = [
+            (row, module, text) for row in asked(key, version)[1] for module, text in row.answer.suggestions
+        ]
+        return [
+            {"submission": row.answer.id, "language": row.answer.language, "module": module, "text": text}
+            for row, module, text in found
+        ]
+
+    @research.get(
+        "/questionnaires/{key}/export.csv", summary="All answers as CSV (token)", response_class=Response
+    )
+    def export(key: str, version: Version = None) -> Response:
+        questionnaire, found = asked(key, version)
+        name = f"{key}-v{questionnaire.version}.csv"
+        headers = {"Content-Disposition": f'attachment; filename="{name}"', "Cache-Control": "no-store"}
+        return Response(
+            write_csv(questionnaire, found).encode(), media_type="text/csv; charset=utf-8", headers=headers
+        )
+
+    routes.include_router(research)
+
+
+def _token_guard(store: Store) -> Callable[..., None]:
+    def guard(authorization: Annotated[str | None, Header()] = None) -> None:
+        kind, _, secret = (authorization or "").partition(" ")
+        if kind.lower() != "bearer" or not store.tokens.admits(secret.strip()):
+            remedy = "send Authorization: Bearer TOKEN; `survey token` makes one"
+            raise AnswerError("authorization", "no valid token", remedy, status=401)
+
+    return guard
+
+
+def _row(row: Stored) -> dict[str, Any]:
+    answer = row.answer
+    return {
+        "submission": answer.id,
+        "version": answer.version,
+        "language": answer.language,
+        "exhibit": answer.exhibit,
+        "received": row.received.isoformat(),
+        "scores": dict(answer.scores),
+        "suggestions": dict(answer.suggestions),
+    }

@@ -1,0 +1,55 @@
+"""Errors of the survey, each a single line that names what, where and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+
+__all__ = ["AnswerError", "ContentMissing", "Problem", "QuestionnaireError", "StoreError", "SurveyError"]
+
+
+class SurveyError(ValueError):
+    """Whatever the survey can explain in one line."""
+
+
+@dataclass(frozen=True, order=True)
+class Problem:
+    """One thing to put right in a questionnaire file; `key` may be empty."""
+
+    file: str
+    key: str
+    what: str
+    fix: str
+
+    def __str__(self) -> str:
+        where = f"{self.file}: {self.key}" if self.key else self.file
+        return f"{where}: {self.what} – {self.fix}".replace("\n", " ")
+
+    def as_json(self) -> dict[str, str]:
+        return asdict(self)
+
+
+class QuestionnaireError(SurveyError):
+    """A questionnaire file cannot be used. Carries every problem found in it."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        rest = len(self.problems) - 1
+        more = f" (and {rest} more)" if rest else ""
+        super().__init__(f"{self.problems[0]}{more}")
+
+
+class ContentMissing(SurveyError):
+    """No content folder, or no questionnaires in it."""
+
+
+class AnswerError(SurveyError):
+    """A submission that is refused: which field, what is wrong with it, what to do."""
+
+    def __init__(self, field: str, problem: str, remedy: str, *, status: int = 422) -> None:
+        self.field, self.problem, self.remedy, self.status = field, problem, remedy, status
+        super().__init__(f"{field}: {problem} – {remedy}" if field else f"{problem} – {remedy}")
+
+
+class StoreError(SurveyError):
+    """The database does not take or give anything now: locked, full, unreachable or of another make."""

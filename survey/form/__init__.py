@@ -1,0 +1,5 @@
+"""The page on which a visitor answers: HTML from the server, one script, one style sheet, nothing from elsewhere."""
+
+from survey.form.routes import form_router
+
+__all__ = ["form_router"]

@@ -1,0 +1,210 @@
+"""The form page's HTML: a questionnaire in, a page out; every text from outside is escaped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterable
+from functools import lru_cache
+from html import escape
+from pathlib import Path
+
+from survey.answer import TEXT_LIMIT
+from survey.questionnaire import Item, Language, Module, Questionnaire, Text
+
+__all__ = ["ASSETS", "form_page", "list_page", "missing_page", "words"]
+
+FOLDER = Path(__file__).parent
+ASSETS = {"form.css": "text/css; charset=utf-8", "form.js": "text/javascript; charset=utf-8"}
+
+
+@lru_cache(maxsize=1)
+def _texts() -> dict[str, dict[str, str]]:
+    return tomllib.loads((FOLDER / "texts.toml").read_text("utf-8"))
+
+
+def words(language: Language) -> dict[str, str]:
+    """The page's own texts in a language."""
+    return _texts()[language]
+
+
+@lru_cache(maxsize=1)
+def _stamp() -> str:
+    """Changes with the style and the script, so that a browser never mixes two releases."""
+    return hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in sorted(ASSETS))).hexdigest()[:12]
+
+
+def form_page(questionnaire: Questionnaire, language: Language, exhibit: str | None) -> str:
+    """The page of one questionnaire; `exhibit` is kept with the answer."""
+    say = words(language)
+    modules = "".join(
+        _module(questionnaire, module, number, language)
+        for number, module in enumerate(questionnaire.modules, 1)
+    )
+    body = f"""
+{_header(questionnaire.title.in_language(language), questionnaire.intro.in_language(language), language, exhibit)}
+<noscript><p class="notice">{escape(say["noscript"])}</p></noscript>
+<div class="progress"><div class="track"><div id="bar"></div></div><p id="count" role="status"></p></div>
+<form id="form" novalidate>
+<div id="errors" class="notice" tabindex="-1" hidden></div>
+<p id="restored" class="notice quiet" hidden><span>{escape(say["restored"])}</span>
+<button type="button" id="restart" class="plain">{escape(say["restart"])}</button></p>
+{modules}
+{_consent(questionnaire, language)}
+<div class="sending"><button type="submit" id="send" class="primary">{escape(say["send"])}</button>
+<p class="small">{escape(say["saved"])}</p></div>
+</form>
+<div id="state" class="notice" role="status" tabindex="-1" hidden></div>
+{_thanks(say)}
+{_withdraw(say)}
+<script type="application/json" id="settings">{_settings(questionnaire, language, exhibit)}</script>"""
+    return _page(questionnaire.title.in_language(language), language, body, script=True)
+
+
+def list_page(questionnaires: Iterable[Questionnaire], language: Language) -> str:
+    """All questionnaires with links."""
+    say = words(language)
+    named = ((found.id, escape(found.title.in_language(language))) for found in questionnaires)
+    links = "".join(
+        f'<li><a href="./questionnaires/{key}?lang={language}">{name}</a></li>' for key, name in named
+    )
+    listed = f'<ul class="list">{links}</ul>' if links else f"<p>{escape(say['list_empty'])}</p>"
+    head = _header(say["list_title"], say["list_intro"], language, None)
+    return _page(say["list_title"], language, head + listed, script=False, base="./")
+
+
+def missing_page(language: Language) -> str:
+    """What a wrong address shows."""
+    say = words(language)
+    return _page(
+        say["missing_title"],
+        language,
+        _header(say["missing_title"], say["missing_text"], language, None),
+        script=False,
+    )
+
+
+def _page(title: str, language: Language, body: str, *, script: bool, base: str = "../") -> str:
+    stamp = _stamp()
+    source = f'<script src="{base}survey-static/form.js?v={stamp}" defer></script>' if script else ""
+    return f"""<!doctype html>
+<html lang="{"zh-Hans" if language == "zh" else "en"}">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(title)}</title>
+<link rel="icon" href="data:,">
+<link rel="stylesheet" href="{base}survey-static/form.css?v={stamp}">
+{source}
+</head>
+<body><main>{body}
+</main></body>
+</html>
+"""
+
+
+def _header(title: str, intro: str, language: Language, exhibit: str | None) -> str:
+    say, other = words(language), "en" if language == "zh" else "zh"
+    kept = f"&amp;exhibit={escape(exhibit)}" if exhibit else ""
+    return f"""<header><div class="top"><span class="seal" aria-hidden="true">{escape(say["seal"])}</span>
+<a class="switch" id="switch" href="?lang={other}{kept}" lang="{other}"
+ aria-label="{escape(say["switch_label"])}">{escape(say["switch"])}</a></div>
+<h1 tabindex="-1">{escape(title)}</h1>
+<p class="intro">{escape(intro)}</p></header>"""
+
+
+def _module(questionnaire: Questionnaire, module: Module, number: int, language: Language) -> str:
+    items = "".join(_item(questionnaire, item, language) for item in questionnaire.items_of(module))
+    intro = f'<p class="lead">{escape(module.intro.in_language(language))}</p>' if module.intro else ""
+    title = escape(module.title.in_language(language))
+    numeral = "一二三四五六七八九十"[number - 1] if language == "zh" and number <= 10 else str(number)
+    return f"""<section class="module" aria-labelledby="module-{module.id}">
+<h2 id="module-{module.id}"><span class="numeral" aria-hidden="true">{numeral}</span>{title}</h2>
+{intro}{items}{_suggestion(module, language)}</section>
+"""
+
+
+def _suggestion(module: Module, language: Language) -> str:
+    if module.suggestion is None:
+        return ""
+    name = f"suggestion-{module.id}"
+    return f"""<div class="suggestion"><label for="{name}">{escape(module.suggestion.in_language(language))}</label>
+<textarea id="{name}" data-module="{module.id}" rows="3" maxlength="{TEXT_LIMIT}"></textarea></div>
+"""
+
+
+def _item(questionnaire: Questionnaire, item: Item, language: Language) -> str:
+    anchors = questionnaire.scale.anchors
+    points = "".join(
+        _point(item, str(point), str(point), anchor, language) for point, anchor in enumerate(anchors, 1)
+    )
+    first, last = escape(anchors[0].in_language(language)), escape(anchors[-1].in_language(language))
+    points += (
+        f'<p class="ends" aria-hidden="true"><span>1 {first}</span><span>{len(anchors)} {last}</span></p>'
+    )
+    unseen = questionnaire.scale.not_seen
+    if unseen:
+        points += _point(item, "null", "–", unseen, language)
+    hint, described = "", ""
+    if item.hint:
+        hint = f'<span class="hint" id="hint-{item.id}">{escape(item.hint.in_language(language))}</span>'
+        described = f' aria-describedby="hint-{item.id}"'
+    label = escape(item.label.in_language(language))
+    return f"""<div class="item" id="item-{item.id}" data-item="{item.id}">
+<div class="asked"><span class="label" id="label-{item.id}">{label}</span>{hint}</div>
+<div class="answer"><div class="scale of-{len(anchors)}" role="radiogroup" aria-labelledby="label-{item.id}"{described}>
+{points}</div>
+<p class="wrong" id="wrong-{item.id}" hidden>{escape(words(language)["choose"])}</p></div></div>
+"""
+
+
+def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) -> str:
+    kind = "point unseen" if value == "null" else "point"
+    return (
+        f'<label class="{kind}"><input type="radio" name="{item.id}" value="{value}">'
+        f'<span class="cell"><b>{mark}</b> <i>{escape(anchor.in_language(language))}</i></span></label>'
+    )
+
+
+def _consent(questionnaire: Questionnaire, language: Language) -> str:
+    say = words(language)
+    return f"""<section class="module consent" id="consent-box"><h2>{escape(say["consent_title"])}</h2>
+<label class="check"><input type="checkbox" id="consent" aria-describedby="wrong-consent">
+<span>{escape(questionnaire.consent.in_language(language))}</span></label>
+<p class="wrong" id="wrong-consent" hidden>{escape(say["consent_missing"])}</p></section>
+"""
+
+
+def _thanks(say: dict[str, str]) -> str:
+    return f"""<section id="thanks" class="thanks" hidden>
+<h2 tabindex="-1" id="thanks-title">{escape(say["thanks"])}</h2>
+<p id="thanks-note" class="notice quiet" hidden></p><p>{escape(say["thanks_text"])}</p>
+<p class="code"><span class="small">{escape(say["code"])}</span><output id="code"></output>
+<button type="button" id="copy" class="plain">{escape(say["copy"])}</button></p>
+<p><button type="button" id="again" class="plain">{escape(say["again"])}</button></p></section>
+"""
+
+
+def _withdraw(say: dict[str, str]) -> str:
+    return f"""<details class="withdraw"><summary>{escape(say["withdraw"])}</summary>
+<form id="withdraw"><label for="withdraw-code">{escape(say["withdraw_text"])}</label>
+<div class="row"><input id="withdraw-code" autocomplete="off" spellcheck="false" required
+ placeholder="00000000-0000-0000-0000-000000000000">
+<button type="submit" class="plain">{escape(say["withdraw_send"])}</button></div>
+<p id="withdraw-state" role="status"></p></form></details>
+"""
+
+
+def _settings(questionnaire: Questionnaire, language: Language, exhibit: str | None) -> str:
+    settings = {
+        "id": questionnaire.id,
+        "version": questionnaire.version,
+        "language": language,
+        "exhibit": exhibit,
+        "submissions": f"../api/v1/questionnaires/{questionnaire.id}/submissions",
+        "required": [item.id for item in questionnaire.items if item.required],
+        "words": words(language),
+    }
+    # "<" would end the script element from inside a string.
+    return json.dumps(settings, ensure_ascii=False).replace("<", "\\u003c")

@@ -1,0 +1,69 @@
+"""Routes of the form page. They are relative to each other, so a prefix in front of them changes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Query, Request
+from fastapi.responses import HTMLResponse, Response
+
+from survey.form.page import ASSETS, FOLDER, form_page, list_page, missing_page
+from survey.questionnaire import LANGUAGES, Language, Questionnaire
+from survey.slug import is_slug
+
+__all__ = ["form_router"]
+
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
+    "form-action 'self'; base-uri 'none'; frame-ancestors 'self'"
+)
+_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "Cache-Control": "no-cache",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+Wanted = Annotated[str | None, Query(alias="lang", description="zh or en; else what the browser prefers")]
+Preferred = Annotated[str, Header(alias="accept-language")]
+
+
+def form_router(questionnaires: Mapping[str, Questionnaire]) -> APIRouter:
+    """GET /questionnaires, /questionnaires/{id} and the script and style they use."""
+    routes = APIRouter(include_in_schema=False)
+
+    @routes.get("/questionnaires")
+    def listed(lang: Wanted = None, preferred: Preferred = "") -> Response:
+        return HTMLResponse(
+            list_page(list(questionnaires.values()), _language(lang, preferred)), headers=_HEADERS
+        )
+
+    @routes.get("/questionnaires/{key}")
+    def form(request: Request, key: str, lang: Wanted = None, preferred: Preferred = "") -> Response:
+        language, questionnaire = _language(lang, preferred), questionnaires.get(key)
+        if questionnaire is None:
+            return HTMLResponse(missing_page(language), 404, _HEADERS)
+        exhibit = request.query_params.get("exhibit")
+        # A mistyped exhibit must not keep a visitor from answering; the answer then stands without it.
+        known = exhibit if exhibit is not None and is_slug(exhibit) else None
+        return HTMLResponse(form_page(questionnaire, language, known), headers=_HEADERS)
+
+    @routes.get("/survey-static/{name}")
+    def static(name: str) -> Response:
+        if name not in ASSETS:
+            return Response(status_code=404)
+        headers = {"Cache-Control": "max-age=31536000, immutable", "X-Content-Type-Options": "nosniff"}
+        return Response((FOLDER / name).read_bytes(), headers=headers, media_type=ASSETS[name])
+
+    return routes
+
+
+def _language(wanted: str | None, preferred: str) -> Language:
+    """The language asked for, else the first of the browser's that we have, else Chinese."""
+    offers = [wanted or "", *(part.split(";")[0] for part in preferred.split(","))]
+    for offer in offers:
+        for language in LANGUAGES:
+            if offer.strip().lower().split("-")[0] == language:
+                return language
+    return "zh"

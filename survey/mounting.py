@@ -1,0 +1,76 @@
+"""Putting the survey into a web application: its own or the hall's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from survey.content import QuestionnaireFolder
+from survey.errors import Problem, QuestionnaireError
+from survey.store import Store
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+__all__ = ["Mounted", "mount"]
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """What was mounted. `questionnaires` reloads its files; whoever stops the app calls close()."""
+
+    store: Store
+    questionnaires: QuestionnaireFolder
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong with the questionnaires now: faulty files, versions changed after their first answer."""
+        return (*self.questionnaires.problems, *_changed(self.store, self.questionnaires))
+
+    def close(self) -> None:
+        self.store.close()
+
+
+def mount(
+    app: FastAPI,
+    *,
+    content: Path,
+    data: Path | str,
+    problems: list[Problem] | None = None,
+) -> Mounted:
+    """Add the API (/api/v1/…) and the form page (/questionnaires/…) to an app.
+
+    content: folder that holds questionnaires/*.toml. data: data folder, or a database URL.
+    problems: where to report what is wrong; the good questionnaires are served then. Without it, the first
+    problem raises QuestionnaireError naming file and key. Raises StoreError when the store cannot be opened.
+    """
+    from survey.api import router
+    from survey.form import form_router
+
+    questionnaires = QuestionnaireFolder(content)
+    if problems is None and questionnaires.problems:
+        raise QuestionnaireError(questionnaires.problems)
+    mounted = Mounted(Store(data), questionnaires)
+    found = mounted.problems
+    if problems is not None:
+        problems.extend(found)
+    elif found:
+        mounted.close()
+        raise QuestionnaireError(found)
+    app.include_router(router(mounted.store, questionnaires))
+    app.include_router(form_router(questionnaires))
+    return mounted
+
+
+def _changed(store: Store, questionnaires: QuestionnaireFolder) -> tuple[Problem, ...]:
+    return tuple(
+        Problem(
+            f"{questionnaires.folder.name}/{found.id}.toml",
+            "version",
+            f"version {found.version} was changed after its first answer",
+            f"write version = {found.version + 1}, or take the change back",
+        )
+        for found in list(questionnaires.values())
+        if store.changed(found)
+    )

@@ -1,0 +1,162 @@
+"""A questionnaire as its TOML file states it: two languages, modules of items, anchors of the scale, consent."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cached_property
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+from survey.slug import COLUMN_KEY, SLUG
+
+__all__ = [
+    "LANGUAGES",
+    "META_COLUMNS",
+    "Item",
+    "Language",
+    "Module",
+    "Questionnaire",
+    "Text",
+    "suggestion_column",
+]
+
+Language = Literal["zh", "en"]
+LANGUAGES: tuple[Language, ...] = ("zh", "en")
+
+# Columns of an export beside the items; an item of that name would hide one.
+META_COLUMNS = ("submission", "version", "language", "exhibit", "received")
+
+
+def suggestion_column(module: str) -> str:
+    """Name of the export column that holds a module's suggestions."""
+    return f"suggestion_{module}"
+
+
+Words = Annotated[
+    str, StringConstraints(strip_whitespace=True, min_length=1, max_length=4000, pattern=r"^[^\x00]*$")
+]
+Key = Annotated[str, StringConstraints(pattern=f"^{COLUMN_KEY}$")]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class Text(_Part):
+    """The same words in both languages."""
+
+    zh: Words
+    en: Words
+
+    def in_language(self, language: Language) -> str:
+        return self.zh if language == "zh" else self.en
+
+
+class Scale(_Part):
+    """What the points 1, 2, … mean, lowest first, and the words for an item the visitor did not see."""
+
+    anchors: Annotated[list[Text], Field(min_length=3, max_length=7)]
+    not_seen: Text | None = None
+
+
+class Dimension(_Part):
+    """A side from which every module is judged; with dimensions, a module's items are made from them."""
+
+    id: Key
+    label: Text
+    hint: Text | None = None
+
+
+class Item(_Part):
+    """One question. `tags` mark groups that an analysis may drop together, such as "static"."""
+
+    id: Key
+    label: Text
+    hint: Text | None = None
+    tags: list[Key] = []
+    required: bool = True
+    dimension: Key | None = None
+
+
+class Module(_Part):
+    """Items that stand together, with one free field for suggestions."""
+
+    id: Key
+    title: Text
+    intro: Text | None = None
+    suggestion: Text | None = None
+    items: list[Item] = Field(default=[], alias="item")
+
+
+class Questionnaire(_Part):
+    """A questionnaire in one version. Anchors and consent belong to the version, so they are stored with it."""
+
+    id: Annotated[str, StringConstraints(pattern=f"^{SLUG}$")]
+    version: Annotated[int, Field(ge=1, le=10_000)]
+    title: Text
+    intro: Text
+    consent: Text
+    scale: Scale
+    dimensions: list[Dimension] = Field(default=[], alias="dimension")
+    modules: Annotated[list[Module], Field(min_length=1, alias="module")]
+
+    @model_validator(mode="after")
+    def _keys_are_unique(self) -> Self:
+        if self.dimensions and any(module.items for module in self.modules):
+            raise ValueError("a questionnaire has either [[dimension]] or [[module.item]], not both")
+        for what, keys in (
+            ("module", [module.id for module in self.modules]),
+            ("dimension", [dimension.id for dimension in self.dimensions]),
+            ("item", list(self.item_ids)),
+        ):
+            twice = sorted({key for key in keys if keys.count(key) > 1})
+            if twice:
+                raise ValueError(f"{what} id {twice[0]!r} stands twice; every id must be its own")
+        for module in self.modules:
+            if not self.dimensions and not module.items:
+                raise ValueError(f"module {module.id!r} has no items; add [[module.item]] or a [[dimension]]")
+        taken = {*META_COLUMNS, *(suggestion_column(module.id) for module in self.modules)} & set(
+            self.item_ids
+        )
+        if taken:
+            raise ValueError(f"item id {min(taken)!r} is a column of the export; choose another")
+        return self
+
+    def items_of(self, module: Module) -> tuple[Item, ...]:
+        """The module's own items, or one for each dimension."""
+        if not self.dimensions:
+            return tuple(module.items)
+        return tuple(
+            Item(id=f"{module.id}_{side.id}", label=side.label, hint=side.hint, dimension=side.id)
+            for side in self.dimensions
+        )
+
+    @cached_property
+    def items(self) -> tuple[Item, ...]:
+        """All items in the order in which they are asked."""
+        return tuple(item for module in self.modules for item in self.items_of(module))
+
+    @property
+    def item_ids(self) -> tuple[str, ...]:
+        return tuple(item.id for item in self.items)
+
+    @property
+    def points(self) -> int:
+        """The highest point of the scale; the lowest is 1."""
+        return len(self.scale.anchors)
+
+    def tagged(self, tag: str) -> tuple[str, ...]:
+        """Ids of the items that carry a tag."""
+        return tuple(item.id for item in self.items if tag in item.tags)
+
+    def document(self) -> dict[str, object]:
+        """The version as plain data with the keys of its file, as the store freezes it."""
+        return self.model_dump(mode="json", by_alias=True)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of the document, hexadecimal: two versions are the same when it is."""
+        text = json.dumps(self.document(), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()

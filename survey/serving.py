@@ -1,0 +1,57 @@
+"""The survey as a service of its own, without the hall."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from survey.errors import Problem, SurveyError
+from survey.mounting import Mounted, mount
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+__all__ = ["serve", "survey_app"]
+
+
+def survey_app(content: Path, data: Path | str) -> tuple[FastAPI, Mounted, list[Problem]]:
+    """An app with the API, the form pages and nothing else; the problems of left-out questionnaires."""
+    from fastapi import FastAPI
+    from fastapi.responses import RedirectResponse
+
+    @asynccontextmanager
+    async def life(_app: FastAPI) -> AsyncIterator[None]:
+        yield
+        mounted.close()
+
+    # The interactive documentation loads its script from elsewhere, so only the document itself is offered.
+    app = FastAPI(
+        title="Survey", lifespan=life, docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json"
+    )
+    problems: list[Problem] = []
+    mounted = mount(app, content=content, data=data, problems=problems)
+
+    @app.get("/", include_in_schema=False)
+    def home() -> RedirectResponse:
+        return RedirectResponse("questionnaires")
+
+    return app, mounted, problems
+
+
+def serve(app: FastAPI, host: str, port: int) -> None:
+    """Serve until interrupted. Raises SurveyError when the port is taken."""
+    import uvicorn
+
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((host, port))
+        except OSError as error:
+            raise SurveyError(
+                f"{host}:{port}: cannot listen ({error.strerror}) – choose another --port"
+            ) from None
+    # No access log: it would keep the visitors' addresses, which we promise not to.
+    uvicorn.run(app, host=host, port=port, log_level="warning", access_log=False)

@@ -1,0 +1,127 @@
+"""The tables, and how the database is opened."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sqlalchemy import (
+    JSON,
+    Column,
+    DateTime,
+    Engine,
+    ForeignKey,
+    Index,
+    Integer,
+    MetaData,
+    String,
+    Table,
+    Text,
+    create_engine,
+    event,
+)
+from sqlalchemy.engine import make_url
+from sqlalchemy.exc import ArgumentError, NoSuchModuleError
+
+from survey.errors import StoreError
+
+__all__ = ["SQLITE_FILE", "answer", "metadata", "open_engine", "submission", "suggestion", "token", "version"]
+
+SQLITE_FILE = "survey.sqlite"
+BUSY_SECONDS = 15.0
+
+metadata = MetaData()
+
+# A version is frozen with its first answer: what was asked can always be read beside what was answered.
+version = Table(
+    "version",
+    metadata,
+    Column("questionnaire", String(64), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("digest", String(64), nullable=False),
+    Column("document", JSON, nullable=False),
+)
+
+# No address, no browser: the row knows only what the visitor chose to send. A withdrawn one stays as a
+# tombstone without answers, so that a late replay cannot bring it back.
+submission = Table(
+    "submission",
+    metadata,
+    Column("id", String(36), primary_key=True),
+    Column("questionnaire", String(64), nullable=False),
+    Column("version", Integer, nullable=False),
+    Column("language", String(2), nullable=False),
+    Column("exhibit", String(64)),
+    Column("digest", String(64), nullable=False),
+    Column("received", DateTime(timezone=True), nullable=False),
+    Column("withdrawn", DateTime(timezone=True)),
+)
+Index("submission_by_questionnaire", submission.c.questionnaire, submission.c.version)
+
+answer = Table(
+    "answer",
+    metadata,
+    Column("submission", ForeignKey("submission.id"), primary_key=True),
+    Column("item", String(64), primary_key=True),
+    Column("score", Integer),  # null: not seen
+)
+
+suggestion = Table(
+    "suggestion",
+    metadata,
+    Column("submission", ForeignKey("submission.id"), primary_key=True),
+    Column("module", String(64), primary_key=True),
+    Column("text", Text, nullable=False),
+)
+
+token = Table(
+    "token",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("label", String(200), nullable=False),
+    Column("digest", String(64), nullable=False, unique=True),
+    Column("made", DateTime(timezone=True), nullable=False),
+)
+
+
+def open_engine(where: Path | str) -> Engine:
+    """Open the database: a data folder (SQLite file inside it, made when absent) or a database URL.
+
+    Raises StoreError when the folder cannot be made or the URL is none.
+    """
+    if isinstance(where, Path):
+        try:
+            where.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(f"{where}: no data folder ({error.strerror}) – give a writable one") from None
+        url = make_url("sqlite://").set(database=str(where / SQLITE_FILE))
+    else:
+        try:
+            url = make_url(where)
+        except ArgumentError:
+            raise StoreError(
+                "the database URL is none – write sqlite:///FILE or postgresql+psycopg://…"
+            ) from None
+    if url.get_backend_name() != "sqlite":
+        try:
+            return create_engine(url, pool_size=8, max_overflow=40, pool_pre_ping=True)
+        except (NoSuchModuleError, ModuleNotFoundError) as error:
+            raise StoreError(f"{url.get_backend_name()}: no driver ({error}) – pip install it") from None
+    # Threads of the web server share the pool, so a connection may move from one to another.
+    engine = create_engine(
+        url,
+        pool_size=8,
+        max_overflow=40,
+        connect_args={"timeout": BUSY_SECONDS, "check_same_thread": False},
+    )
+    event.listen(engine, "connect", _prepare_sqlite)
+    return engine
+
+
+def _prepare_sqlite(connection, _record) -> None:
+    cursor = connection.cursor()
+    cursor.execute(f"PRAGMA busy_timeout={int(BUSY_SECONDS * 1000)}")
+    cursor.execute("PRAGMA journal_mode=WAL")
+    # NORMAL may lose the last commits when the power fails; an acknowledged answer must not be lost.
+    cursor.execute("PRAGMA synchronous=FULL")
+    cursor.execute("PRAGMA foreign_keys=ON")
+    cursor.close()

@@ -1,0 +1,60 @@
+"""Chromium for tests and benches: Debian's, or Playwright's own."""
+
+import contextlib
+import shutil
+from collections.abc import Iterator
+
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+PATIENCE = 120_000  # [ms]
+
+
+class NoBrowserError(RuntimeError):
+    """There is no Chromium on this machine."""
+
+
+@contextlib.contextmanager
+def open_browser() -> Iterator:
+    """Playwright's browser object. Raises NoBrowserError, saying what to install."""
+    try:
+        from playwright.sync_api import Error, sync_playwright
+    except ImportError as error:
+        raise NoBrowserError("playwright is missing – pip install '.[test]'") from error
+    path = next((found for name in ("chromium", "chromium-browser") if (found := shutil.which(name))), None)
+    with sync_playwright() as playwright:
+        try:
+            browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        except Error as error:
+            raise NoBrowserError(f"no Chromium – apt-get install chromium ({error.message.splitlines()[0]})") from error
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+def enter(page, url: str) -> None:
+    """Open the hall at `url` and go in."""
+    page.goto(url)
+    page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=PATIENCE)
+    page.click("[data-testid=enter]")
+    page.locator("[data-testid=enter-screen]").wait_for(state="detached", timeout=PATIENCE)
+
+
+def pose(page) -> dict:
+    """The visitor's pose as the page has it: x, z, eye [m], yaw, pitch [rad]."""
+    return page.evaluate("() => hall.pose()")
+
+
+def displayed(page) -> list[float]:
+    """Where the picture is really seen from [m]."""
+    return page.evaluate("() => hall.displayed()")

@@ -1,0 +1,155 @@
+"""Walking as it is seen: on plain boxes, with and without latency, in both modes."""
+
+import math
+import statistics
+
+import pytest
+from bench.browser import displayed, enter, pose
+from bench.delay import delayed
+from bench.track import latencies, place, solids_of_scene, walk, watch
+from plain_hall import write_plain_hall
+from running_hall import running_hall
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+
+VIEW = {"width": 480, "height": 270}
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.08], ids=["0ms", "80ms"])
+def visit(request, plain_hall, chromium):
+    """A visitor in the plain hall, with added round trip."""
+    with delayed(plain_hall.port, request.param) as port:
+        page = chromium.new_page(viewport=VIEW)
+        watch(page)
+        enter(page, f"http://127.0.0.1:{port}/?lang=en")
+        page.scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
+        yield page
+        page.close()
+
+
+def test_wall_holds(visit):
+    place(visit, 0.5, 2.0, 0.0)
+    track = walk(visit, hold=3.0)
+    assert track.intrusion(solids_of_scene(visit.scene), 0.30) == 0.0
+    assert track.trembling() <= 1e-4
+    assert track.apart() <= 0.010
+    assert track.shown[-1, 1] == pytest.approx(0.025 + 0.30 + 0.010, abs=0.002)
+
+
+def test_convex_corner_is_rounded(visit):
+    # Towards the corner (4, 1) of the block, obliquely: along its front, round the corner and on.
+    yaw = math.radians(35)
+    place(visit, 4.9, 2.0, yaw)
+    track = walk(visit, hold=3.0)
+    assert track.intrusion(solids_of_scene(visit.scene), 0.30) == 0.0
+    assert track.backward((-math.sin(yaw), -math.cos(yaw))) <= 1e-4
+    assert track.disagreement <= 0.010
+    assert track.apart() <= 0.010
+    assert track.shown[-1, 1] < 0.9  # round the corner, not stuck before it
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.12], ids=["head-on", "aside"])
+def test_round_stand(visit, aside):
+    place(visit, -5.0 + aside, 2.5, 0.0)
+    track = walk(visit, hold=3.0)
+    assert track.intrusion(solids_of_scene(visit.scene), 0.30) == 0.0
+    assert track.backward((0.0, -1.0)) <= 1e-4
+    assert track.disagreement <= 0.010
+    assert track.apart() <= 0.010
+    if aside == 0.0:
+        assert track.trembling() <= 1e-4
+
+
+def test_key_to_camera(visit):
+    place(visit, 0.0, 5.0, 0.0)
+    found = latencies(visit)
+    assert len(found) >= 10
+    assert statistics.median(found) <= 50
+
+
+@pytest.mark.parametrize(
+    ("key", "direction"),
+    [
+        ("KeyW", (0, -1)),
+        ("ArrowUp", (0, -1)),
+        ("KeyS", (0, 1)),
+        ("ArrowDown", (0, 1)),
+        ("KeyA", (-1, 0)),
+        ("ArrowLeft", (-1, 0)),
+        ("KeyD", (1, 0)),
+        ("ArrowRight", (1, 0)),
+    ],
+)
+def test_eight_keys(visit, key, direction):
+    place(visit, 0.0, 3.0, 0.0)
+    x, height, z = displayed(visit)
+    track = walk(visit, hold=0.6, keys=(key,))
+    dx, dz = track.shown[-1] - (x, z)
+    away = math.hypot(dx, dz)
+    assert 0.4 < away < 1.5
+    assert (dx / away, dz / away) == pytest.approx(direction, abs=0.01)
+    assert displayed(visit)[1] == pytest.approx(height, abs=1e-6)
+
+
+def test_looking_and_eye_height(visit):
+    place(visit, -2.0, 4.0, 0.0)
+    before = pose(visit)
+    mouse = visit.mouse
+    mouse.move(240, 120)
+    mouse.down()
+    mouse.move(180, 120, steps=5)
+    mouse.up()
+    turned = pose(visit)
+    assert turned["yaw"] > before["yaw"] + 0.1  # dragging to the left looks to the left
+    assert (turned["x"], turned["z"]) == (before["x"], before["z"])
+    for _ in range(40):  # all the way round
+        mouse.move(440, 120)
+        mouse.down()
+        mouse.move(40, 120, steps=2)
+        mouse.up()
+        if pose(visit)["yaw"] > turned["yaw"] + 2 * math.pi:
+            break
+    assert pose(visit)["yaw"] > turned["yaw"] + 2 * math.pi
+    mouse.move(240, 150)
+    mouse.down(button="middle")
+    mouse.move(240, 70, steps=5)
+    mouse.up(button="middle")
+    raised = pose(visit)
+    assert raised["eye"] > before["eye"] + 0.2
+    visit.wait_for_timeout(200)
+    assert displayed(visit)[1] == pytest.approx(raised["eye"], abs=1e-3)
+
+
+def test_minimap_goes_there(visit):
+    plan = visit.locator("[data-testid=minimap-plan]")
+    if not plan.is_visible():  # folded on small pages
+        visit.click("[data-testid=minimap-toggle]")
+    box = plan.bounding_box()
+    visit.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.8)
+    visit.wait_for_timeout(500)
+    where = pose(visit)
+    assert where["x"] < -2
+    assert where["z"] > 2
+
+
+@pytest.mark.parametrize("why", ["forced", "no-hooks", "no-grid"])
+def test_server_walks(why, chromium, tmp_path, plain_hall):
+    """Mode (b): forced, without page hooks, and without the grid."""
+    options = ("--walk", "server") if why == "forced" else ()
+    with running_hall(write_plain_hall(tmp_path / "content"), tmp_path / "work", *options) as hall:
+        page = chromium.new_page(viewport=VIEW)
+        watch(page)
+        if why == "no-grid":
+            page.route("**/grid.bin*", lambda route: route.abort())
+        enter(page, f"{hall.url}/?lang=en" + ("&withoutHooks=1" if why == "no-hooks" else ""))
+        assert page.evaluate("() => hall.mode()") == "server"
+        assert page.evaluate("() => hall.display()") == ("viser" if why == "no-hooks" else "page")
+        page.wait_for_timeout(1000)
+        start = pose(page)
+        scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
+        track = walk(page, hold=3.5, settle=1.0)
+        assert track.intrusion(solids_of_scene(scene), 0.30) <= (1e-6 if why == "no-hooks" else 0.0)
+        end = displayed(page)
+        assert end[2] < start["z"] - 2
+        assert end[2] == pytest.approx(0.335, abs=0.01)
+        page.close()

@@ -1,0 +1,93 @@
+"""A small, good content folder for tests, and ways to spoil it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import trimesh
+from PIL import Image
+
+HALL = """
+title = { zh = "厅", en = "Hall" }
+subtitle = { zh = "试", en = "For tests" }
+licence = "CC0-1.0"
+[start]
+x = 0.0
+z = 3.0
+"""
+PLAN = """
+outline = [[-5, -5], [5, -5], [5, 5], [-5, 5]]
+[[wall]]
+from = [-5, -3]
+to = [1, -3]
+[[solid]]
+id = "booth"
+kind = "booth"
+size = [2, 1]
+at = [-3, 0]
+facing = 90
+height = 0.2
+[[solid]]
+id = "post"
+kind = "column"
+round = { x = 3, z = 0, radius = 0.3 }
+height = 3
+[[bay]]
+id = "all"
+name = { zh = "全", en = "All" }
+polygon = [[-5, -5], [5, -5], [5, 5], [-5, 5]]
+"""
+EXHIBIT = """
+title = { zh = "箱", en = "Chest" }
+behaviours = ["open_on_click", "glow_when_near"]
+licence = "CC0-1.0"
+[place]
+x = 0.0
+z = -1.0
+[models]
+hall = "media/chest.glb"
+[body]
+shape = "round"
+radius = 0.4
+[[media]]
+kind = "picture"
+file = "media/front.jpg"
+alt = { zh = "正面", en = "The front" }
+"""
+
+
+def make_house(folder: Path) -> Path:
+    """Write a content folder without a problem: one hall, one plan, one exhibit "chest"."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "hall.toml").write_text(HALL, "utf-8")
+    (folder / "plan.toml").write_text(PLAN, "utf-8")
+    add_exhibit(folder, "chest")
+    return folder
+
+
+def add_exhibit(folder: Path, identity: str, toml: str = EXHIBIT) -> Path:
+    """Add an exhibit with a box for a model; returns its folder."""
+    home = folder / "exhibits" / identity
+    (home / "media").mkdir(parents=True)
+    (home / "exhibit.toml").write_text(toml, "utf-8")
+    (home / "text.zh.md").write_text("一只箱子。", "utf-8")
+    (home / "text.en.md").write_text("A chest.", "utf-8")
+    write_box(home / "media/chest.glb")
+    Image.new("RGB", (8, 8), "#7a4b2e").save(home / "media/front.jpg")
+    return home
+
+
+def write_box(path: Path, *, height: float = 0.8, scale: float = 1.0, foot: float = 0.0) -> None:
+    """A box 0.5 x height x 0.5 m with its foot at y = `foot`, all times `scale`."""
+    box = trimesh.creation.box((0.5 * scale, height * scale, 0.5 * scale))
+    box.apply_translation([0, (foot + height / 2) * scale, 0])
+    data = trimesh.Scene(box).export(file_type="glb")
+    assert isinstance(data, bytes)
+    path.write_bytes(data)
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    """Replace `old`, which must be there, in a text file."""
+    text = path.read_text("utf-8")
+    assert old in text, f"{old!r} is not in {path.name}"
+    path.write_text(text.replace(old, new), "utf-8")

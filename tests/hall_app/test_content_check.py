@@ -1,0 +1,279 @@
+"""`hall check`: what loading cannot see, and the command around it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from content_house import EXHIBIT, add_exhibit, edit, make_house, write_box
+
+from hall_app.content import load
+from hall_app.content.check import check
+from hall_app.content.command import add_parser
+from hall_app.content.glb import GlbError, read_glb
+
+ASSETS = Path(__file__).parents[2] / "assets"
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    return make_house(tmp_path / "assets")
+
+
+def lines(folder: Path) -> list[str]:
+    return [str(problem) for problem in check(folder)]
+
+
+def test_good_folder(house: Path):
+    assert lines(house) == []
+
+
+def toml(house: Path) -> Path:
+    return house / "exhibits/chest/exhibit.toml"
+
+
+def rewritten(house: Path, change: Callable[[dict], None]) -> None:
+    """Rewrite the chest's GLB with a changed JSON part."""
+    path = house / "exhibits/chest/media/chest.glb"
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    document = json.loads(data[20 : 20 + size])
+    change(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + size :]
+    head = struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    path.write_bytes(head + text + rest)
+
+
+def close_the_back(house: Path) -> None:
+    """A wall right across: what stands behind it cannot be reached."""
+    edit(house / "plan.toml", "to = [1, -3]", "to = [5, -3]")
+    edit(toml(house), "z = -1.0", "z = -4.2")
+
+
+CASES: dict[str, tuple[Callable[[Path], object], str, str, str]] = {
+    "behind a wall": (
+        close_the_back,
+        "exhibits/chest/exhibit.toml: place: ",
+        "cannot be reached on foot",
+        "open a way",
+    ),
+    "face to the wall": (
+        lambda house: edit(toml(house), "x = 0.0\nz = -1.0", "x = -2.0\nz = -2.45\nfacing = 180"),
+        "exhibits/chest/exhibit.toml: place.facing: ",
+        "reached only from behind",
+        "turn its front",
+    ),
+    "picture without words": (
+        lambda house: edit(toml(house), 'alt = { zh = "正面", en = "The front" }', ""),
+        "exhibits/chest/exhibit.toml: media[1].alt: ",
+        "no description",
+        "add alt =",
+    ),
+    "audio without transcript": (
+        lambda house: edit(toml(house), 'kind = "picture"', 'kind = "audio"'),
+        "exhibits/chest/exhibit.toml: media[1].transcript: ",
+        "no transcript",
+        "add transcript =",
+    ),
+    "video without words": (
+        lambda house: edit(
+            toml(house),
+            'kind = "picture"\nfile = "media/front.jpg"\nalt',
+            'kind = "video"\nfile = "media/front.jpg"\ncaption',
+        ),
+        "exhibits/chest/exhibit.toml: media[1].alt: ",
+        "neither description nor transcript",
+        "add alt =",
+    ),
+    "in centimetres": (
+        lambda house: write_box(house / "exhibits/chest/media/chest.glb", scale=100),
+        "exhibits/chest/exhibit.toml: models.hall: ",
+        "80 m high, expected 0.3 to 3 m",
+        "in metres",
+    ),
+    "too small": (
+        lambda house: write_box(house / "exhibits/chest/media/chest.glb", height=0.1),
+        "exhibits/chest/exhibit.toml: models.hall: ",
+        "0.1 m high",
+        "size_range",
+    ),
+    "floating": (
+        lambda house: write_box(house / "exhibits/chest/media/chest.glb", foot=0.5),
+        "exhibits/chest/exhibit.toml: models.hall: ",
+        "lowest point is at y = 0.50 m",
+        "foot at y = 0",
+    ),
+    "unused file": (
+        lambda house: (house / "exhibits/chest/media/old.jpg").write_bytes(b"x"),
+        "exhibits/chest/media/old.jpg: ",
+        "not used",
+        "name it in exhibit.toml, or remove it",
+    ),
+    "script in a text": (
+        lambda house: (house / "exhibits/chest/text.en.md").write_text("A <script>alert(1)</script> chest."),
+        "exhibits/chest/text.en.md: ",
+        "HTML is not read, <script> is shown as letters",
+        "use Markdown",
+    ),
+    "foreign picture in a text": (
+        lambda house: (house / "exhibits/chest/text.en.md").write_text("![x](https://example.org/x.jpg)"),
+        "exhibits/chest/text.en.md: ",
+        "https://example.org/x.jpg is not in the exhibit's folder",
+        "copy it to media/",
+    ),
+    "too large a file": (
+        lambda house: (house / "big.bin").write_bytes(bytes(10_000_001)),
+        "big.bin: ",
+        "10.0 MB, at most 10 MB",
+        "make it smaller",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_fault_has_its_own_line(house: Path, case: str):
+    spoil, where, what, fix = CASES[case]
+    spoil(house)
+    found = lines(house)
+    assert len(found) == 1, found
+    assert found[0].startswith(where)
+    assert what in found[0]
+    assert fix in found[0].partition(" – ")[2]
+
+
+def test_too_large_a_folder(house: Path):
+    for number in range(5):
+        (house / f"{number}.bin").write_bytes(bytes(8_500_000))
+    assert lines(house) == [".: the folder has 42.5 MB, at most 40 MB – remove or shrink the largest files"]
+
+
+def test_too_many_triangles(house: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("hall_app.content.checks.budget.TRIANGLES", {"hall": 11, "close": 12})
+    (line,) = lines(house)
+    assert "models.hall: 12 triangles, at most 11 – reduce the mesh" in line
+
+
+@pytest.mark.parametrize(
+    "extension", ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu"]
+)
+def test_compressed_models_are_refused(house: Path, extension: str):
+    rewritten(house, lambda document: document.update(extensionsUsed=[extension]))
+    (line,) = lines(house)
+    assert f"models.hall: chest.glb: uses {extension}" in line
+    assert "export it again without compression" in line
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (lambda d: d["buffers"][0].update(uri="chest.bin"), "refers to another file"),
+        (lambda d: d["meshes"][0]["primitives"][0]["attributes"].pop("POSITION"), "inconsistent"),
+        (lambda d: d.update(nodes=[]), "holds no triangles"),
+        (lambda d: d["accessors"].clear(), "inconsistent"),
+    ],
+)
+def test_inconsistent_models(house: Path, change: Callable[[dict], None], what: str):
+    rewritten(house, change)
+    with pytest.raises(GlbError, match=what):
+        read_glb(house / "exhibits/chest/media/chest.glb")
+    assert len(lines(house)) == 1
+
+
+def test_bounds_follow_the_nodes(house: Path):
+    half_turn = {
+        "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
+        "translation": [1, 0, 0],
+        "scale": [2, 1, 1],
+    }
+
+    def move(document: dict) -> None:
+        shown = next(node for node in document["nodes"] if "mesh" in node)
+        shown.pop("matrix", None)
+        shown.update(half_turn)
+
+    rewritten(house, move)
+    info = read_glb(house / "exhibits/chest/media/chest.glb")
+    assert info.triangles == 12
+    assert info.low == pytest.approx((0.75, 0, -0.5))
+    assert info.high == pytest.approx((1.25, 0.8, 0.5))
+
+
+def test_bodies_that_overlap(house: Path):
+    home = add_exhibit(house, "second")
+    edit(home / "exhibit.toml", "x = 0.0", "x = 0.6")
+    (line,) = lines(house)
+    assert line.startswith("exhibits/chest/exhibit.toml: body: its body overlaps that of exhibit 'second'")
+    assert "move one of them" in line
+
+
+def test_on_a_booth_and_low_things_hide_nothing(house: Path):
+    edit(toml(house), "x = 0.0\nz = -1.0", 'x = -3.0\nz = 0.0\nfacing = 90\non = "booth"')
+    assert lines(house) == []
+
+
+def test_exhibits_are_looked_at_without_a_plan(house: Path):
+    (house / "plan.toml").unlink()
+    edit(toml(house), "licence", "licens")
+    found = lines(house)
+    assert found[0].startswith("plan.toml: missing file")
+    assert any("licens: unknown key – did you mean licence?" in line for line in found)
+
+
+def test_stale_and_missing_bakes(house: Path):
+    for name, source in (("patterns/p.toml", "patterns/pibo.toml"), ("weaves/w.toml", "weaves/gauze.toml")):
+        (house / name).parent.mkdir()
+        (house / name).write_bytes((ASSETS / source).read_bytes())
+    recipe = '[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "scarf_on_stand"'
+    home = add_exhibit(house, "scarf", EXHIBIT.replace('[models]\nhall = "media/chest.glb"', recipe))
+    edit(home / "exhibit.toml", "x = 0.0", "x = 2.0")
+    (home / "media/chest.glb").unlink()
+    assert lines(house) == [
+        "exhibits/scarf/exhibit.toml: garment: has not been baked – run: hall build --exhibit scarf"
+    ]
+    (home / "baked").mkdir()
+    (home / "baked/bake.json").write_text('{"key": "of long ago"}')
+    assert "its bake is stale" in lines(house)[0]
+    edit(house / "patterns/p.toml", "size = [0.4, 2.4]", "size = [0.4, -2.4]")
+    (line,) = lines(house)
+    assert line.startswith("patterns/p.toml: ")
+
+
+def run(*words: str) -> int:
+    parser = argparse.ArgumentParser()
+    add_parser(parser.add_subparsers())
+    arguments = parser.parse_args(["check", *words])
+    return arguments.run(arguments)
+
+
+def test_command(house: Path, capsys: pytest.CaptureFixture[str]):
+    assert run(str(house)) == 0
+    assert capsys.readouterr().out == f"{house.resolve()}: 0 problems\n"
+    edit(toml(house), "licence", "licens")
+    assert run(str(house)) == 1
+    written = capsys.readouterr().out.splitlines()
+    assert len(written) == 3
+    assert written[-1].endswith(": 2 problems")
+
+
+def test_command_json(house: Path, capsys: pytest.CaptureFixture[str]):
+    (house / "hall.toml").unlink()
+    assert run("--json", str(house)) == 1
+    result = json.loads(capsys.readouterr().out)
+    assert result["problems"] == [
+        {"file": "hall.toml", "key": "", "what": "missing file", "fix": "add it (its form: README.md)"}
+    ]
+    assert run(str(house / "nowhere")) == 1
+    assert "no such folder" in capsys.readouterr().out
+
+
+def test_shipped_content_has_no_problem():
+    """The bake of this checkout is judged by the tests of baking: it is not made by every change of the content."""
+    found = [problem for problem in check(ASSETS) if problem.key != "garment"]
+    assert [str(problem) for problem in found] == []
+    assert {"pibo", "mirror"} <= {exhibit.id for exhibit in load(ASSETS).exhibits}

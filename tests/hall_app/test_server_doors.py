@@ -1,0 +1,293 @@
+"""The served hall through its doors: page, API, media, sockets, survey."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+
+import pytest
+from plain_hall import write_plain_hall
+from running_hall import free_port, running_hall
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
+
+def get(url: str, **headers: str):
+    return urllib.request.urlopen(urllib.request.Request(url, headers=headers), timeout=20)
+
+
+def status(url: str, data: bytes | None = None, **headers: str) -> int:
+    try:
+        with urllib.request.urlopen(urllib.request.Request(url, data=data, headers=headers), timeout=20) as answer:
+            return answer.status
+    except urllib.error.HTTPError as error:
+        with error:
+            return error.code
+
+
+def until(test, patience: float = 20.0):
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if value := test():
+            return value
+        time.sleep(0.2)
+    raise AssertionError("did not happen in time")
+
+
+def scene(hall) -> dict:
+    with get(f"{hall.url}/api/scene") as answer:
+        return json.load(answer)
+
+
+@pytest.fixture
+def own_hall(tmp_path):
+    """A plain hall of the test's own, free to be edited."""
+    with running_hall(write_plain_hall(tmp_path / "content"), tmp_path / "work") as hall:
+        yield hall
+
+
+def visitor(hall):
+    """A walking visitor without a picture."""
+    socket = connect(f"ws://127.0.0.1:{hall.port}/walk")
+    socket.send(json.dumps({"t": "hello", "client": None, "display": "page", "able": "predict"}))
+    hello = json.loads(socket.recv(timeout=10))
+    assert hello["t"] == "hi"
+    return socket, hello
+
+
+def pose_after(socket, seq: int) -> dict:
+    """The server's word on input `seq`; other news is passed over."""
+    while True:
+        message = json.loads(socket.recv(timeout=10))
+        if message["t"] == "pose" and message["seq"] >= seq:
+            return message
+
+
+def test_start_says_what_and_where(plain_hall):
+    said = plain_hall.said()
+    assert str(plain_hall.content) in said
+    assert "1 exhibit, 0 problems" in said
+    assert plain_hall.url in said
+
+
+def test_page_is_visers_with_our_head(plain_hall):
+    with get(plain_hall.url) as answer:
+        page = answer.read().decode()
+        policy = answer.headers["Content-Security-Policy"]
+    assert "/static/hall.js" in page
+    assert "/static/hall.css" in page
+    assert "<title>Plain hall</title>" in page
+    assert "'unsafe-eval'" not in policy
+    assert "http:" not in policy
+
+
+def test_nothing_is_fetched_from_elsewhere(plain_hall):
+    with get(plain_hall.url) as answer:
+        head = answer.read().decode().split("</head>")[0]
+    for mark in ('src="http', 'href="http', "//cdn", "googleapis"):
+        assert mark not in head
+
+
+def test_media_answers_ranges(plain_hall):
+    url = plain_hall.url + scene(plain_hall)["exhibits"][0]["thumbnail"]
+    with get(url) as answer:
+        whole = answer.read()
+        assert answer.headers["Content-Type"] == "image/png"
+    with get(url, Range="bytes=10-19") as answer:
+        assert answer.status == 206
+        assert answer.read() == whole[10:20]
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["box/../../hall.toml", "box/%2e%2e/%2e%2e/hall.toml", "hall/hall.toml", "box/exhibit.toml", "nobody/x.png"],
+)
+def test_media_keeps_to_what_is_shown(plain_hall, path):
+    assert status(f"{plain_hall.url}/media/{path}") == 404
+
+
+def test_grid_fits_its_description(plain_hall):
+    grid = scene(plain_hall)["walk"]["grid"]
+    with get(plain_hall.url + grid["url"]) as answer:
+        assert len(answer.read()) == 2 * grid["nx"] * grid["nz"]
+
+
+def test_catalogue_tells_everything_without_script(plain_hall):
+    for lang, words in (("en", "A box, made for <em>tests</em>"), ("zh", "一只方匣，用来测试")):
+        with get(f"{plain_hall.url}/catalogue?lang={lang}") as answer:
+            page = answer.read().decode()
+        assert words in page
+        assert "<script" not in page
+
+
+def test_walking_is_simulated_again(plain_hall):
+    socket, hello = visitor(plain_hall)
+    with socket:
+        at = hello["z"]
+        for number in range(1, 31):
+            socket.send(json.dumps({"t": "in", "in": [[number, 1 / 30, 1, 0, 0.0, 1.6]]}))
+            time.sleep(1 / 30)
+        answer = pose_after(socket, 30)
+        assert at - answer["z"] == pytest.approx(1.6, rel=0.02)
+
+
+def test_speed_hacks_do_not_pay(plain_hall):
+    socket, hello = visitor(plain_hall)
+    with socket:
+        socket.send(json.dumps({"t": "in", "in": [[n, 0.25, -1, 0, 0.0, 1.6] for n in range(1, 60)]}))
+        answer = pose_after(socket, 1)
+        assert abs(answer["z"] - hello["z"]) < 1.6 * 1.5
+
+
+@pytest.mark.parametrize(
+    "nonsense",
+    ["", "null", "[]", '{"t":[]}', '{"t":"in","in":"x"}', '{"t":"in","in":[[1,"a",0,0,0,0]]}', '{"t":"in","in":[[1e999]]}',
+     '{"t":"keys"}', '{"t":"goto","x":null,"z":"NaN"}', '{"t":"open","id":7}', '{"t":"open","id":"../x"}', "{" * 5000],
+)  # fmt: skip
+def test_nonsense_leaves_the_visitor_walking(plain_hall, nonsense):
+    socket, _ = visitor(plain_hall)
+    with socket:
+        socket.send(nonsense)
+        socket.send(json.dumps({"t": "in", "in": [[5, 0.1, 1, 0, 0.0, 1.6]]}))
+        assert pose_after(socket, 5)["seq"] == 5
+
+
+def test_a_message_that_is_too_long_ends_the_visit_alone(plain_hall):
+    socket, _ = visitor(plain_hall)
+    with socket, pytest.raises(ConnectionClosed):
+        socket.send("x" * (65 << 10))
+        socket.recv(timeout=10)
+    assert scene(plain_hall)["exhibits"]
+
+
+@pytest.mark.parametrize("path", ["/walk", "/"])
+def test_strangers_pages_get_no_socket(plain_hall, path):
+    protocols = ["viser-v1.1.1"] if path == "/" else None
+    with pytest.raises(InvalidStatus), connect(
+        f"ws://127.0.0.1:{plain_hall.port}{path}", origin="http://evil.example", subprotocols=protocols
+    ):
+        pass  # pragma: no cover
+
+
+def test_only_this_machine_is_served(plain_hall):
+    with open(f"/proc/{plain_hall.process.pid}/net/tcp", encoding="ascii") as table:
+        rows = [line.split() for line in table.readlines()[1:]]
+    listening = {row[1] for row in rows if row[3] == "0A"}
+    ours = [address for address in listening if int(address.split(":")[1], 16) == plain_hall.port]
+    assert ours
+    assert all(address.startswith("0100007F") for address in ours)
+
+
+def test_edits_show_without_restart_and_bad_ones_do_not(own_hall):
+    text = own_hall.content / "exhibits" / "box" / "text.en.md"
+    text.write_text("Quite another text with <script>alert(1)</script>.", "utf-8")
+
+    def shown():
+        with get(f"{own_hall.url}/api/exhibits/box") as answer:
+            return json.load(answer)["text"]["en"]
+
+    changed = until(lambda: shown() if "another" in shown() else None, 10)
+    assert "<script" not in changed
+    toml = own_hall.content / "exhibits" / "box" / "exhibit.toml"
+    good = toml.read_text("utf-8")
+    toml.write_text(good.replace("caption", "capton"), "utf-8")
+
+    def problems():
+        with get(f"{own_hall.url}/api/problems") as answer:
+            return json.load(answer)
+
+    [problem] = until(problems, 10)
+    assert problem["file"] == "exhibits/box/exhibit.toml"
+    assert problem["key"] == "capton"
+    assert [e["id"] for e in scene(own_hall)["exhibits"]] == ["box"]
+    toml.write_text(good.replace("x = 2.5", "x = -2.5"), "utf-8")
+    until(lambda: scene(own_hall)["exhibits"][0]["x"] == -2.5, 20)
+    assert problems() == []
+
+
+def test_a_moved_exhibit_stands_in_the_way_at_once(own_hall):
+    socket, _ = visitor(own_hall)
+    with socket:
+        toml = own_hall.content / "exhibits" / "box" / "exhibit.toml"
+        toml.write_text(toml.read_text("utf-8").replace("x = 2.5, z = 3.0", "x = 0.0, z = 2.5"), "utf-8")
+        before = scene(own_hall)["revision"]
+        until(lambda: scene(own_hall)["revision"] != before, 20)
+        for number in range(1, 60):
+            socket.send(json.dumps({"t": "in", "in": [[number, 1 / 30, 1, 0, 0.0, 1.6]]}))
+            time.sleep(1 / 30)
+        assert pose_after(socket, 59)["z"] >= 2.5 + 0.4 + 0.3 - 1e-6
+
+
+def test_survey_is_there(plain_hall):
+    assert status(f"{plain_hall.url}/api/v1/healthz") == 200
+    assert status(f"{plain_hall.url}/questionnaires/garment?lang=en") == 200
+    url = f"{plain_hall.url}/api/v1/questionnaires/garment/submissions"
+    assert status(url, b"x" * (1 << 20 | 1), **{"Content-Type": "application/json"}) == 413
+    assert status(f"{plain_hall.url}/api/scene") == 200
+
+
+@pytest.mark.parametrize("missing", ["hall.toml", "plan.toml"])
+def test_no_hall_or_no_plan_is_said_by_name(tmp_path, missing):
+    content = write_plain_hall(tmp_path / "content")
+    (content / missing).unlink()
+    done = serve_once(content, tmp_path)
+    assert done.returncode == 1
+    assert missing in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_faulty_exhibit_is_left_out_and_named(tmp_path):
+    content = write_plain_hall(tmp_path / "content")
+    (content / "exhibits" / "box" / "box.png").unlink()
+    with running_hall(content, tmp_path / "work") as hall:
+        assert "0 exhibits, 1 problem" in hall.said()
+        assert "exhibits/box/exhibit.toml" in hall.said()
+        assert "box.png" in hall.said()
+        assert scene(hall)["exhibits"] == []
+
+
+def test_a_port_in_use_is_one_clear_line(plain_hall, tmp_path):
+    done = serve_once(plain_hall.content, tmp_path, port=plain_hall.port)
+    assert done.returncode == 1
+    assert f"{plain_hall.port}" in done.stderr
+    assert "--port" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_wrong_arguments_are_status_two(tmp_path):
+    done = subprocess.run([sys.executable, "-m", "hall_app", "serve", "--walk", "fly"], capture_output=True, text=True)
+    assert done.returncode == 2
+
+
+def test_interrupt_leaves_nothing_running(tmp_path):
+    with running_hall(write_plain_hall(tmp_path / "content"), tmp_path / "work") as hall:
+        pid = hall.process.pid
+        hall.process.send_signal(signal.SIGINT)
+        assert hall.process.wait(15) == 0
+        assert "Traceback" not in hall.said()
+        left = [
+            entry
+            for entry in os.listdir("/proc")
+            if entry.isdigit() and f" {pid} " in _stat(entry).split(")")[-1][:20]
+        ]
+        assert left == []
+
+
+def _stat(entry: str) -> str:
+    try:
+        with open(f"/proc/{entry}/stat", encoding="ascii", errors="replace") as file:
+            return file.read()
+    except OSError:
+        return ""
+
+
+def serve_once(content, tmp_path, port: int | None = None) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "hall_app", "serve", "--content", content, "--data", tmp_path / "data"]
+    return subprocess.run(
+        [*command, "--port", str(port or free_port())], capture_output=True, text=True, timeout=60, check=False
+    )

@@ -1,0 +1,71 @@
+"""A real `hall serve` in a process of its own, as a visitor's browser meets it."""
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class RunningHall:
+    """Its address, folders, log file and process."""
+
+    url: str
+    port: int
+    content: Path
+    data: Path
+    log: Path
+    process: subprocess.Popen
+
+    def said(self) -> str:
+        return self.log.read_text("utf-8").replace("\r", "\n")
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@contextlib.contextmanager
+def running_hall(content: Path, work: Path, *options: str, patience: float = 120) -> Iterator[RunningHall]:
+    """Start it, wait until it answers, end it with Ctrl-C's signal."""
+    port, data, log = free_port(), work / "data", work / "serve.log"
+    work.mkdir(parents=True, exist_ok=True)
+    command = [sys.executable, "-m", "hall_app", "serve", "--content", content, "--data", data, "--port", str(port)]
+    with log.open("wb") as sink:
+        process = subprocess.Popen(
+            [*command, *options], stdout=sink, stderr=subprocess.STDOUT, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+        )
+        hall = RunningHall(f"http://127.0.0.1:{port}", port, content, data, log, process)
+        try:
+            _wait_until_it_answers(hall, patience)
+            yield hall
+        finally:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.wait(15)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+                raise AssertionError("hall serve did not end on Ctrl-C:\n" + hall.said()) from None
+
+
+def _wait_until_it_answers(hall: RunningHall, patience: float) -> None:
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if hall.process.poll() is not None:
+            raise AssertionError(f"hall serve ended with {hall.process.returncode}:\n{hall.said()}")
+        with contextlib.suppress(urllib.error.URLError, ConnectionError, TimeoutError):
+            with urllib.request.urlopen(f"{hall.url}/api/scene", timeout=5):
+                return
+        time.sleep(0.1)
+    raise AssertionError(f"hall serve did not answer within {patience} s:\n{hall.said()}")

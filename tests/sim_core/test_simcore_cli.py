@@ -1,0 +1,140 @@
+"""`simcore`: commands, one-line errors, exit status, lazy names."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import sim_core
+from sim_core import cli
+
+REPO = Path(__file__).parents[2]
+SQUARE = {"outline": [[0, 0], [1, 0], [1, 1], [0, 1]], "holes": [[[0.4, 0.4], [0.6, 0.4], [0.5, 0.6]]]}
+
+
+@pytest.fixture
+def outline(tmp_path):
+    path = tmp_path / "panel.json"
+    path.write_text(json.dumps(SQUARE), "utf-8")
+    return path
+
+
+def test_every_public_name_resolves():
+    for name in sim_core.__all__:
+        assert getattr(sim_core, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'loom'"):
+        sim_core.loom  # noqa: B018
+
+
+def test_importing_sim_core_loads_no_engine():
+    code = "import sim_core, sys; print(sorted({'numba', 'numpy', 'scipy', 'pydantic', 'torch'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=REPO, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_help_names_every_room_and_exits_with_0(capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["--help"])
+    assert caught.value.code == 0
+    text = capsys.readouterr().out
+    assert all(word in text for word in (*cli.ROOMS, "bench", "Exit status"))
+
+
+@pytest.mark.parametrize("words", [[], ["knit"], ["mesh", "x.json"], ["bench", "hall"]])
+def test_wrong_arguments_exit_with_2(words, capsys):
+    with pytest.raises(SystemExit) as caught:
+        cli.main(words)
+    assert caught.value.code == 2
+    assert "usage: simcore" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", [".npz", ".ply", ".obj"])
+def test_mesh_writes_files_and_summary(outline, tmp_path, capsys, kind):
+    out, picture = tmp_path / f"mesh{kind}", tmp_path / "mesh.png"
+    words = ["mesh", str(outline), "--edge", "0.1", "--out", str(out), "--picture", str(picture), "--json"]
+    assert cli.main(words) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["conformity"] == 1
+    assert summary["area_error"] <= 1e-12
+    assert {"mean", "worst"} == set(summary["quality"]) == set(summary["edge_ratio"])
+    assert {"seconds", "compile_seconds", "min_angle_deg", "outline_deviation"} <= set(summary)
+    if kind == ".npz":
+        with np.load(out) as stored:
+            assert stored["faces"].shape == (summary["faces"], 3)
+            assert stored["vertices"].shape == (summary["vertices"], 2)
+    else:
+        import trimesh
+
+        mesh = trimesh.load(out, process=False)
+        assert len(mesh.faces) == summary["faces"]
+        assert mesh.area == pytest.approx(1 - 0.02, rel=1e-6)
+        assert (mesh.face_normals[:, 2] > 0.99).all()
+    assert np.asarray(Image.open(picture)).std() > 1
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "empty"),
+        ("{", "not valid JSON"),
+        ("[]", "outline: missing"),
+        ('{"outline": [[0,0],[1,0],[0,1]], "hole": []}', "hole: unknown key"),
+        ('{"outline": [[0,0],[1,1],[1,0],[0,1]]}', "crosses"),
+        ('{"outline": []}', "0 points"),
+        ('{"outline": 3}', "shape"),
+    ],
+)
+def test_bad_outline_files_give_one_line_and_exit_with_1(tmp_path, capsys, text, message):
+    path = tmp_path / "bad.json"
+    path.write_text(text, "utf-8")
+    assert cli.main(["mesh", str(path), "--edge", "0.1"]) == 1
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert message in error
+    assert "bad.json" in error
+
+
+def test_missing_file_and_unknown_kind_of_file(outline, tmp_path, capsys):
+    assert cli.main(["mesh", str(tmp_path / "none.json"), "--edge", "0.1"]) == 1
+    assert "none.json" in capsys.readouterr().err
+    assert cli.main(["mesh", str(outline), "--edge", "0.1", "--out", str(tmp_path / "mesh.stl")]) == 1
+    assert ".ply" in capsys.readouterr().err
+
+
+def test_debug_shows_the_traceback(tmp_path):
+    with pytest.raises(sim_core.SimCoreError):
+        cli.main(["--debug", "mesh", str(tmp_path / "none.json"), "--edge", "0.1"])
+
+
+def test_weave_writes_maps_and_parameters(tmp_path, capsys):
+    file = REPO / "assets" / "weaves" / "gauze.toml"
+    assert cli.main(["weave", str(file), "--out", str(tmp_path / "maps"), "--pixels", "64", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary == json.loads((tmp_path / "maps" / "parameters.json").read_text("utf-8"))
+    assert summary["tile"]["seam"] <= 1 / 255
+    assert set(summary["units"]) == set(summary["parameters"])
+    for name, shape in (
+        ("albedo", (64, 64, 3)),
+        ("normal", (64, 64, 3)),
+        ("height", (64, 64)),
+        ("opacity", (64, 64)),
+    ):
+        assert np.asarray(Image.open(tmp_path / "maps" / f"{name}.png")).shape == shape
+
+
+def test_weave_text_and_broken_file(tmp_path, capsys):
+    assert cli.main(["weave", str(REPO / "assets" / "weaves" / "satin.toml")]) == 0
+    assert "N/m" in capsys.readouterr().out
+    (tmp_path / "bad.toml").touch()
+    assert cli.main(["weave", str(tmp_path / "bad.toml")]) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_bench_outside_a_checkout_exits_with_2(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(cli, "__file__", str(tmp_path / "sim_core" / "cli.py"))
+    assert cli.main(["bench", "mesh"]) == 2
+    assert "checkout" in capsys.readouterr().err

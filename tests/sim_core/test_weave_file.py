@@ -1,0 +1,87 @@
+"""Weave files: read, round trip, and every mistake with file, key and remedy."""
+
+from pathlib import Path
+
+import pytest
+
+from sim_core.errors import FileProblem, SimCoreError, WeaveError
+from sim_core.weave import Weave, Yarn
+
+FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
+GAUZE = (FOLDER / "gauze.toml").read_text("utf-8")
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+def test_shipped_weaves_load_and_survive_a_dictionary(path):
+    weave = Weave.load(path)
+    assert weave.name == path.stem
+    assert Weave.from_dict(weave.to_dict()) == weave
+
+
+def test_satin_file_with_weft_face(tmp_path):
+    text = (FOLDER / "satin.toml").read_text("utf-8").replace('face = "warp"', 'face = "weft"')
+    path = tmp_path / "weft.toml"
+    path.write_text(text, "utf-8")
+    assert Weave.load(path).draft.face == "weft"
+
+
+def test_written_out_draft(tmp_path):
+    path = tmp_path / "lift.toml"
+    path.write_text(GAUZE.replace('kind = "plain"', 'kind = "lift"\nlift = ["110", "011", "101"]'), "utf-8")
+    assert Weave.load(path).draft.lift.tolist() == [[1, 1, 0], [0, 1, 1], [1, 0, 1]]
+
+
+MISTAKES = {
+    "the file is empty": "",
+    "not valid TOML": "name = ",
+    "draft: missing": GAUZE.split("[draft]")[0],
+    "frction: unknown key": GAUZE.replace("friction", "frction", 1),
+    "warp.tex: missing": GAUZE.replace("tex = 1.25e-6 ", "#", 1),
+    "ends_per_m: 'many'": GAUZE.replace("6200.0", '"many"'),
+    "ends_per_m is -5.0": GAUZE.replace("6200.0", "-5.0"),
+    "warp.colour: 'red'": GAUZE.replace('"#e9dcc0"', '"red"'),
+    "draft: .*kind": GAUZE.replace('kind = "plain"', 'kind = "knit"'),
+    "satin 8: step 2": GAUZE.replace('kind = "plain"', 'kind = "satin"\nends = 8\nstep = 2'),
+    "warp: yarn: diameter": GAUZE.replace("diameter = 45e-6", "diameter = 4.5e-6", 1),
+    "flattening": GAUZE.replace("flattening = 1.25 ", "flattening = 0.5 ", 1),
+    "rows differ": GAUZE.replace('kind = "plain"', 'kind = "lift"\nlift = ["10", "010"]'),
+}
+
+
+@pytest.mark.parametrize("message", MISTAKES)
+def test_mistakes_are_named_with_the_file(tmp_path, message):
+    path = tmp_path / "bad.toml"
+    path.write_text(MISTAKES[message], "utf-8")
+    with pytest.raises(SimCoreError, match=message) as caught:
+        Weave.load(path)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file_and_broken_dictionary():
+    with pytest.raises(FileProblem, match="nowhere.toml"):
+        Weave.load("nowhere.toml")
+    values = Weave.load(FOLDER / "gauze.toml").to_dict()
+    with pytest.raises(WeaveError, match="to_dict"):
+        Weave.from_dict({key: value for key, value in values.items() if key != "draft"})
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"diameter": 0.0}, "diameter"),
+        ({"tex": float("nan")}, "tex"),
+        ({"stiffness": -1.0}, "stiffness"),
+        ({"colour": (2, 0, 0)}, "colour"),
+        ({"unevenness": 0.9}, "unevenness"),
+        ({"tension": -1.0}, "tension"),
+    ],
+)
+def test_impossible_yarns_are_named(values, message):
+    with pytest.raises(WeaveError, match=message):
+        Yarn(**{"diameter": 5e-5, "tex": 1e-6, **values})
+
+
+def test_bending_bounds_enclose_the_derived_stiffness():
+    yarn = Yarn(5e-5, 1.2e-6)
+    assert yarn.stiffness_free < yarn.stiffness < yarn.stiffness_stuck

@@ -1,0 +1,219 @@
+"""A visitor answers in Chromium: by mouse, by keyboard, on a phone, with the network going away, in a dialog."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+import uvicorn
+from fastapi import FastAPI
+from fastapi.responses import HTMLResponse
+from survey_samples import ASSETS
+
+import survey
+
+pytestmark = pytest.mark.browser
+
+FRAME = """<!doctype html><title>hall</title><script>
+window.heard = []; addEventListener("message", (event) => heard.push(event.data));
+</script><iframe src="/questionnaires/garment?lang=zh&exhibit=pibo" width="900" height="700"></iframe>"""
+
+
+@pytest.fixture
+def site(tmp_path):
+    """A running server with the survey and a page that embeds it; yields (address, mounted)."""
+    app = FastAPI()
+    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data")
+    app.get("/hall", response_class=HTMLResponse)(lambda: FRAME)
+    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", access_log=False))
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        assert thread.is_alive()
+        time.sleep(0.02)
+    port = server.servers[0].sockets[0].getsockname()[1]
+    yield f"http://127.0.0.1:{port}", mounted
+    server.should_exit = True
+    thread.join(30)
+    mounted.close()
+
+
+@pytest.fixture
+def visit(chromium, site):
+    """Open a page in a fresh context; a script error or a refused resource fails the test."""
+    contexts, faults = [], []
+
+    def opened(path, *, width=1280, height=800, **options):
+        context = chromium.new_context(viewport={"width": width, "height": height}, **options)
+        context.set_default_timeout(20_000)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto(site[0] + path)
+        return page
+
+    yield opened
+    for context in contexts:
+        context.close()
+    assert not faults
+
+
+def answer_all(page, point=4):
+    for item in page.locator(".item").all():
+        item.locator("label.point").nth(point - 1).click()
+
+
+def stored(site, key="garment"):
+    mounted = site[1]
+    return [row.answer for row in mounted.store.rows(mounted.questionnaires[key])]
+
+
+def test_a_visitor_answers_and_receives_the_code(visit, site):
+    page = visit("/questionnaires/garment?lang=en&exhibit=pibo")
+    answer_all(page)
+    page.locator("textarea").first.fill("More <b>lustre</b>")
+    assert page.locator("#count").inner_text() == "12 of 12 answered"
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site)
+    assert page.locator("#code").inner_text() == answer.id
+    assert {score for _, score in answer.scores} == {4}
+    assert answer.suggestions == (("fabric", "More <b>lustre</b>"),)
+    assert (answer.exhibit, answer.language) == ("pibo", "en")
+    page.locator("details.withdraw summary").click()
+    page.locator("#withdraw-code").fill(answer.id)
+    page.locator("#withdraw button").click()
+    page.get_by_text("Withdrawn.").wait_for()
+    assert stored(site) == []
+
+
+def test_what_is_lacking_is_listed_and_reached_by_keyboard_alone(visit, site):
+    page = visit("/questionnaires/platform-user?lang=zh")
+    page.locator("#send").focus()
+    page.keyboard.press("Enter")
+    assert page.locator("#errors a").count() == 25  # 24 items and the consent
+    for left in range(24, 0, -1):
+        page.locator("#errors a").nth(24 - left).focus()
+        page.keyboard.press("Enter")
+        page.keyboard.press("Space")
+        page.keyboard.press("ArrowRight")
+    page.locator("#consent").focus()
+    page.keyboard.press("Space")
+    assert page.locator("#errors").is_hidden()
+    page.locator("#send").focus()
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site, "platform-user")
+    assert {score for _, score in answer.scores} == {2}
+
+
+def test_a_reload_and_another_language_keep_what_was_chosen(visit, site):
+    page = visit("/questionnaires/garment?lang=zh")
+    answer_all(page, 2)
+    page.locator("textarea").nth(1).fill("下摆")
+    page.locator("#switch").click()
+    page.get_by_text("12 of 12 answered").wait_for()
+    assert page.locator("textarea").nth(1).input_value() == "下摆"
+    page.reload()
+    assert page.locator("#restored").is_visible()
+    assert page.locator('input[name="pleat"][value="2"]').is_checked()
+    page.locator("#restart").click()
+    assert page.locator("input:checked").count() == 0
+    page.reload()
+    assert page.locator("input:checked").count() == 0
+
+
+def test_a_lost_receipt_is_retried_under_the_same_id(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    answer_all(page)
+    page.locator("#consent").check()
+    tries = []
+
+    def lose_the_receipt(route):
+        tries.append(route.request.post_data_json["id"])
+        if len(tries) == 1:
+            route.fetch()  # the server commits, the visitor never hears of it
+            route.abort("connectionreset")
+        else:
+            route.continue_()
+
+    page.route("**/submissions", lose_the_receipt)
+    page.locator("#send").click()
+    page.get_by_text("There is no connection.").wait_for()
+    page.locator("#state button").first.click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    assert len(tries) == 2
+    assert len(set(tries)) == 1
+    assert [answer.id for answer in stored(site)] == tries[:1]
+
+
+def test_an_answer_on_its_way_survives_closing_the_page(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    answer_all(page)
+    page.locator("#consent").check()
+    page.route("**/submissions", lambda route: route.abort("internetdisconnected"))
+    page.locator("#send").click()
+    page.get_by_text("There is no connection.").wait_for()
+    assert stored(site) == []
+    page.unroute("**/submissions")
+    page.reload()
+    page.wait_for_selector("#thanks:not([hidden])")
+    assert len(stored(site)) == 1
+
+
+def test_editing_after_a_lost_receipt_does_not_make_a_second_answer(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    answer_all(page)
+    page.locator("#consent").check()
+
+    def lose_the_receipt(route):
+        route.fetch()
+        route.abort("connectionreset")
+
+    page.route("**/submissions", lose_the_receipt, times=1)
+    page.locator("#send").click()
+    page.get_by_text("Back to my answers").click()
+    page.locator(".item").first.locator("label.point").first.click()
+    page.locator("#send").click()
+    page.get_by_text("the first ones received count").wait_for()
+    (answer,) = stored(site)
+    assert {score for _, score in answer.scores} == {4}
+
+
+def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
+    page = visit("/hall")
+    frame = page.frame_locator("iframe")
+    for item in frame.locator(".item").all():
+        item.locator("label.point").nth(5).click()
+    frame.locator("#consent").check()
+    frame.locator("#consent").press("Escape")
+    page.wait_for_function("heard.length === 1")
+    frame.locator("#send").click()
+    page.wait_for_function("heard.length === 2")
+    assert page.evaluate("heard") == [
+        {"type": "survey-escape", "id": "garment"},
+        {"type": "survey-submitted", "id": "garment"},
+    ]
+    (answer,) = stored(site)
+    assert answer.exhibit == "pibo"
+    assert {score for _, score in answer.scores} == {None}
+
+
+@pytest.mark.parametrize("language", ["zh", "en"])
+@pytest.mark.parametrize("width", [320, 390, 1280])
+def test_nothing_overflows_and_every_target_is_large_enough_for_a_thumb(visit, width, language):
+    page = visit(
+        f"/questionnaires/platform-user?lang={language}", width=width, height=844, has_touch=width < 500
+    )
+    page.locator("#send").click()
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    small = page.evaluate("""() => [...document.querySelectorAll("a, button, label.point, textarea, summary, .check")]
+        .filter((one) => one.checkVisibility())
+        .map((one) => [one.textContent.trim().slice(0, 20), one.getBoundingClientRect()])
+        .filter(([, box]) => box.height < 44 || box.width < 44).map(([text, box]) => [text, box.width, box.height])""")
+    assert small == []
+    clipped = page.evaluate("""() => [...document.querySelectorAll(".cell")]
+        .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.textContent)""")
+    assert clipped == []

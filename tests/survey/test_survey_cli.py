@@ -1,0 +1,205 @@
+"""The command: what it prints, what it returns, and what it says when something is wrong."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+from survey_samples import ASSETS, paper_sample, submission
+
+import survey
+from survey.cli import main
+
+HERE = ["--content", str(ASSETS)]
+
+
+@pytest.fixture
+def paper_csv(tmp_path):
+    table, names = paper_sample()
+    path = tmp_path / "paper.csv"
+    with path.open("w", encoding="utf-8-sig", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["submission", *names, "suggestion_fabric"])
+        for number, row in enumerate(table):
+            writer.writerow([f"id-{number}", *(repr(float(value)) for value in row), "ok"])
+    return path
+
+
+def failing(capsys, *arguments) -> str:
+    assert main(list(map(str, arguments))) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("survey: ")
+    assert err.count("\n") == 1
+    return err
+
+
+def test_analyse_prints_the_paper_s_figures_from_a_file(paper_csv, capsys):
+    assert (
+        main(["analyse", str(paper_csv), "--questionnaire", "garment", "--drop", "static", *HERE, "--json"])
+        == 0
+    )
+    found = json.loads(capsys.readouterr().out)
+    assert found["n"] == 20
+    assert sorted(found["dropped"]) == ["static_drape", "static_overall"]
+    assert round(found["kmo"], 3) == 0.824
+    assert round(found["bartlett"]["chi2"], 2) == 167.23
+    assert found["bartlett"]["df"] == 45
+    assert round(found["alpha"], 3) == 0.911
+    assert round(found["variance"]["rotated"][2]["cumulative"], 2) == 85.33
+    assert found["variance"]["initial"][2]["cumulative"] == pytest.approx(
+        found["variance"]["rotated"][2]["cumulative"], abs=1e-10
+    )
+    assert np.shape(found["correlation"]["values"]) == (12, 12)
+    assert found["loadings"]["rows"][0] == "fabric_texture"
+
+
+def test_without_a_questionnaire_every_numeric_column_is_an_item(paper_csv, capsys):
+    assert main(["analyse", str(paper_csv), "--drop", "static_overall,static_drape", "--factors", "2"]) == 0
+    out = capsys.readouterr().out
+    for expected in (
+        "20 complete answers, 12 items",
+        "KMO 0.824",
+        "χ² = 167.23, df = 45",
+        "α 0.911",
+        ".968**",
+    ):
+        assert expected in out
+    assert "suggestion" not in out
+
+
+def test_answers_go_from_the_form_s_door_through_export_into_the_analysis(tmp_path, capsys):
+    app, data = FastAPI(), tmp_path / "data"
+    mounted = survey.mount(app, content=ASSETS, data=data)
+    garment = mounted.questionnaires["garment"]
+    scores = np.clip(np.rint(3 + np.random.default_rng(1).normal(size=(30, 12))), 1, 5)
+    with TestClient(app) as client:
+        for row in scores:
+            body = submission(garment, scores=dict(zip(garment.item_ids, map(int, row), strict=True)))
+            assert client.post("/api/v1/questionnaires/garment/submissions", json=body).status_code == 201
+    mounted.close()
+    out = tmp_path / "answers.csv"
+    assert main(["export", "--questionnaire", "garment", "--data", str(data), "--out", str(out), *HERE]) == 0
+    assert "30 answers" in capsys.readouterr().out
+    table = list(csv.DictReader(io.StringIO(out.read_text("utf-8-sig"))))
+    exported = np.array([[float(row[item]) for item in garment.item_ids] for row in table])
+    assert sorted(exported.tolist()) == sorted(scores.tolist())
+    url = f"sqlite:///{data / 'survey.sqlite'}"
+    results = []
+    for source in ([str(out)], ["--data", str(data)], ["--db", url]):
+        assert main(["analyse", *source, "--questionnaire", "garment", "--json", *HERE]) == 0
+        results.append(json.loads(capsys.readouterr().out))
+    assert results[0] == results[1] == results[2]
+    assert results[0]["mean"]["pleat"] == pytest.approx(scores[:, garment.item_ids.index("pleat")].mean())
+
+
+def test_a_token_opens_the_rows_until_it_is_revoked(tmp_path, capsys):
+    data = ["--data", str(tmp_path / "data")]
+    assert main(["token", "--label", "Dr Lin", *data]) == 0
+    token = capsys.readouterr().out.strip()
+    app = FastAPI()
+    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data")
+    with TestClient(app) as client:
+        url, headers = "/api/v1/questionnaires/garment/rows", {"authorization": f"Bearer {token}"}
+        assert client.get(url, headers=headers).status_code == 200
+        assert main(["token", "--list", *data]) == 0
+        listed = capsys.readouterr().out
+        assert "Dr Lin" in listed
+        assert token not in listed
+        assert main(["token", "--revoke", "1", *data]) == 0
+        assert client.get(url, headers=headers).status_code == 401
+    mounted.close()
+    capsys.readouterr()
+    assert "there is none" in failing(capsys, "token", "--revoke", 9, *data)
+
+
+FAULTY = {
+    "no numbers": ("a,b\nx,y\n", "no column of numbers"),
+    "header only": ("a,b\n", "no rows"),
+    "empty": ("", "no rows"),
+    "ragged": ("a,b\n1,2\n3\n", "line 3 has 1 cells, the header 2"),
+    "twice": ("a,a\n1,2\n3,4\n", "column 'a' stands twice"),
+    "one row": ("a,b\n1,2\n", "1 complete answers"),
+    "all equal": ("a,b\n3,3\n3,3\n3,3\n", "the same score in all answers"),
+    "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "b: infinite"),
+    "no utf-8": (b"a,b\n\xff,2\n", "no CSV in UTF-8"),
+}
+
+
+@pytest.mark.parametrize("case", FAULTY)
+def test_a_faulty_table_is_one_line_and_exit_1(tmp_path, capsys, case):
+    text, says = FAULTY[case]
+    path = tmp_path / "table.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    assert says in failing(capsys, "analyse", path)
+
+
+def test_a_score_that_is_no_number_is_named_by_line_and_item(tmp_path, capsys, paper_csv):
+    text = paper_csv.read_text("utf-8-sig").splitlines()
+    text[3] = text[3].replace(text[3].split(",")[1], "good")
+    (tmp_path / "bad.csv").write_text("\n".join(text), "utf-8")
+    said = failing(capsys, "analyse", tmp_path / "bad.csv", "--questionnaire", "garment", *HERE)
+    assert "line 4, fabric_texture: 'good' is no number" in said
+
+
+def test_what_is_not_there_is_named(tmp_path, capsys):
+    assert "cannot be read" in failing(capsys, "analyse", tmp_path / "absent.csv")
+    absent = ["--data", tmp_path / "absent"]
+    assert "no such data folder" in failing(capsys, "export", "--questionnaire", "garment", *absent, *HERE)
+    assert not (tmp_path / "absent").exists()
+    assert "choose one of: garment" in failing(capsys, "export", "--questionnaire", "shoes", *absent, *HERE)
+    assert "no such content folder" in failing(capsys, "serve", "--content", tmp_path / "absent")
+    wrong = ["--questionnaire", "garment", *HERE, "--db"]
+    assert "database URL" in failing(capsys, "analyse", *wrong, "nonsense")
+    assert "no driver" in failing(capsys, "analyse", *wrong, "cobol://x")
+    assert "the database refuses" in failing(
+        capsys, "analyse", *wrong, f"sqlite:///{tmp_path}/no/where.sqlite"
+    )
+    (tmp_path / "file").write_text("")
+    assert "no data folder" in failing(capsys, "token", "--data", tmp_path / "file")
+
+
+def test_a_taken_port_is_one_line(tmp_path, capsys):
+    import socket
+
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        assert main(["serve", "--port", str(port), "--data", str(tmp_path / "data"), *HERE]) == 1
+    assert "choose another --port" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["fly"], ["export"], ["analyse"], ["analyse", "x.csv", "--factors", "0"], ["serve", "--port", "x"]],
+)
+def test_wrong_arguments_exit_2(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+
+
+@pytest.mark.parametrize("command", [[], ["serve"], ["export"], ["analyse"], ["token"]])
+def test_help_teaches(command, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main([*command, "--help"])
+    assert caught.value.code == 0
+    assert len(capsys.readouterr().out.splitlines()) > 8
+
+
+def test_the_public_names_are_there_and_importing_them_lazily_stays_light():
+    for name in survey.__all__:
+        assert getattr(survey, name).__module__.startswith("survey")
+    assert sorted(survey.__all__) == survey.__all__
+    heavy = ("fastapi", "sqlalchemy", "pandas", "factor_analyzer", "sklearn")
+    code = f"import sys, survey; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

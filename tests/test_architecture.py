@@ -1,0 +1,75 @@
+"""The arrows of the house: sim_core <- hall_app -> survey, and heavy packages stay where they are needed."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+ROOMS = ("sim_core", "survey", "hall_app")
+ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}
+HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib"}
+
+
+def modules(room: str) -> list[Path]:
+    return sorted((ROOT / room).rglob("*.py"))
+
+
+def imported(tree: ast.AST) -> set[str]:
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names.add(node.module.split(".")[0])
+    return names
+
+
+def at_module_top(tree: ast.Module) -> set[str]:
+    return imported(ast.Module([n for n in tree.body if isinstance(n, ast.Import | ast.ImportFrom)], []))
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_arrows(room):
+    assert modules(room)
+    for path in modules(room):
+        ours = imported(ast.parse(path.read_text("utf-8"))) & set(ROOMS)
+        assert ours <= ALLOWED[room], f"{path.relative_to(ROOT)} imports {ours - ALLOWED[room]}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_heavy_packages_are_imported_where_needed(room):
+    for path in modules(room):
+        top = at_module_top(ast.parse(path.read_text("utf-8"))) & HEAVY
+        assert not top, f"{path.relative_to(ROOT)} imports {top} at its top"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_modules_stay_short(room):
+    for path in modules(room):
+        assert len(path.read_text("utf-8").splitlines()) <= 320, path.relative_to(ROOT)
+
+
+@pytest.mark.parametrize(
+    ("module", "forbidden"),
+    [
+        ("sim_core", {"numba", "scipy", "torch", "trimesh", "PIL"}),
+        ("hall_app.cli", {"torch", "viser", "pandas", "factor_analyzer", "numba"}),
+        ("survey.cli", {"torch", "pandas", "factor_analyzer", "sklearn"}),
+        ("sim_core.cli", {"torch", "pandas", "viser", "numba"}),
+    ],
+)
+def test_import_stays_light(module, forbidden):
+    code = f"import sys, {module}; print(' '.join(sorted({forbidden!r} & set(sys.modules))))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout.strip() == ""
+
+
+@pytest.mark.parametrize("package", ROOMS)
+def test_public_face(package):
+    module = __import__(package)
+    assert module.__all__
+    for name in module.__all__:
+        assert getattr(module, name) is not None
