@@ -52,8 +52,16 @@ class Penetration:
 
 def _mesh(name: str, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     vertices, faces = np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces, np.int32)
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3 or len(faces) == 0:
-        raise SimCoreError(f"{name}: shapes {vertices.shape}, {faces.shape} – expected (V, 3) and (F, 3), F > 0")
+    if (
+        vertices.ndim != 2
+        or vertices.shape[1] != 3
+        or faces.ndim != 2
+        or faces.shape[1] != 3
+        or len(faces) == 0
+    ):
+        raise SimCoreError(
+            f"{name}: shapes {vertices.shape}, {faces.shape} – expected (V, 3) and (F, 3), F > 0"
+        )
     if not np.isfinite(vertices).all() or faces.min() < 0 or faces.max() >= len(vertices):
         raise SimCoreError(f"{name}: coordinates that are not finite or faces that name no vertex")
     return vertices, faces
@@ -134,7 +142,12 @@ def surface_distance(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray
 
 
 def hausdorff(
-    vertices_a: np.ndarray, faces_a: np.ndarray, vertices_b: np.ndarray, faces_b: np.ndarray, *, spacing: float
+    vertices_a: np.ndarray,
+    faces_a: np.ndarray,
+    vertices_b: np.ndarray,
+    faces_b: np.ndarray,
+    *,
+    spacing: float,
 ) -> Distances:
     """Sampled two-sided distance of two surfaces; the samples lie `spacing` [m] apart, the foot points are exact.
 

@@ -101,7 +101,9 @@ def render(
         world = np.ascontiguousarray(surface.vertices, float)
         screen = _project(world, camera, width, height)
         mesh = (screen, surface.faces.astype(np.int32), world, normals(world, surface.faces), sky)
-        look = np.array([surface.gloss, surface.sheen, surface.through, surface.alpha, float(surface is ground)])
+        look = np.array(
+            [surface.gloss, surface.sheen, surface.through, surface.alpha, float(surface is ground)]
+        )
         colour = _linear(surface.colour)
         fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour)
     if sheer:
@@ -121,7 +123,9 @@ def save_png(path: Path, picture: np.ndarray) -> None:
 def _check(number: int, surface: Surface) -> None:
     v, f = surface.vertices, surface.faces
     if v.ndim != 2 or v.shape[1] != 3 or len(v) == 0 or f.ndim != 2 or f.shape[1] != 3:
-        raise SimCoreError(f"surface {number}: shapes {v.shape}, {f.shape} – expected (V, 3) and (F, 3), V > 0")
+        raise SimCoreError(
+            f"surface {number}: shapes {v.shape}, {f.shape} – expected (V, 3) and (F, 3), V > 0"
+        )
     if not np.isfinite(v).all():
         raise SimCoreError(f"surface {number}: vertices are not finite – nothing to draw")
 
@@ -156,7 +160,9 @@ def _project(points: np.ndarray, camera: Camera, width: int, height: int) -> np.
     z = away @ forward
     scale = 0.5 * height / np.tan(np.radians(camera.fov) / 2) / np.where(z > 1e-3, z, 1.0)
     inverse = np.where(z > 1e-3, 1 / np.where(z > 1e-3, z, 1.0), 0.0)
-    return np.stack([0.5 * width + (away @ side) * scale, 0.5 * height - (away @ up) * scale, inverse], axis=1)
+    return np.stack(
+        [0.5 * width + (away @ side) * scale, 0.5 * height - (away @ up) * scale, inverse], axis=1
+    )
 
 
 def _light_matrix(points: np.ndarray, direction: np.ndarray, pixels: int) -> np.ndarray:
@@ -210,7 +216,11 @@ def _floor(surfaces: Sequence[Surface], light: Light) -> Surface:
     """A fine square under everything, so that it can carry the sky's occlusion as a soft shadow."""
     points = np.concatenate([s.vertices for s in surfaces])
     low, high = points.min(0), points.max(0)
-    centre, reach, n = (low + high) / 2, 1.2 * float(max(np.ptp(points[:, 0]), np.ptp(points[:, 2]))) + 1.0, 96
+    centre, reach, n = (
+        (low + high) / 2,
+        1.2 * float(max(np.ptp(points[:, 0]), np.ptp(points[:, 2]))) + 1.0,
+        96,
+    )
     x, z = np.meshgrid(np.linspace(-reach, reach, n), np.linspace(-reach, reach, n), indexing="ij")
     vertices = np.stack([centre[0] + x.ravel(), np.full(n * n, low[1] - 1e-4), centre[2] + z.ravel()], axis=1)
     a = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()

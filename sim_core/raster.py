@@ -147,7 +147,10 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
                 p = u * world[i] + v * world[j] + w * world[k]
                 n = u * normals[i] + v * normals[j] + w * normals[k]
                 n /= math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
-                if n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2]) < 0.0:
+                if (
+                    n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2])
+                    < 0.0
+                ):
                     n = -n
                 at = _place(matrix, p)
                 seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)

@@ -14,10 +14,7 @@ def main() -> int:
     """Make the media, telling each step on standard error."""
     parser = argparse.ArgumentParser(prog="python -m hall_app.media", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, help="content folder, default ./assets")
-    folder = content_folder(parser.parse_args().folder)
-    make_media(
-        folder, lambda fraction, label: sys.stderr.write(f"{100 * fraction:3.0f} % {label}\n") and None
-    )
+    make_media(content_folder(parser.parse_args().folder), _tell)
     return 0
 
 

@@ -71,7 +71,6 @@ class Capsule(Solid):
         start, end = _vector("capsule.start", self.start), _vector("capsule.end", self.end)
         return CAPSULE, np.r_[start, end, _positive("capsule.radius", self.radius)], _NO_GRID
 
-
     def _ball(self) -> np.ndarray:
         start, end = np.asarray(self.start, float), np.asarray(self.end, float)
         return np.r_[(start + end) / 2, np.linalg.norm(end - start) / 2 + self.radius]
@@ -96,7 +95,6 @@ class Cylinder(Solid):
         middle, axis = (start + end) / 2, (end - start) / length
         return CYLINDER, np.r_[middle, axis, length / 2, self.radius, self.rounding], _NO_GRID
 
-
     def _ball(self) -> np.ndarray:
         start, end = np.asarray(self.start, float), np.asarray(self.end, float)
         return np.r_[(start + end) / 2, np.linalg.norm(end - start) / 2 + self.radius]
@@ -114,9 +112,10 @@ class Box(Solid):
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         centre, half = _vector("box.centre", self.centre), _vector("box.size", self.size) / 2
         if half.min() <= 0 or not 0 <= self.rounding <= half.min():
-            raise SimCoreError(f"box: size {self.size}, rounding {self.rounding} – sizes above 0, rounding at most half")
+            raise SimCoreError(
+                f"box: size {self.size}, rounding {self.rounding} – sizes above 0, rounding at most half"
+            )
         return BOX, np.r_[centre, half, self.rounding, np.cos(self.yaw), np.sin(self.yaw)], _NO_GRID
-
 
     def _ball(self) -> np.ndarray:
         return np.r_[np.asarray(self.centre, float), np.linalg.norm(self.size) / 2]
@@ -132,7 +131,11 @@ class HalfSpace(Solid):
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         normal = _vector("halfspace.normal", self.normal)
         _positive("halfspace.normal: its length", float(np.linalg.norm(normal)))
-        return HALFSPACE, np.r_[normal / np.linalg.norm(normal), _vector("halfspace.point", self.point)], _NO_GRID
+        return (
+            HALFSPACE,
+            np.r_[normal / np.linalg.norm(normal), _vector("halfspace.point", self.point)],
+            _NO_GRID,
+        )
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,9 @@ class GridSdf(Solid):
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         values = np.ascontiguousarray(self.values, float)
         if values.ndim != 3 or min(values.shape) < 2 or not np.isfinite(values).all():
-            raise SimCoreError(f"grid: shape {values.shape} – expected a finite (nx, ny, nz), at least 2 each way")
+            raise SimCoreError(
+                f"grid: shape {values.shape} – expected a finite (nx, ny, nz), at least 2 each way"
+            )
         return GRID, np.r_[_vector("grid.origin", self.origin), _positive("grid.cell", self.cell)], values
 
     @staticmethod

@@ -62,7 +62,11 @@ def _box(r, x, y, z):
         gx, gy, gz = ox / d, oy / d, oz / d
     else:
         d = top
-        gx, gy, gz = 1.0 * (qx == top), 1.0 * (qy == top and qx != top), 1.0 * (qz == top and qx != top and qy != top)
+        gx, gy, gz = (
+            1.0 * (qx == top),
+            1.0 * (qy == top and qx != top),
+            1.0 * (qz == top and qx != top and qy != top),
+        )
     gx, gy, gz = gx * sx, gy * sy, gz * sz
     return d - r[6], c * gx + s * gz, gy, -s * gx + c * gz
 
@@ -72,7 +76,11 @@ def _grid(r, grid, x, y, z):
     """Trilinear value and gradient; outside the box the value at its border plus the way there."""
     nx, ny, nz = grid.shape
     u, v, w = (x - r[0]) / r[3], (y - r[1]) / r[3], (z - r[2]) / r[3]
-    cu, cv, cw = min(max(u, 0.0), nx - 1.000001), min(max(v, 0.0), ny - 1.000001), min(max(w, 0.0), nz - 1.000001)
+    cu, cv, cw = (
+        min(max(u, 0.0), nx - 1.000001),
+        min(max(v, 0.0), ny - 1.000001),
+        min(max(w, 0.0), nz - 1.000001),
+    )
     ox, oy, oz = (u - cu) * r[3], (v - cv) * r[3], (w - cw) * r[3]
     i, j, k = int(cu), int(cv), int(cw)
     a, b, c = cu - i, cv - j, cw - k
@@ -96,7 +104,9 @@ def signed_distance(packed, x, y, z):
     for p in range(len(packed.kind)):
         kind, row = packed.kind[p], packed.data[p]
         reach = best + row[19]
-        if row[19] >= 0.0 and (x - row[16]) ** 2 + (y - row[17]) ** 2 + (z - row[18]) ** 2 > reach * abs(reach):
+        if row[19] >= 0.0 and (x - row[16]) ** 2 + (y - row[17]) ** 2 + (z - row[18]) ** 2 > reach * abs(
+            reach
+        ):
             continue  # not even the ball around it is nearer than the best
         if kind == CAPSULE:
             d, gx, gy, gz = _capsule(row, x, y, z)

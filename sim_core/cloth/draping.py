@@ -98,7 +98,9 @@ def drape(
     start = time.perf_counter()
     x, v = _checked_state(sheet, positions, velocities)
     run = _Run(sheet, phases, collider, contact or Contact(), pins, np.asarray(down, float), substeps)
-    key = run_key((ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None))
+    key = run_key(
+        (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
+    )
     state = (load_checkpoint(checkpoint, key) if checkpoint else None) or RunState(x, v)
     for index, frame in enumerate(state.film):
         if on_frame:
@@ -152,7 +154,9 @@ def _checked_state(sheet: Sheet, x: np.ndarray, v: np.ndarray | None) -> tuple[n
         if array.shape != shape:
             raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
         if not np.isfinite(array).all():
-            raise SimCoreError(f"{name}: vertex {np.flatnonzero(~np.isfinite(array).all(1))[0]} is not finite")
+            raise SimCoreError(
+                f"{name}: vertex {np.flatnonzero(~np.isfinite(array).all(1))[0]} is not finite"
+            )
     return x, v
 
 
@@ -178,7 +182,9 @@ class _Run:
         self.vertices, self.middles = contact_samples(sheet.edges, sheet.faces, len(sheet.rest))
         self.down = down
         c = contact
-        self.shell = Shell(float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every))
+        self.shell = Shell(
+            float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every)
+        )
 
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
@@ -204,7 +210,9 @@ class _Run:
                 break
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         else:
-            raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**_MAX_HALVINGS} of the stable step")
+            raise SimCoreError(
+                f"frame {state.frame}: unstable even at 1/{2**_MAX_HALVINGS} of the stable step"
+            )
         step = np.sqrt(((x - before_x) ** 2).sum(1))
         state.trace.append((float(np.percentile(step, 99)), float(step.max())))
         state.positions, state.velocities, state.last_step = x, v, FRAME / count
@@ -231,7 +239,16 @@ class _Run:
             float(c.cap),
             float(c.speed_limit),
         )
-        args = (self.stencil, self.sheet.rest, self.sheet.faces, self.packed, self.vertices, self.middles, self.shell, around)
+        args = (
+            self.stencil,
+            self.sheet.rest,
+            self.sheet.faces,
+            self.packed,
+            self.vertices,
+            self.middles,
+            self.shell,
+            around,
+        )
         advance(*args, x, v, state.last_step, FRAME / count, count)
 
     def _healthy(self, state: RunState, gravity: float, x: np.ndarray, v: np.ndarray) -> bool:
@@ -243,6 +260,9 @@ class _Run:
             stored = sum(energies(self.stencil, px, pv))
             return stored, -gravity * float(self.sheet.mass @ (px @ self.down))
 
-        (stored, height), (stored_after, height_after) = energy(state.positions, state.velocities), energy(x, v)
+        (stored, height), (stored_after, height_after) = (
+            energy(state.positions, state.velocities),
+            energy(x, v),
+        )
         weight = float(self.sheet.mass.sum()) * max(gravity, 1.0)
         return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + 0.02 * weight

@@ -62,7 +62,9 @@ class Material:
             raise SimCoreError(f"material.poisson: {self.poisson} – must lie between -1 and 1 (plane stress)")
 
     @staticmethod
-    def of(parameters: ParametersLike, *, mass_damping: float = 0.5, stiffness_damping: float = 2e-5) -> Material:
+    def of(
+        parameters: ParametersLike, *, mass_damping: float = 0.5, stiffness_damping: float = 2e-5
+    ) -> Material:
         """The material of a weave's homogenised parameters."""
         return Material(
             density=float(parameters.density),

@@ -147,7 +147,9 @@ def vertex_face_pairs(x, rest, faces, reach, near):
     for f in range(len(faces)):
         for k in range(3):
             j = faces[f, k]
-            gap = (x[j, 0] - centre[f, 0]) ** 2 + (x[j, 1] - centre[f, 1]) ** 2 + (x[j, 2] - centre[f, 2]) ** 2
+            gap = (
+                (x[j, 0] - centre[f, 0]) ** 2 + (x[j, 1] - centre[f, 1]) ** 2 + (x[j, 2] - centre[f, 2]) ** 2
+            )
             size2 = max(size2, gap)
     cell = math.sqrt(size2) + reach
     order, start, dims, low = hash_points(x, cell)
@@ -162,7 +164,9 @@ def vertex_face_pairs(x, rest, faces, reach, near):
                 for q in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
                     gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
                     i = order[q]
-                    if gap > cell * cell or _one_sheet(rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]):
+                    if gap > cell * cell or _one_sheet(
+                        rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]
+                    ):
                         continue
                     if _vertex_near_face(x, i, faces[f], reach):
                         pairs = _grown(pairs, count)

@@ -83,7 +83,12 @@ def _checked(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarra
     faces = np.ascontiguousarray(faces)
     if rest.ndim != 2 or rest.shape[1] != 2:
         raise SimCoreError(f"rest: shape {rest.shape} – expected (V, 2), metres in the pattern plane")
-    if faces.ndim != 2 or faces.shape[1:] != (3,) or not np.issubdtype(faces.dtype, np.integer) or len(faces) == 0:
+    if (
+        faces.ndim != 2
+        or faces.shape[1:] != (3,)
+        or not np.issubdtype(faces.dtype, np.integer)
+        or len(faces) == 0
+    ):
         raise SimCoreError(f"faces: shape {faces.shape}, {faces.dtype} – expected (F, 3) integers, F > 0")
     if not np.isfinite(rest).all():
         raise SimCoreError(f"rest: vertex {np.flatnonzero(~np.isfinite(rest).all(1))[0]} is not finite")
@@ -106,7 +111,12 @@ def _areas(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def _membrane(
-    rest: np.ndarray, faces: np.ndarray, face_edges: np.ndarray, area: np.ndarray, count: int, elastic: np.ndarray
+    rest: np.ndarray,
+    faces: np.ndarray,
+    face_edges: np.ndarray,
+    area: np.ndarray,
+    count: int,
+    elastic: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Five coefficients per edge: eps = l^2 - L^2 = R g fixes the Green strain g, so K = A R^-T D R^-1."""
     corner = rest[faces]
@@ -126,7 +136,9 @@ def _membrane(
             for part in _without_repeats(edge):
                 slot = filled[edge[part]]
                 if (slot >= 4).any():
-                    raise SimCoreError(f"faces: edge {edge[part][slot >= 4][0]} has more than two faces – cut it")
+                    raise SimCoreError(
+                        f"faces: edge {edge[part][slot >= 4][0]} has more than two faces – cut it"
+                    )
                 around[edge[part], slot] = face_edges[part, other]
                 coupling[edge[part], slot] = stiffness[part, corner_index, other]
                 filled[edge[part]] += 1

@@ -54,7 +54,11 @@ def _moved(x, mark, shift):
     """Largest distance of any vertex from its mark moved by shift (3,) [m]."""
     far = 0.0
     for i in range(len(x)):
-        dx, dy, dz = x[i, 0] - mark[i, 0] - shift[0], x[i, 1] - mark[i, 1] - shift[1], x[i, 2] - mark[i, 2] - shift[2]
+        dx, dy, dz = (
+            x[i, 0] - mark[i, 0] - shift[0],
+            x[i, 1] - mark[i, 1] - shift[1],
+            x[i, 2] - mark[i, 2] - shift[2],
+        )
         far = max(far, dx * dx + dy * dy + dz * dz)
     return np.sqrt(far)
 

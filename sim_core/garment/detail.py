@@ -50,10 +50,14 @@ def choose_detail(garment: Garment, budget: float, *, edges: Sequence[float] | N
     for edge in sorted(edges or own * np.array([4.0, 3.2, 2.6, 2.1, 1.7, 1.4, 1.2]), reverse=True):
         coarse = detail(garment, float(edge))
         facts = coarse.provenance["detail"]
-        tried.append({"edge": float(edge), "triangles": facts["triangles"], "p99_m": facts["hausdorff"]["p99_m"]})
+        tried.append(
+            {"edge": float(edge), "triangles": facts["triangles"], "p99_m": facts["hausdorff"]["p99_m"]}
+        )
         if facts["hausdorff"]["p99_m"] <= budget:
             return coarse.noted(detail={**facts, "budget_m": budget, "tried": tried})
-    return garment.noted(detail={"edge": own, "budget_m": budget, "tried": tried, "triangles": len(garment.faces)})
+    return garment.noted(
+        detail={"edge": own, "budget_m": budget, "tried": tried, "triangles": len(garment.faces)}
+    )
 
 
 def locate(points: np.ndarray, rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -66,7 +70,10 @@ def locate(points: np.ndarray, rest: np.ndarray, faces: np.ndarray) -> tuple[np.
     a, b, c = (corner[near, k] for k in range(3))
     area = _cross(b - a, c - a)
     p = points[:, None]
-    weight = np.stack([_cross(b - p, c - p), _cross(c - p, a - p), _cross(a - p, b - p)], axis=-1) / area[..., None]
+    weight = (
+        np.stack([_cross(b - p, c - p), _cross(c - p, a - p), _cross(a - p, b - p)], axis=-1)
+        / area[..., None]
+    )
     best = weight.min(-1).argmax(1)
     rows = np.arange(len(points))
     chosen = np.clip(weight[rows, best], 0.0, 1.0)

@@ -53,7 +53,9 @@ def write_glb(
     if precision not in ("close", "hall"):
         raise SimCoreError(f"precision: {precision!r} – give 'close' or 'hall'")
     if maps.albedo.shape[:2] != maps.opacity.shape or min(maps.size) <= 0:
-        raise SimCoreError(f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree")
+        raise SimCoreError(
+            f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
+        )
     glb = _Glb()
     cloth = _cloth_close(glb, garment, maps) if precision == "close" else _cloth_hall(glb, garment, maps)
     uv = garment.rest * 1000.0
@@ -97,7 +99,12 @@ def _silk(colour: np.ndarray, alpha: float, name: str) -> dict[str, Any]:
             "metallicFactor": 0.0,
             "roughnessFactor": 0.45,
         },
-        "extensions": {"KHR_materials_sheen": {"sheenColorFactor": [float(c) for c in tint], "sheenRoughnessFactor": 0.38}},
+        "extensions": {
+            "KHR_materials_sheen": {
+                "sheenColorFactor": [float(c) for c in tint],
+                "sheenRoughnessFactor": 0.38,
+            }
+        },
     }
 
 
@@ -125,13 +132,17 @@ def _cloth_close(glb: _Glb, garment: Garment, maps: MapsLike) -> int:
     if sheer:
         material["alphaMode"] = "BLEND"
     tint = _dyed(garment, mean)
-    material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = [float(c) for c in 0.55 * (0.5 * tint + 0.5)]
+    material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = [
+        float(c) for c in 0.55 * (0.5 * tint + 0.5)
+    ]
     return glb.material(material)
 
 
 def _cloth_hall(glb: _Glb, garment: Garment, maps: MapsLike) -> int:
     cover = float(maps.opacity.mean()) / 255
-    material = _silk(_dyed(garment, _mean_colour(maps)), round(cover, 4) if cover < 0.98 else 1.0, "silk_hall")
+    material = _silk(
+        _dyed(garment, _mean_colour(maps)), round(cover, 4) if cover < 0.98 else 1.0, "silk_hall"
+    )
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
     material["normalTexture"] = {**glb.texture(slub_normal(256), tile), "scale": 0.5}
     if cover < 0.98:

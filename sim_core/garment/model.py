@@ -14,7 +14,13 @@ import numpy as np
 from sim_core.errors import FileProblem, SimCoreError
 
 FORMAT = 1
-_ARRAYS = {"outline": (float, 2), "rest": (float, 2), "faces": (np.int32, 3), "positions": (float, 3), "seams": (np.int32, 2)}
+_ARRAYS = {
+    "outline": (float, 2),
+    "rest": (float, 2),
+    "faces": (np.int32, 3),
+    "positions": (float, 3),
+    "seams": (np.int32, 2),
+}
 
 
 @dataclass(frozen=True)
@@ -41,11 +47,15 @@ class Garment:
         for name, (kind, width) in _ARRAYS.items():
             array = getattr(self, name)
             if array.ndim != 2 or array.shape[1] != width or array.dtype != np.dtype(kind):
-                raise SimCoreError(f"garment.{name}: {array.shape} {array.dtype} – expected (n, {width}) {np.dtype(kind)}")
+                raise SimCoreError(
+                    f"garment.{name}: {array.shape} {array.dtype} – expected (n, {width}) {np.dtype(kind)}"
+                )
             if kind is float and not np.isfinite(array).all():
                 raise SimCoreError(f"garment.{name}: holds numbers that are not finite")
         if len(self.rest) != len(self.positions):
-            raise SimCoreError(f"garment: {len(self.rest)} rest and {len(self.positions)} draped vertices – must agree")
+            raise SimCoreError(
+                f"garment: {len(self.rest)} rest and {len(self.positions)} draped vertices – must agree"
+            )
         for name in ("faces", "seams"):
             index = getattr(self, name)
             if index.size and (index.min() < 0 or index.max() >= len(self.rest)):

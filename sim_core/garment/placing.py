@@ -69,7 +69,9 @@ def _section(
     extent = g.at_bar + (g.at_end - g.at_bar) * far**0.8
     u = np.linspace(0, 1, 400)
     # The folds differ in width and wander a little down the cloth; the amplitude follows from the length.
-    warp = u + g.spread * 0.5 / g.folds * (np.sin(2 * np.pi * u + phase) + 0.6 * np.sin(4 * np.pi * u + 2 * phase))
+    warp = u + g.spread * 0.5 / g.folds * (
+        np.sin(2 * np.pi * u + phase) + 0.6 * np.sin(4 * np.pi * u + 2 * phase)
+    )
     turn = 2 * np.pi * (g.folds * warp + 0.25 * wander[0] * np.sin(2.1 * s + wander[1])) + phase
     shape = np.cos(turn) * (1 + 0.3 * wander[2] * np.cos(np.pi * u + wander[3]))
     lateral = extent * (u - 0.5) + lean * 0.03 * s

@@ -109,7 +109,9 @@ def scarf_on_stand(
     )
 
 
-def scarf_material(parameters: ClothParameters, hanging: float, edge: float) -> tuple[Material, dict[str, str]]:
+def scarf_material(
+    parameters: ClothParameters, hanging: float, edge: float
+) -> tuple[Material, dict[str, str]]:
     """The weave's material as far as the scene needs it, and what was simplified, in words.
 
     hanging: longest free length [m]; edge: mesh step [m]. Silk hardly stretches, and a solver that resolved
@@ -120,7 +122,10 @@ def scarf_material(parameters: ClothParameters, hanging: float, edge: float) -> 
     density = float(parameters.density)
     enough = density * GRAVITY * hanging / SAG
     stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
-    low = [parameters.bounds.get(name, (parameters.bend, parameters.bend))[0] for name in ("bend_warp", "bend_weft")]
+    low = [
+        parameters.bounds.get(name, (parameters.bend, parameters.bend))[0]
+        for name in ("bend_warp", "bend_weft")
+    ]
     free, resolved = math.sqrt(float(low[0]) * float(low[1])), density * GRAVITY * (1.15 * edge) ** 3
     material = Material(
         density=density,
@@ -151,11 +156,17 @@ def _check_fits(pattern: Pattern, stand: Stand, gathering: Gathering) -> None:
     width, length = (float(s) for s in np.ptp(pattern.outline, axis=0))
     longest = max(gathering.front, length - gathering.front)
     if not 0.1 < gathering.front < length - 0.1:
-        raise SimCoreError(f"pattern {pattern.name}: {length:.2f} m long – needs more than front {gathering.front} + 0.1 m")
+        raise SimCoreError(
+            f"pattern {pattern.name}: {length:.2f} m long – needs more than front {gathering.front} + 0.1 m"
+        )
     if longest > stand.height - 0.05:
-        raise SimCoreError(f"pattern {pattern.name}: an end of {longest:.2f} m touches the floor – raise the stand's bar")
+        raise SimCoreError(
+            f"pattern {pattern.name}: an end of {longest:.2f} m touches the floor – raise the stand's bar"
+        )
     if max(gathering.at_bar, gathering.at_end) > stand.span - 0.1 or gathering.at_end > width:
-        raise SimCoreError(f"pattern {pattern.name}: gathered to {gathering.at_end} m – between stand and cloth width")
+        raise SimCoreError(
+            f"pattern {pattern.name}: gathered to {gathering.at_end} m – between stand and cloth width"
+        )
 
 
 def _measured(sheet: Sheet, result: Drape, stand: Stand) -> dict[str, Any]:

@@ -47,7 +47,9 @@ def _lathe(profile: np.ndarray, start: np.ndarray, axis: np.ndarray, segments: i
     return vertices, np.concatenate(faces).astype(np.int32)
 
 
-def _axis(start: tuple[float, float, float], end: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, float]:
+def _axis(
+    start: tuple[float, float, float], end: tuple[float, float, float]
+) -> tuple[np.ndarray, np.ndarray, float]:
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(b - a))
     return a, (b - a) / length if length else np.array([0.0, 1.0, 0.0]), length
@@ -82,15 +84,22 @@ def _box(solid: Box, corner: int) -> Mesh:
     for axis in range(3):
         u, v = (axis + 1) % 3, (axis + 2) % 3
         for side in (-1.0, 1.0):
-            lines = [np.concatenate([-inner[k] - solid.rounding * bend[::-1], inner[k] + solid.rounding * bend]) for k in (u, v)]
+            lines = [
+                np.concatenate([-inner[k] - solid.rounding * bend[::-1], inner[k] + solid.rounding * bend])
+                for k in (u, v)
+            ]
             a, b = np.meshgrid(*lines, indexing="ij")
             cube = np.zeros((a.size, 3))
             cube[:, u], cube[:, v], cube[:, axis] = a.ravel(), b.ravel(), side * half[axis]
             core = np.clip(cube, -inner, inner)
             away = cube - core
             size = np.linalg.norm(away, axis=1, keepdims=True)
-            vertices.append(core + solid.rounding * away / np.where(size > 0, size, 1) if solid.rounding else cube)
-            i = (np.arange(len(lines[0]) - 1)[:, None] * len(lines[1]) + np.arange(len(lines[1]) - 1)).ravel() + count
+            vertices.append(
+                core + solid.rounding * away / np.where(size > 0, size, 1) if solid.rounding else cube
+            )
+            i = (
+                np.arange(len(lines[0]) - 1)[:, None] * len(lines[1]) + np.arange(len(lines[1]) - 1)
+            ).ravel() + count
             w = len(lines[1])
             quads = np.concatenate([np.stack([i, i + w, i + w + 1], 1), np.stack([i, i + w + 1, i + 1], 1)])
             faces.append(quads if side > 0 else quads[:, ::-1])

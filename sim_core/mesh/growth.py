@@ -123,11 +123,7 @@ def _apex(points, a, b, walls, start, items, cell, columns, rows):
     Rings of cells around the expected centre; a ring beyond the circle of the best point so far cannot hold a better.
     """
     ax, ay, bx, by = points[a, 0], points[a, 1], points[b, 0], points[b, 1]
-    qx = (ax + bx) / 2 - (by - ay) * 0.29  # the centre of an equilateral triangle on a -> b
-    qy = (ay + by) / 2 + (bx - ax) * 0.29
-    qx, qy = min(max(qx, 0.0), columns * cell), min(max(qy, 0.0), rows * cell)
-    column, row = min(int(qx // cell), columns - 1), min(int(qy // cell), rows - 1)
-    margin = min(qx - column * cell, (column + 1) * cell - qx, qy - row * cell, (row + 1) * cell - qy)
+    qx, qy, column, row, margin = _search_start(ax, ay, bx, by, cell, columns, rows)
     best, lowest, near_a, near_b = -1, -1, -1, -1
     ox, oy, radius = 0.0, 0.0, np.inf
     for ring in range(max(columns, rows) + 1):
@@ -161,6 +157,17 @@ def _apex(points, a, b, walls, start, items, cell, columns, rows):
     if best < 0 or lowest < min(a, b):
         return lowest
     return near_a if a < b else near_b
+
+
+@njit(cache=True)
+def _search_start(ax, ay, bx, by, cell, columns, rows):
+    """Expected centre of the triangle on a -> b, its cell, and its distance from the cell's nearest side."""
+    qx = (ax + bx) / 2 - (by - ay) * 0.29  # the centre of an equilateral triangle on a -> b
+    qy = (ay + by) / 2 + (bx - ax) * 0.29
+    qx, qy = min(max(qx, 0.0), columns * cell), min(max(qy, 0.0), rows * cell)
+    column, row = min(int(qx // cell), columns - 1), min(int(qy // cell), rows - 1)
+    margin = min(qx - column * cell, (column + 1) * cell - qx, qy - row * cell, (row + 1) * cell - qy)
+    return qx, qy, column, row, margin
 
 
 @njit(cache=True)

@@ -72,18 +72,17 @@ class Store:
         first answer; 410 the answer was withdrawn. Raises StoreError when nothing can be committed now.
         """
         with self._write() as connection:
-            fresh = connection.execute(
-                _insert_new(connection, tables.submission).values(
-                    id=answer.id,
-                    questionnaire=answer.questionnaire,
-                    version=answer.version,
-                    language=answer.language,
-                    exhibit=answer.exhibit,
-                    digest=answer.digest,
-                    received=datetime.now(UTC).replace(microsecond=0),
-                )
+            new_row = _insert_new(connection, tables.submission).values(
+                id=answer.id,
+                questionnaire=answer.questionnaire,
+                version=answer.version,
+                language=answer.language,
+                exhibit=answer.exhibit,
+                digest=answer.digest,
+                received=datetime.now(UTC).replace(microsecond=0),
             )
-            if fresh.rowcount == 0:
+            # RETURNING, because psycopg's count of rows does not tell an insert from a conflict.
+            if connection.execute(new_row.returning(tables.submission.c.id)).first() is None:
                 _check_replay(connection, answer)
                 return Receipt(answer.id, replayed=True)
             _freeze(connection, questionnaire)
@@ -120,7 +119,7 @@ class Store:
         """All answers to this version that stand, in the order in which they were received."""
         table = tables.submission
         of_submission = _standing(questionnaire.id, questionnaire.version)
-        with self._read() as connection:
+        with self._snapshot() as connection:
             heads = connection.execute(
                 select(table).where(*of_submission).order_by(table.c.received, table.c.id)
             ).all()
@@ -144,6 +143,16 @@ class Store:
             yield connection
 
     @contextmanager
+    def _snapshot(self) -> Iterator[Connection]:
+        """Several queries that see the same moment, whatever is withdrawn meanwhile."""
+        with self._read() as connection:
+            if connection.dialect.name == "sqlite":
+                connection.exec_driver_sql("BEGIN")  # sqlite3 opens a transaction for writing only
+            else:
+                connection.execution_options(isolation_level="REPEATABLE READ")
+            yield connection
+
+    @contextmanager
     def _write(self) -> Iterator[Connection]:
         # Waiting here is fair and cheap; waiting for SQLite's own lock is a busy loop.
         with self._writing, explained(), self._engine.begin() as connection:
@@ -162,7 +171,7 @@ def explained() -> Iterator[None]:
 
 
 def _insert_new(connection: Connection, table: Table):
-    """INSERT that leaves an existing key as it is; its rowcount tells which of the two happened."""
+    """INSERT that leaves an existing key as it is."""
     insert = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
     return insert(table).on_conflict_do_nothing()
 
@@ -231,4 +240,4 @@ def _stored(questionnaire: Questionnaire, head, scores: dict, texts: dict) -> St
     )
     # SQLite gives the time back without its zone; it was written in UTC.
     received = head.received if head.received.tzinfo else head.received.replace(tzinfo=UTC)
-    return Stored(answer, received)
+    return Stored(answer, received.astimezone(UTC))

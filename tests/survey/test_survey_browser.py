@@ -202,7 +202,7 @@ def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
 
 
 @pytest.mark.parametrize("language", ["zh", "en"])
-@pytest.mark.parametrize("width", [320, 390, 1280])
+@pytest.mark.parametrize("width", [320, 390, 800, 1280])
 def test_nothing_overflows_and_every_target_is_large_enough_for_a_thumb(visit, width, language):
     page = visit(
         f"/questionnaires/platform-user?lang={language}", width=width, height=844, has_touch=width < 500

@@ -114,11 +114,24 @@ def test_the_page_s_texts_are_the_same_in_both_languages_and_all_used():
     for key in texts["zh"]:
         assert set(re.findall(r"{\w+}", texts["zh"][key])) == set(re.findall(r"{\w+}", texts["en"][key]))
     code = (FOLDER / "form.js").read_text("utf-8") + (FOLDER / "page.py").read_text("utf-8")
-    assert not [
-        key
-        for key in texts["zh"]
-        if not re.search(rf"(words\.|say\(\"|say\[.|_later\(\"|told = \"){key}\b", code)
-    ]
+    unused = [key for key in texts["zh"] if not re.search(rf"""(words\.|["']){key}\b""", code)]
+    assert not unused
+
+
+def luminance(colour: str) -> float:
+    """Relative luminance of #rrggbb (WCAG 2)."""
+    parts = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+@pytest.mark.parametrize("ink", ["ink", "quiet", "vermilion"])
+@pytest.mark.parametrize("ground", ["paper", "sheet", "wash"])
+def test_every_text_colour_stands_out_from_every_ground(ink, ground):
+    colours = dict(re.findall(r"--([a-z]+): (#[0-9a-f]{6});", (FOLDER / "form.css").read_text("utf-8")))
+    assert colours["paper"] == "#f6f1e6"
+    one, other = sorted((luminance(colours[ink]), luminance(colours[ground])))
+    assert (other + 0.05) / (one + 0.05) >= 4.5
 
 
 def test_the_list_names_every_questionnaire_and_its_links_lead_there(hall):

@@ -17,8 +17,10 @@ import pytest
 from survey_samples import ASSETS, submission
 
 from survey import read_questionnaire
+from survey.store.tables import open_engine
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
+SETTINGS = {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1, "busy_timeout": 15_000}
 URL = "/api/v1/questionnaires/garment/submissions"
 
 
@@ -105,6 +107,37 @@ def test_one_id_with_different_bodies_at_once_has_a_single_winner(hall):
         codes = list(pool.map(lambda body: hall.client.post(hall.url, json=body).status_code, bodies))
     assert sorted(codes) == [201] + [409] * 7
     assert rows_of(hall.data) == {base["id"]: 12}
+
+
+def test_results_are_read_whole_while_answers_are_taken_back(hall):
+    bodies = [submission(GARMENT) for _ in range(60)]
+    for body in bodies:
+        assert hall.client.post(hall.url, json=body).status_code == 201
+    headers = {"authorization": f"Bearer {hall.store.tokens.make('reader')}"}
+    gone = threading.Event()
+
+    def read():
+        codes = []
+        while not gone.is_set():
+            reply = hall.client.get("/api/v1/questionnaires/garment/rows", headers=headers)
+            codes.append(reply.status_code)
+        return codes
+
+    with ThreadPoolExecutor(3) as pool:
+        readers = [pool.submit(read) for _ in range(3)]
+        for body in bodies:
+            assert hall.client.delete(f"{hall.url}/{body['id']}").status_code == 204
+        gone.set()
+        assert {code for reader in readers for code in reader.result()} == {200}
+
+
+def test_a_commit_reaches_the_disk_before_it_returns(tmp_path):
+    # A kill does not lose what the system already holds; only a power cut would show a missing sync.
+    engine = open_engine(tmp_path / "data")
+    with engine.connect() as connection:
+        settings = {name: connection.exec_driver_sql(f"PRAGMA {name}").scalar_one() for name in SETTINGS}
+    engine.dispose()
+    assert settings == SETTINGS
 
 
 @pytest.mark.slow
