@@ -29,7 +29,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("part", nargs="?", choices=PARTS, help="one part; both when left out")
-    parser.add_argument("rest", nargs=argparse.REMAINDER, metavar="-- ARGUMENTS", help="for the part's program")
+    parser.add_argument(
+        "rest", nargs=argparse.REMAINDER, metavar="-- ARGUMENTS", help="for the part's program"
+    )
     parser.set_defaults(run=run)
 
 

@@ -12,30 +12,20 @@ from pathlib import Path
 from typing import Any, Literal
 
 from .bake.key import bake_key
-from .content.floor import Footprint, foot_height, solids_of
+from .content.floor import foot_height
 from .content.loading import Content, Exhibit
 from .content.problems import Problem
+from .content.views import yaw_of
+from .content.walkable import walking_floor
 from .models import ExhibitModels, models_of
 from .scene.nodes import Figure, HallScene
 from .stage import Actor, Stage
 from .visitors import Visitor, Visitors
-from .walking import Floor, Grid, Pose, Prism, Round, WalkSession, cached_grid
+from .walking import Floor, Grid, Pose, WalkSession, cached_grid
 
-__all__ = ["House", "floor_of"]
+__all__ = ["House"]
 
 WalkMode = Literal["predict", "server"]
-
-
-def floor_of(content: Content) -> Floor:
-    """What a visitor walks on and cannot walk through."""
-    solids = solids_of(content.plan, content.exhibits)
-    return Floor(content.plan.outline, tuple(_solid(footprint) for footprint in solids))
-
-
-def _solid(footprint: Footprint) -> Prism | Round:
-    if footprint.round is not None:
-        return Round(*footprint.round, footprint.height)
-    return Prism(footprint.polygon or (), footprint.height)
 
 
 @dataclass
@@ -53,7 +43,7 @@ class House:
 
     def __post_init__(self) -> None:
         self.stage = Stage(self.scene, self.visitors)
-        self.floor: Floor = floor_of(self.content)
+        self.floor: Floor = walking_floor(self.content.plan, self.content.exhibits)
         self.grid: Grid = cached_grid(self.floor, self._grids, progress=self.progress)
         self._models: dict[str, ExhibitModels] = {}
         self._failed: dict[str, Problem] = {}
@@ -66,9 +56,11 @@ class House:
 
     def attach(self, loop: asyncio.AbstractEventLoop) -> None:
         """Take clicks from viser's threads onto the server's loop."""
-        self.scene.when_clicked(
-            lambda client, exhibit: loop.call_soon_threadsafe(self._clicked, client, exhibit)
-        )
+
+        def clicked(client: int, exhibit: str) -> None:
+            loop.call_soon_threadsafe(self._clicked, client, exhibit)
+
+        self.scene.when_clicked(clicked)
 
     def _clicked(self, client: int, exhibit: str) -> None:
         visitor = self.visitors.of_client(client)
@@ -100,11 +92,15 @@ class House:
     def start(self) -> Pose:
         """Where a visitor comes in."""
         start = self.content.hall.start
-        return Pose(start.x, start.z, heading(start.facing), self.content.hall.eye.default)
+        return Pose(start.x, start.z, yaw_of(start.facing), self.content.hall.eye.default)
 
     def models(self, exhibit: str) -> ExhibitModels | None:
         """What an exhibit is drawn with."""
         return self._models.get(exhibit)
+
+    def bakes(self) -> dict[str, Path]:
+        """Exhibit -> folder its baked media lie in."""
+        return {name: models.baked for name, models in self._models.items() if models.baked is not None}
 
     def shown(self) -> tuple[Exhibit, ...]:
         """The exhibits that stand in the hall."""
@@ -112,7 +108,7 @@ class House:
 
     async def replace(self, content: Content) -> None:
         """Show changed content, without a restart; visitors stay where they are if they can."""
-        floor = floor_of(content)
+        floor = walking_floor(content.plan, content.exhibits)
         moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
         grid = await self._bake_grid(floor) if moved else self.grid
         before, self.content = self.content, content
@@ -199,8 +195,3 @@ def walk_constants(radius: float, skin: float) -> dict[str, float]:
     from .walking import MAX_INPUT_DT, SPEED
 
     return {"speed": SPEED, "radius": radius, "skin": skin, "max_dt": MAX_INPUT_DT}
-
-
-def heading(facing: float) -> float:
-    """Yaw [rad] (0 looks to -z, positive left) of a facing [deg] about +y (0 looks to +z)."""
-    return math.remainder(math.radians(facing) + math.pi, 2 * math.pi)

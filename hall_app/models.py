@@ -22,8 +22,8 @@ class ExhibitModels:
 
     def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Lowest and highest corner of the close model [m]."""
-        facts = read_glb(self.close)
-        return facts.low, facts.high
+        info = read_glb(self.close)
+        return info.low, info.high
 
 
 def models_of(content: Content, exhibit: Exhibit, data: Path) -> ExhibitModels | None:

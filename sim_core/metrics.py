@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 
@@ -126,19 +126,41 @@ def surface_distance(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray
     corner = vertices[faces]
     centre = corner.mean(1)
     radius = np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max(1)
+    size = np.ceil(np.log2(np.maximum(radius, 1e-9)))
     out = np.full(len(points), np.inf)
-    # Faces in classes of size: a few long ones must not make every search wide.
-    for group in np.unique(np.ceil(np.log2(np.maximum(radius, 1e-9)))):
-        member = np.flatnonzero(np.ceil(np.log2(np.maximum(radius, 1e-9))) == group)
-        tree, reach = cKDTree(centre[member]), float(radius[member].max())
-        for part in np.array_split(np.arange(len(points)), max(1, len(points) // 20000)):
-            first, _ = tree.query(points[part])
-            bound = np.minimum(first + 0.0, out[part])
-            near = tree.query_ball_point(points[part], bound + reach)
-            start = np.r_[0, np.cumsum([len(n) for n in near])]
-            entry = member[np.concatenate([np.asarray(n, int) for n in near])] if start[-1] else member[:0]
-            out[part] = np.minimum(out[part], _nearest(points[part], vertices, faces, start, entry, bound))
+    for group in np.unique(size):  # faces in classes of size: a few long ones must not make every search wide
+        member = np.flatnonzero(size == group)
+        out = np.minimum(
+            out, _to_class(points, vertices, faces[member], centre[member], radius[member].max(), out)
+        )
     return out
+
+
+def _to_class(
+    points: np.ndarray,
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    centre: np.ndarray,
+    reach: float,
+    limit: np.ndarray,
+) -> np.ndarray:
+    """Distance (N,) to faces of about one size; the few nearest centroids decide most points, the rest search on."""
+    tree, few = KDTree(centre), min(10, len(centre))
+    far, near = tree.query(points, k=few)
+    far, near = far.reshape(len(points), few), near.reshape(len(points), few)
+    start = np.arange(0, few * len(points) + 1, few)
+    best = _nearest(points, vertices, faces, start, near.ravel(), np.minimum(far[:, 0], limit))
+    left = np.flatnonzero(far[:, -1] - reach < best) if few < len(centre) else np.zeros(0, int)
+    for part in np.array_split(left, max(1, len(left) // 20000)):
+        if len(part) == 0:
+            continue
+        found = tree.query_ball_point(points[part], best[part] + reach)
+        start = np.r_[0, np.cumsum([len(entry) for entry in found])]
+        entry = (
+            np.concatenate([np.asarray(e, np.int64) for e in found]) if start[-1] else np.zeros(0, np.int64)
+        )
+        best[part] = _nearest(points[part], vertices, faces, start, entry, best[part])
+    return best
 
 
 def hausdorff(
@@ -220,7 +242,8 @@ def penetration(
     middles, centres = vertices[pairs].mean(1), vertices[faces].mean(1)
     signed = [_signed(points, solid_vertices, solid_faces) for points in (vertices, middles, centres)]
     inside = [int((d < 0).sum()) for d in signed]
-    return Penetration(*inside, (float(signed[0].min()), float(signed[1].min()), float(signed[2].min())))
+    least = (float(signed[0].min()), float(signed[1].min()), float(signed[2].min()))
+    return Penetration(inside[0], inside[1], inside[2], least)
 
 
 @njit(cache=True, error_model="numpy")
@@ -257,7 +280,7 @@ def intersections(vertices: np.ndarray, faces: np.ndarray) -> int:
     centre, middle = corner.mean(1), vertices[edges].mean(1)
     reach = float(np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max())
     half = np.sqrt(((vertices[edges[:, 0]] - middle) ** 2).sum(1))
-    near = cKDTree(centre).query_ball_point(middle, half + reach)
+    near = KDTree(centre).query_ball_point(middle, half + reach)
     start = np.r_[0, np.cumsum([len(n) for n in near])]
     entry = np.concatenate([np.asarray(n, int) for n in near])
     return int(_count_crossings(vertices, faces, edges, start, entry).sum())

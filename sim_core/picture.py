@@ -130,7 +130,7 @@ def _check(number: int, surface: Surface) -> None:
         raise SimCoreError(f"surface {number}: vertices are not finite – nothing to draw")
 
 
-def _unit(vector: Sequence[float]) -> np.ndarray:
+def _unit(vector: Sequence[float] | np.ndarray) -> np.ndarray:
     array = np.asarray(vector, float)
     return array / np.linalg.norm(array)
 

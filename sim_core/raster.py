@@ -118,8 +118,9 @@ def _insert(layer_depth, layer_colour, z, r, alpha):
 def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour):
     """Draws one surface. mesh: (screen (V, 3) with z = 1 / distance, faces, world, normals, sky (V,)).
 
-    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. shadow: (matrix (3, 4), map of the opaque (h, w), of the sheer (h, w), what these hold back, bias).
-    depth holds -1/distance of the opaque; sheer surfaces (alpha < 1) go to the layers.
+    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. shadow: matrix (3, 4), map of the
+    opaque (h, w), of the sheer (h, w), what these hold back, bias. depth holds -1/distance of the opaque; sheer
+    surfaces (alpha < 1) go to the layers.
     """
     screen, faces, world, normals, sky = mesh
     matrix, shadows, veils, veil, bias = shadow

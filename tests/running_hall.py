@@ -40,10 +40,24 @@ def running_hall(content: Path, work: Path, *options: str, patience: float = 120
     """Start it, wait until it answers, end it with Ctrl-C's signal."""
     port, data, log = free_port(), work / "data", work / "serve.log"
     work.mkdir(parents=True, exist_ok=True)
-    command = [sys.executable, "-m", "hall_app", "serve", "--content", content, "--data", data, "--port", str(port)]
+    command = [
+        sys.executable,
+        "-m",
+        "hall_app",
+        "serve",
+        "--content",
+        content,
+        "--data",
+        data,
+        "--port",
+        str(port),
+    ]
     with log.open("wb") as sink:
         process = subprocess.Popen(
-            [*command, *options], stdout=sink, stderr=subprocess.STDOUT, env={**os.environ, "PYTHONUNBUFFERED": "1"}
+            [*command, *options],
+            stdout=sink,
+            stderr=subprocess.STDOUT,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )
         hall = RunningHall(f"http://127.0.0.1:{port}", port, content, data, log, process)
         try:

@@ -56,7 +56,9 @@ def bake_garment(
     stills(_look(garment, maps), garment.positions, out)
     seconds["all"] = round(time.perf_counter() - began, 2)
     record = _record(key, garment, light, maps, seconds)
-    (out / RECORD).write_text(json.dumps(record, ensure_ascii=False, indent=1, sort_keys=True) + "\n", "utf-8")
+    (out / RECORD).write_text(
+        json.dumps(record, ensure_ascii=False, indent=1, sort_keys=True) + "\n", "utf-8"
+    )
     _publish(out, target)
     shutil.rmtree(work, ignore_errors=True)
     progress(1.0, "done")

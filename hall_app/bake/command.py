@@ -41,9 +41,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--data", type=Path, default=Path("hall-data"), metavar="FOLDER", help="work folder")
     parser.add_argument("--exhibit", metavar="ID", help="this exhibit alone")
     parser.add_argument("-f", "--force", action="store_true", help="bake again what is up to date")
-    parser.add_argument("--media", action="store_true", help="make music, pictures and the foreign model again")
     parser.add_argument(
-        "--into-data", action="store_true", help="write to --data instead of the content folder (as hall serve does)"
+        "--media", action="store_true", help="make music, pictures and the foreign model again"
+    )
+    parser.add_argument(
+        "--into-data",
+        action="store_true",
+        help="write to --data instead of the content folder (as hall serve does)",
     )
     parser.add_argument("--json", action="store_true", help="progress and summary as JSON lines")
     parser.set_defaults(run=run)
@@ -68,7 +72,11 @@ def run(arguments: argparse.Namespace) -> int:
             _tell(arguments.json, {"exhibit": exhibit.id, "state": "up to date"}, f"{exhibit.id}: up to date")
             continue
         summary = _bake(content, exhibit, key, target, arguments)
-        _tell(arguments.json, {"exhibit": exhibit.id, "state": "baked", **summary}, _sentence(exhibit.id, summary))
+        _tell(
+            arguments.json,
+            {"exhibit": exhibit.id, "state": "baked", **summary},
+            _sentence(exhibit.id, summary),
+        )
     return 0
 
 
@@ -79,7 +87,9 @@ def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
         return [exhibit for exhibit in content.exhibits if exhibit.file.garment is not None]
     exhibit = content.exhibit(wanted)
     if exhibit is None:
-        named = [str(problem) for problem in content.problems if problem.file.startswith(f"exhibits/{wanted}/")]
+        named = [
+            str(problem) for problem in content.problems if problem.file.startswith(f"exhibits/{wanted}/")
+        ]
         raise ValueError(named[0] if named else f"no exhibit {wanted!r} in {content.folder}")
     if exhibit.file.garment is None:
         raise ValueError(f"{exhibit.toml}: has no [garment], nothing to bake")
@@ -97,11 +107,19 @@ def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments:
 @contextmanager
 def _progress(as_json: bool, what: str) -> Iterator[Progress]:
     if as_json:
-        yield lambda fraction, label: print(json.dumps({"fraction": round(fraction, 4), "label": label}), flush=True)
+        yield lambda fraction, label: print(
+            json.dumps({"fraction": round(fraction, 4), "label": label}), flush=True
+        )
         return
-    from rich.progress import BarColumn, Progress as Bars, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
 
-    columns = (TextColumn("{task.fields[what]}"), BarColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.fields[what]}"),
+        BarColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+    )
     with Bars(*columns) as bars:
         task = bars.add_task("…", total=1.0, what=what)
         yield lambda fraction, label: bars.update(task, completed=fraction, description=label)
@@ -113,4 +131,6 @@ def _tell(as_json: bool, summary: dict, sentence: str) -> None:
 
 def _sentence(exhibit: str, summary: dict) -> str:
     parts = [f"{name} {value}" for name, value in summary.get("facts", {}).items()]
-    return f"{exhibit}: baked in {summary['seconds']['all']:.0f} s" + (f" ({', '.join(parts)})" if parts else "")
+    return f"{exhibit}: baked in {summary['seconds']['all']:.0f} s" + (
+        f" ({', '.join(parts)})" if parts else ""
+    )

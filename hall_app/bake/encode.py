@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,11 @@ Picture = NDArray[np.uint8]
 
 SOUND_RATE = 48_000  # [Hz], the one Opus has
 _CODECS = {
-    ".webm": ("libvpx-vp9", {"crf": "34", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"}, "libopus"),
+    ".webm": (
+        "libvpx-vp9",
+        {"crf": "34", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"},
+        "libopus",
+    ),
     ".mp4": ("libx264", {"crf": "24", "preset": "medium", "movflags": "+faststart"}, "aac"),
 }
 
@@ -54,11 +59,13 @@ def encode_film(
     format_name = path.suffix[1:]
     container_options = {"movflags": "+faststart"} if format_name == "mp4" else {}
     with av.open(str(partial), "w", format=format_name, options=container_options) as container:
-        video = container.add_stream(codec, rate=rate)
+        video: Any = container.add_stream(codec, rate=rate)  # PyAV's stubs know no stream by a codec's name
         video.height, video.width = first.shape[:2]
         video.pix_fmt = "yuv420p"
         video.options = {name: value for name, value in options.items() if name != "movflags"}
-        audio = container.add_stream(sound_codec, rate=SOUND_RATE, layout="mono") if sound is not None else None
+        audio = (
+            container.add_stream(sound_codec, rate=SOUND_RATE, layout="mono") if sound is not None else None
+        )
         for index in range(count):
             picture = first if index == 0 else frames(index)
             frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")

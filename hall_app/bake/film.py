@@ -52,7 +52,7 @@ def picture(look: Look, positions: NDArray[np.floating], angle: float, size: tup
 
 
 class Film:
-    """Pictures under way in a second process, while the first one simulates."""
+    """Pictures under way in processes of their own, while this one simulates."""
 
     def __init__(self, look: Look, pool: ProcessPoolExecutor, folder: Path) -> None:
         self._look, self._pool, self._folder = look, pool, folder
@@ -104,7 +104,7 @@ def _shoot(look: Look, positions: NDArray[np.floating], angle: float, path: Path
 @contextmanager
 def filming(look: Look, folder: Path) -> Iterator[Film]:
     """A film whose pictures are drawn beside the simulation; on an error what is under way is given up."""
-    pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(2, mp_context=get_context("spawn"))
     try:
         yield Film(look, pool, folder)
     finally:

@@ -84,7 +84,7 @@ def _cap(polygon: Floats, height: float, colour: Floats, *, up: bool = True) -> 
     import shapely
 
     pieces = shapely.constrained_delaunay_triangles(shapely.Polygon(polygon)).geoms
-    corners = np.array([np.asarray(piece.exterior.coords)[:3] for piece in pieces])
+    corners = np.array([shapely.get_coordinates(piece)[:3] for piece in pieces])
     turn = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     # Seen from above (+y), a triangle that is counter-clockwise in (x, z) is clockwise.
     corners = np.where(((turn > 0) == up)[:, None, None], corners[:, ::-1], corners)

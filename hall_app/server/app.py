@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import tomllib
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -14,7 +15,7 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 
-from ..content.views import exhibit_json, media_type, scene_json
+from ..content.views import exhibit_json, media_file, media_type, scene_json
 from ..house import House
 from .catalogue import catalogue_html
 from .page import PAGE_FOLDER, content_security_policy, hall_page
@@ -88,22 +89,23 @@ def _add_page(app: FastAPI, house: House) -> None:
 
     @app.get("/catalogue", response_class=HTMLResponse, include_in_schema=False)
     async def catalogue(lang: str | None = None) -> HTMLResponse:
-        return HTMLResponse(catalogue_html(house.content, house.shown(), lang))
+        return HTMLResponse(catalogue_html(house.content, house.shown(), house.bakes(), lang))
 
 
 def _add_api(app: FastAPI, house: House) -> None:
     @app.get("/api/scene")
     async def scene() -> dict[str, Any]:
         """What the hall holds: plan, exhibits, walking constants."""
-        answer = scene_json(house.content, nodes=house.scene.nodes())
+        answer = scene_json(house.content, nodes=house.scene.nodes(), baked=house.bakes())
         answer["exhibits"] = [entry for entry in answer["exhibits"] if house.models(entry["id"])]
         return {**answer, "walk": house.walk_json(), "problems": len(house.problems)}
 
     @app.get("/api/exhibits/{exhibit}")
     async def exhibit(exhibit: str) -> dict[str, Any]:
         """Texts, media, record and measured figures of one exhibit."""
-        answer = exhibit_json(house.content, exhibit)
-        if answer is None or house.models(exhibit) is None:
+        models = house.models(exhibit)
+        answer = exhibit_json(house.content, exhibit, baked=models.baked if models else None)
+        if answer is None or models is None:
             raise HTTPException(404, f"no exhibit {exhibit!r} in the hall")
         return answer
 
@@ -118,9 +120,12 @@ def _add_api(app: FastAPI, house: House) -> None:
         return JSONResponse(tomllib.loads((PAGE_FOLDER / "texts.toml").read_text("utf-8")))
 
     @app.get("/grid.bin")
-    async def grid() -> Response:
+    async def grid(request: Request) -> Response:
         """Clearance samples, int16 little endian; their frame is in /api/scene."""
-        return Response(house.grid.to_bytes(), media_type="application/octet-stream")
+        samples, headers = house.grid.to_bytes(), {"Vary": "Accept-Encoding"}
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            samples, headers["Content-Encoding"] = gzip.compress(samples, 6), "gzip"
+        return Response(samples, media_type="application/octet-stream", headers=headers)
 
 
 def _add_media(app: FastAPI, house: House) -> None:
@@ -140,16 +145,14 @@ def _add_media(app: FastAPI, house: House) -> None:
 def _media_file(house: House, owner: str, path: str) -> Path | None:
     """A file of the hall or of an exhibit, None for anything outside or of a kind that is not shown."""
     if owner == "hall":
-        base = house.content.folder
+        base, full = house.content.folder, house.content.folder / path
     else:
-        exhibit = house.content.exhibit(owner)
+        exhibit, models = house.content.exhibit(owner), house.models(owner)
         if exhibit is None:
             return None
-        base = exhibit.folder
-        models = house.models(owner)
-        if path.startswith("baked/") and models is not None and models.baked is not None:
-            base, path = models.baked, path.removeprefix("baked/")
-    full = (base / path).resolve()
+        baked = models.baked if models else None
+        full = media_file(exhibit, path, baked)
+        base = baked if baked is not None and full.is_relative_to(baked) else exhibit.folder
+    full = full.resolve()
     plain = full.is_relative_to(base.resolve()) and full.is_file()
-    shown = media_type(full.name) != "application/octet-stream"
-    return full if plain and shown else None
+    return full if plain and media_type(full.name) != "application/octet-stream" else None

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from ..content.loading import Content, Exhibit
@@ -22,12 +24,14 @@ _WORDS = {
 }
 
 
-def catalogue_html(content: Content, shown: tuple[Exhibit, ...], language: str | None) -> str:
+def catalogue_html(
+    content: Content, shown: tuple[Exhibit, ...], baked: Mapping[str, Path], language: str | None
+) -> str:
     """The whole catalogue in "zh" or "en" (anything else: the hall's language)."""
     lang = language if language in _WORDS else content.hall.language
     words, other = _WORDS[lang], "en" if lang == "zh" else "zh"
     title = escape(getattr(content.hall.title, lang))
-    entries = [exhibit_json(content, exhibit.id) for exhibit in shown]
+    entries = [exhibit_json(content, exhibit.id, baked=baked.get(exhibit.id)) for exhibit in shown]
     body = "".join(_entry(entry, lang, words) for entry in entries if entry)
     return f"""<!doctype html>
 <html lang="{lang}"><head><meta charset="utf-8">

@@ -2,6 +2,7 @@
 
 import html
 import json
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -37,7 +38,7 @@ def _client() -> tuple[str, str]:
     return head, tail
 
 
-def hall_page(title: str, stamp: str, *, language: str, settings: dict[str, object]) -> str:
+def hall_page(title: str, stamp: str, *, language: str, settings: Mapping[str, object]) -> str:
     """The page's HTML; `title` is escaped, `settings` reaches the script as `window.HALL`."""
     head, tail = _client()
     head = head.replace("<title>Viser</title>", f"<title>{html.escape(title)}</title>")

@@ -19,7 +19,8 @@ from .solids import Floor
 Mode = Literal["predict", "server"]
 
 MAX_INPUT_DT = 0.25  # [s] the page cuts longer frames into several inputs
-BUCKET = 0.5  # [s] of walking a page may deliver late at once; more would be a speed hack
+BUCKET = 1.0  # [s] of walking a page may deliver late at once (a busy network); more would be a speed hack
+ARREARS = 0.5  # [s] the server makes up for at once when it walks itself
 REFILL = 1.02  # clocks of page and server differ a little; 2 % faster is no advantage
 EYE_MIN, EYE_MAX = 0.8, 2.4  # [m]
 TICK = 1 / 60  # [s] integration step in server mode
@@ -126,7 +127,7 @@ class WalkSession:
 
     def tick(self, now: float) -> WalkReply:
         """Server mode: walk the held keys up to `now`, 1/60 s at a time, at most half a second of arrears."""
-        self._walked_until = max(self._walked_until, now - BUCKET)
+        self._walked_until = max(self._walked_until, now - ARREARS)
         while now - self._walked_until >= TICK - 1e-9:
             self._walked_until += TICK
             if self.mode == "server":

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
 from sim_core.cloth.pairs import edge_edge_pairs, segment_parameters, triangle_weights, vertex_face_pairs

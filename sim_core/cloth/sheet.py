@@ -162,7 +162,7 @@ def _bending(
     face_edges: np.ndarray,
     area: np.ndarray,
     bend: float,
-) -> sparse.csr_matrix:
+) -> sparse.csr_array:
     """Q (V, V) of the quadratic isometric bending energy x.Q.x/2 (Bergou et al. 2006), hinge by hinge."""
     face = np.repeat(np.arange(len(faces)), 3)
     order = np.argsort(face_edges.ravel(), kind="stable")
@@ -184,21 +184,26 @@ def _bending(
     index = np.stack([start, end, *opposite], axis=1)
     values = factor[:, None, None] * weights[:, :, None] * weights[:, None, :]
     row, column = np.repeat(index, 4, axis=1), np.tile(index, (1, 4))
-    return sparse.coo_matrix((values.ravel(), (row.ravel(), column.ravel())), (len(rest),) * 2).tocsr()
+    return sparse.coo_array((values.ravel(), (row.ravel(), column.ravel())), (len(rest),) * 2).tocsr()
 
 
 def _neighbours(
-    edges: np.ndarray, bending: sparse.csr_matrix, count: int
+    edges: np.ndarray, bending: sparse.csr_array, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """One list per vertex of all it is coupled to: by an edge, by bending, or both (Q's rows sum to 0)."""
-    both = np.concatenate([edges, edges[:, ::-1]])
-    number = np.tile(np.arange(1, len(edges) + 1), 2)
-    by_edge = sparse.coo_matrix((number, (both[:, 0], both[:, 1])), (count, count)).tocsr()
-    pattern = sparse.csr_matrix(abs(bending).sign() + by_edge.sign())
-    pattern.setdiag(0)
-    pattern.eliminate_zeros()
-    pattern.sort_indices()
-    row = np.repeat(np.arange(count), np.diff(pattern.indptr))
-    edge_of = np.asarray(by_edge[row, pattern.indices]).ravel().astype(np.int32) - 1
-    bend = np.asarray(bending[row, pattern.indices]).ravel().astype(float)
-    return pattern.indptr.astype(np.int32), pattern.indices.astype(np.int32), edge_of, bend
+
+    def keys(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        return first.astype(np.int64) * count + second
+
+    hinge = bending.tocoo()
+    hinge.sum_duplicates()
+    apart = hinge.row != hinge.col
+    by_hinge, values = keys(hinge.row[apart], hinge.col[apart]), hinge.data[apart]
+    by_edge = np.concatenate([keys(edges[:, 0], edges[:, 1]), keys(edges[:, 1], edges[:, 0])])
+    all_keys = np.unique(np.concatenate([by_hinge, by_edge]))
+    edge_of = np.full(len(all_keys), -1, np.int32)
+    edge_of[np.searchsorted(all_keys, by_edge)] = np.tile(np.arange(len(edges), dtype=np.int32), 2)
+    bend = np.zeros(len(all_keys))
+    bend[np.searchsorted(all_keys, by_hinge)] = values
+    rows = np.searchsorted(all_keys, np.arange(count + 1, dtype=np.int64) * count)
+    return rows.astype(np.int32), (all_keys % count).astype(np.int32), edge_of, bend

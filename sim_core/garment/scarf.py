@@ -141,7 +141,7 @@ def scarf_material(
     choices = {
         "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: {SAG:.1%} strain at the bar",
         "bend": f"lower bound {free:.2e} N m (fibres free), at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
-        "poisson": f"{material.poisson:.2f} instead of {float(parameters.poisson):.2f}: crimp interchange needs tension",
+        "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",
     }
     return material, choices
 

@@ -110,12 +110,18 @@ def spread(values: list[float]) -> dict[str, float]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--runs", type=int, default=5)
     parser.add_argument("--content", type=Path, default=Path(__file__).parents[2] / "assets")
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
-    with tempfile.TemporaryDirectory() as work, running_hall(arguments.content, Path(work)) as hall, open_browser() as browser:
+    with (
+        tempfile.TemporaryDirectory() as work,
+        running_hall(arguments.content, Path(work)) as hall,
+        open_browser() as browser,
+    ):
         import urllib.request
 
         with urllib.request.urlopen(f"{hall.url}/api/scene") as answer:
@@ -135,7 +141,9 @@ def main() -> int:
         "key_to_camera_ms": spread([run["key_to_camera_ms"] for run in runs]),
         "closeup_s": {name: spread([run["closeup_s"][name] for run in runs]) for name in exhibits},
     }
-    print(f"\n{'1280x720, software WebGL, ' + str(summary['cores']) + ' cores':40} {'median':>9} {'min':>9} {'max':>9}")
+    print(
+        f"\n{'1280x720, software WebGL, ' + str(summary['cores']) + ' cores':40} {'median':>9} {'min':>9} {'max':>9}"
+    )
     for name, value in summary.items():
         rows = {name: value} if isinstance(value, dict) and "median" in value else {}
         rows |= {f"closeup_s {k}": v for k, v in value.items()} if name == "closeup_s" else {}

@@ -35,7 +35,9 @@ def open_browser() -> Iterator:
         try:
             browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
         except Error as error:
-            raise NoBrowserError(f"no Chromium – apt-get install chromium ({error.message.splitlines()[0]})") from error
+            raise NoBrowserError(
+                f"no Chromium – apt-get install chromium ({error.message.splitlines()[0]})"
+            ) from error
         try:
             yield browser
         finally:

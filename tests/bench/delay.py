@@ -34,7 +34,9 @@ async def _hold(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, seco
 async def _serve(port: int, round_trip: float) -> None:
     async def connect(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         far_reader, far_writer = await asyncio.open_connection("127.0.0.1", port)
-        await asyncio.gather(_hold(reader, far_writer, round_trip / 2), _hold(far_reader, writer, round_trip / 2))
+        await asyncio.gather(
+            _hold(reader, far_writer, round_trip / 2), _hold(far_reader, writer, round_trip / 2)
+        )
 
     server = await asyncio.start_server(connect, "127.0.0.1", 0)
     sys.stdout.write(f"{server.sockets[0].getsockname()[1]}\n")

@@ -94,7 +94,9 @@ class Track:
 def solids_of_scene(scene: dict) -> list[shapely.Geometry]:
     """Exact shapes of what stands in the way, from the page's own description; a round is a point and a radius."""
     return [
-        shapely.Point(s["round"][:2]).buffer(s["round"][2], quad_segs=256) if "round" in s else shapely.Polygon(s["polygon"])
+        shapely.Point(s["round"][:2]).buffer(s["round"][2], quad_segs=256)
+        if "round" in s
+        else shapely.Polygon(s["polygon"])
         for s in scene["solids"]
     ]
 

@@ -22,7 +22,9 @@ def get(url: str, **headers: str):
 
 def status(url: str, data: bytes | None = None, **headers: str) -> int:
     try:
-        with urllib.request.urlopen(urllib.request.Request(url, data=data, headers=headers), timeout=20) as answer:
+        with urllib.request.urlopen(
+            urllib.request.Request(url, data=data, headers=headers), timeout=20
+        ) as answer:
             return answer.status
     except urllib.error.HTTPError as error:
         with error:
@@ -104,7 +106,13 @@ def test_media_answers_ranges(plain_hall):
 
 @pytest.mark.parametrize(
     "path",
-    ["box/../../hall.toml", "box/%2e%2e/%2e%2e/hall.toml", "hall/hall.toml", "box/exhibit.toml", "nobody/x.png"],
+    [
+        "box/../../hall.toml",
+        "box/%2e%2e/%2e%2e/hall.toml",
+        "hall/hall.toml",
+        "box/exhibit.toml",
+        "nobody/x.png",
+    ],
 )
 def test_media_keeps_to_what_is_shown(plain_hall, path):
     assert status(f"{plain_hall.url}/media/{path}") == 404
@@ -143,11 +151,23 @@ def test_speed_hacks_do_not_pay(plain_hall):
         assert abs(answer["z"] - hello["z"]) < 1.6 * 1.5
 
 
-@pytest.mark.parametrize(
-    "nonsense",
-    ["", "null", "[]", '{"t":[]}', '{"t":"in","in":"x"}', '{"t":"in","in":[[1,"a",0,0,0,0]]}', '{"t":"in","in":[[1e999]]}',
-     '{"t":"keys"}', '{"t":"goto","x":null,"z":"NaN"}', '{"t":"open","id":7}', '{"t":"open","id":"../x"}', "{" * 5000],
-)  # fmt: skip
+NONSENSE = [
+    "",
+    "null",
+    "[]",
+    '{"t":[]}',
+    '{"t":"in","in":"x"}',
+    '{"t":"in","in":[[1,"a",0,0,0,0]]}',
+    '{"t":"in","in":[[1e999]]}',
+    '{"t":"keys"}',
+    '{"t":"goto","x":null,"z":"NaN"}',
+    '{"t":"open","id":7}',
+    '{"t":"open","id":"../x"}',
+    "{" * 5000,
+]
+
+
+@pytest.mark.parametrize("nonsense", NONSENSE)
 def test_nonsense_leaves_the_visitor_walking(plain_hall, nonsense):
     socket, _ = visitor(plain_hall)
     with socket:
@@ -158,17 +178,21 @@ def test_nonsense_leaves_the_visitor_walking(plain_hall, nonsense):
 
 def test_a_message_that_is_too_long_ends_the_visit_alone(plain_hall):
     socket, _ = visitor(plain_hall)
-    with socket, pytest.raises(ConnectionClosed):
+    with socket:
         socket.send("x" * (65 << 10))
-        socket.recv(timeout=10)
+        with pytest.raises(ConnectionClosed):
+            socket.recv(timeout=10)
     assert scene(plain_hall)["exhibits"]
 
 
 @pytest.mark.parametrize("path", ["/walk", "/"])
 def test_strangers_pages_get_no_socket(plain_hall, path):
     protocols = ["viser-v1.1.1"] if path == "/" else None
-    with pytest.raises(InvalidStatus), connect(
-        f"ws://127.0.0.1:{plain_hall.port}{path}", origin="http://evil.example", subprotocols=protocols
+    with (
+        pytest.raises(InvalidStatus),
+        connect(
+            f"ws://127.0.0.1:{plain_hall.port}{path}", origin="http://evil.example", subprotocols=protocols
+        ),
     ):
         pass  # pragma: no cover
 
@@ -260,7 +284,9 @@ def test_a_port_in_use_is_one_clear_line(plain_hall, tmp_path):
 
 
 def test_wrong_arguments_are_status_two(tmp_path):
-    done = subprocess.run([sys.executable, "-m", "hall_app", "serve", "--walk", "fly"], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "hall_app", "serve", "--walk", "fly"], capture_output=True, text=True
+    )
     assert done.returncode == 2
 
 
@@ -289,5 +315,9 @@ def _stat(entry: str) -> str:
 def serve_once(content, tmp_path, port: int | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "hall_app", "serve", "--content", content, "--data", tmp_path / "data"]
     return subprocess.run(
-        [*command, "--port", str(port or free_port())], capture_output=True, text=True, timeout=60, check=False
+        [*command, "--port", str(port or free_port())],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
     )

@@ -20,6 +20,7 @@ from hall_app.walking import (
     step,
     wall,
 )
+from hall_app.walking.session import ARREARS, BUCKET
 
 FLOOR = Floor(((0, 0), (10, 0), (10, 6), (0, 6)), (wall((5, 0), (5, 6), 0.1), Round(2, 2, 0.4)))
 GRID = bake(FLOOR, cell=0.05)
@@ -92,7 +93,7 @@ def test_eye_is_clamped():
 
 
 def test_speed_hack_gets_no_farther_than_real_time():
-    """Ten times as many inputs as time allows: half a second in advance and 2 % of clock error, no more."""
+    """Ten times as many inputs as time allows: a full bucket in advance and 2 % of clock error, no more."""
     long = Floor(((0, 0), (60, 0), (60, 4), (0, 4)))
     walk = WalkSession(long, bake(long, cell=0.1), Pose(55, 2), now=0.0)
     begin, seq, refused = walk.pose.x, 0, 0
@@ -101,7 +102,7 @@ def test_speed_hack_gets_no_farther_than_real_time():
         reply = walk.inputs(batch, now=k / 30)
         refused += reply.refused
         assert reply.seq == seq
-    assert begin - walk.pose.x <= SPEED * (2.0 * 1.02 + 0.5) + 1e-6
+    assert begin - walk.pose.x <= SPEED * (2.0 * 1.02 + BUCKET) + 1e-6
     assert refused > 800
 
 
@@ -119,7 +120,7 @@ def test_clock_running_backwards_gives_no_time():
     walk = session()
     for k in range(1, 40):
         walk.inputs([forward(k, dt=0.25)], now=-k)
-    assert START.x - walk.pose.x <= SPEED * 0.5 + 1e-9
+    assert START.x - walk.pose.x <= SPEED * BUCKET + 1e-9
 
 
 def test_server_mode_walks_held_keys_at_sixty_hertz():
@@ -138,7 +139,7 @@ def test_server_mode_walks_held_keys_at_sixty_hertz():
 def test_server_mode_catches_up_half_a_second_at_most():
     walk = session(mode="server")
     walk.keys(1, 0, math.pi / 2, 1.6, now=0.0)
-    assert START.x - walk.tick(100.0).x <= SPEED * 0.5 + SPEED / 60
+    assert START.x - walk.tick(100.0).x <= SPEED * ARREARS + SPEED / 60
 
 
 def test_goto_finds_the_nearest_reachable_spot():
