@@ -14,7 +14,7 @@ Behaviour = Callable[["Stage", str], None]
 
 BEHAVIOURS: dict[str, Behaviour] = {}
 
-NEAR = 2.6  # [m] from which an exhibit notices its visitor
+NEAR = 3.0  # [m] from which an exhibit notices its visitor
 TURN_RATE = 0.25  # [rad/s]
 TURN_PERIOD = 1 / 15  # [s]
 

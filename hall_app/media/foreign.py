@@ -76,7 +76,7 @@ def back_height(radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
 
 
 def _mirror(fineness: Fineness) -> Any:
-    """The disc with relief on its back, coloured by height; face to +z."""
+    """The disc with relief on its back, coloured by height; the back, which museums show, to +z."""
     import trimesh
 
     rings, sectors = fineness.rings, fineness.sectors
@@ -97,6 +97,7 @@ def _mirror(fineness: Fineness) -> Any:
     starts = np.cumsum([0, *(len(part[0]) for part in parts)])
     faces = np.concatenate([part[1] + start for part, start in zip(parts, starts, strict=False)])
     mesh = trimesh.Trimesh(vertices, faces, process=False)
+    mesh.apply_transform(trimesh.transformations.rotation_matrix(np.pi, [0, 1, 0]))
     mesh.apply_transform(trimesh.transformations.rotation_matrix(TILT, [1, 0, 0]))
     mesh.apply_translation([0, CENTRE, 0])
     tone = np.concatenate(tones)[:, None]

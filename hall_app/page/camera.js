@@ -104,6 +104,9 @@ export function orbit(azimuth, polar) { mutable()?.cameraControl?.rotate(azimuth
 
 export function dolly(metres) { mutable()?.cameraControl?.dolly(metres, false); }
 
+/** Vertical field of view [rad]. */
+export function fieldOfView() { return ((mutable()?.camera?.fov ?? 58) * Math.PI) / 180; }
+
 /** Where the picture is seen from now, in world metres: what a visitor really sees, used by tests. */
 export function displayed() {
   const camera = mutable()?.camera;

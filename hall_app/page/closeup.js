@@ -23,10 +23,17 @@ export function createCloseup(ui) {
     }));
   }
 
+  // Far enough for the exhibit to fill what panel or sheet leaves of the picture, with a margin.
+  function fitting(radius) {
+    const { panel, sheet } = ui.visible;
+    const free = Math.min(innerWidth - panel, innerHeight - sheet) / innerHeight;
+    return (1.15 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
+  }
+
   function place() {
     const { x, y, z, radius } = studio;
-    const distance = radius * 2.5;
-    camera.orbitGestures(radius * 0.25, radius * 5);
+    const distance = fitting(radius);
+    camera.orbitGestures(radius * 0.1, Math.max(radius * 5, 1.5 * distance));
     camera.lookAt([x + distance * 0.25, y + radius * 0.15, z + distance * 0.97], [x, y, z]);
     camera.leaveRoom(ui.visible);
   }

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Part", "box", "disc", "drum", "floor_tiles", "merged", "prism"]
+__all__ = ["Part", "box", "cap", "disc", "drum", "floor_tiles", "linear", "merged", "prism"]
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def _sides(polygon: Floats, low: float, high: float, colour: Floats, dim: tuple[
     return Part(corners.reshape(-1, 3), faces.astype(np.int32), shade.reshape(-1, 1) * colour)
 
 
-def _cap(polygon: Floats, height: float, colour: Floats, *, up: bool = True) -> Part:
+def cap(polygon: Floats, height: float, colour: Floats, *, up: bool = True) -> Part:
     """A flat lid on any simple polygon."""
     import shapely
 
@@ -107,7 +107,7 @@ def prism(
     paint = linear(colour)
     parts = [_sides(np.asarray(polygon, float), low, high, paint, dim)]
     if lid:
-        parts.append(_cap(np.asarray(polygon, float), high, paint))
+        parts.append(cap(np.asarray(polygon, float), high, paint))
     return merged(parts)
 
 
@@ -148,7 +148,7 @@ def drum(
 def disc(at: tuple[float, float], radius: float, height: float, colour: str, *, sides: int = 32) -> Part:
     """A round plate at `height` [m], seen from above."""
     angle = 2 * np.pi * np.arange(sides) / sides
-    return _cap(
+    return cap(
         np.column_stack([np.cos(angle), np.sin(angle)]) * radius + np.asarray(at), height, linear(colour)
     )
 
@@ -170,5 +170,5 @@ def floor_tiles(outline: Floats, edge: float, colour: str, *, seed: int = 7) -> 
             for polygon in shapely.get_parts(piece):
                 if polygon.geom_type == "Polygon" and polygon.area > 1e-6:
                     ring = np.asarray(polygon.exterior.coords)[:-1]
-                    parts.append(_cap(ring, 0.0, paint * tone))
+                    parts.append(cap(ring, 0.0, paint * tone))
     return merged(parts)

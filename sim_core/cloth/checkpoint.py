@@ -59,7 +59,8 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
 def load_checkpoint(path: Path, key: str) -> RunState | None:
     """The state saved at `path`, or None if there is none, it is damaged, or belongs to other inputs."""
     try:
-        with np.load(path, allow_pickle=False) as data:
+        # Opened here, since numpy leaves a damaged file open.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
             if str(data["key"]) != key:
                 return None
             frame, last, safety, rollbacks, substeps = data["numbers"]

@@ -22,6 +22,7 @@ FRAME = 1 / 25  # [s]
 ENGINE_VERSION = 1  # raise when equal inputs give other bits: old checkpoints are then left alone
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2)))
 _MAX_HALVINGS = 8
+CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]
 OnFrame = Callable[[int, np.ndarray], None]
@@ -86,7 +87,7 @@ def drape(
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
     checkpoint: Path | None = None,
-    checkpoint_seconds: float = 5.0,
+    checkpoint_seconds: float | None = None,
 ) -> Drape:
     """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
 
@@ -106,6 +107,7 @@ def drape(
         if on_frame:
             on_frame(index, frame)
     saved = time.perf_counter()
+    pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
     schedule = run.schedule()
     while state.frame < len(schedule):
         phase, gravity = schedule[state.frame]
@@ -117,7 +119,7 @@ def drape(
             on_frame(state.frame - 1, state.positions.astype(np.float32))
         if phase.rest is not None and state.trace[-1][0] < phase.rest:
             state.frame = _end_of(schedule, state.frame, phase)
-        if checkpoint and time.perf_counter() - saved > checkpoint_seconds:
+        if checkpoint and time.perf_counter() - saved > pause:
             save_checkpoint(checkpoint, key, state)
             saved = time.perf_counter()
     if checkpoint:

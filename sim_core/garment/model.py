@@ -84,7 +84,8 @@ class Garment:
         """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
         path = Path(path)
         try:
-            with np.load(path, allow_pickle=False) as data:
+            # Opened here, since numpy leaves a damaged file open.
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
                 header = json.loads(data["header"].tobytes().decode())
                 arrays = {name: np.ascontiguousarray(data[name]) for name in _ARRAYS}
         except FileNotFoundError as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,14 @@ class Gathering:
     drop: float = 0.03
     skew: float = 0.10
     spread: float = 0.35
+
+    def resolved(self, width: float, edge: float) -> Gathering:
+        """As many folds as a mesh of step `edge` [m] shows, four edges to a fold; fewer folds are gathered less."""
+        folds = min(self.folds, width / (4 * edge))
+        loose = (1 - folds / self.folds) * 0.85
+        at_bar = self.at_bar + loose * max(0.75 * width - self.at_bar, 0.0)
+        at_end = self.at_end + loose * max(0.85 * width - self.at_end, 0.0)
+        return replace(self, folds=folds, at_bar=at_bar, at_end=at_end)
 
 
 def gathered_strip(

@@ -55,7 +55,8 @@ def scarf_on_stand(
     per simulated second; checkpoint: file for going on after an interrupt. Raises SimCoreError where the
     strip is too long for the stand, and what meshing, weaving and the solver raise.
     """
-    stand, gathering = stand or Stand(), gathering or Gathering()
+    stand, width = stand or Stand(), float(np.ptp(pattern.outline[:, 0]))
+    gathering = gathering or Gathering().resolved(width, edge or pattern.edge)
     _check_fits(pattern, stand, gathering)
     clock = _Clock()
     panel = pattern.mesh(edge)

@@ -1,0 +1,184 @@
+"""Solids and contact: exact distances, friction, nothing ends inside, layers do not pass each other."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim_core import metrics
+from sim_core.cloth import (
+    Box,
+    Capsule,
+    Contact,
+    Cylinder,
+    GridSdf,
+    HalfSpace,
+    Material,
+    Phase,
+    Sheet,
+    Solid,
+    Union,
+    drape,
+)
+from sim_core.cloth.pairs import edge_edge_pairs, vertex_face_pairs
+from sim_core.cloth.scenes import bar, equilateral_sheet
+from sim_core.errors import SimCoreError
+from sim_core.garment.solids import solid_mesh
+
+SOLIDS = [
+    Capsule((0.1, 0.2, -0.1), (-0.2, 0.5, 0.3), 0.07),
+    Capsule((0.0, 0.1, 0.0), (0.0, 0.1, 0.0), 0.1),
+    Cylinder((0.1, -0.1, 0.0), (0.3, 0.4, 0.2), 0.12, 0.03),
+    Cylinder((0.0, 0.0, 0.0), (0.0, 0.3, 0.0), 0.1),
+    Box((0.1, 0.1, -0.2), (0.3, 0.2, 0.5), 0.04, 0.6),
+    Box((0.0, 0.0, 0.0), (0.2, 0.2, 0.2)),
+]
+
+
+@pytest.mark.parametrize("solid", SOLIDS, ids=lambda s: type(s).__name__)
+def test_distance_agrees_with_a_fine_mesh_of_the_solid(solid: Solid) -> None:
+    vertices, faces = solid_mesh(solid, 160)
+    assert np.abs(solid.distance(vertices)).max() < 1e-9
+    points = np.random.default_rng(5).uniform(-0.6, 0.8, (400, 3))
+    signed = solid.distance(points)
+    outside = signed > 0
+    assert outside.any()
+    measured = metrics.surface_distance(points, vertices, faces)
+    assert np.abs(measured[outside] - signed[outside]).max() < 4e-4
+    deep = np.concatenate([vertices.mean(0)[None], 0.5 * (vertices + vertices.mean(0))])
+    assert (solid.distance(deep) < 0).all()
+    assert metrics.surface_distance(deep, vertices, faces) == pytest.approx(-solid.distance(deep), abs=4e-4)
+
+
+def test_union_is_the_nearest_part_and_floor_counts() -> None:
+    points = np.random.default_rng(6).uniform(-0.5, 1.0, (500, 3))
+    union = Union((*SOLIDS, HalfSpace((0.0, -0.2, 0.0), (0.0, 1.0, 0.0))))
+    expected = np.min([s.distance(points) for s in (*SOLIDS, HalfSpace((0.0, -0.2, 0.0), (0, 1, 0)))], axis=0)
+    outside = expected > 0
+    assert union.distance(points)[outside] == pytest.approx(expected[outside], abs=1e-12)
+    assert ((union.distance(points) < 0) == (expected < 0)).all()
+
+
+def test_sampled_grid_approximates_the_solid() -> None:
+    solid = Capsule((-0.1, 0.0, 0.0), (0.1, 0.0, 0.0), 0.08)
+    grid = GridSdf.sample(solid, np.array([-0.3, -0.2, -0.2]), np.array([0.3, 0.2, 0.2]), 0.01)
+    points = np.random.default_rng(7).uniform([-0.25, -0.15, -0.15], [0.25, 0.15, 0.15], (2000, 3))
+    off = np.abs(grid.distance(points) - solid.distance(points))
+    assert off[solid.distance(points) > 0.0].max() < 4e-4
+    with pytest.raises(SimCoreError, match="more than one grid"):
+        Union((grid, grid)).packed()
+
+
+@pytest.mark.parametrize(
+    ("make", "word"),
+    [
+        (lambda: Capsule((0, 0, 0), (1, 0, 0), -1.0), "capsule.radius"),
+        (lambda: Capsule((0, 0, float("nan")), (1, 0, 0), 1.0), "capsule.start"),
+        (lambda: Cylinder((0, 0, 0), (0, 0, 0), 1.0), "cylinder"),
+        (lambda: Cylinder((0, 0, 0), (0, 1, 0), 1.0, 0.7), "rounding"),
+        (lambda: Box((0, 0, 0), (1, 0, 1)), "box"),
+        (lambda: GridSdf((0, 0, 0), 0.1, np.zeros((1, 2, 2))), "grid"),
+        (lambda: Union(()), "union"),
+    ],
+)
+def test_impossible_solids_are_named(make, word: str) -> None:
+    with pytest.raises(SimCoreError, match=word):
+        make().packed()
+
+
+def slide(mu: float, slope: float, seconds: float) -> float:
+    """Distance [m] a small sheet slides down an incline of tan = slope."""
+    angle = math.atan(slope)
+    normal, along = (
+        np.array([0.0, math.cos(angle), math.sin(angle)]),
+        np.array([0.0, -math.sin(angle), math.cos(angle)]),
+    )
+    material = Material(0.1, 50.0, 0.3, 1e-5, mu, 0.0, 2e-5)
+    sheet = Sheet.of(*equilateral_sheet(0.08, 0.08, 0.02), material)
+    start = sheet.rest[:, :1] * [1.0, 0, 0] + sheet.rest[:, 1:] * along + 0.003 * normal
+    contact = Contact(clearance=0.003, sample_clearance=0.002)
+    ramp = HalfSpace((0, 0, 0), (normal[0], normal[1], normal[2]))
+    end = drape(sheet, start, [Phase(seconds)], collider=ramp, contact=contact)
+    return float(((end.positions - start) @ along).mean())
+
+
+@pytest.mark.parametrize("slope", [0.3, 0.6])
+def test_slips_exactly_when_the_slope_exceeds_friction(slope: float) -> None:
+    assert abs(slide(slope * 1.02, slope, 0.4)) < 1e-4
+    moved, angle = slide(slope * 0.9, slope, 0.4), math.atan(slope)
+    expected = 0.5 * 9.81 * (math.sin(angle) - 0.9 * slope * math.cos(angle)) * 0.4**2
+    assert moved == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.slow
+def test_after_a_drape_over_a_bar_nothing_is_inside_and_no_layer_crosses() -> None:
+    scene = bar(0.025, seconds=1.2)
+    end = drape(scene.sheet, scene.positions, scene.phases, collider=scene.collider, contact=scene.contact)
+    assert isinstance(scene.collider, Capsule)
+    inside = metrics.penetration(end.positions, scene.sheet.faces, *solid_mesh(scene.collider, 64))
+    assert (inside.vertices, inside.midpoints, inside.centroids) == (0, 0, 0)
+    assert min(inside.clearance) > 0.0005
+    assert metrics.intersections(end.positions, scene.sheet.faces) == 0
+    assert end.positions[:, 1].max() < 1.04
+    assert end.positions[:, 1].min() > 0.5
+    strain = metrics.area_strain(scene.sheet.rest, end.positions, scene.sheet.faces)
+    assert np.percentile(np.abs(strain), 95) < 0.03
+
+
+def test_grid_and_analytic_bar_hold_the_cloth_alike() -> None:
+    scene = bar(0.05, seconds=0.4)
+    assert scene.collider is not None
+    grid = GridSdf.sample(scene.collider, np.array([-0.4, 0.8, -0.2]), np.array([0.4, 1.2, 0.2]), 0.008)
+    ends = [
+        drape(scene.sheet, scene.positions, scene.phases[:1], collider=c, contact=scene.contact).positions
+        for c in (scene.collider, grid)
+    ]
+    assert scene.collider.distance(ends[1]).min() > 0.002
+    assert ends[0].mean(0) == pytest.approx(
+        ends[1].mean(0), abs=0.01
+    )  # single folds part, the whole does not
+
+
+def test_two_layers_falling_on_each_other_stay_apart() -> None:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.02)
+    both = np.concatenate([rest, rest + [0.5, 0.0]])
+    sheet = Sheet.of(
+        both, np.concatenate([faces, faces + len(rest)]), Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0)
+    )
+    low = np.column_stack([rest[:, 0], np.full(len(rest), 0.003), rest[:, 1]])
+    high = low + [0.007, 0.05, 0.011]
+    contact = Contact(clearance=0.002, sample_clearance=0.001, thickness=0.004)
+    end = drape(sheet, np.concatenate([low, high]), [Phase(0.4)], collider=HalfSpace(), contact=contact)
+    assert metrics.intersections(end.positions, sheet.faces) == 0
+    assert end.positions[len(rest) :, 1].min() > end.positions[: len(rest), 1].max() - 0.001
+    without = Contact(clearance=0.002, sample_clearance=0.001)
+    sunk = drape(sheet, np.concatenate([low, high]), [Phase(0.4)], collider=HalfSpace(), contact=without)
+    assert sunk.positions[len(rest) :, 1].max() < 0.0035
+
+
+def test_candidate_pairs_are_all_pairs_within_reach() -> None:
+    """Against the brute force, on a crumpled sheet."""
+    rng = np.random.default_rng(8)
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.04)
+    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
+    x, reach = rng.normal(0, 0.03, (len(rest), 3)), 0.01
+    found = {(int(v), int(f)) for v, f in vertex_face_pairs(x, rest, faces, reach, 0.0)}
+    expected = {
+        (v, f)
+        for f, face in enumerate(faces)
+        for v in range(len(x))
+        if v not in face and metrics.surface_distance(x[v : v + 1], x, face[None])[0] < reach
+    }
+    assert found == expected
+    t = np.linspace(0, 1, 60)
+    dense = x[edges[:, 0], None] * (1 - t[:, None]) + x[edges[:, 1], None] * t[:, None]
+    met = {tuple(sorted(map(int, pair))) for pair in edge_edge_pairs(x, rest, faces, edges, reach, 0.0)}
+    for a in range(len(edges)):
+        for b in range(a + 1, len(edges)):
+            if set(edges[a]) & set(edges[b]):
+                continue
+            gap = np.sqrt(((dense[a][:, None] - dense[b][None]) ** 2).sum(-1)).min()
+            if gap < reach - 1e-4:
+                assert (a, b) in met
+            elif gap > reach + 2e-3:
+                assert (a, b) not in met

@@ -1,0 +1,149 @@
+"""Whole runs: analytic sag, order in time, watchdog, determinism, resuming, bad input."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
+from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge
+from sim_core.errors import SimCoreError
+
+
+def test_hanging_sheet_sags_as_the_nonlinear_bar_does() -> None:
+    """nu = 0: N(F) = k (F^3 - F) / 2 = rho g (L - s), integrated over the length; error below 0.1 %."""
+    k, rho, length = 49.0, 0.05, 0.5
+    material = Material(rho, k, 0.0, 1e-6, mass_damping=0.0, stiffness_damping=1e-4)
+    sheet = Sheet.of(*equilateral_sheet(0.05, length, 0.0125), material)
+    start = np.column_stack([sheet.rest[:, 0], -sheet.rest[:, 1], np.zeros(len(sheet.rest))])
+    pins = np.flatnonzero(sheet.rest[:, 1] < 1e-9)
+    end = drape(sheet, start, [Phase(0.6, damping=40.0), Phase(0.6, damping=90.0)], pins=pins.tolist())
+    s = np.linspace(0, length, 4001)
+    stretch = [np.real(max(np.roots([k / 2, 0, -k / 2, -rho * 9.81 * (length - u)]), key=np.real)) for u in s]
+    sag = float(np.trapezoid(np.array(stretch) - 1, s))
+    bottom = sheet.rest[:, 1] > length - 1e-9
+    assert -end.positions[bottom, 1].mean() - length == pytest.approx(sag, rel=1e-3)
+    assert end.rest_max < 1e-7
+
+
+def test_second_order_in_time() -> None:
+    material = Material(0.05, 49.0, 0.3, 4.9e-5, mass_damping=0.5, stiffness_damping=0.0)
+    scene = hang_edge(0.1, seconds=0.16, material=material)
+
+    def end(substeps: int) -> np.ndarray:
+        return drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins, substeps=substeps).positions
+
+    finest = end(1280)
+    errors = [np.abs(end(n) - finest).max() for n in (80, 160, 320)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders.min() > 1.8
+    assert errors[-1] < 1e-5
+
+
+def test_step_follows_the_tangent_of_a_stretched_sheet() -> None:
+    """Stretched by 1.6 the tangent is (3 F^2 - 1) / 2 = 3.3 times stiffer: a step fixed at rest would diverge."""
+    material = Material(0.05, 50.0, 0.3, 5e-5, mass_damping=0.0, stiffness_damping=0.0)
+    sheet = Sheet.of(*equilateral_sheet(0.3, 0.3, 0.05), material)
+    rest = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))])
+    calm = drape(sheet, rest, [Phase(0.04, (0.0, 0.0))]).substeps
+    tight = drape(sheet, rest * 1.6, [Phase(0.04, (0.0, 0.0))])
+    assert tight.substeps > 1.5 * calm
+    assert np.isfinite(tight.positions).all()
+    assert np.abs(tight.positions).max() < 1.0
+
+
+def test_watchdog_rolls_back_a_frame_that_blows_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a step that is promised stable but is not, the frame is done again with half of it."""
+    from sim_core.cloth import draping
+
+    scene = hang_edge(0.1, seconds=0.08)
+    true_step = draping.stable_step
+    monkeypatch.setattr(draping, "stable_step", lambda *a, **k: 3.0 * true_step(*a, **k))
+    end = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+    assert end.rollbacks >= 1
+    assert np.isfinite(end.positions).all()
+    assert end.positions[:, 1].min() > -0.2
+    monkeypatch.setattr(draping, "stable_step", lambda *a, **k: 1e4 * true_step(*a, **k))
+    with pytest.raises(SimCoreError, match="unstable"):
+        drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+
+
+def test_same_input_same_bits() -> None:
+    scene = bar(0.04, seconds=0.4)
+    ends = [
+        drape(scene.sheet, scene.positions, scene.phases, collider=scene.collider, contact=scene.contact)
+        for _ in range(2)
+    ]
+    assert ends[0].positions.tobytes() == ends[1].positions.tobytes()
+    assert ends[0].velocities.tobytes() == ends[1].velocities.tobytes()
+
+
+class _Stopped(Exception):
+    pass
+
+
+def test_resumed_run_gives_the_bits_of_an_uninterrupted_one(tmp_path: Path) -> None:
+    scene = bar(0.04, seconds=0.4)
+    file = tmp_path / "run.npz"
+
+    def run(frames: list[np.ndarray], *, stop_at: int | None = None, checkpoint: Path | None = None):
+        def on_frame(index: int, x: np.ndarray) -> None:
+            assert index == len(frames)
+            frames.append(x)
+            if index == stop_at:
+                raise _Stopped
+
+        kinds = {"collider": scene.collider, "contact": scene.contact, "on_frame": on_frame}
+        where = {"checkpoint": checkpoint, "checkpoint_seconds": 0.0}
+        return drape(scene.sheet, scene.positions, scene.phases, **kinds, **where)
+
+    whole: list[np.ndarray] = []
+    expected = run(whole)
+    with pytest.raises(_Stopped):
+        run([], stop_at=8, checkpoint=file)
+    assert file.is_file()
+    resumed: list[np.ndarray] = []
+    result = run(resumed, checkpoint=file)
+    assert result.positions.tobytes() == expected.positions.tobytes()
+    assert result.velocities.tobytes() == expected.velocities.tobytes()
+    assert (result.frames, result.substeps) == (expected.frames, expected.substeps)
+    assert [f.tobytes() for f in resumed] == [f.tobytes() for f in whole]
+    assert not file.exists()
+
+
+def test_damaged_or_foreign_checkpoints_are_left_aside(tmp_path: Path) -> None:
+    scene = hang_edge(0.2, seconds=0.08)
+    file = tmp_path / "run.npz"
+    expected = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+    for content in (b"", b"no archive at all", b"PK\x03\x04 cut off"):
+        file.write_bytes(content)
+        end = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins, checkpoint=file)
+        assert end.positions.tobytes() == expected.positions.tobytes()
+
+
+def test_phase_ends_early_once_at_rest() -> None:
+    sheet = Sheet.of(*equilateral_sheet(0.2, 0.2, 0.1), Material(0.05, 50.0))
+    x = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))])
+    phases = [Phase(2.0, (0.0, 0.0), rest=1e-9, label="still"), Phase(0.08, (0.0, 0.0))]
+    assert drape(sheet, x, phases).frames == 3
+
+
+def test_bad_input_is_named() -> None:
+    scene = hang_edge(0.25, seconds=0.04)
+    sheet, x, phases = scene.sheet, scene.positions, scene.phases
+    with pytest.raises(SimCoreError, match="positions: shape"):
+        drape(sheet, x[:-1], phases)
+    broken = x.copy()
+    broken[3, 1] = np.inf
+    with pytest.raises(SimCoreError, match="positions: vertex 3 is not finite"):
+        drape(sheet, broken, phases)
+    with pytest.raises(SimCoreError, match="velocities: shape"):
+        drape(sheet, x, phases, velocities=np.zeros(3))
+    with pytest.raises(SimCoreError, match="pins: index 99"):
+        drape(sheet, x, phases, pins=[99])
+    with pytest.raises(SimCoreError, match="phases"):
+        drape(sheet, x, [])
+    with pytest.raises(SimCoreError, match="phases"):
+        drape(sheet, x, [Phase(float("nan"))])
+    with pytest.raises(SimCoreError, match="halfspace.normal"):
+        drape(sheet, x, phases, collider=HalfSpace((0, 0, 0), (0, 0, 0)))

@@ -1,0 +1,292 @@
+"""Patterns, the garment file, stand, levels of detail and GLB, on small and quick garments."""
+
+import json
+import struct
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from sim_core import metrics
+from sim_core.errors import FileProblem, OutlineError, SimCoreError
+from sim_core.garment import Garment, Pattern, Stand, choose_detail, detail, write_glb
+from sim_core.garment.detail import locate
+from sim_core.garment.solids import solid_mesh
+from sim_core.mesh import panel_mesh
+
+SHEET = 'name = "test"\nedge = 0.05\nsize = [0.4, 1.0]\n'
+
+
+@dataclass(frozen=True)
+class Maps:
+    albedo: np.ndarray
+    normal: np.ndarray
+    opacity: np.ndarray
+    size: tuple[float, float]
+
+
+def maps(opacity: int = 120) -> Maps:
+    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
+    return Maps(
+        np.full((32, 32, 3), 200, np.uint8), flat, np.full((32, 32), opacity, np.uint8), (0.004, 0.005)
+    )
+
+
+def arched(edge: float = 0.02) -> Garment:
+    """A strip bent over the bar as a half pipe with straight legs."""
+    outline = np.array([[0, 0], [0.3, 0], [0.3, 1.0], [0, 1.0]], float)
+    panel = panel_mesh(outline, edge=edge)
+    s, r = panel.vertices[:, 1] - 0.5, 0.02
+    angle = np.clip(s / r, -np.pi / 2, np.pi / 2)
+    down = np.maximum(np.abs(s) - r * np.pi / 2, 0)
+    x = np.column_stack([0.15 - panel.vertices[:, 0], 1.5 + r * np.cos(angle) - down, r * np.sin(angle)])
+    x[:, 2] += 0.02 * down * np.sin(40 * panel.vertices[:, 0])
+    facts = {"stand": {}, "edge": edge}
+    seams = np.zeros((0, 2), np.int32)
+    return Garment("strip", outline, panel.vertices, panel.faces.astype(np.int32), x, seams, provenance=facts)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", ["empty", "needs name"]),
+        ("   \n", ["empty"]),
+        ("name = ", ["not valid TOML"]),
+        (SHEET + "sise = 3\n", ["sise", "unknown key", "known: name"]),
+        ('name = "x"\nedge = 0.01\n', ["size", "outline"]),
+        (SHEET + "outline = [[0,0],[1,0],[0,1]]\n", ["either size", "or outline"]),
+        ('name = "x"\nsize = [0.4, 1.0]\n', ["edge"]),
+        ('name = "x"\nedge = -1\nsize = [0.4, 1.0]\n', ["edge", "-1"]),
+        ('name = "x"\nedge = 0.05\nsize = [0.4, nan]\n', ["size"]),
+        ('name = "x"\nedge = 0.05\nsize = [0.4, 900.0]\n', ["size", "20 m"]),
+        ('name = "x"\nedge = 0.05\noutline = [[0,0],[1,1]]\n', ["outline", "3"]),
+        ('name = "x"\nedge = 0.05\noutline = [[0,0],[1,1],[1,0],[0,1]]\n', ["outline", "cross"]),
+        ('name = "x"\nedge = 0.05\noutline = [[0,0],[1,1],[2,2]]\n', ["outline"]),
+        (SHEET + 'dye = "red"\n', ["dye", "red"]),
+    ],
+)
+def test_bad_patterns_name_file_key_and_remedy(tmp_path: Path, text: str, words: list[str]) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(text, "utf-8")
+    with pytest.raises(FileProblem) as caught:
+        Pattern.load(path)
+    message = str(caught.value)
+    assert message.startswith(str(path))
+    assert "\n" not in message
+    assert all(word in message for word in words), message
+
+
+def test_missing_pattern_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileProblem, match="cannot be read"):
+        Pattern.load(tmp_path / "none.toml")
+
+
+def test_patterns_mesh_in_their_own_axes(tmp_path: Path) -> None:
+    path = tmp_path / "ok.toml"
+    path.write_text(SHEET + 'dye = "#ff8000"\n', "utf-8")
+    pattern = Pattern.load(path)
+    panel = pattern.mesh()
+    assert np.ptp(panel.vertices, axis=0) == pytest.approx([0.4, 1.0])
+    assert pattern.dye == pytest.approx((1.0, 128 / 255, 0.0))
+    with pytest.raises(OutlineError):
+        Pattern("bow", np.array([[0, 0], [1, 1], [1, 0], [0, 1]], float), 0.05).check()
+
+
+def test_garment_file_round_trip(tmp_path: Path) -> None:
+    garment = arched(0.05).noted(note="纱", numbers=[1, 2.5])
+    garment.save(tmp_path / "g.npz")
+    back = Garment.load(tmp_path / "g.npz")
+    assert back.digest() == garment.digest()
+    assert (back.name, back.weave, back.material, back.provenance, back.dye) == (
+        garment.name,
+        garment.weave,
+        garment.material,
+        garment.provenance,
+        garment.dye,
+    )
+    moved = Garment(**{**garment.__dict__, "positions": garment.positions + 1e-15})
+    assert moved.digest() != garment.digest()
+
+
+def test_bad_garment_files_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "g.npz"
+    with pytest.raises(FileProblem, match="no such file"):
+        Garment.load(path)
+    arched(0.05).save(path)
+    whole = path.read_bytes()
+    for content in (b"", b"not an archive", whole[: len(whole) // 2]):
+        path.write_bytes(content)
+        with pytest.raises(FileProblem, match=r"g.npz: not a garment file .* bake"):
+            Garment.load(path)
+    np.savez(
+        path, header=np.frombuffer(json.dumps({"format": 99}).encode(), np.uint8), **_arrays(arched(0.05))
+    )
+    with pytest.raises(FileProblem, match="another format"):
+        Garment.load(path)
+
+
+def _arrays(garment: Garment) -> dict[str, np.ndarray]:
+    return {name: getattr(garment, name) for name in ("outline", "rest", "faces", "positions", "seams")}
+
+
+def test_inconsistent_garments_are_refused() -> None:
+    good = arched(0.05)
+    for change, word in (
+        ({"faces": good.faces + len(good.rest)}, "faces"),
+        ({"positions": good.positions[:-1]}, "must agree"),
+        ({"positions": np.full_like(good.positions, np.nan)}, "not finite"),
+        ({"rest": good.positions}, "rest"),
+    ):
+        with pytest.raises(SimCoreError, match=word):
+            Garment(**{**good.__dict__, **change})
+
+
+def test_stand_shows_what_it_collides_with() -> None:
+    stand = Stand()
+    for part in stand.parts():
+        vertices, faces = solid_mesh(part, 24)
+        shape = trimesh.Trimesh(vertices, faces, process=False)
+        assert shape.is_watertight
+        assert shape.volume > 0
+        assert np.abs(part.distance(vertices)).max() < 1e-9
+    vertices, faces = stand.mesh()
+    assert vertices[:, 1].min() == pytest.approx(0.0, abs=1e-9)
+    assert stand.collider().distance(vertices).max() < 1e-9
+    assert 1.5 < vertices[:, 1].max() < 1.6
+    with pytest.raises(SimCoreError, match="stand.bar_radius"):
+        Stand(bar_radius=-1.0)
+
+
+def test_points_are_found_in_their_face() -> None:
+    panel = panel_mesh(np.array([[0, 0], [0.5, 0.0], [0.45, 0.4], [0.02, 0.3]]), edge=0.03)
+    rng = np.random.default_rng(2)
+    weight = rng.dirichlet([1, 1, 1], 300)
+    face = rng.integers(0, len(panel.faces), 300)
+    points = np.einsum("nk,nkc->nc", weight, panel.vertices[panel.faces[face]])
+    found, w = locate(points, panel.vertices, panel.faces)
+    assert np.einsum("nk,nkc->nc", w, panel.vertices[panel.faces[found]]) == pytest.approx(points, abs=1e-12)
+    assert w.min() >= 0
+
+
+def test_detail_is_coarser_measured_and_clear_of_the_stand() -> None:
+    fine = arched(0.02)
+    coarse = detail(fine, 0.05)
+    assert len(coarse.faces) < len(fine.faces) / 4
+    apart = coarse.provenance["detail"]["hausdorff"]
+    again = metrics.hausdorff(fine.positions, fine.faces, coarse.positions, coarse.faces, spacing=0.003)
+    assert apart["max_m"] == pytest.approx(again.max, rel=0.2)
+    assert 0 < apart["mean_m"] < apart["p99_m"] <= apart["max_m"] < 0.03
+    inside = metrics.penetration(coarse.positions, coarse.faces, *Stand().mesh(48))
+    assert inside.total == 0
+    seams = np.array([[0, 1]], np.int32)
+    with pytest.raises(SimCoreError, match="seams"):
+        detail(Garment(**{**fine.__dict__, "seams": seams}), 0.05)
+
+
+def test_cheapest_detail_within_the_budget() -> None:
+    fine = arched(0.02)
+    chosen = choose_detail(fine, 0.006, edges=[0.025, 0.03, 0.04, 0.08])
+    facts = chosen.provenance["detail"]
+    assert facts["hausdorff"]["p99_m"] <= 0.006 < facts["tried"][-1]["p99_m"]
+    assert len(chosen.faces) == facts["triangles"] < len(fine.faces)
+    strict = choose_detail(fine, 1e-6, edges=[0.03])
+    assert strict.digest() == fine.digest()
+    assert strict.provenance["detail"]["tried"]
+
+
+def chunks(path: Path) -> tuple[dict, bytes]:
+    data = path.read_bytes()
+    magic, version, size = struct.unpack_from("<4sII", data)
+    assert (magic, version, size) == (b"glTF", 2, len(data))
+    length, kind = struct.unpack_from("<I4s", data, 12)
+    assert kind == b"JSON"
+    assert length % 4 == 0
+    second, kind = struct.unpack_from("<I4s", data, 20 + length)
+    assert kind == b"BIN\0"
+    assert 28 + length + second == len(data)
+    return json.loads(data[20 : 20 + length]), data[28 + length :]
+
+
+def accessor(document: dict, blob: bytes, number: int) -> np.ndarray:
+    entry = document["accessors"][number]
+    view = document["bufferViews"][entry["bufferView"]]
+    assert view["byteOffset"] % 4 == 0
+    kind = {5126: "<f4", 5125: "<u4", 5123: "<u2"}[entry["componentType"]]
+    width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[entry["type"]]
+    return np.frombuffer(blob, kind, entry["count"] * width, view["byteOffset"]).reshape(-1, width)
+
+
+@pytest.mark.parametrize("precision", ["close", "hall"])
+def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
+    garment, path = arched(0.04), tmp_path / "g.glb"
+    size = write_glb(path, garment, maps(), precision=precision)
+    assert size == path.stat().st_size < 1_500_000
+    document, blob = chunks(path)
+    assert [node["name"] for node in document["nodes"]] == ["strip", "stand"]
+    for entry in document["meshes"]:
+        primitive = entry["primitives"][0]
+        position = accessor(document, blob, primitive["attributes"]["POSITION"])
+        told = document["accessors"][primitive["attributes"]["POSITION"]]
+        assert told["min"] == pytest.approx(position.min(0).tolist())
+        assert told["max"] == pytest.approx(position.max(0).tolist())
+        index = accessor(document, blob, primitive["indices"]).ravel()
+        assert index.max() < len(position)
+        normal = accessor(document, blob, primitive["attributes"]["NORMAL"])
+        assert np.linalg.norm(normal, axis=1) == pytest.approx(np.ones(len(normal)), abs=1e-5)
+    uv = accessor(document, blob, document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"])
+    assert uv == pytest.approx(garment.rest * 1000, abs=1e-3)
+    cloth, lacquer = document["materials"]
+    assert cloth["doubleSided"] is True
+    assert cloth["alphaMode"] == "BLEND"
+    assert "KHR_materials_sheen" in cloth["extensions"]
+    assert "alphaMode" not in lacquer
+    if precision == "close":
+        scale = cloth["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"][
+            "scale"
+        ]
+        assert scale == pytest.approx([1 / 4.0, 1 / 5.0])  # tiles of 4 x 5 mm over coordinates in mm
+    else:
+        assert "baseColorTexture" not in cloth["pbrMetallicRoughness"]
+        assert cloth["pbrMetallicRoughness"]["baseColorFactor"][3] == pytest.approx(120 / 255, abs=1e-3)
+
+
+def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
+    garment = arched(0.04)
+    write_glb(tmp_path / "g.glb", garment, maps(), precision="close")
+    scene = trimesh.load(tmp_path / "g.glb")
+    assert isinstance(scene, trimesh.Scene)
+    strip = scene.geometry["strip"]
+    assert isinstance(strip, trimesh.Trimesh)
+    assert strip.faces.shape == garment.faces.shape
+    assert scene.bounds[1][1] == pytest.approx(1.558, abs=0.01)
+    assert "stand" in scene.geometry
+
+
+def test_opaque_cloth_is_opaque_and_dye_is_the_mean_colour(tmp_path: Path) -> None:
+    garment = Garment(**{**arched(0.05).__dict__, "dye": (0.7, 0.2, 0.1)})
+    write_glb(tmp_path / "g.glb", garment, maps(255), precision="close")
+    document, blob = chunks(tmp_path / "g.glb")
+    cloth = document["materials"][0]
+    assert "alphaMode" not in cloth
+    view = document["bufferViews"][document["images"][0]["bufferView"]]
+    picture = np.asarray(
+        Image.open(BytesIO(blob[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]))
+    )
+    assert picture.shape == (32, 32, 3)
+    linear = ((picture[0, 0] / 255 + 0.055) / 1.055) ** 2.4
+    shown = linear * np.array(cloth["pbrMetallicRoughness"]["baseColorFactor"][:3])
+    wanted = ((np.array([0.7, 0.2, 0.1]) + 0.055) / 1.055) ** 2.4
+    assert shown == pytest.approx(wanted, rel=0.03)
+
+
+def test_wrong_precision_and_maps_are_named(tmp_path: Path) -> None:
+    with pytest.raises(SimCoreError, match="precision"):
+        write_glb(tmp_path / "g.glb", arched(0.05), maps(), precision="middle")  # pyright: ignore[reportArgumentType]
+    wrong = Maps(maps().albedo, maps().normal, np.zeros((4, 4), np.uint8), (0.004, 0.004))
+    with pytest.raises(SimCoreError, match="maps"):
+        write_glb(tmp_path / "g.glb", arched(0.05), wrong)
+    assert not (tmp_path / "g.glb").exists()

@@ -1,0 +1,82 @@
+"""The published measures against shapes whose answer is known."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from sim_core import metrics
+from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.errors import SimCoreError
+
+
+def plane(height: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    rest, faces = equilateral_sheet(1.0, 1.0, 0.1)
+    return np.column_stack([rest[:, 0], np.full(len(rest), height), rest[:, 1]]), faces
+
+
+def test_hausdorff_of_parallel_planes_is_their_distance() -> None:
+    (a, f), (b, g) = plane(), plane(0.03)
+    apart = metrics.hausdorff(a, f, b, g, spacing=0.02)
+    assert (apart.mean, apart.p99, apart.max) == pytest.approx((0.03, 0.03, 0.03), abs=1e-12)
+    assert metrics.hausdorff(a, f, a, f, spacing=0.02).max < 1e-12
+
+
+def test_hausdorff_sees_a_single_spike_from_its_side() -> None:
+    a, f = plane()
+    b = a.copy()
+    b[60, 1] = 0.2
+    apart = metrics.hausdorff(a, f, b, f, spacing=0.01)
+    assert apart.b_to_a[2] == pytest.approx(0.2, abs=1e-9)
+    assert apart.a_to_b[2] < 0.2
+    assert apart.max == apart.b_to_a[2]
+
+
+def test_surface_distance_is_exact_for_mixed_face_sizes() -> None:
+    box = trimesh.creation.box((1.0, 2.0, 3.0))
+    fine = trimesh.creation.icosphere(subdivisions=3, radius=0.2).apply_translation([2.0, 0, 0])
+    both = trimesh.util.concatenate([box, fine])
+    points = np.random.default_rng(1).uniform(-3, 3, (120, 3))
+    triangles = np.asarray(both.triangles)
+    nearest = [
+        trimesh.triangles.closest_point(triangles, np.repeat(p[None], len(triangles), 0)) for p in points
+    ]
+    expected = [np.linalg.norm(near - p, axis=1).min() for near, p in zip(nearest, points, strict=True)]
+    assert metrics.surface_distance(points, both.vertices, both.faces) == pytest.approx(expected, abs=1e-9)
+
+
+def test_penetration_counts_vertices_midpoints_and_centroids() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
+    triangle = np.array([[-1.0, 0, 0], [1.0, 0, 0], [0, 0, 2.0]])
+    hit = metrics.penetration(triangle, np.array([[0, 1, 2]]), ball.vertices, ball.faces)
+    assert (hit.vertices, hit.midpoints, hit.centroids, hit.total) == (0, 1, 0, 1)
+    assert hit.clearance[1] == pytest.approx(-0.1, abs=2e-3)
+    away = metrics.penetration(triangle + [0, 0.2, 0], np.array([[0, 1, 2]]), ball.vertices, ball.faces)
+    assert away.total == 0
+    assert away.clearance[1] == pytest.approx(0.1, abs=2e-3)
+
+
+def test_area_strain_of_a_scaled_sheet() -> None:
+    rest, faces = equilateral_sheet(0.3, 0.2, 0.05)
+    bigger = np.column_stack([rest[:, 0] * 1.1, rest[:, 1] * 0.9, np.zeros(len(rest))])
+    assert metrics.area_strain(rest, bigger, faces) == pytest.approx(
+        np.full(len(faces), 1.1 * 0.9 - 1), abs=1e-12
+    )
+
+
+def test_intersections_are_counted() -> None:
+    v = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.2, 1], [2, 2, 0.5]], float)
+    crossing = np.array([[0, 1, 2], [3, 4, 5]])
+    assert metrics.intersections(v, crossing) == 2
+    v[3:, :2] += 5
+    assert metrics.intersections(v, crossing) == 0
+    assert metrics.intersections(*plane()) == 0
+
+
+def test_bad_meshes_are_named() -> None:
+    a, f = plane()
+    with pytest.raises(SimCoreError, match="shapes"):
+        metrics.surface_distance(a, a[:, :2], f)
+    with pytest.raises(SimCoreError, match="not finite"):
+        metrics.intersections(np.full_like(a, np.nan), f)
+    with pytest.raises(SimCoreError, match="name no vertex"):
+        metrics.intersections(a, f + len(a))
