@@ -23,6 +23,8 @@ __all__ = [
     "surface_distance",
 ]
 
+FAR = 0.1  # [m] nobody asks how far beyond this a cloth is from a solid
+
 
 @dataclass(frozen=True)
 class Distances:
@@ -37,7 +39,10 @@ class Distances:
 
 @dataclass(frozen=True)
 class Penetration:
-    """How many vertices, edge midpoints and centroids lie inside a solid, and the least distance [m] of each."""
+    """How many vertices, edge midpoints and centroids lie inside a solid, and the least distance [m] of each.
+
+    Distances above FAR are told as FAR.
+    """
 
     vertices: int
     midpoints: int
@@ -83,24 +88,34 @@ def sample_surface(vertices: np.ndarray, faces: np.ndarray, spacing: float) -> n
 
 
 @njit(cache=True, error_model="numpy")
+def _segment2(x, y, z, q, r):
+    """Squared distance of (x, y, z) to the segment q r."""
+    sx, sy, sz = r[0] - q[0], r[1] - q[1], r[2] - q[2]
+    px, py, pz = x - q[0], y - q[1], z - q[2]
+    long2 = sx * sx + sy * sy + sz * sz
+    t = min(1.0, max(0.0, (px * sx + py * sy + pz * sz) / long2)) if long2 > 0.0 else 0.0
+    return (px - t * sx) ** 2 + (py - t * sy) ** 2 + (pz - t * sz) ** 2
+
+
+@njit(cache=True, error_model="numpy")
+def _side(x, y, z, q, r, nx, ny, nz):
+    """On which side of q r, seen along n, lies the point?"""
+    ux, uy, uz = r[0] - q[0], r[1] - q[1], r[2] - q[2]
+    px, py, pz = x - q[0], y - q[1], z - q[2]
+    return (uy * pz - uz * py) * nx + (uz * px - ux * pz) * ny + (ux * py - uy * px) * nz
+
+
+@njit(cache=True, error_model="numpy")
 def _gap2(p, a, b, c):
     """Squared distance of p to triangle a b c: its plane where the foot is inside, else the nearest side."""
-    n = np.cross(b - a, c - a)
-    size2 = n @ n
-    if size2 > 0.0:
-        u = np.cross(c - b, p - b) @ n
-        v = np.cross(a - c, p - c) @ n
-        w = np.cross(b - a, p - a) @ n
-        if u >= 0.0 and v >= 0.0 and w >= 0.0:
-            return ((p - a) @ n) ** 2 / size2
-    best = np.inf
-    for q, r in ((a, b), (b, c), (c, a)):
-        s = r - q
-        long2 = s @ s
-        t = min(1.0, max(0.0, ((p - q) @ s) / long2)) if long2 > 0.0 else 0.0
-        away = p - q - t * s
-        best = min(best, away @ away)
-    return best
+    x, y, z = p[0], p[1], p[2]
+    ux, uy, uz, vx, vy, vz = b[0] - a[0], b[1] - a[1], b[2] - a[2], c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    size2 = nx * nx + ny * ny + nz * nz
+    if size2 > 0.0 and _side(x, y, z, a, b, nx, ny, nz) >= 0.0:
+        if _side(x, y, z, b, c, nx, ny, nz) >= 0.0 and _side(x, y, z, c, a, nx, ny, nz) >= 0.0:
+            return ((x - a[0]) * nx + (y - a[1]) * ny + (z - a[2]) * nz) ** 2 / size2
+    return min(_segment2(x, y, z, a, b), _segment2(x, y, z, b, c), _segment2(x, y, z, c, a))
 
 
 @njit(cache=True, error_model="numpy")
@@ -116,8 +131,10 @@ def _nearest(points, vertices, faces, start, entry, guess):
     return out
 
 
-def surface_distance(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Exact unsigned distance (N,) [m] of points (N, 3) to a mesh.
+def surface_distance(
+    points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, *, limit: float = np.inf
+) -> np.ndarray:
+    """Exact unsigned distance (N,) [m] of points (N, 3) to a mesh; beyond `limit` [m] the limit is returned.
 
     The nearest centroid bounds the distance; every face whose bounding ball could beat it is then measured.
     """
@@ -127,12 +144,17 @@ def surface_distance(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray
     centre = corner.mean(1)
     radius = np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max(1)
     size = np.ceil(np.log2(np.maximum(radius, 1e-9)))
-    out = np.full(len(points), np.inf)
+    out = np.full(len(points), float(limit))
     for group in np.unique(size):  # faces in classes of size: a few long ones must not make every search wide
         member = np.flatnonzero(size == group)
-        out = np.minimum(
-            out, _to_class(points, vertices, faces[member], centre[member], radius[member].max(), out)
+        tree, reach = KDTree(centre[member]), float(radius[member].max())
+        far, near = tree.query(points, k=min(10, len(member)), distance_upper_bound=limit + reach)
+        far, near = far.reshape(len(points), -1), near.reshape(len(points), -1)
+        close = np.flatnonzero(far[:, 0] - reach < out)
+        found = _to_class(
+            points[close], vertices, faces[member], tree, reach, far[close], near[close], out[close]
         )
+        out[close] = found
     return out
 
 
@@ -140,17 +162,17 @@ def _to_class(
     points: np.ndarray,
     vertices: np.ndarray,
     faces: np.ndarray,
-    centre: np.ndarray,
+    tree: KDTree,
     reach: float,
+    far: np.ndarray,
+    near: np.ndarray,
     limit: np.ndarray,
 ) -> np.ndarray:
     """Distance (N,) to faces of about one size; the few nearest centroids decide most points, the rest search on."""
-    tree, few = KDTree(centre), min(10, len(centre))
-    far, near = tree.query(points, k=few)
-    far, near = far.reshape(len(points), few), near.reshape(len(points), few)
-    start = np.arange(0, few * len(points) + 1, few)
-    best = _nearest(points, vertices, faces, start, near.ravel(), np.minimum(far[:, 0], limit))
-    left = np.flatnonzero(far[:, -1] - reach < best) if few < len(centre) else np.zeros(0, int)
+    few, known = far.shape[1], np.isfinite(far)
+    start = np.r_[0, np.cumsum(known.sum(1))]
+    best = _nearest(points, vertices, faces, start, near[known].astype(np.int64), limit)
+    left = np.flatnonzero(far[:, -1] - reach < best) if few < len(faces) else np.zeros(0, int)
     for part in np.array_split(left, max(1, len(left) // 20000)):
         if len(part) == 0:
             continue
@@ -214,7 +236,7 @@ def _winding(points, vertices, faces):
 
 def _signed(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Signed distance to closed meshes, which may overlap; negative inside any."""
-    distance = surface_distance(points, vertices, faces)
+    distance = surface_distance(points, vertices, faces, limit=FAR)
     ones = np.ones(3 * len(faces))
     joined = coo_matrix((ones, (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (len(vertices),) * 2)
     _, part = connected_components(joined, directed=False)

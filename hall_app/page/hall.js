@@ -85,7 +85,7 @@ async function start() {
   const walking = () => entered && !opened;
   const { gaze } = createGaze(document.documentElement, scene.eye, walking);
   const closeup = createCloseup(ui); // before the walking keys: in a close-up the arrows turn the exhibit
-  const keys = createKeys(walking);
+  const keys = createKeys(walking, camera.requestRender); // a key wakes the renderer in time for the next frame
   gaze.yaw = scene.start.yaw;
 
   const walk = createWalk({ scene, grid, display, mark: findMark, on: {
@@ -145,14 +145,17 @@ async function start() {
     camera.look([walk.pose.x, gaze.eye, walk.pose.z], ahead);
   }
 
-  let last = performance.now(), drawn = "";
+  let last = performance.now(), drawn = "", moving = false;
   function frame(now) {
     const dt = Math.min((now - last) / 1000, LONGEST_FRAME);
     last = now;
     if (walking()) {
       const forward = Math.max(-1, Math.min(1, keys.forward() + stick.forward));
       const right = Math.max(-1, Math.min(1, keys.right() + stick.right));
-      walk.frame(dt, forward, right, gaze.yaw, gaze.eye);
+      // The frame in which a key goes down was mostly stood still.
+      const started = moving || !(forward || right) ? dt : Math.min(dt, Math.max(now - keys.since(), 4) / 1000);
+      moving = Boolean(forward || right);
+      walk.frame(started, forward, right, gaze.yaw, gaze.eye);
       ui.pose({ x: walk.pose.x, z: walk.pose.z, yaw: gaze.yaw });
     }
     if (display === "page" && !opened) {
@@ -161,11 +164,12 @@ async function start() {
       const view = [walk.pose.x, walk.pose.z, gaze.eye, gaze.yaw, gaze.pitch].map((v) => v.toFixed(5)).join();
       if (view !== drawn || now < settleUntil) { drawn = view; walked(); }
     }
-    requestAnimationFrame(frame);
   }
   // viser places its own first camera once the scene arrives: hold ours until the picture stands.
   let settleUntil = performance.now() + 60000;
-  requestAnimationFrame(frame);
+  window.HALL.beforeFrame = frame; // runs ahead of viser's renderer: what it sets is drawn in the same frame
+  const beat = () => requestAnimationFrame(beat);
+  beat();
 
   await load(scene, ui, hooks);
   settleUntil = performance.now() + 1500;

@@ -15,6 +15,7 @@ function typing(target) {
 /** Listens in the capture phase, before viser's own listeners. `active()` says whether keys walk at all. */
 export function createKeys(active, onPress) {
   const held = new Set();
+  let since = 0; // [ms] when the first of the held keys went down
   const any = (codes) => [...codes].some((code) => held.has(code));
 
   addEventListener("keydown", (event) => {
@@ -22,7 +23,10 @@ export function createKeys(active, onPress) {
     event.stopImmediatePropagation();
     if (!active()) return;
     event.preventDefault();
-    if (!event.repeat) { held.add(event.code); onPress?.(event.code); }
+    if (event.repeat) return;
+    if (held.size === 0) since = event.timeStamp;
+    held.add(event.code);
+    onPress?.(event.code);
   }, true);
   addEventListener("keyup", (event) => {
     if (held.delete(event.code)) event.stopImmediatePropagation();
@@ -34,6 +38,7 @@ export function createKeys(active, onPress) {
 
   return {
     release,
+    since: () => since,
     forward: () => Number(any(FORWARD)) - Number(any(BACK)),
     right: () => Number(any(RIGHT)) - Number(any(LEFT)),
   };

@@ -37,6 +37,7 @@ class Phase:
     damping: float | None = None
     friction: float | None = None
     label: str = "draping"
+    speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
     rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
 
 
@@ -239,7 +240,7 @@ class _Run:
             float(c.clearance),
             float(c.sample_clearance),
             float(c.cap),
-            float(c.speed_limit),
+            float(c.speed_limit if phase.speed_limit is None else phase.speed_limit),
         )
         args = (
             self.stencil,

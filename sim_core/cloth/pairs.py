@@ -116,9 +116,14 @@ def normals_of(x, faces):
 
 
 @njit(cache=True, error_model="numpy")
-def _one_sheet(rest, i, j, near2, n, m):
-    """Neighbours on a stretch that is not folded cannot touch: close at rest, normals within 60 degrees."""
-    if (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2 > near2:
+def _one_sheet(x, rest, i, j, near2, n, m):
+    """Neighbours on a stretch that is neither folded nor crushed cannot touch: close at rest, still at least half
+    as far apart as there, normals within 60 degrees. (The outer layers of a Z-fold have equal normals.)
+    """
+    flat2 = (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2
+    if flat2 > near2:
+        return False
+    if (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2 < 0.25 * flat2:
         return False
     return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.5
 
@@ -165,7 +170,7 @@ def vertex_face_pairs(x, rest, faces, reach, near):
                     gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
                     i = order[q]
                     if gap > cell * cell or _one_sheet(
-                        rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]
+                        x, rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]
                     ):
                         continue
                     if _vertex_near_face(x, i, faces[f], reach):
@@ -226,7 +231,7 @@ def edge_edge_pairs(x, rest, faces, edges, reach, near):
                     if gap > span * span:
                         continue
                     g = order[q]
-                    if _one_sheet(rest, edges[e, 0], edges[g, 0], near * near, balls[s, 4:], balls[q, 4:]):
+                    if _one_sheet(x, rest, edges[e, 0], edges[g, 0], near * near, balls[s, 4:], balls[q, 4:]):
                         continue
                     if _edges_near(x, edges[e], edges[g], reach):
                         pairs = _grown(pairs, count)

@@ -3,7 +3,7 @@
     python tests/bench/bench_page.py [--runs 5] [--content FOLDER] [--json FILE]
 
 Each run is a new browser context (cold cache), 1280x720, from navigation until every node of the hall is drawn.
-Bytes are counted by the browser's own protocol: HTTP bodies as transferred and socket frames, both directions in.
+Bytes are counted on the wire between browser and server: everything, headers and sockets, both directions.
 """
 
 import argparse
@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from bench.browser import open_browser  # noqa: E402
 from bench.track import latencies, watch  # noqa: E402
+from bench.wire import Wire, wire  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
 FRAMES = """
@@ -35,38 +36,18 @@ FRAMES = """
 """
 
 
-def count_bytes(page) -> dict[str, int]:
-    """Totals that grow while the page loads."""
-    total = {"http": 0, "socket": 0, "requests": 0}
-    session = page.context.new_cdp_session(page)
-    session.send("Network.enable")
-
-    def finished(event) -> None:
-        total["http"] += int(event["encodedDataLength"])
-        total["requests"] += 1
-
-    def framed(event) -> None:
-        payload = event["response"]["payloadData"]
-        total["socket"] += len(payload) * 3 // 4 if event["response"]["opcode"] == 2 else len(payload)
-
-    session.on("Network.loadingFinished", finished)
-    session.on("Network.webSocketFrameReceived", framed)
-    session.on("Network.webSocketFrameSent", framed)
-    return total
-
-
-def visit(browser, url: str, exhibits: list[str]) -> dict:
+def visit(browser, line: Wire, exhibits: list[str]) -> dict:
     """One cold visit: load, walk, open every exhibit's close-up."""
+    carried = line.carried()
     context = browser.new_context(viewport={"width": 1280, "height": 720})
     page = context.new_page()
     watch(page)
-    bytes_in = count_bytes(page)
     began = time.perf_counter()
-    page.goto(url)
+    page.goto(f"http://127.0.0.1:{line.port}/?lang=en")
     page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=180_000)
     load = time.perf_counter() - began
     page_clock = page.evaluate("() => hall.loadedAt") / 1000
-    first_view = dict(bytes_in)
+    first_view = line.carried() - carried
     page.click("[data-testid=enter]")
     page.locator("[data-testid=enter-screen]").wait_for(state="detached")
     page.wait_for_timeout(500)
@@ -80,9 +61,7 @@ def visit(browser, url: str, exhibits: list[str]) -> dict:
     return {
         "load_s": load,
         "page_clock_s": page_clock,
-        "http_bytes": first_view["http"],
-        "socket_bytes": first_view["socket"],
-        "requests": first_view["requests"],
+        "bytes": first_view,
         "key_to_camera_ms": statistics.median(found),
         "frame_ms": statistics.median(frames),
         "closeup_s": closeups,
@@ -120,6 +99,7 @@ def main() -> int:
     with (
         tempfile.TemporaryDirectory() as work,
         running_hall(arguments.content, Path(work)) as hall,
+        wire(hall.port) as line,
         open_browser() as browser,
     ):
         import urllib.request
@@ -128,15 +108,13 @@ def main() -> int:
             exhibits = [entry["id"] for entry in json.load(answer)["exhibits"]]
         runs = []
         for number in range(arguments.runs):
-            runs.append(visit(browser, f"{hall.url}/?lang=en", exhibits))
+            runs.append(visit(browser, line, exhibits))
             print(f"run {number + 1}: load {runs[-1]['load_s']:.2f} s", flush=True)
     summary = {
         "cores": os.cpu_count(),
         "runs": arguments.runs,
         "load_s": spread([run["load_s"] for run in runs]),
-        "megabytes": spread([(run["http_bytes"] + run["socket_bytes"]) / 1e6 for run in runs]),
-        "http_megabytes": spread([run["http_bytes"] / 1e6 for run in runs]),
-        "socket_megabytes": spread([run["socket_bytes"] / 1e6 for run in runs]),
+        "megabytes": spread([run["bytes"] / 1e6 for run in runs]),
         "frame_ms": spread([run["frame_ms"] for run in runs]),
         "key_to_camera_ms": spread([run["key_to_camera_ms"] for run in runs]),
         "closeup_s": {name: spread([run["closeup_s"][name] for run in runs]) for name in exhibits},

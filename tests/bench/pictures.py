@@ -1,6 +1,6 @@
 """The README's pictures: Enter screen, hall, close-up, form, phone, taken from the running hall.
 
-    python tests/bench/pictures.py [--content FOLDER] [--out docs/pictures]
+python tests/bench/pictures.py [--content FOLDER] [--out docs/pictures]
 """
 
 import argparse
@@ -76,7 +76,9 @@ def phone(browser, url: str, out: Path) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--content", type=Path, default=ROOT / "assets")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures")
     arguments = parser.parse_args()

@@ -37,7 +37,8 @@ RECORD = """
 }
 """
 
-# From the key event's own time stamp to the first frame whose camera stands elsewhere.
+# From the key event's own time stamp until a frame whose camera stands elsewhere has been handed to the renderer:
+# the message arrives when all of a frame's callbacks are through.
 # Listens from the start, ahead of the page's own listeners.
 LATENCY = """
 () => {
@@ -46,13 +47,15 @@ LATENCY = """
   addEventListener("keydown", (event) => {
     if (event.code !== "KeyW" || event.repeat || !window.hall) return;
     const before = hall.displayed();
-    const look = () => {
+    const channel = new MessageChannel();
+    const ask = () => requestAnimationFrame(() => channel.port2.postMessage(0));
+    channel.port1.onmessage = () => {
       const [x, , z] = hall.displayed();
       if (Math.hypot(x - before[0], z - before[2]) > 1e-4) {
         window.__latency.push(performance.now() - event.timeStamp);
-      } else if (performance.now() - event.timeStamp < 3000) requestAnimationFrame(look);
+      } else if (performance.now() - event.timeStamp < 3000) ask();
     };
-    requestAnimationFrame(look);
+    ask();
   }, true);
 }
 """

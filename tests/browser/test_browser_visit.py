@@ -208,8 +208,13 @@ def test_escape_leads_back_to_the_same_spot(page):
 
 def test_typing_never_walks(page):
     closed(page)
-    page.evaluate("() => { const f = document.createElement('input'); f.id = 'probe';"
-                  "document.querySelector('#hall-ui').append(f); f.style.pointerEvents = 'auto'; f.focus(); }")  # fmt: skip
+    page.evaluate("""() => {
+        const field = document.createElement("input");
+        field.id = "probe";
+        field.style.pointerEvents = "auto";
+        document.querySelector("#hall-ui").append(field);
+        field.focus();
+    }""")
     before = displayed(page)
     page.keyboard.type("wasd wasd")
     page.wait_for_timeout(300)
@@ -238,8 +243,19 @@ def test_questionnaire_is_answered_and_exported(page, shipped_hall):
     form.locator("input[type=checkbox]").first.check(force=True)
     form.locator("#send").click()
     page.locator("[data-testid=toast]", has_text="").first.wait_for(timeout=20_000)
-    command = [sys.executable, "-m", "survey.cli", "export", "--questionnaire", "garment", "--data", shipped_hall.data]
-    done = subprocess.run([*command, "--content", shipped_hall.content], capture_output=True, text=True, check=True)
+    command = [
+        sys.executable,
+        "-m",
+        "survey.cli",
+        "export",
+        "--questionnaire",
+        "garment",
+        "--data",
+        shipped_hall.data,
+    ]
+    done = subprocess.run(
+        [*command, "--content", shipped_hall.content], capture_output=True, text=True, check=True
+    )
     rows = list(csv.DictReader(io.StringIO(done.stdout.lstrip("\ufeff"))))
     assert len(rows) == 1
     assert "4" in rows[0].values()

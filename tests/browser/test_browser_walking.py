@@ -5,8 +5,8 @@ import statistics
 
 import pytest
 from bench.browser import displayed, enter, pose
-from bench.delay import delayed
 from bench.track import latencies, place, solids_of_scene, walk, watch
+from bench.wire import wire
 from plain_hall import write_plain_hall
 from running_hall import running_hall
 
@@ -18,10 +18,10 @@ VIEW = {"width": 480, "height": 270}
 @pytest.fixture(scope="module", params=[0.0, 0.08], ids=["0ms", "80ms"])
 def visit(request, plain_hall, chromium):
     """A visitor in the plain hall, with added round trip."""
-    with delayed(plain_hall.port, request.param) as port:
+    with wire(plain_hall.port, request.param) as line:
         page = chromium.new_page(viewport=VIEW)
         watch(page)
-        enter(page, f"http://127.0.0.1:{port}/?lang=en")
+        enter(page, f"http://127.0.0.1:{line.port}/?lang=en")
         page.scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
         yield page
         page.close()

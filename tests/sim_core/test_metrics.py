@@ -34,14 +34,21 @@ def test_hausdorff_sees_a_single_spike_from_its_side() -> None:
 def test_surface_distance_is_exact_for_mixed_face_sizes() -> None:
     box = trimesh.creation.box((1.0, 2.0, 3.0))
     fine = trimesh.creation.icosphere(subdivisions=3, radius=0.2).apply_translation([2.0, 0, 0])
-    both = trimesh.util.concatenate([box, fine])
+    both = trimesh.Trimesh(
+        np.vstack([box.vertices, fine.vertices]),
+        np.vstack([box.faces, fine.faces + len(box.vertices)]),
+        process=False,
+    )
     points = np.random.default_rng(1).uniform(-3, 3, (120, 3))
     triangles = np.asarray(both.triangles)
     nearest = [
         trimesh.triangles.closest_point(triangles, np.repeat(p[None], len(triangles), 0)) for p in points
     ]
     expected = [np.linalg.norm(near - p, axis=1).min() for near, p in zip(nearest, points, strict=True)]
-    assert metrics.surface_distance(points, both.vertices, both.faces) == pytest.approx(expected, abs=1e-9)
+    vertices, faces = np.asarray(both.vertices), np.asarray(both.faces)
+    assert metrics.surface_distance(points, vertices, faces) == pytest.approx(expected, abs=1e-9)
+    capped = metrics.surface_distance(points, vertices, faces, limit=0.8)
+    assert capped == pytest.approx(np.minimum(expected, 0.8), abs=1e-9)
 
 
 def test_penetration_counts_vertices_midpoints_and_centroids() -> None:
@@ -53,6 +60,7 @@ def test_penetration_counts_vertices_midpoints_and_centroids() -> None:
     away = metrics.penetration(triangle + [0, 0.2, 0], np.array([[0, 1, 2]]), ball.vertices, ball.faces)
     assert away.total == 0
     assert away.clearance[1] == pytest.approx(0.1, abs=2e-3)
+    assert away.clearance[0] == metrics.FAR
 
 
 def test_area_strain_of_a_scaled_sheet() -> None:
