@@ -27,11 +27,19 @@ MAP_PIXELS = 512
 
 
 def bake_garment(
-    content: Content, exhibit: Exhibit, *, key: str, target: Path, work: Path, progress: Progress
+    content: Content,
+    exhibit: Exhibit,
+    *,
+    key: str,
+    target: Path,
+    work: Path,
+    progress: Progress,
+    film: bool = True,
 ) -> dict[str, Any]:
     """Bake the exhibit's garment into `target` and return the record that is kept beside it.
 
     work: where an interrupted bake left its state and where this one leaves its own; gone after success.
+    film: whether to film the drape, which needs PyAV.
     Raises what reading, meshing, weaving and draping raise, each naming file and remedy.
     """
     from sim_core.garment import choose_detail, write_glb
@@ -43,7 +51,7 @@ def bake_garment(
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     pattern, weave = _inputs(content, exhibit)
-    garment, seconds = _drape(content, exhibit, pattern, weave, work, out, progress)
+    garment, seconds = _drape(exhibit, pattern, weave, work, out, progress, film=film and film_possible())
     garment.save(out / "garment.npz")
     progress(0.86, "models")
     clock = time.perf_counter()
@@ -79,8 +87,8 @@ def _inputs(content: Content, exhibit: Exhibit):
     return Pattern.load(content.folder / recipe.pattern), Weave.load(content.folder / recipe.weave)
 
 
-def _drape(content: Content, exhibit: Exhibit, pattern, weave, work: Path, out: Path, progress: Progress):
-    """Simulate, and film it meanwhile where films can be made."""
+def _drape(exhibit: Exhibit, pattern, weave, work: Path, out: Path, progress: Progress, *, film: bool):
+    """Simulate, and film it meanwhile."""
     from sim_core.garment import Stand, scarf_on_stand
     from sim_core.weave import relax, texture_maps
 
@@ -105,17 +113,17 @@ def _drape(content: Content, exhibit: Exhibit, pattern, weave, work: Path, out: 
         "checkpoint": work / "drape.npz",
     }
     clock = time.perf_counter()
-    if not film_possible():
+    if not film:
         garment = scarf_on_stand(pattern, weave, **simulate)
         seconds["drape"] = round(time.perf_counter() - clock, 2)
         return garment, seconds
-    with filming(look, work / "film") as film:
-        garment = scarf_on_stand(pattern, weave, on_frame=lambda index, x: film.shoot(x), **simulate)
+    with filming(look, work / "film") as taken:
+        garment = scarf_on_stand(pattern, weave, on_frame=lambda index, x: taken.shoot(x), **simulate)
         seconds["drape"] = round(time.perf_counter() - clock, 2)
-        film.walk_round(garment.positions)
+        taken.walk_round(garment.positions)
         progress(0.6, "film")
         paths = (out / "drape.webm", out / "drape.mp4")
-        film.write(paths, _sound(), lambda share: progress(0.6 + 0.25 * share, "film"))
+        taken.write(paths, _sound(), lambda share: progress(0.6 + 0.25 * share, "film"))
         seconds["film"] = round(time.perf_counter() - clock - seconds["drape"], 2)
     return garment, seconds
 

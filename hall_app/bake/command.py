@@ -41,6 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--data", type=Path, default=Path("hall-data"), metavar="FOLDER", help="work folder")
     parser.add_argument("--exhibit", metavar="ID", help="this exhibit alone")
     parser.add_argument("-f", "--force", action="store_true", help="bake again what is up to date")
+    parser.add_argument("--no-film", action="store_true", help="leave the film of the drape out")
     parser.add_argument(
         "--media", action="store_true", help="make music, pictures and the foreign model again"
     )
@@ -101,7 +102,9 @@ def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments:
 
     work = arguments.data / "bake-work" / f"{exhibit.id}-{key}"
     with _progress(arguments.json, exhibit.id) as progress:
-        return bake_garment(content, exhibit, key=key, target=target, work=work, progress=progress)
+        return bake_garment(
+            content, exhibit, key=key, target=target, work=work, progress=progress, film=not arguments.no_film
+        )
 
 
 @contextmanager

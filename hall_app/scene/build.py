@@ -58,7 +58,7 @@ def _ceiling(outline: NDArray[np.float64], height: float) -> Part:
 
 
 def studio_glb(radius: float = 9.0) -> bytes:
-    """The close-up's surroundings: a plate on pale ground before a wall that catches the light, round an origin on the floor."""
+    """The close-up's surroundings: a plate on pale ground before a wall that catches the light."""
     rings, sides = 10, 36
     angle = 2 * np.pi * np.arange(sides) / sides
     rise = np.linspace(-0.35, 1.0, rings)
