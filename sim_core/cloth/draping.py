@@ -52,9 +52,9 @@ class Contact:
     sample_clearance: float = 0.001
     thickness: float = 0.0
     skin: float = 0.008
-    spring: float = 0.01
+    spring: float = 0.03
     self_friction: float = 0.2
-    every: int = 2
+    every: int = 1
     cap: float = 0.0005
     speed_limit: float = 1e3
 

@@ -20,7 +20,7 @@ class Gathering:
     at_bar: float = 0.12
     at_end: float = 0.22
     folds: float = 5.0
-    arch: float = 0.07
+    arch: float = 0.09
     drop: float = 0.03
     skew: float = 0.10
     spread: float = 0.35

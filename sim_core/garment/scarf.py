@@ -28,7 +28,7 @@ from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 GRAVITY = 9.81  # [m/s2]
 SAG = 0.005  # strain at the bar under the hanging end's own weight; more stretch than this would be seen
 PHASES = (
-    Phase(0.12, (0.0, 0.0), 50.0, 1.0, "letting go", 0.25),
+    Phase(0.08, (0.0, 0.0), 400.0, 1.0, "letting go"),
     Phase(0.28, (0.0, 2.0), 15.0, 1.0, "letting go"),
     Phase(0.60, (2.0, 9.81), 5.0, None, "falling"),
     Phase(1.40, (9.81, 9.81), 2.0, None, "swinging"),
