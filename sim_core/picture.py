@@ -98,18 +98,30 @@ def render(
     skies = _sky_visibility(drawn, len(surfaces))
     shadow = _shadow(surfaces, _unit(light.key))
     for surface, sky in zip(drawn, skies, strict=True):
-        world = np.ascontiguousarray(surface.vertices, float)
-        screen = _project(world, camera, width, height)
-        mesh = (screen, surface.faces.astype(np.int32), world, normals(world, surface.faces), sky)
-        look = np.array(
-            [surface.gloss, surface.sheen, surface.through, surface.alpha, float(surface is ground)]
+        screen = _project(surface.vertices, camera, width, height)
+        _draw(
+            surface, screen, sky, surface is ground, scene, shadow, (depth, image, layer_depth, layer_colour)
         )
-        colour = _linear(surface.colour)
-        fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour)
     if sheer:
         compose(image, depth, layer_depth, layer_colour)
     small = image.reshape(size[1], supersample, size[0], supersample, 3).mean(axis=(1, 3))
     return (255 * _srgb(small) + 0.5).astype(np.uint8)
+
+
+def _draw(
+    surface: Surface,
+    screen: np.ndarray,
+    sky: np.ndarray,
+    ground: bool,
+    scene: np.ndarray,
+    shadow: tuple[np.ndarray, np.ndarray, np.ndarray, float, float],
+    target: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+) -> None:
+    """One surface into the target (depth, image, sheer layers' depths and colours)."""
+    world, faces = np.ascontiguousarray(surface.vertices, float), surface.faces.astype(np.int32)
+    mesh = (screen, faces, world, normals(world, faces), sky)
+    look = np.array([surface.gloss, surface.sheen, surface.through, surface.alpha, float(ground)])
+    fragments(mesh, _linear(surface.colour), look, scene, shadow, *target)
 
 
 def save_png(path: Path, picture: np.ndarray) -> None:

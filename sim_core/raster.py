@@ -115,6 +115,19 @@ def _insert(layer_depth, layer_colour, z, r, alpha):
 
 
 @njit(cache=True, error_model="numpy")
+def _fragment(p, n, sky, colour, look, scene, shadow):
+    """Colour and slant of a fragment at p whose normal n is turned to the eye first."""
+    matrix, shadows, veils, veil, bias = shadow
+    size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
+    if n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2]) < 0.0:
+        size = -size
+    at = _place(matrix, p)
+    seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)
+    seen *= 1.0 - veil * (1.0 - _lit_at(at[0], at[1], at[2], veils, bias, 3))
+    return _shade(n / size, p, (seen, sky), colour, look, scene)
+
+
+@njit(cache=True, error_model="numpy")
 def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour):
     """Draws one surface. mesh: (screen (V, 3) with z = 1 / distance, faces, world, normals, sky (V,)).
 
@@ -123,7 +136,6 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
     surfaces (alpha < 1) go to the layers.
     """
     screen, faces, world, normals, sky = mesh
-    matrix, shadows, veils, veil, bias = shadow
     height, width = depth.shape
     for f in range(len(faces)):
         i, j, k = faces[f]
@@ -145,18 +157,11 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
                 if -near >= depth[py, px]:
                     continue
                 u, v, w = u * a[2] / near, v * b[2] / near, w * c[2] / near
-                p = u * world[i] + v * world[j] + w * world[k]
-                n = u * normals[i] + v * normals[j] + w * normals[k]
-                n /= math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
-                if (
-                    n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2])
-                    < 0.0
-                ):
-                    n = -n
-                at = _place(matrix, p)
-                seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)
-                seen *= 1.0 - veil * (1.0 - _lit_at(at[0], at[1], at[2], veils, bias, 3))
-                r, facing = _shade(n, p, (seen, u * sky[i] + v * sky[j] + w * sky[k]), colour, look, scene)
+                p, n = (
+                    u * world[i] + v * world[j] + w * world[k],
+                    u * normals[i] + v * normals[j] + w * normals[k],
+                )
+                r, facing = _fragment(p, n, u * sky[i] + v * sky[j] + w * sky[k], colour, look, scene, shadow)
                 if look[3] >= 1.0:
                     depth[py, px] = -near
                     image[py, px] = r

@@ -149,7 +149,7 @@ export function glow(name, on) {
       material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
       const still = material.userData.still;
       material.emissive.setHex(on ? 0xffd9a0 : still.hex);
-      material.emissiveIntensity = on ? 0.16 : still.strength;
+      material.emissiveIntensity = on ? 0.09 : still.strength;
     }
   }
   requestRender();

@@ -81,11 +81,11 @@ class HallScene:
             "/light/sky",
             sky_color=(255, 247, 232),
             ground_color=(128, 108, 88),
-            intensity=2.2,
+            intensity=1.6,
             position=(0.0, 10.0, 0.0),
         )
         scene.add_light_directional(
-            "/light/key", color=(255, 244, 226), intensity=2.4, position=(4.5, 7.5, 5.0)
+            "/light/key", color=(255, 244, 226), intensity=3.0, position=(7.0, 5.0, 3.5)
         )
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
         self.server.initial_camera.fov = FIELD_OF_VIEW

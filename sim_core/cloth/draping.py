@@ -104,28 +104,54 @@ def drape(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
     )
     state = (load_checkpoint(checkpoint, key) if checkpoint else None) or RunState(x, v)
-    for index, frame in enumerate(state.film):
-        if on_frame:
-            on_frame(index, frame)
-    saved = time.perf_counter()
     pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
-    schedule = run.schedule()
-    while state.frame < len(schedule):
-        phase, gravity = schedule[state.frame]
-        if progress:
-            progress(state.frame / len(schedule), phase.label)
-        run.frame(state, phase, gravity)
-        if on_frame:
-            state.film.append(state.positions.astype(np.float32)) if checkpoint else None
-            on_frame(state.frame - 1, state.positions.astype(np.float32))
-        if phase.rest is not None and state.trace[-1][0] < phase.rest:
-            state.frame = _end_of(schedule, state.frame, phase)
-        if checkpoint and time.perf_counter() - saved > pause:
-            save_checkpoint(checkpoint, key, state)
-            saved = time.perf_counter()
+    _run_frames(run, state, _Hooks(progress, on_frame, checkpoint, key, pause))
     if checkpoint:
         checkpoint.unlink(missing_ok=True)
     return _result(state, time.perf_counter() - start)
+
+
+@dataclass(frozen=True)
+class _Hooks:
+    """Who hears of the frames, and where they are kept."""
+
+    progress: Progress | None
+    on_frame: OnFrame | None
+    checkpoint: Path | None
+    key: str
+    pause: float
+
+    def heard(self, state: RunState) -> None:
+        """Hands the last frame on; kept for the film if the run may be interrupted."""
+        if self.on_frame:
+            frame = state.positions.astype(np.float32)
+            if self.checkpoint:
+                state.film.append(frame)
+            self.on_frame(len(state.trace) - 1, frame)
+
+
+def _run_frames(run: _Run, state: RunState, hooks: _Hooks) -> None:
+    """All frames that are left; on any interrupt the state goes to the checkpoint first."""
+    if hooks.on_frame:
+        for index, frame in enumerate(state.film):
+            hooks.on_frame(index, frame)
+    saved, schedule = time.perf_counter(), run.schedule()
+    try:
+        while state.frame < len(schedule):
+            phase, gravity = schedule[state.frame]
+            if hooks.progress:
+                hooks.progress(state.frame / len(schedule), phase.label)
+            run.frame(state, phase, gravity)
+            if phase.rest is not None and state.trace[-1][0] < phase.rest:
+                state.frame = _end_of(schedule, state.frame, phase)
+            hooks.heard(state)
+            if hooks.checkpoint and time.perf_counter() - saved > hooks.pause:
+                save_checkpoint(hooks.checkpoint, hooks.key, state)
+                saved = time.perf_counter()
+    except BaseException:
+        if hooks.checkpoint:
+            save_checkpoint(hooks.checkpoint, hooks.key, state)
+        raise
 
 
 def _result(state: RunState, seconds: float) -> Drape:

@@ -75,16 +75,17 @@ def _stiffness_times(stencil, x, tension, p, strain, change, out):
             total += stencil.coupling[e, k] * strain[stencil.around[e, k]]
         change[e] = 2.0 * total
     for i in range(len(x)):
-        for c in range(3):
-            total = 0.0
-            for k in range(stencil.rows[i], stencil.rows[i + 1]):
-                j, e = stencil.neighbour[k], stencil.edge_of[k]
-                weight = -stencil.bend[k]
-                if e >= 0:
-                    weight += tension[e]
-                    total += change[e] * (x[i, c] - x[j, c])
-                total += weight * (p[i, c] - p[j, c])
-            out[i, c] = total
+        fx = fy = fz = 0.0
+        for k in range(stencil.rows[i], stencil.rows[i + 1]):
+            j, e = stencil.neighbour[k], stencil.edge_of[k]
+            weight, pull = -stencil.bend[k], 0.0
+            if e >= 0:
+                weight += tension[e]
+                pull = change[e]
+            fx += pull * (x[i, 0] - x[j, 0]) + weight * (p[i, 0] - p[j, 0])
+            fy += pull * (x[i, 1] - x[j, 1]) + weight * (p[i, 1] - p[j, 1])
+            fz += pull * (x[i, 2] - x[j, 2]) + weight * (p[i, 2] - p[j, 2])
+        out[i, 0], out[i, 1], out[i, 2] = fx, fy, fz
 
 
 @njit(cache=True, error_model="numpy")
@@ -98,7 +99,8 @@ def _highest_frequency2(stencil, x, tension, start, rounds):
         p /= size
         _stiffness_times(stencil, x, tension, p, strain, change, out)
         for i in range(len(x)):
-            out[i] *= stencil.inverse_mass[i]
+            for c in range(3):
+                out[i, c] *= stencil.inverse_mass[i]
         value = np.sqrt((out * out).sum())
         p[:] = out
     return value

@@ -65,20 +65,17 @@ def _moved(x, mark, shift):
 
 @njit(cache=True, error_model="numpy")
 def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v, last, dt, substeps):
-    """Simulates `substeps` steps of dt [s]; x, v (V, 3) change in place, v lives half a step behind x.
+    """Simulates `substeps` steps of dt [s]; x, v (V, 3) change in place; returns how often pairs were looked for.
 
-    `last` is the previous step (0 at the start), so that a change of step keeps second order. Lists of
-    near samples and pairs are rebuilt before the cloth has moved half their margin (for pairs: off its mean).
-    Returns how often pairs were looked for.
+    v lives half a step behind x; `last` is the previous step (0 at the start). Lists are renewed before the cloth
+    has moved half their margin (for pairs: off its mean).
     """
     strain, tension = np.zeros(len(stencil.edges)), np.zeros(len(stencil.edges))
     force, inverse = np.zeros_like(x), stencil.inverse_mass
     solids, layers = len(packed.kind) > 0, shell.thickness > 0.0
-    mark_solid, mark_layer = x.copy(), x.copy()
-    near_v, near_m = vertices[:0], middles[:0]
+    mark_solid, mark_layer, near_v, near_m = x.copy(), x.copy(), vertices[:0], middles[:0]
     points, crossings = np.zeros((0, 2), np.int32), np.zeros((0, 2), np.int32)
-    moved_solid = moved_layer = np.inf
-    searches = 0
+    moved_solid, moved_layer, searches = np.inf, np.inf, 0
     shift, still = np.zeros(3), np.zeros(3)
     for step in range(substeps):
         edge_tensions(stencil, x, v, around.beta, strain, tension)
@@ -89,9 +86,7 @@ def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v
                 moved_layer = _moved(x, mark_layer, shift) if moved_layer < np.inf else np.inf
                 if moved_layer > 0.4 * shell.skin:
                     points, crossings = candidate_pairs(x, rest, faces, stencil.edges, shell)
-                    mark_layer[:], moved_layer = x, 0.0
-                    shift[:] = 0.0
-                    searches += 1
+                    mark_layer[:], shift[:], moved_layer, searches = x, 0.0, 0.0, searches + 1
             repel(x, v, inverse, faces, stencil.edges, points, crossings, shell, dt * shell.every)
         mean, way = _drift(x, v, dt, around.speed_limit)
         shift += mean
@@ -102,8 +97,11 @@ def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v
         if moved_solid > 0.5 * CONTACT_REACH:
             moved_solid = _moved(x, mark_solid, still) if moved_solid < np.inf else np.inf
             if moved_solid > 0.4 * CONTACT_REACH:
-                near_v = near_samples(packed, x, vertices, around.clearance + CONTACT_REACH)
-                near_m = near_samples(packed, x, middles, around.clearance + CONTACT_REACH)
+                reach = around.clearance + CONTACT_REACH
+                near_v, near_m = (
+                    near_samples(packed, x, vertices, reach),
+                    near_samples(packed, x, middles, reach),
+                )
                 mark_solid[:], moved_solid = x, 0.0
         if step % SAMPLES_EVERY == 0 or step == substeps - 1:
             collide_samples(packed, inverse, x, v, near_m, around.sample_clearance, around.cap)

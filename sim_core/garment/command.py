@@ -108,7 +108,7 @@ def _draw(path: Path, garment: Garment) -> None:
     colour = garment.dye or (0.86, 0.82, 0.74)
     surfaces = [
         Surface(*stand.mesh(), LACQUER, gloss=0.25),
-        Surface(garment.positions, garment.faces, colour, alpha=0.62, gloss=0.12, sheen=0.5, through=0.35),
+        Surface(garment.positions, garment.faces, colour, alpha=0.7, gloss=0.12, sheen=0.5, through=0.55),
     ]
     middle = (0.0, 0.55 * stand.height, 0.0)
     eyes = ((0.5, 1.25, 3.6), (2.9, 1.2, 2.0), (-1.4, 1.2, -3.2))

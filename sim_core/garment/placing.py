@@ -17,8 +17,8 @@ class Gathering:
     """
 
     front: float = 1.27
-    at_bar: float = 0.12
-    at_end: float = 0.22
+    at_bar: float = 0.14
+    at_end: float = 0.25
     folds: float = 5.0
     arch: float = 0.09
     drop: float = 0.03

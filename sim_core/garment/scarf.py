@@ -31,8 +31,9 @@ PHASES = (
     Phase(0.08, (0.0, 0.0), 400.0, 1.0, "letting go"),
     Phase(0.28, (0.0, 2.0), 15.0, 1.0, "letting go"),
     Phase(0.60, (2.0, 9.81), 5.0, None, "falling"),
-    Phase(1.40, (9.81, 9.81), 2.0, None, "swinging"),
-    Phase(1.60, (9.81, 9.81), 10.0, None, "settling", rest=5e-5),
+    Phase(1.40, (9.81, 9.81), 3.0, None, "swinging"),
+    # 6 1/s is about critical for a metre of hanging cloth: quicker to rest than more or less.
+    Phase(2.00, (9.81, 9.81), 6.0, None, "settling", rest=5e-5),
 )
 
 
@@ -51,36 +52,46 @@ def scarf_on_stand(
 ) -> Garment:
     """Drapes the pattern's strip, woven as `weave`, over the stand's bar; equal inputs give equal bits.
 
-    edge: mesh step [m] (the pattern's own when None); on_frame(index, positions (V, 3) float32): 25 frames
-    per simulated second; checkpoint: file for going on after an interrupt. Raises SimCoreError where the
-    strip is too long for the stand, and what meshing, weaving and the solver raise.
+    edge: mesh step [m], None: the pattern's own; on_frame(index, positions (V, 3) float32) hears 25 frames a second;
+    checkpoint: file to go on from. Raises SimCoreError where the strip does not fit the stand.
     """
-    stand, width = stand or Stand(), float(np.ptp(pattern.outline[:, 0]))
-    gathering = gathering or Gathering().resolved(width, edge or pattern.edge)
+    stand, width, step = stand or Stand(), float(np.ptp(pattern.outline[:, 0])), edge or pattern.edge
+    gathering = gathering or Gathering().resolved(width, step)
     _check_fits(pattern, stand, gathering)
     clock = _Clock()
-    panel = pattern.mesh(edge)
+    panel = pattern.mesh(step)
     clock.lap("mesh")
     parameters = cloth_parameters(weave, relax(weave))
-    material, choices = scarf_material(parameters, gathering.front, edge or pattern.edge)
+    material, choices = scarf_material(parameters, gathering.front, step)
     clock.lap("weave")
     sheet = Sheet.of(panel.vertices, panel.faces, material)
     start = gathered_strip(panel.vertices, stand.height, gathering, np.random.default_rng(seed))
-    contact = scarf_contact(edge or pattern.edge, stand.bar_radius)
-    result = drape(
-        sheet,
-        start,
-        phases,
-        collider=stand.collider(),
-        contact=contact,
-        progress=progress,
-        on_frame=on_frame,
-        checkpoint=checkpoint,
-    )
+    solid, contact = stand.collider(), scarf_contact(step, stand.bar_radius)
+    hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
+    result = drape(sheet, start, phases, collider=solid, contact=contact, **hooks)
     clock.lap("drape")
     errors = _measured(sheet, result, stand)
     clock.lap("check")
-    garment = Garment(
+    if progress:
+        progress(1.0, "done")
+    facts = {
+        "inputs": _hash(pattern, weave, step, seed, stand, gathering, phases, contact),
+        "seed": seed,
+        "edge": step,
+        "stand": asdict(stand),
+        "gathering": asdict(gathering),
+        "seconds": clock.laps,
+        "errors": errors,
+    }
+    material_facts = {**asdict(material), "choices": choices, "provenance": dict(parameters.provenance)}
+    return _garment(pattern, weave, sheet, result, material_facts).noted(**facts)
+
+
+def _garment(
+    pattern: Pattern, weave: Weave, sheet: Sheet, result: Drape, material: dict[str, Any]
+) -> Garment:
+    solver = {"simulated": result.frames / 25, "substeps": result.substeps, "rollbacks": result.rollbacks}
+    return Garment(
         name=pattern.name,
         outline=np.ascontiguousarray(pattern.outline, float),
         rest=sheet.rest,
@@ -88,25 +99,9 @@ def scarf_on_stand(
         positions=result.positions,
         seams=np.zeros((0, 2), np.int32),
         weave=weave.to_dict(),
-        material={**asdict(material), "choices": choices, "provenance": dict(parameters.provenance)},
+        material=material,
+        provenance={"recipe": "scarf_on_stand", "versions": _versions(), **solver},
         dye=pattern.dye,
-    )
-    inputs = _hash(pattern, weave, edge or pattern.edge, seed, stand, gathering, phases)
-    if progress:
-        progress(1.0, "done")
-    return garment.noted(
-        recipe="scarf_on_stand",
-        inputs=inputs,
-        seed=seed,
-        edge=edge or pattern.edge,
-        stand=asdict(stand),
-        gathering=asdict(gathering),
-        versions=_versions(),
-        seconds=clock.laps,
-        simulated=result.frames / 25,
-        substeps=result.substeps,
-        rollbacks=result.rollbacks,
-        errors=errors,
     )
 
 

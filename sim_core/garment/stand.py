@@ -22,7 +22,7 @@ class Stand:
     """
 
     height: float = 1.5
-    span: float = 0.78
+    span: float = 0.70
     bar_radius: float = 0.017
     post_radius: float = 0.016
     overhang: float = 0.13

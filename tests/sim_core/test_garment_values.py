@@ -5,6 +5,7 @@ import struct
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -122,9 +123,8 @@ def test_bad_garment_files_are_named(tmp_path: Path) -> None:
         path.write_bytes(content)
         with pytest.raises(FileProblem, match=r"g.npz: not a garment file .* bake"):
             Garment.load(path)
-    np.savez(
-        path, header=np.frombuffer(json.dumps({"format": 99}).encode(), np.uint8), **_arrays(arched(0.05))
-    )
+    arrays: dict[str, Any] = _arrays(arched(0.05))
+    np.savez(path, header=np.frombuffer(json.dumps({"format": 99}).encode(), np.uint8), **arrays)
     with pytest.raises(FileProblem, match="another format"):
         Garment.load(path)
 
