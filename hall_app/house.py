@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import math
+import multiprocessing
+import signal
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
@@ -13,6 +15,7 @@ from typing import Any, Literal
 
 from .bake.key import bake_key
 from .content.floor import foot_height
+from .content.glb import GlbError, read_glb
 from .content.loading import Content, Exhibit
 from .content.problems import Problem
 from .content.views import yaw_of
@@ -129,34 +132,60 @@ class House:
     async def _bake_grid(self, floor: Floor) -> Grid:
         """The clearance grid of a changed floor, baked in a process of its own."""
         loop = asyncio.get_running_loop()
-        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        # Ctrl-C is ours to answer; the worker would print its own account of it.
+        ignore = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_IGN)}
+        pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), **ignore)
+        try:
             return await loop.run_in_executor(pool, cached_grid, floor, self._grids)
+        except asyncio.CancelledError:
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
 
     def _show(self) -> None:
         """Draw the exhibits; one whose garment is not baked yet is left out and named."""
         found = {e.id: models_of(self.content, e, self.data) for e in self.content.exhibits}
         self._models = {name: models for name, models in found.items() if models is not None}
-        self.unbaked = tuple(
+        figures, unreadable = self._figures_now()
+        self.unbaked = unreadable + tuple(
             self._failed.get(bake_key(self.content, e))
             or Problem(e.toml, "garment", "has not been baked", "run hall build")
             for e in self.content.exhibits
             if e.file.garment is not None and (e.id not in self._models or self.given_up(e))
         )
         shown = self.shown()
-        self.scene.show(
-            tuple(self._figure(exhibit) for exhibit in shown),
-            frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours),
-        )
+        self.scene.show(figures, frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours))
         start = self.start
         self.scene.place_camera(start.x, start.z, start.yaw, start.eye)
         self.stage.play(
             tuple(Actor(e.id, e.file.place.x, e.file.place.z, tuple(e.file.behaviours)) for e in shown)
         )
 
+    def _figures_now(self) -> tuple[tuple[Figure, ...], tuple[Problem, ...]]:
+        """The exhibits as drawn; one whose models cannot be read keeps its last good ones, or is left out."""
+        figures, problems = [], []
+        for exhibit in self.shown():
+            try:
+                figure = self._figure(exhibit)
+            except (GlbError, OSError) as error:
+                models = self._models[exhibit.id]
+                fix = error.fix if isinstance(error, GlbError) else "check the file"
+                problems.append(
+                    Problem(exhibit.toml, "models", f"{models.close.name}, {models.hall.name}: {error}", fix)
+                )
+                figure = self.scene.figure(exhibit.id)
+            if figure is None:
+                del self._models[exhibit.id]
+            else:
+                figures.append(figure)
+        return tuple(figures), tuple(problems)
+
     def _figure(self, exhibit: Exhibit) -> Figure:
         models, place = self._models[exhibit.id], exhibit.file.place
+        read_glb(models.hall)  # a browser would only show a hole
         low, high = models.bounds()
-        radius = 0.5 * math.dist(low, high)
         return Figure(
             id=exhibit.id,
             hall=models.hall.read_bytes(),
@@ -166,7 +195,7 @@ class House:
             z=place.z,
             facing=place.facing,
             centre=(low[1] + high[1]) / 2,
-            radius=radius,
+            radius=0.5 * math.dist(low, high),
         )
 
     # Visitors.

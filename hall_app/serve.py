@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
+import signal
 import socket
 import sys
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--port", type=int, default=8000, help="port of the page (default 8000)")
+    parser.add_argument("--port", type=_port, default=8000, help="port of the page (default 8000)")
     parser.add_argument(
         "--host", default="127.0.0.1", help="address to listen on (default 127.0.0.1: this machine alone)"
     )
@@ -74,7 +75,14 @@ def run(arguments: argparse.Namespace) -> int:
             print(f"hall serve: {problem}", file=sys.stderr)
         return 1
     _check_port(arguments.host, arguments.port)
-    arguments.data.mkdir(parents=True, exist_ok=True)
+    try:
+        arguments.data.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(
+            f"--data {arguments.data}: {error.strerror} – choose a folder that can be written"
+        ) from error
+    for sign in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(sign, _end)  # a closed terminal or a service manager ends a bake as Ctrl-C does
     _say(f"Content  {content.folder}")
     for problem in content.problems:
         _say(f"  left out: {problem}")
@@ -94,6 +102,17 @@ def run(arguments: argparse.Namespace) -> int:
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
     return 0
+
+
+def _end(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _port(text: str) -> int:
+    number = int(text)
+    if not 1 <= number <= 65535:
+        raise argparse.ArgumentTypeError(f"{number} is no port – give 1 to 65535")
+    return number
 
 
 def _check_port(host: str, port: int) -> None:
@@ -164,8 +183,8 @@ async def _follow_edits(house: House) -> None:
     from .content.reload import Watcher
 
     watcher = Watcher(house.content.folder, house.content)
-    while True:
-        await asyncio.sleep(_POLL)
+
+    async def look() -> None:
         content = await asyncio.to_thread(watcher.poll)
         if content is not None:
             before = set(house.problems)
@@ -176,6 +195,21 @@ async def _follow_edits(house: House) -> None:
         for exhibit in stale_garments(house.content, house.data):
             if not house.given_up(exhibit):
                 await _bake_beside(house, exhibit)
+
+    await _for_ever(_POLL, look, "following edits")
+
+
+async def _for_ever(period: float, act: Callable[[], Awaitable[None]], what: str) -> None:
+    """Act every `period` seconds; an error is told once and does not end it."""
+    told = ""
+    while True:
+        await asyncio.sleep(period)
+        try:
+            await act()
+        except Exception as error:
+            if str(error) != told:
+                told = str(error)
+                _say(f"Problem while {what}: {' '.join(told.split())} – the hall goes on as it was")
 
 
 async def _bake_beside(house: House, exhibit: Exhibit) -> None:
@@ -190,9 +224,10 @@ async def _bake_beside(house: House, exhibit: Exhibit) -> None:
 
 
 async def _play(house: House) -> None:
-    while True:
-        await asyncio.sleep(_BEAT)
+    async def beat() -> None:
         house.stage.tick(time.monotonic())
+
+    await _for_ever(_BEAT, beat, "moving exhibits")
 
 
 def _show_progress(fraction: float, label: str) -> None:

@@ -62,13 +62,17 @@ class Stage:
 
     def play(self, actors: tuple[Actor, ...]) -> None:
         """Take these exhibits on stage in place of the former ones."""
+        for visitor in self.visitors:
+            for exhibit, index in tuple(visitor.near):
+                self._near[exhibit][index][1](visitor, False)
+            visitor.near.clear()
         self._clear()
         self.actors = {actor.id: actor for actor in actors}
         for actor in actors:
             for name in actor.behaviours:
                 BEHAVIOURS[name](self, actor.id)
         for visitor in self.visitors:
-            visitor.near.clear()
+            self.stood_at(visitor, visitor.walk.pose.x, visitor.walk.pose.z)
 
     # What a behaviour asks for.
 

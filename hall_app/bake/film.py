@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -104,7 +105,12 @@ def _shoot(look: Look, positions: NDArray[np.floating], angle: float, path: Path
 @contextmanager
 def filming(look: Look, folder: Path) -> Iterator[Film]:
     """A film whose pictures are drawn beside the simulation; on an error what is under way is given up."""
-    pool = ProcessPoolExecutor(2, mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(
+        2,
+        mp_context=get_context("spawn"),
+        initializer=os.nice,
+        initargs=(10,),  # the simulation goes first
+    )
     try:
         yield Film(look, pool, folder)
     finally:

@@ -113,12 +113,12 @@ export function displayed() {
   return camera ? fromThree([camera.position.x, camera.position.y, camera.position.z]) : null;
 }
 
-/** Move the picture's middle into what a panel at the right or a sheet at the bottom [px] leaves free. */
-export function leaveRoom({ panel, sheet }) {
+/** Move the picture's middle into what a panel at the right, a sheet at the bottom and the bar on top [px] leave free. */
+export function leaveRoom({ panel, sheet, top }) {
   const m = mutable();
   if (!m?.camera || !m.canvas) return;
   const width = m.canvas.clientWidth, height = m.canvas.clientHeight;
-  if (panel > 0 || sheet > 0) m.camera.setViewOffset(width, height, panel / 2, sheet / 2, width, height);
+  if (panel || sheet || top) m.camera.setViewOffset(width, height, panel / 2, (sheet - top) / 2, width, height);
   else m.camera.clearViewOffset();
   requestRender();
 }
@@ -148,8 +148,9 @@ export function glow(name, on) {
       if (!material.emissive) continue;
       material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
       const still = material.userData.still;
-      material.emissive.setHex(on ? 0xffd9a0 : still.hex);
-      material.emissiveIntensity = on ? 0.09 : still.strength;
+      // Its own colour, so that dark lacquer stays lacquer.
+      material.emissive.setHex(on ? material.color.getHex() : still.hex);
+      material.emissiveIntensity = on ? 0.3 : still.strength;
     }
   }
   requestRender();

@@ -25,8 +25,8 @@ export function createCloseup(ui) {
 
   // Far enough for the exhibit to fill what panel or sheet leaves of the picture, with a margin.
   function fitting(radius) {
-    const { panel, sheet } = ui.visible;
-    const free = Math.min(innerWidth - panel, innerHeight - sheet) / innerHeight;
+    const { panel, sheet, top } = ui.visible;
+    const free = Math.min(innerWidth - panel, innerHeight - sheet - top) / innerHeight;
     return (1.15 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
   }
 
@@ -52,7 +52,7 @@ export function createCloseup(ui) {
     event.stopImmediatePropagation();
     act();
   }, true);
-  addEventListener("resize", () => { if (studio) camera.leaveRoom(ui.visible); });
+  addEventListener("resize", () => { if (studio) place(); });
 
   return {
     drawnAt: () => drawnAt,
@@ -66,7 +66,7 @@ export function createCloseup(ui) {
       studio = null;
       delete root.dataset.closeup;
       camera.freeDistances();
-      camera.leaveRoom({ panel: 0, sheet: 0 });
+      camera.leaveRoom({ panel: 0, sheet: 0, top: 0 });
     },
   };
 }

@@ -29,7 +29,8 @@ async function until(test, patience, every = 50) {
 function chosenLanguage(scene) {
   const asked = new URLSearchParams(location.search).get("lang") ?? localStorage.getItem("hall.lang");
   if (asked === "zh" || asked === "en") return asked;
-  return navigator.language.startsWith("zh") ? "zh" : (scene.language ?? "en");
+  const own = navigator.language.slice(0, 2);
+  return own === "zh" || own === "en" ? own : (scene.language ?? "en");
 }
 
 async function loadClearance(walk) {
@@ -59,7 +60,10 @@ async function start() {
   const actions = {
     enter: () => { entered = true; openLinked(); },
     open: (id) => walk.send({ t: "open", id }),
-    close: () => walk.send({ t: "close" }),
+    close() {
+      walk.send({ t: "close" });
+      leave(); // at once, and also while the server is away
+    },
     goTo: (x, z, yaw) => {
       headingThere = yaw ?? null;
       walk.send({ t: "goto", x, z });
@@ -90,24 +94,23 @@ async function start() {
 
   const walk = createWalk({ scene, grid, display, mark: findMark, on: {
     moved(pose) {
-      if (pose.first) gaze.yaw = pose.yaw;
+      if (pose.first) {
+        gaze.yaw = pose.yaw;
+        if (entered) openLinked();
+      }
       else if (pose.t === "hi" && opened) actions.open(opened); // back after a lost connection
       else if (headingThere !== null) Object.assign(gaze, { yaw: headingThere, pitch: 0 });
       headingThere = null;
     },
     async open(message) {
-      const detail = await fetchJson(`/api/exhibits/${encodeURIComponent(message.id)}`);
       opened = message.id;
+      const detail = await fetchJson(`/api/exhibits/${encodeURIComponent(message.id)}`);
+      if (opened !== message.id) return; // closed again meanwhile
       keys.release();
       ui.showExhibit(detail, { play: message.play === true });
       closeup.enter(message);
     },
-    closed() {
-      opened = null;
-      ui.hideExhibit();
-      closeup.leave();
-      walked();
-    },
+    closed: leave,
     near({ id, on, glow, caption, node }) {
       if (glow) camera.glow(node, on);
       if (!caption) return;
@@ -124,6 +127,14 @@ async function start() {
       }
     },
   } });
+
+  function leave() {
+    if (!opened) return;
+    opened = null;
+    ui.hideExhibit();
+    closeup.leave();
+    walked();
+  }
 
   // viser mounts the mark a moment after its socket opens, and another one whenever it had to connect again.
   const readMark = () => (hooks ? camera.clientMark() : document.querySelector("[data-hall-client]")?.dataset.hallClient);
@@ -177,6 +188,7 @@ async function start() {
   ui.ready();
 
   function openLinked() {
+    if (opened) return;
     const wanted = new URLSearchParams(location.search).get("exhibit");
     if (wanted && scene.exhibits.some((exhibit) => exhibit.id === wanted)) actions.open(wanted);
   }

@@ -5,6 +5,7 @@ import { Predictor } from "./walkmath.js";
 
 const SEND_EVERY = 1 / 30; // [s]
 const RETRY_AFTER = 1000; // [ms]
+const RETRY_WHEN_FULL = 5000; // [ms]
 
 /** `on` receives moved(pose), open(message), closed(), near(message), content(message), connection(state). */
 export function createWalk({ scene, grid, display, mark, on }) {
@@ -12,10 +13,12 @@ export function createWalk({ scene, grid, display, mark, on }) {
   const options = { speed: scene.walk.speed, radius: scene.walk.radius, skin: scene.walk.skin, maxDt: scene.walk.max_dt };
   let socket = null, mode = "server", predictor = null;
   let sequence = 0, outgoing = [];
-  let arrived = false, sinceSent = 0, lastKeys = "", stopped = false;
+  let arrived = false, sinceSent = 0, lastKeys = "", greeted = false;
 
   function send(message) {
-    if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+    const ready = socket?.readyState === WebSocket.OPEN && (greeted || message.t === "hello");
+    if (ready) socket.send(JSON.stringify(message));
+    return ready;
   }
 
   function place({ x, z }) {
@@ -25,6 +28,8 @@ export function createWalk({ scene, grid, display, mark, on }) {
 
   const receive = {
     hi(message) {
+      greeted = true;
+      on.connection("open");
       mode = message.mode;
       lastKeys = "";
       place(message);
@@ -54,7 +59,6 @@ export function createWalk({ scene, grid, display, mark, on }) {
     address.protocol = address.protocol.replace("http", "ws");
     socket = new WebSocket(address);
     socket.onopen = async () => {
-      on.connection("open");
       const client = await mark();
       const able = grid && display === "page" ? "predict" : "server";
       send({ t: "hello", client, display, able, at: arrived ? { x: pose.x, z: pose.z } : null });
@@ -64,8 +68,10 @@ export function createWalk({ scene, grid, display, mark, on }) {
       receive[message.t]?.(message);
     };
     socket.onclose = (event) => {
-      on.connection(event.code === 1013 ? "full" : "lost");
-      if (!stopped) setTimeout(connect, RETRY_AFTER);
+      greeted = false;
+      const full = event.code === 1013;
+      on.connection(full ? "full" : "lost");
+      setTimeout(connect, full ? RETRY_WHEN_FULL : RETRY_AFTER);
     };
   }
 
@@ -105,7 +111,6 @@ export function createWalk({ scene, grid, display, mark, on }) {
     pose,
     frame,
     send,
-    stop() { stopped = true; socket?.close(); },
     get mode() { return mode; },
     get disagreement() { return predictor?.worst ?? 0; }, // [m] largest so far between display and server
   };

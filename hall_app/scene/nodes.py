@@ -145,6 +145,10 @@ class HallScene:
         """Call `act(viser client id, exhibit id)`, on one of viser's threads."""
         self._on_click = act
 
+    def figure(self, exhibit: str) -> Figure | None:
+        """How an exhibit is drawn now."""
+        return self._figures.get(exhibit)
+
     def nodes(self) -> list[str]:
         """Names of all nodes a page waits for."""
         return ["/room", *(node_name(exhibit) for exhibit in self._figures)]

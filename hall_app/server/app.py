@@ -35,7 +35,11 @@ _HEADERS = {
 def create_app(house: House, *, lifespan: Callable[[FastAPI], Any] | None = None) -> FastAPI:
     """The hall's web application round a running house. The caller mounts the survey."""
     app = FastAPI(
-        title="Hall", docs_url="/api/docs", openapi_url="/api/openapi.json", lifespan=lifespan or _still
+        title="Hall",
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+        lifespan=lifespan or _still,
     )
 
     @app.middleware("http")
@@ -145,7 +149,8 @@ def _add_media(app: FastAPI, house: House) -> None:
 def _media_file(house: House, owner: str, path: str) -> Path | None:
     """A file of the hall or of an exhibit, None for anything outside or of a kind that is not shown."""
     if owner == "hall":
-        base, full = house.content.folder, house.content.folder / path
+        base = house.content.folder / "media"
+        full = house.content.folder / path
     else:
         exhibit, models = house.content.exhibit(owner), house.models(owner)
         if exhibit is None:
@@ -153,6 +158,9 @@ def _media_file(house: House, owner: str, path: str) -> Path | None:
         baked = models.baked if models else None
         full = media_file(exhibit, path, baked)
         base = baked if baked is not None and full.is_relative_to(baked) else exhibit.folder
-    full = full.resolve()
-    plain = full.is_relative_to(base.resolve()) and full.is_file()
+    try:
+        full = full.resolve()
+        plain = full.is_relative_to(base.resolve()) and full.is_file()
+    except (OSError, ValueError):  # a name no file system takes
+        return None
     return full if plain and media_type(full.name) != "application/octet-stream" else None

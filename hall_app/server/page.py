@@ -61,7 +61,9 @@ def hall_page(title: str, stamp: str, *, language: str, settings: Mapping[str, o
     # "<" would end the script element from inside a string.
     literal = json.dumps(settings, ensure_ascii=True).replace("<", "\\u003c")
     noscript = "展品目录 · Catalogue of the exhibits"
-    return head + _HEAD.format(stamp=stamp, settings=literal, first=_FIRST, noscript=noscript) + "</head>" + tail
+    return (
+        head + _HEAD.format(stamp=stamp, settings=literal, first=_FIRST, noscript=noscript) + "</head>" + tail
+    )
 
 
 def content_security_policy() -> str:

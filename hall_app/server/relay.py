@@ -15,7 +15,8 @@ MOST_VISITORS = 30
 
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
-_LARGEST_FROM_BROWSER = 4 << 20  # clicks and camera poses are small; nothing is uploaded through this socket
+_LARGEST_FROM_BROWSER = 64 << 10  # [bytes] clicks and camera poses are small
+_VISITOR_MESSAGES = frozenset({"ViewerCameraMessage", "SceneNodeClickMessage"})
 
 
 def add_relay(app: FastAPI, viser_port: int, path: str = "/") -> None:
@@ -80,11 +81,19 @@ async def _to_viser(socket: WebSocket, upstream) -> None:
             if message["type"] == "websocket.disconnect":
                 return
             data = message.get("bytes")
-            if data is None:
-                data = message.get("text") or ""
-            if len(data) > _LARGEST_FROM_BROWSER:
-                return
-            await upstream.send(data)
+            if isinstance(data, bytes) and len(data) <= _LARGEST_FROM_BROWSER and _wanted(data):
+                await upstream.send(data)
+
+
+def _wanted(data: bytes) -> bool:
+    """Only what a visitor does: no uploads, no changes of panels, above all no request for a public tunnel."""
+    import msgspec
+
+    try:
+        message = msgspec.msgpack.decode(data)
+    except msgspec.DecodeError:
+        return False
+    return isinstance(message, dict) and message.get("type") in _VISITOR_MESSAGES
 
 
 async def _to_browser(socket: WebSocket, upstream) -> None:

@@ -37,19 +37,21 @@ def add_walk_socket(app: FastAPI, house: House) -> None:
             await socket.close(1013, "the hall is full")
             return
         with contextlib.suppress(WebSocketDisconnect, asyncio.TimeoutError, RuntimeError):
-            hello = await asyncio.wait_for(_receive(socket), _HELLO_WITHIN)
-            if hello.get("t") == "hello":
-                await _Visit(house, socket, hello).run()
+            async with asyncio.timeout(_HELLO_WITHIN):
+                while (hello := await _receive(socket)).get("t") != "hello":
+                    pass  # sent while a lost connection came back
+            await _Visit(house, socket, hello).run()
 
 
 async def _receive(socket: WebSocket) -> dict[str, Any]:
     """The next message; {} for what is no JSON object."""
-    text = await socket.receive_text()
-    if len(text) > _LONGEST:
+    event = await socket.receive()
+    text = event.get("text")
+    if event["type"] == "websocket.disconnect" or text is None or len(text) > _LONGEST:
         raise WebSocketDisconnect(1009)
     try:
         message = json.loads(text)
-    except ValueError:
+    except (ValueError, RecursionError):
         return {}
     return message if isinstance(message, dict) else {}
 

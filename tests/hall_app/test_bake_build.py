@@ -70,7 +70,9 @@ def test_build_is_whole_up_to_date_and_equal_to_the_bit(folder):
     low, high = read_glb(baked / "close.glb").low, read_glb(baked / "close.glb").high
     assert 1.2 < high[1] - low[1] < 2.0
     missing = [problem.what for problem in check(folder) if problem.key == "garment"]
-    assert all(what.startswith("baked/drape.") for what in missing), missing  # the film, which was not asked for
+    assert all(what.startswith("baked/drape.") for what in missing), (
+        missing
+    )  # the film, which was not asked for
     assert last_line(build(folder))["state"] == "up to date"
     models = {name: (baked / name).read_bytes() for name in ("hall.glb", "close.glb")}
     again = last_line(build(folder, "--force"))
@@ -93,7 +95,9 @@ def test_a_changed_pattern_makes_the_bake_stale(folder):
 
 
 def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
-    toml = folder / "exhibits" / "pibo" / "exhibit.toml"  # fine enough to run longer than to its first checkpoint
+    toml = (
+        folder / "exhibits" / "pibo" / "exhibit.toml"
+    )  # fine enough to run longer than to its first checkpoint
     toml.write_text(toml.read_text("utf-8").replace("edge = 0.06", "edge = 0.025"), "utf-8")
     whole = last_line(build(folder, "--into-data"))
     data = folder.parent / "data"

@@ -177,7 +177,9 @@ export function createMinimap({ words, scene, goTo, onBay }) {
   plan.setAttribute("role", "group");
   build();
   words.follow(translate);
-  fold(matchMedia("(max-width: 720px)").matches);
+  const cramped = matchMedia("(max-width: 720px), (max-height: 420px)");
+  cramped.addEventListener("change", () => fold(cramped.matches));
+  fold(cramped.matches);
   pose({ ...scene.start, yaw: scene.start?.yaw ?? 0 });
   return {
     element,

@@ -84,6 +84,7 @@ export function createMediaPage(words, kind, onSounding) {
   /** Starts the first medium; false when there is none. A refusal by the browser leaves it ready to be started by hand. */
   function play() {
     if (!items.length) return false;
+    items[0].media.muted = true; // the hall's music goes on, and browsers let a silent film start
     items[0].media.play().catch(() => {});
     return true;
   }

@@ -241,10 +241,12 @@ function face(parts, overlay, words) {
     /** What covers the picture [px]: the panel's width at the right, or the sheet's height at the bottom. */
     get visible() {
       const { offsetLeft, offsetHeight } = panel.element; // layout, not the sliding picture of it
-      if (!panel.detail()) return { panel: 0, sheet: 0 };
+      if (!panel.detail()) return { panel: 0, sheet: 0, top: 0 };
+      const bar = overlay.querySelector(".top");
+      const top = bar.offsetTop + bar.offsetHeight;
       return matchMedia(SHEET).matches
-        ? { panel: 0, sheet: offsetHeight }
-        : { panel: overlay.clientWidth - offsetLeft, sheet: 0 };
+        ? { panel: 0, sheet: offsetHeight, top }
+        : { panel: overlay.clientWidth - offsetLeft, sheet: 0, top };
     },
   });
 }
