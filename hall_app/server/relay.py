@@ -93,7 +93,8 @@ def _wanted(data: bytes) -> bool:
         message = msgspec.msgpack.decode(data)
     except msgspec.DecodeError:
         return False
-    return isinstance(message, dict) and message.get("type") in _VISITOR_MESSAGES
+    kind = message.get("type") if isinstance(message, dict) else None
+    return isinstance(kind, str) and kind in _VISITOR_MESSAGES
 
 
 async def _to_browser(socket: WebSocket, upstream) -> None:

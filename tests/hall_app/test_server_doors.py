@@ -112,6 +112,8 @@ def test_media_answers_ranges(plain_hall):
         "hall/hall.toml",
         "box/exhibit.toml",
         "nobody/x.png",
+        "box/%00",
+        "hall/exhibits/box/box.png",
     ],
 )
 def test_media_keeps_to_what_is_shown(plain_hall, path):
@@ -164,6 +166,7 @@ NONSENSE = [
     '{"t":"open","id":7}',
     '{"t":"open","id":"../x"}',
     "{" * 5000,
+    "[" * 30000,
 ]
 
 
@@ -181,7 +184,7 @@ def test_a_message_that_is_too_long_ends_the_visit_alone(plain_hall):
     with socket:
         socket.send("x" * (65 << 10))
         with pytest.raises(ConnectionClosed):
-            socket.recv(timeout=10)
+            pose_after(socket, 1)
     assert scene(plain_hall)["exhibits"]
 
 
@@ -195,6 +198,53 @@ def test_strangers_pages_get_no_socket(plain_hall, path):
         ),
     ):
         pass  # pragma: no cover
+
+
+@pytest.mark.parametrize("origin", ["http://[::1", "null", "http://127.0.0.1.evil.example"])
+def test_odd_origins_are_refused(plain_hall, origin):
+    address = f"ws://127.0.0.1:{plain_hall.port}/walk"
+    with pytest.raises(InvalidStatus) as refusal, connect(address, origin=origin):
+        pass  # pragma: no cover
+    assert refusal.value.response.status_code == 403
+
+
+def test_only_a_visitors_messages_reach_viser():
+    """viser would open a public tunnel, take uploads and change panels for anybody."""
+    import msgspec
+
+    from hall_app.server.relay import _wanted
+
+    def wanted(kind: object) -> bool:
+        return _wanted(msgspec.msgpack.encode({"type": kind}))
+
+    assert wanted("ViewerCameraMessage")
+    assert wanted("SceneNodeClickMessage")
+    for kind in (
+        "ShareUrlRequest",
+        "ShareUrlDisconnect",
+        "FileTransferStartUpload",
+        "GuiUpdateMessage",
+        None,
+        7,
+    ):
+        assert not wanted(kind)
+    assert not _wanted(b"")
+    assert not _wanted(b"\xc1 no msgpack")
+
+
+def test_an_unreadable_model_keeps_the_last_good_one(own_hall):
+    model = own_hall.content / "exhibits" / "box" / "box.glb"
+    good = model.read_bytes()
+    model.write_bytes(b"")
+
+    def problems():
+        with get(f"{own_hall.url}/api/problems") as answer:
+            return json.load(answer)
+
+    assert any("box.glb" in json.dumps(problem) for problem in until(problems, 15))
+    assert [e["id"] for e in scene(own_hall)["exhibits"]] == ["box"]
+    model.write_bytes(good)
+    until(lambda: not problems(), 15)
 
 
 def test_only_this_machine_is_served(plain_hall):

@@ -116,6 +116,10 @@ function arrange(parts) {
   } = parts;
   enter.actions.append(languages);
   const dialogs = [parts.list, parts.help, parts.viewer, parts.survey].map(({ element }) => element);
+  for (const dialog of dialogs) {
+    // The browser gives the focus back; to the hall it comes without a frame, as on entering.
+    dialog.addEventListener("close", () => document.activeElement === stage && focusStage(stage));
+  }
   const top = el("header", { class: "top" }, brand.element, tools.element);
   const low = el(
     "div",
