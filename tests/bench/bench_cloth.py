@@ -1,6 +1,6 @@
 """Cloth: time and error together, on the sheet that hangs by one edge.
 
-    python tests/bench/bench_cloth.py [--quick] [--out FILE.json]
+    python tests/bench/bench_cloth.py [--quick] [--json FILE]
 
 Every row is a number of substeps per frame of 1/25 s, adaptive first. Error: vertex distance from the solver's own
 limit dt -> 0, taken at the largest number of substeps; the floor is what halving that number still changes. Rows
@@ -66,7 +66,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="a coarse mesh and one round")
-    parser.add_argument("--out", type=Path, help="write the figures as JSON")
+    parser.add_argument("--json", type=Path, help="write the figures as JSON")
     args = parser.parse_args()
     edge, rounds, finest = (0.04, 1, 512) if args.quick else (0.0134, 3, 2048)
     run(hang_edge(0.2, seconds=FRAME), None)  # compile
@@ -82,8 +82,8 @@ def main() -> int:
             mark = "adaptive" if row["adaptive"] else ""
             errors = f"{row['error_mean_mm']:.2e} / {row['error_max_mm']:.2e}"
             print(f"  {row['substeps']:6d} {mark:10s} {row['cpu_ms_per_frame']:12.1f}        {errors}")
-    if args.out:
-        args.out.write_text(json.dumps(results, indent=2))
+    if args.json:
+        args.json.write_text(json.dumps(results, indent=2))
     return 0
 
 

@@ -1,6 +1,6 @@
 """Meshing: time and error together, beside Qhull (scipy) and the paper's naive growth, in one interleaved run.
 
-    python tests/bench/bench_mesh.py [--quick] [--large] [--out FILE.json]
+    python tests/bench/bench_mesh.py [--quick] [--large] [--json FILE]
 
 Every engine triangulates the same staggered points of one half robe; rounds alternate between the engines and the
 median is told. Error: |area - polygon area| / polygon area after dropping what lies outside (Qhull fills the convex
@@ -125,7 +125,7 @@ def main() -> int:
     )
     parser.add_argument("--quick", action="store_true", help="up to 6 000 points")
     parser.add_argument("--large", action="store_true", help="also a million points")
-    parser.add_argument("--out", type=Path, help="write the figures as JSON")
+    parser.add_argument("--json", type=Path, help="write the figures as JSON")
     args = parser.parse_args()
     edges = [0.0141, 0.01] if args.quick else [0.0141, 0.01, 0.0045, 0.00245]
     edges += [0.000774] if args.large else []
@@ -149,8 +149,8 @@ def main() -> int:
             f"{row['panel']:<12}{row['vertices']:>9}{row['seconds']:>10.4f}{row['min_angle_deg']:>7.1f}"
             f"{row['mean_quality']:>8.4f}{row['mean_edge_ratio']:>9.4f}{row['area_error']:>12.1e}"
         )
-    if args.out:
-        args.out.write_text(json.dumps({"engines": rows, "panels": whole}, indent=2) + "\n", "utf-8")
+    if args.json:
+        args.json.write_text(json.dumps({"engines": rows, "panels": whole}, indent=2) + "\n", "utf-8")
     failed = [
         r
         for r in rows

@@ -1,6 +1,6 @@
 """Weaving: time and error together. The references are closed forms, and a dense solver for weaves without one.
 
-    python tests/bench/bench_weave.py [--quick] [--out FILE.json]
+    python tests/bench/bench_weave.py [--quick] [--json FILE]
 
 Plain weave: heights and crossing forces have closed forms (small slope). Twill and satin: the same contact problem is
 solved in dense matrices by scipy's non-negative least squares, to 1e-12, interleaved with ours. Maps: seconds and
@@ -117,7 +117,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="small repeats and maps")
-    parser.add_argument("--out", type=Path, help="write the figures as JSON")
+    parser.add_argument("--json", type=Path, help="write the figures as JSON")
     args = parser.parse_args()
     drafts = [twill(2, 2), twill(3, 1), satin(5, 2), satin(8, 3)] + ([] if args.quick else [satin(16, 7)])
     closed, dense_results = closed_rows(), dense_rows(drafts)
@@ -136,9 +136,9 @@ def main() -> int:
     print(f"\n{'maps':<24}{'ms':>9}{'seam/255':>10}")
     for row in maps:
         print(f"{row['case']:<24}{row['seconds'] * 1e3:>9.1f}{row['seam'] * 255:>10.0f}")
-    if args.out:
+    if args.json:
         rows = {"closed": closed, "dense": dense_results, "maps": maps}
-        args.out.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
+        args.json.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
     sound = all(row["error"] < 1e-5 for row in closed) and all(row["seam"] <= 1 / 255 for row in maps)
     return 0 if sound else 1
 

@@ -1,0 +1,98 @@
+"""The README's table of figures, written from what the benches and the bake measured; nothing is typed in.
+
+hall bench walking -- --json docs/figures/walking.json
+hall bench page -- --json docs/figures/page.json
+simcore bench mesh -- --json docs/figures/mesh.json          (and weave, cloth)
+python tests/bench/readme_figures.py
+"""
+
+import json
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+FIGURES = ROOT / "docs" / "figures"
+BEGIN, END = "<!-- figures: python tests/bench/readme_figures.py -->", "<!-- end of figures -->"
+
+
+def read(name: str):
+    return json.loads((FIGURES / f"{name}.json").read_text("utf-8"))
+
+
+def walking() -> list[tuple[str, str, str]]:
+    found, command = read("walking"), "`hall bench walking`"
+    rows = []
+    for row in found["moves"]:
+        rows.append(
+            (
+                f"random moves, {row['floor']} floor of {row['solids']} solids",
+                f"{row['moves']:,}, **{row['penetrations']} penetrations**, nearest {row['least_room_mm']:.1f} mm",
+                command,
+            )
+        )
+    grid = next(row for row in found["grids"] if row["cell_m"] == 0.04)
+    miss = f"median {grid['miss_median_mm']:.2f}, largest {grid['miss_max_mm']:.1f} mm"
+    text = f"{miss}; into solids {grid['intrusion_mm']:g} mm"
+    rows.append(("display against server, 150 held walks at corners, rounds and wall ends", text, command))
+    return rows
+
+
+def page() -> list[tuple[str, str, str]]:
+    found, command = read("page")["summary"], "`hall bench page`"
+
+    def spread(row: dict, unit: str, digits: int = 1) -> str:
+        return f"{row['median']:.{digits}f} {unit} ({row['min']:.{digits}f}–{row['max']:.{digits}f})"
+
+    rows = [
+        (
+            f"cold load until all is drawn, 1280×720, median of {found['runs']}",
+            spread(found["load_s"], "s"),
+            command,
+        ),
+        ("bytes on the wire to the first view", spread(found["megabytes"], "MB"), command),
+        ("a frame while walking", spread(found["frame_ms"], "ms", 0), command),
+        ("key to camera", spread(found["key_to_camera_ms"], "ms", 0), command),
+    ]
+    for exhibit, row in found["closeup_s"].items():
+        rows.append((f"close-up of {exhibit} after the click", spread(row, "s"), command))
+    return rows
+
+
+def scarf() -> list[tuple[str, str, str]]:
+    record = json.loads((ROOT / "assets/exhibits/pibo/baked/bake.json").read_text("utf-8"))
+    errors, seconds, command = record["errors"], record["seconds"], "`hall build -f`"
+    inside = " / ".join(str(errors[f"inside_{what}"]) for what in ("vertices", "midpoints", "centroids"))
+    return [
+        ("scarf: vertices / edge midpoints / centroids inside the stand", inside, command),
+        (
+            f"scarf of {errors['vertices']:,} vertices: area strain p95 / max",
+            f"{errors['area_strain_p95']:.2%} / {errors['area_strain_max']:.1%}",
+            command,
+        ),
+        ("scarf: edge–triangle self-intersections", str(errors["self_intersections"]), command),
+        (
+            "scarf: simulated / with models, film and pictures",
+            f"{seconds['drape']:.0f} s / {seconds['all']:.0f} s",
+            command,
+        ),
+        (
+            "hall model against the simulated one: mean / p99",
+            f"{1000 * errors['hall_hausdorff_mean']:.2f} / {1000 * errors['hall_hausdorff_p99']:.1f} mm",
+            command,
+        ),
+    ]
+
+
+def main() -> int:
+    rows = walking() + page() + scarf()
+    lines = ["| What | Measured | Command |", "|---|---|---|"]
+    lines += [f"| {what} | {value} | {command} |" for what, value, command in rows]
+    path = ROOT / "README.md"
+    before, rest = path.read_text("utf-8").split(BEGIN)
+    path.write_text(before + BEGIN + "\n\n" + "\n".join(lines) + "\n\n" + END + rest.split(END)[1], "utf-8")
+    print("\n".join(lines))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
