@@ -42,12 +42,7 @@ def bake_garment(
     film: whether to film the drape, which needs PyAV.
     Raises what reading, meshing, weaving and draping raise, each naming file and remedy.
     """
-    from sim_core.garment import choose_detail, write_glb
-    from sim_core.weave import relax, texture_maps
-
     began = time.perf_counter()
-    recipe = exhibit.file.garment
-    assert recipe is not None
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     pattern, weave = _inputs(content, exhibit)
@@ -55,10 +50,7 @@ def bake_garment(
     garment.save(out / "garment.npz")
     progress(0.86, "models")
     clock = time.perf_counter()
-    maps = texture_maps(weave, relax(weave), pixels=MAP_PIXELS)
-    write_glb(out / "close.glb", garment, maps, precision="close")
-    light = choose_detail(garment, budget(recipe.nearest, recipe.hall_error_px))
-    write_glb(out / "hall.glb", light, maps, precision="hall")
+    light, maps = _models(exhibit, garment, weave, out)
     seconds["models"] = round(time.perf_counter() - clock, 2)
     progress(0.95, "pictures")
     stills(_look(garment, maps), garment.positions, out)
@@ -71,6 +63,20 @@ def bake_garment(
     shutil.rmtree(work, ignore_errors=True)
     progress(1.0, "done")
     return record
+
+
+def _models(exhibit: Exhibit, garment, weave, out: Path):
+    """Write both GLBs; the hall's is the cheapest within the exhibit's budget. Returns that level and the maps."""
+    from sim_core.garment import choose_detail, write_glb
+    from sim_core.weave import relax, texture_maps
+
+    recipe = exhibit.file.garment
+    assert recipe is not None
+    maps = texture_maps(weave, relax(weave), pixels=MAP_PIXELS)
+    write_glb(out / "close.glb", garment, maps, precision="close")
+    light = choose_detail(garment, budget(recipe.nearest, recipe.hall_error_px))
+    write_glb(out / "hall.glb", light, maps, precision="hall")
+    return light, maps
 
 
 def budget(nearest: float, pixels: float) -> float:

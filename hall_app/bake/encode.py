@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +15,26 @@ __all__ = ["FilmUnavailableError", "encode_film", "film_possible"]
 Picture = NDArray[np.uint8]
 
 SOUND_RATE = 48_000  # [Hz], the one Opus has
+
+
+@dataclass(frozen=True)
+class _Codecs:
+    """How one kind of film is written."""
+
+    picture: str
+    sound: str
+    options: dict[str, str]
+    container: dict[str, str]
+
+
 _CODECS = {
-    ".webm": (
+    ".webm": _Codecs(
         "libvpx-vp9",
-        {"crf": "34", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"},
         "libopus",
+        {"crf": "34", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"},
+        {},
     ),
-    ".mp4": ("libx264", {"crf": "24", "preset": "medium", "movflags": "+faststart"}, "aac"),
+    ".mp4": _Codecs("libx264", "aac", {"crf": "24", "preset": "medium"}, {"movflags": "+faststart"}),
 }
 
 
@@ -42,7 +56,6 @@ def encode_film(
     *,
     rate: int = 25,
     sound: NDArray[np.float32] | None = None,
-    tick: Callable[[int], None] = lambda index: None,
 ) -> None:
     """Write `count` pictures (h, w, 3), h and w even, at `rate` per second to a .webm or .mp4.
 
@@ -53,30 +66,31 @@ def encode_film(
         raise FilmUnavailableError("films need PyAV – install the extra: pip install '.[bake]'")
     import av
 
-    codec, options, sound_codec = _CODECS[path.suffix]
-    first = frames(0)
+    codecs = _CODECS[path.suffix]
     partial = path.with_name(f".{path.name}")
-    format_name = path.suffix[1:]
-    container_options = {"movflags": "+faststart"} if format_name == "mp4" else {}
-    with av.open(str(partial), "w", format=format_name, options=container_options) as container:
-        video: Any = container.add_stream(codec, rate=rate)  # PyAV's stubs know no stream by a codec's name
-        video.height, video.width = first.shape[:2]
-        video.pix_fmt = "yuv420p"
-        video.options = {name: value for name, value in options.items() if name != "movflags"}
-        audio = (
-            container.add_stream(sound_codec, rate=SOUND_RATE, layout="mono") if sound is not None else None
+    with av.open(str(partial), "w", format=path.suffix[1:], options=codecs.container) as container:
+        # PyAV's stubs know no stream by a codec's name.
+        video: Any = container.add_stream(codecs.picture, rate=rate)
+        audio: Any = (
+            container.add_stream(codecs.sound, rate=SOUND_RATE, layout="mono") if sound is not None else None
         )
-        for index in range(count):
-            picture = first if index == 0 else frames(index)
-            frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="rgb24")
-            for packet in video.encode(frame):
-                container.mux(packet)
-            tick(index)
-        for packet in video.encode():
-            container.mux(packet)
-        if audio is not None and sound is not None:
+        video.options = codecs.options
+        _write_pictures(container, video, frames, count)
+        if sound is not None:
             _write_sound(container, audio, _fitted(sound, count / rate))
     partial.replace(path)
+
+
+def _write_pictures(container, stream, frames: Callable[[int], Picture], count: int) -> None:
+    import av
+
+    for index in range(count):
+        picture = np.ascontiguousarray(frames(index))
+        if index == 0:
+            stream.height, stream.width = picture.shape[:2]
+            stream.pix_fmt = "yuv420p"
+        container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+    container.mux(stream.encode(None))
 
 
 def _fitted(sound: NDArray[np.float32], seconds: float) -> NDArray[np.float32]:

@@ -40,5 +40,5 @@ export function createGaze(surface, eye, active) {
   // The middle button would start the browser's own scrolling.
   surface.addEventListener("mousedown", (event) => { if (event.button === 1) event.preventDefault(); }, true);
 
-  return { gaze, turn, dragging: () => drag !== null };
+  return { gaze };
 }

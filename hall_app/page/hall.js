@@ -69,7 +69,6 @@ async function start() {
       walk.send({ t: "goto", x, z });
     },
     move: (forward, right) => { stick = { forward, right }; },
-    look: (dx, dy) => gaze.turn(dx, dy),
     setLang: (next) => { lang = next; localStorage.setItem("hall.lang", next); document.documentElement.lang = next; },
   };
   document.documentElement.lang = lang;

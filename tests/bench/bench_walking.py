@@ -23,10 +23,12 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "hall_app"))
+sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2]))
 import shapely  # noqa: E402
+from bench.browser import NoBrowserError, open_browser  # noqa: E402
 from walk_moves import FLOOR, dense_floor, random_walk, room  # noqa: E402
-from walk_page import NoBrowserError, Page, browser_tab, hold  # noqa: E402
+from walk_page import Page, hold  # noqa: E402
 
 from hall_app.walking import BODY, CELL, Floor, Keys, Pose, Round, bake, step, world_of  # noqa: E402
 
@@ -160,7 +162,8 @@ def main() -> int:
     )
     grids: list[dict[str, Any]] = []
     try:
-        with browser_tab() as tab:
+        with open_browser() as browser:
+            tab = browser.new_page()
             grids = [measure_grid(tab, cell, args.holds) for cell in (0.1, 0.05, 0.04, 1 / 32, 0.025)]
         print(f"clearance grid (shipped: cell {CELL} m)")
         print(table(grids))

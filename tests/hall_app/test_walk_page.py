@@ -1,28 +1,23 @@
 """The page's own walkmath.js in Chromium against the server's mover: parity, and prediction under latency."""
 
 import math
-import os
 
 import numpy as np
 import pytest
 from walk_moves import FLOOR, KEYS, room
-from walk_page import NoBrowserError, Page, browser_tab, hold
+from walk_page import Page, hold
 
 from hall_app.walking import BODY, CELL, MAX_INPUT_DT, SPEED, Keys, Pose, bake, step, world_of
 from hall_app.walking.mover import SLIDE, STEEP, TOUCH
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 
 
 @pytest.fixture(scope="module")
-def page():
-    try:
-        with browser_tab() as tab:
-            yield Page(tab, bake(FLOOR))
-    except NoBrowserError as error:
-        if os.environ.get("HALL_BROWSER") == "required":
-            pytest.fail(f"a browser is required: {error}")
-        pytest.skip(str(error))
+def page(chromium):
+    tab = chromium.new_page()
+    yield Page(tab, bake(FLOOR))
+    tab.close()
 
 
 def test_page_and_server_use_the_same_constants(page):

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import base64
-import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -73,29 +70,6 @@ class Page:
         data = base64.b64encode(self.grid.to_bytes()).decode()
         job = {"name": name, **values}
         return self.tab.evaluate(SCRIPT, [WALKMATH.read_text("utf-8"), data, self.grid.meta(), job])
-
-
-class NoBrowserError(RuntimeError):
-    """No Chromium to run the page's mathematics in."""
-
-
-@contextmanager
-def browser_tab() -> Iterator[Any]:
-    """A blank tab of a headless Chromium. Raises NoBrowserError."""
-    try:
-        from playwright.sync_api import Error, sync_playwright
-    except ImportError as error:
-        raise NoBrowserError("playwright is not installed – pip install '.[test]'") from error
-    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    with sync_playwright() as playwright:
-        try:
-            browser = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        except Error as error:
-            raise NoBrowserError(f"no Chromium starts ({str(error).splitlines()[0]})") from error
-        tab = browser.new_page()
-        tab.goto("about:blank")
-        yield tab
-        browser.close()
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,120 @@
+"""Writing binary glTF: meshes, textures and materials into one file, with numpy and nothing else."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import dataclass, field
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from sim_core.picture import normals
+
+__all__ = ["GlbFile"]
+
+VERTICES, INDICES = 34962, 34963  # what a buffer view holds
+FLOAT, U16, U32 = 5126, 5123, 5125
+
+
+@dataclass
+class GlbFile:
+    """A binary glTF 2.0 file under construction: the JSON part and the binary blob."""
+
+    blob: bytearray = field(default_factory=bytearray)
+    views: list[dict[str, Any]] = field(default_factory=list)
+    accessors: list[dict[str, Any]] = field(default_factory=list)
+    images: list[dict[str, Any]] = field(default_factory=list)
+    materials: list[dict[str, Any]] = field(default_factory=list)
+    meshes: list[dict[str, Any]] = field(default_factory=list)
+
+    def _view(self, data: bytes, target: int | None = None) -> int:
+        self.blob.extend(b"\0" * (-len(self.blob) % 4))
+        view = {"buffer": 0, "byteOffset": len(self.blob), "byteLength": len(data)}
+        self.views.append(view if target is None else {**view, "target": target})
+        self.blob.extend(data)
+        return len(self.views) - 1
+
+    def _accessor(self, array: np.ndarray, kind: str, component: int, target: int) -> int:
+        accessor = {
+            "bufferView": self._view(array.tobytes(), target),
+            "componentType": component,
+            "count": len(array),
+            "type": kind,
+        }
+        if kind == "VEC4":
+            accessor["normalized"] = True
+        if kind in ("VEC3", "SCALAR"):
+            flat = array.reshape(len(array), -1)
+            accessor |= {"min": flat.min(0).tolist(), "max": flat.max(0).tolist()}
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+    def texture(self, picture: np.ndarray, scale: list[float]) -> dict[str, Any]:
+        """Stores a picture as PNG; returns a texture reference whose transform maps mm to tiles."""
+        from PIL import Image
+
+        stream = BytesIO()
+        Image.fromarray(picture).save(stream, "PNG", optimize=True)
+        self.images.append({"bufferView": self._view(stream.getvalue()), "mimeType": "image/png"})
+        transform = {"KHR_texture_transform": {"scale": scale}}
+        return {"index": len(self.images) - 1, "texCoord": 0, "extensions": transform}
+
+    def material(self, material: dict[str, Any]) -> int:
+        """Adds a material."""
+        self.materials.append(material)
+        return len(self.materials) - 1
+
+    def mesh(
+        self,
+        name: str,
+        vertices: np.ndarray,
+        faces: np.ndarray,
+        material: int,
+        uv: np.ndarray | None = None,
+        colours: np.ndarray | None = None,
+    ) -> None:
+        """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
+
+        Normals are the mesh's own, area-weighted; a mesh with colours is drawn unlit and has none.
+        """
+        attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
+        if colours is None:
+            shading = normals(vertices, faces).astype("<f4")
+            attributes["NORMAL"] = self._accessor(shading, "VEC3", FLOAT, VERTICES)
+        else:
+            fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
+            attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)
+        if uv is not None:
+            attributes["TEXCOORD_0"] = self._accessor(uv.astype("<f4"), "VEC2", FLOAT, VERTICES)
+        kind, component = ("<u2", U16) if len(vertices) < 65535 else ("<u4", U32)
+        index = self._accessor(faces.astype(kind).reshape(-1), "SCALAR", component, INDICES)
+        primitive = {"attributes": attributes, "indices": index, "material": material}
+        self.meshes.append({"name": name, "primitives": [primitive]})
+
+    def bytes(self, name: str, extensions: list[str], generator: str = "sim_core.garment") -> bytes:
+        """The finished file; `name` is the scene's, `extensions` are those its materials use."""
+        self.blob.extend(b"\0" * (-len(self.blob) % 4))
+        numbers = range(len(self.meshes))
+        document: dict[str, Any] = {
+            "asset": {"version": "2.0", "generator": generator},
+            "extensionsUsed": extensions,
+            "scene": 0,
+            "scenes": [{"name": name, "nodes": list(numbers)}],
+            "nodes": [{"name": self.meshes[k]["name"], "mesh": k} for k in numbers],
+            "meshes": self.meshes,
+            "materials": self.materials,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{"byteLength": len(self.blob)}],
+        }
+        if self.images:
+            document["images"] = self.images
+            document["samplers"] = [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}]
+            document["textures"] = [{"source": k, "sampler": 0} for k in range(len(self.images))]
+        text = json.dumps(document, separators=(",", ":")).encode()
+        text += b" " * (-len(text) % 4)
+        size = 12 + 8 + len(text) + 8 + len(self.blob)
+        head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
+        return head + text + struct.pack("<I4s", len(self.blob), b"BIN\0") + bytes(self.blob)
