@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.raster import LAYERS, compose, depth_map, fragments, lit
+from sim_core.raster import LAYERS, compose, depth_map, fragments
+from sim_core.raster import lit as lit_share
 
-__all__ = ["Camera", "Light", "Surface", "normals", "render", "save_png"]
+__all__ = ["Camera", "Light", "Lighting", "Surface", "lighting", "normals", "render", "save_png"]
 
 _SKY_DIRECTIONS = 40
 _SKY_PIXELS = 320
@@ -54,6 +55,30 @@ class Light:
     background: tuple[float, float, float] = (0.80, 0.77, 0.72)  # sRGB, floor and backdrop
 
 
+@dataclass(frozen=True)
+class Lighting:
+    """What no camera changes: the floor, each surface's view of the sky (V,), the key light's depth maps."""
+
+    light: Light
+    ground: Surface | None
+    skies: tuple[np.ndarray, ...]
+    shadow: tuple[np.ndarray, np.ndarray, np.ndarray, float, float]
+
+
+def lighting(surfaces: Sequence[Surface], light: Light | None = None, *, floor: bool = True) -> Lighting:
+    """Light on `surfaces`, for several pictures of the same scene.
+
+    Raises SimCoreError if a surface has no vertices, wrong shapes or coordinates that are not finite.
+    """
+    for number, surface in enumerate(surfaces):
+        _check(number, surface)
+    light = light or Light()
+    ground = _floor(surfaces, light) if floor else None
+    drawn = [*surfaces, ground] if ground else list(surfaces)
+    skies = tuple(_sky_visibility(drawn, len(surfaces)))
+    return Lighting(light, ground, skies, _shadow(surfaces, _unit(light.key)))
+
+
 def normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Area-weighted unit vertex normals (V, 3); zero-length ones point up."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
@@ -74,18 +99,17 @@ def render(
     light: Light | None = None,
     supersample: int = 2,
     floor: bool = True,
+    lit: Lighting | None = None,
 ) -> np.ndarray:
     """A picture (height, width, 3) uint8 of `surfaces`; size: (width, height) in pixels.
 
+    lit: what `lighting` gave for the same surfaces, in place of light and floor.
     Raises SimCoreError if a surface has no vertices, wrong shapes or coordinates that are not finite.
     """
-    for number, surface in enumerate(surfaces):
-        _check(number, surface)
-    light = light or Light()
-    width, height = size[0] * supersample, size[1] * supersample
-    background = _linear(light.background)
-    image = np.broadcast_to(background, (height, width, 3)).astype(np.float64).copy()
-    if floor:
+    lit = lit or lighting(surfaces, light, floor=floor)
+    light, width, height = lit.light, size[0] * supersample, size[1] * supersample
+    image = np.broadcast_to(_linear(light.background), (height, width, 3)).astype(np.float64).copy()
+    if lit.ground:
         _backdrop(image)
     depth = np.zeros((height, width))
     sheer = any(surface.alpha < 1 for surface in surfaces)
@@ -93,15 +117,11 @@ def render(
     layer_depth = np.full(layer_shape, np.inf, np.float32)
     layer_colour = np.zeros((*layer_shape, 4), np.float32)
     scene = np.array([camera.eye, _unit(light.key), light.key_colour, light.sky, light.ground], float)
-    ground = _floor(surfaces, light) if floor else None
-    drawn = [*surfaces, ground] if ground else list(surfaces)
-    skies = _sky_visibility(drawn, len(surfaces))
-    shadow = _shadow(surfaces, _unit(light.key))
-    for surface, sky in zip(drawn, skies, strict=True):
+    target = (depth, image, layer_depth, layer_colour)
+    drawn = [*surfaces, lit.ground] if lit.ground else list(surfaces)
+    for surface, sky in zip(drawn, lit.skies, strict=True):
         screen = _project(surface.vertices, camera, width, height)
-        _draw(
-            surface, screen, sky, surface is ground, scene, shadow, (depth, image, layer_depth, layer_colour)
-        )
+        _draw(surface, screen, sky, surface is lit.ground, scene, lit.shadow, target)
     if sheer:
         compose(image, depth, layer_depth, layer_colour)
     small = image.reshape(size[1], supersample, size[0], supersample, 3).mean(axis=(1, 3))
@@ -220,7 +240,7 @@ def _sky_visibility(surfaces: Sequence[Surface], casters: int) -> list[np.ndarra
         matrix = _light_matrix(points, direction, _SKY_PIXELS)
         depth = _depths(surfaces[:casters], matrix, _SKY_PIXELS)
         for sum_, surface in zip(total, surfaces, strict=True):
-            sum_ += lit(surface.vertices @ matrix[:, :3].T + matrix[:, 3], depth, 0.012, 1)
+            sum_ += lit_share(surface.vertices @ matrix[:, :3].T + matrix[:, 3], depth, 0.012, 1)
     return [0.15 + 0.85 * sum_ / _SKY_DIRECTIONS for sum_ in total]
 
 

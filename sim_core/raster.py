@@ -11,13 +11,35 @@ LAYERS = 8  # sheer layers kept per pixel, the nearest ones
 
 
 @njit(cache=True, error_model="numpy")
-def _bounds(a, b, c, width, height):
-    """Pixel box of a screen triangle, clipped, and twice its signed area."""
-    x0 = max(int(math.floor(min(a[0], b[0], c[0]))), 0)
-    x1 = min(int(math.ceil(max(a[0], b[0], c[0]))), width - 1)
+def _rows(a, b, c, height):
+    """Pixel rows of a screen triangle, clipped, and one over twice its signed area (0: degenerate)."""
     y0 = max(int(math.floor(min(a[1], b[1], c[1]))), 0)
     y1 = min(int(math.ceil(max(a[1], b[1], c[1]))), height - 1)
-    return x0, x1, y0, y1, (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return y0, y1, 1.0 / area if area != 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _weights(a, b, c, over, y):
+    """Barycentric weights of a and b along the row y: each (value at x = 0, growth per pixel)."""
+    u1, v1 = (b[1] - c[1]) * over, (c[1] - a[1]) * over
+    u0 = (b[0] * (c[1] - y) - (b[1] - y) * c[0]) * over
+    v0 = (c[0] * (a[1] - y) - (c[1] - y) * a[0]) * over
+    return u0, u1, v0, v1
+
+
+@njit(cache=True, error_model="numpy")
+def _columns(u0, u1, v0, v1, width):
+    """First and last pixel of a row whose middle may lie in the triangle; one too many at either end."""
+    low, high = -1.0, width + 1.0
+    for value, growth in ((u0, u1), (v0, v1), (1.0 - u0 - v0, -u1 - v1)):
+        if growth > 0.0:
+            low = max(low, -value / growth)
+        elif growth < 0.0:
+            high = min(high, -value / growth)
+        elif value < 0.0:
+            return 1, 0
+    return max(int(low - 0.5), 0), min(int(high + 0.5), width - 1)
 
 
 @njit(cache=True, error_model="numpy")
@@ -26,14 +48,14 @@ def depth_map(screen, faces, depth):
     height, width = depth.shape
     for f in range(len(faces)):
         a, b, c = screen[faces[f, 0]], screen[faces[f, 1]], screen[faces[f, 2]]
-        x0, x1, y0, y1, area = _bounds(a, b, c, width, height)
-        if area == 0.0:
+        y0, y1, over = _rows(a, b, c, height)
+        if over == 0.0:
             continue
         for py in range(y0, y1 + 1):
+            u0, u1, v0, v1 = _weights(a, b, c, over, py + 0.5)
+            x0, x1 = _columns(u0, u1, v0, v1, width)
             for px in range(x0, x1 + 1):
-                x, y = px + 0.5, py + 0.5
-                u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
-                v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
+                u, v = u0 + u1 * (px + 0.5), v0 + v1 * (px + 0.5)
                 w = 1.0 - u - v
                 if u >= 0.0 and v >= 0.0 and w >= 0.0:
                     z = u * a[2] + v * b[2] + w * c[2]
@@ -64,13 +86,14 @@ def _lit_at(x, y, z, depth, bias, radius):
 
 
 @njit(cache=True, error_model="numpy")
-def _place(matrix, p):
-    """An affine map (3, 4) of a point (3,)."""
-    out = matrix[:, 3].copy()
-    for k in range(3):
-        for c in range(3):
-            out[k] += matrix[k, c] * p[c]
-    return out
+def _place(m, p):
+    """An affine map (3, 4) of a point; triples instead of arrays, since a fragment must not allocate."""
+    x, y, z = p
+    return (
+        m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3],
+        m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3],
+        m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3],
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -82,22 +105,30 @@ def _shade(n, p, open_sky, colour, look, scene):
     facing = n[0] * ex + n[1] * ey + n[2] * ez
     if look[4] > 0.0:  # a floor that only shows shadows, else the backdrop's own colour
         shade = (0.55 + 0.45 * open_sky[1]) * (0.72 + 0.28 * open_sky[0])
-        return colour * shade, 1.0
+        return (colour[0] * shade, colour[1] * shade, colour[2] * shade), 1.0
     key = n[0] * scene[1, 0] + n[1] * scene[1, 1] + n[2] * scene[1, 2]
     through = look[2]  # part of the light that comes through from behind: thin cloth glows
     diffuse = max(key, 0.0) + through * max(-key, 0.0)
     hx, hy, hz = ex + scene[1, 0], ey + scene[1, 1], ez + scene[1, 2]
     size = math.sqrt(hx * hx + hy * hy + hz * hz)
-    gloss = look[0] * max(0.0, (n[0] * hx + n[1] * hy + n[2] * hz) / size) ** 24
+    gloss = 0.0
+    if look[0] > 0.0:
+        gloss = look[0] * max(0.0, (n[0] * hx + n[1] * hy + n[2] * hz) / size) ** 24
+        gloss *= math.sqrt(max(key, 0.0)) * open_sky[0]
     sheen = look[1] * (1.0 - min(1.0, max(facing, 0.0))) ** 3
-    up = 0.5 + 0.5 * n[1]
-    r = np.zeros(3)
-    for k in range(3):
-        ambient = open_sky[1] * (up * scene[3, k] + (1.0 - up) * scene[4, k])
-        white = (gloss * max(key, 0.0) ** 0.5 * open_sky[0]) * scene[2, k]
-        light = open_sky[0] * diffuse * scene[2, k] + ambient
-        r[k] = colour[k] * light + white + sheen * (0.35 + 0.65 * colour[k]) * (0.5 * ambient + 0.4 * light)
-    return r, max(facing, 0.05)
+    up, lamp = 0.5 + 0.5 * n[1], open_sky[0] * diffuse
+    r0 = _channel(colour[0], lamp, gloss, sheen, up, open_sky[1], scene[2, 0], scene[3, 0], scene[4, 0])
+    r1 = _channel(colour[1], lamp, gloss, sheen, up, open_sky[1], scene[2, 1], scene[3, 1], scene[4, 1])
+    r2 = _channel(colour[2], lamp, gloss, sheen, up, open_sky[1], scene[2, 2], scene[3, 2], scene[4, 2])
+    return (r0, r1, r2), max(facing, 0.05)
+
+
+@njit(cache=True, error_model="numpy")
+def _channel(colour, lamp, gloss, sheen, up, opened, key, sky, ground):
+    """One colour channel of a shaded fragment."""
+    ambient = opened * (up * sky + (1.0 - up) * ground)
+    light = lamp * key + ambient
+    return colour * light + gloss * key + sheen * (0.35 + 0.65 * colour) * (0.5 * ambient + 0.4 * light)
 
 
 @njit(cache=True, error_model="numpy")
@@ -115,6 +146,16 @@ def _insert(layer_depth, layer_colour, z, r, alpha):
 
 
 @njit(cache=True, error_model="numpy")
+def _mixed(rows, i, j, k, u, v, w):
+    """Weighted sum of three rows of (V, 3)."""
+    return (
+        u * rows[i, 0] + v * rows[j, 0] + w * rows[k, 0],
+        u * rows[i, 1] + v * rows[j, 1] + w * rows[k, 1],
+        u * rows[i, 2] + v * rows[j, 2] + w * rows[k, 2],
+    )
+
+
+@njit(cache=True, error_model="numpy")
 def _fragment(p, n, sky, colour, look, scene, shadow):
     """Colour and slant of a fragment at p whose normal n is turned to the eye first."""
     matrix, shadows, veils, veil, bias = shadow
@@ -124,7 +165,7 @@ def _fragment(p, n, sky, colour, look, scene, shadow):
     at = _place(matrix, p)
     seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)
     seen *= 1.0 - veil * (1.0 - _lit_at(at[0], at[1], at[2], veils, bias, 3))
-    return _shade(n / size, p, (seen, sky), colour, look, scene)
+    return _shade((n[0] / size, n[1] / size, n[2] / size), p, (seen, sky), colour, look, scene)
 
 
 @njit(cache=True, error_model="numpy")
@@ -142,14 +183,14 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
         a, b, c = screen[i], screen[j], screen[k]
         if a[2] <= 0.0 or b[2] <= 0.0 or c[2] <= 0.0:
             continue
-        x0, x1, y0, y1, area = _bounds(a, b, c, width, height)
-        if area == 0.0:
+        y0, y1, over = _rows(a, b, c, height)
+        if over == 0.0:
             continue
         for py in range(y0, y1 + 1):
+            u0, u1, v0, v1 = _weights(a, b, c, over, py + 0.5)
+            x0, x1 = _columns(u0, u1, v0, v1, width)
             for px in range(x0, x1 + 1):
-                x, y = px + 0.5, py + 0.5
-                u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
-                v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
+                u, v = u0 + u1 * (px + 0.5), v0 + v1 * (px + 0.5)
                 w = 1.0 - u - v
                 if u < 0.0 or v < 0.0 or w < 0.0:
                     continue
@@ -157,14 +198,12 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
                 if -near >= depth[py, px]:
                     continue
                 u, v, w = u * a[2] / near, v * b[2] / near, w * c[2] / near
-                p, n = (
-                    u * world[i] + v * world[j] + w * world[k],
-                    u * normals[i] + v * normals[j] + w * normals[k],
-                )
+                p = _mixed(world, i, j, k, u, v, w)
+                n = _mixed(normals, i, j, k, u, v, w)
                 r, facing = _fragment(p, n, u * sky[i] + v * sky[j] + w * sky[k], colour, look, scene, shadow)
                 if look[3] >= 1.0:
                     depth[py, px] = -near
-                    image[py, px] = r
+                    image[py, px, 0], image[py, px, 1], image[py, px, 2] = r
                 else:
                     # More threads lie in a slanting line of sight.
                     alpha = 1.0 - (1.0 - look[3]) ** (1.0 / facing)

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,18 +39,23 @@ class Look:
     height: float
 
 
-def picture(look: Look, positions: NDArray[np.floating], angle: float, size: tuple[int, int]) -> Picture:
-    """The garment seen from `angle` [deg] about +y, 0 = the front."""
-    from sim_core.picture import Camera, Surface, render
+def _surfaces(look: Look, positions: NDArray[np.floating]) -> list[Any]:
+    from sim_core.picture import Surface
+
+    cloth = Surface(
+        np.asarray(positions, float), look.faces, look.colour, alpha=look.alpha, sheen=0.5, through=0.3
+    )
+    return [cloth, Surface(look.stand_vertices, look.stand_faces, (0.28, 0.13, 0.10), gloss=0.35)]
+
+
+def _camera(look: Look, angle: float) -> Any:
+    """Where the garment is seen from `angle` [deg] about +y, 0 = the front."""
+    from sim_core.picture import Camera
 
     turn, middle = math.radians(angle), look.height / 2
     away = 1.28 * look.height / (2 * math.tan(math.radians(15)))
     eye = (away * math.sin(turn), middle + 0.12 * look.height, away * math.cos(turn))
-    cloth = Surface(
-        np.asarray(positions, float), look.faces, look.colour, alpha=look.alpha, sheen=0.5, through=0.3
-    )
-    stand = Surface(look.stand_vertices, look.stand_faces, (0.28, 0.13, 0.10), gloss=0.35)
-    return render([cloth, stand], Camera(eye, (0.0, middle, 0.0), 30.0), size)
+    return Camera(eye, (0.0, middle, 0.0), 30.0)
 
 
 class Film:
@@ -58,48 +64,63 @@ class Film:
     def __init__(self, look: Look, pool: ProcessPoolExecutor, folder: Path) -> None:
         self._look, self._pool, self._folder = look, pool, folder
         self._pictures: list[Future[None]] = []
+        self._count = 0
         folder.mkdir(parents=True, exist_ok=True)
 
-    def shoot(self, positions: NDArray[np.floating], angle: float = STILLS["front"]) -> None:
-        """Take the next picture; one that lies there from an interrupted build is kept."""
-        path = self._folder / f"{len(self._pictures):05d}.png"
-        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), angle, path))
+    def shoot(self, positions: NDArray[np.floating], *angles: float) -> None:
+        """The next pictures, of one state of the cloth from each angle; what an interrupted build left is kept."""
+        views = [
+            (angle, self._folder / f"{self._count + number:05d}.png")
+            for number, angle in enumerate(angles or (STILLS["front"],))
+        ]
+        self._count += len(views)
+        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), views))
 
     def walk_round(self, positions: NDArray[np.floating]) -> None:
         """Once round the finished garment, slowly beginning and ending."""
-        for index in range(1, ROUND + 1):
-            share = index / ROUND
-            eased = share * share * (3 - 2 * share)
-            self.shoot(positions, STILLS["front"] + 360.0 * eased)
+        shares = np.arange(1, ROUND + 1) / ROUND
+        angles = STILLS["front"] + 360.0 * shares * shares * (3 - 2 * shares)
+        for piece in np.array_split(angles, 6):
+            self.shoot(positions, *piece)
 
     def write(
         self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
     ) -> None:
-        """Encode what was shot into every one of `paths`."""
-        from PIL import Image
-
-        count = len(self._pictures)
+        """Encode what was shot into every one of `paths`, side by side."""
         for number, future in enumerate(self._pictures):
             future.result()
-            tick(0.8 * number / count)
-
-        def shown(index: int) -> Picture:
-            with Image.open(self._folder / f"{index:05d}.png") as image:
-                return np.asarray(image.convert("RGB"))
-
-        for number, path in enumerate(paths):
-            encode_film(path, shown, count, rate=RATE, sound=sound)
-            tick(0.8 + 0.2 * (number + 1) / len(paths))
+            tick(0.8 * number / len(self._pictures))
+        films = [self._pool.submit(_encode, path, self._folder, self._count, sound) for path in paths]
+        for number, film in enumerate(films):
+            film.result()
+            tick(0.8 + 0.2 * (number + 1) / len(films))
 
 
-def _shoot(look: Look, positions: NDArray[np.floating], angle: float, path: Path) -> None:
+def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | None) -> None:
     from PIL import Image
 
-    if path.is_file():
+    def shown(index: int) -> Picture:
+        with Image.open(folder / f"{index:05d}.png") as image:
+            return np.asarray(image.convert("RGB"))
+
+    encode_film(path, shown, count, rate=RATE, sound=sound)
+
+
+def _shoot(look: Look, positions: NDArray[np.floating], views: list[tuple[float, Path]]) -> None:
+    from PIL import Image
+
+    from sim_core.picture import lighting, render
+
+    left = [(angle, path) for angle, path in views if not path.is_file()]
+    if not left:
         return
-    partial = path.with_suffix(".part")
-    Image.fromarray(picture(look, positions, angle, SIZE)).save(partial, format="png", compress_level=1)
-    partial.replace(path)
+    surfaces = _surfaces(look, positions)
+    lit = lighting(surfaces)
+    for angle, path in left:
+        partial = path.with_suffix(".part")
+        shown = render(surfaces, _camera(look, angle), SIZE, lit=lit)
+        Image.fromarray(shown).save(partial, format="png", compress_level=1)
+        partial.replace(path)
 
 
 @contextmanager
@@ -121,9 +142,12 @@ def stills(look: Look, positions: NDArray[np.floating], folder: Path) -> None:
     """Pictures from front, side and back, and the film's poster, as JPEG."""
     from PIL import Image
 
-    poster = picture(look, positions, STILLS["front"], SIZE)
-    Image.fromarray(poster).save(folder / "drape.jpg", quality=88, optimize=True)
-    for name, angle in STILLS.items():
-        Image.fromarray(picture(look, positions, angle, (900, 1125))).save(
-            folder / f"still-{name}.jpg", quality=88, optimize=True
-        )
+    from sim_core.picture import lighting, render
+
+    surfaces = _surfaces(look, positions)
+    lit = lighting(surfaces)
+    views = {"drape": (STILLS["front"], SIZE)}
+    views |= {f"still-{name}": (angle, (900, 1125)) for name, angle in STILLS.items()}
+    for name, (angle, size) in views.items():
+        shown = render(surfaces, _camera(look, angle), size, lit=lit)
+        Image.fromarray(shown).save(folder / f"{name}.jpg", quality=88, optimize=True)

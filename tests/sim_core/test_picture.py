@@ -1,0 +1,93 @@
+"""Stills: the rasteriser against a plain one, light shared between pictures, errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim_core.errors import SimCoreError
+from sim_core.picture import Camera, Surface, lighting, render
+from sim_core.raster import depth_map
+
+SQUARE = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 1.0, 0.0]])
+FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+CAMERA = Camera((0.4, 0.9, 3.0), (0.0, 0.5, 0.0))
+
+
+def _plain_depth(screen, faces, height, width):
+    """Every pixel's middle against every triangle."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    depth = np.full((height, width), np.inf)
+    for a, b, c in screen[faces]:
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area
+        v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area
+        within = (u >= 0) & (v >= 0) & (u + v <= 1)
+        z = u * a[2] + v * b[2] + (1 - u - v) * c[2]
+        depth = np.where(within & (z < depth), z, depth)
+    return depth
+
+
+def test_depth_map_agrees_with_a_plain_one():
+    rng = np.random.default_rng(3)
+    screen = rng.uniform(-12, 60, (90, 3))
+    # Steep, flat, tiny and axis-parallel triangles too.
+    screen[:9] = np.array(
+        [
+            [5, 5, 1],
+            [5, 30, 2],
+            [9, 12, 1],
+            [0, 8, 1],
+            [47, 8, 2],
+            [20, 8.4, 3],
+            [7, 7, 1],
+            [7.6, 7, 1],
+            [7.3, 7.6, 1],
+        ]
+    )
+    faces = np.arange(90, dtype=np.int32).reshape(-1, 3)
+    depth = np.full((40, 48), np.inf)
+    depth_map(screen, faces, depth)
+    plain = _plain_depth(screen, faces, 40, 48)
+    differs = np.isinf(depth) != np.isinf(plain)
+    assert differs.sum() <= 2  # middles on an edge, decided by the last bit
+    both = ~np.isinf(depth) & ~np.isinf(plain)
+    assert both.sum() > 500
+    np.testing.assert_allclose(depth[both], plain[both], atol=1e-9)
+
+
+def test_depth_map_leaves_out_what_has_no_area():
+    screen = np.array([[1.0, 1, 0], [5, 5, 0], [9, 9, 0]])
+    depth = np.full((12, 12), np.inf)
+    depth_map(screen, np.array([[0, 1, 2]], np.int32), depth)
+    assert np.isinf(depth).all()
+
+
+def test_light_is_shared_between_pictures():
+    surfaces = [Surface(SQUARE, FACES, (0.7, 0.2, 0.2), alpha=0.6), Surface(SQUARE - [0, 0, 0.3], FACES)]
+    lit = lighting(surfaces)
+    np.testing.assert_array_equal(
+        render(surfaces, CAMERA, (80, 60), lit=lit), render(surfaces, CAMERA, (80, 60))
+    )
+
+
+def test_a_sheer_square_shows_what_is_behind_it():
+    def middle(alpha):
+        surfaces = [
+            Surface(SQUARE, FACES, (0.9, 0.0, 0.0), alpha=alpha),
+            Surface(SQUARE - [0, 0, 0.3], FACES, (0.0, 0.0, 0.9)),
+        ]
+        return render(surfaces, CAMERA, (80, 60), floor=False)[30, 40].astype(int)
+
+    red, veil = middle(1.0), middle(0.4)
+    assert red[0] > 3 * red[2]
+    assert veil[2] > veil[0] > red[2]
+
+
+@pytest.mark.parametrize(
+    ("vertices", "says"),
+    [(np.zeros((0, 3)), "expected"), (np.full((4, 3), np.nan), "not finite")],
+)
+def test_nothing_to_draw_is_said(vertices, says):
+    with pytest.raises(SimCoreError, match=says):
+        render([Surface(vertices, FACES)], CAMERA, (8, 6))
