@@ -1,6 +1,7 @@
 // The close-up: the fine model in its own studio, turned by dragging, by wheel, by two fingers or by keys.
 
 import * as camera from "./camera.js";
+import { meshesOf, requestRender } from "./hooks.js";
 
 const TURN = 0.12; // [rad] a key press
 const STEP = 0.08; // of the exhibit's size, a key press
@@ -12,11 +13,11 @@ export function createCloseup(ui) {
   // The model comes over viser's socket: two frames after its meshes stand in the scene it has been drawn.
   function awaitModel(node, patience = performance.now() + 60000) {
     if (!studio || performance.now() > patience) return;
-    if (camera.meshesOf(node).length === 0) {
+    if (meshesOf(node).length === 0) {
       requestAnimationFrame(() => awaitModel(node, patience));
       return;
     }
-    camera.requestRender();
+    requestRender();
     requestAnimationFrame(() => requestAnimationFrame((now) => {
       drawnAt = now;
       if (studio) root.dataset.closeup = "drawn";

@@ -33,6 +33,11 @@ _FIRST = """
     if (now !== latest) { latest = now; window.HALL.beforeFrame?.(now); }
     callback(now);
   });
+  // viser draws a picture every second whether or not something moved; the page says when that may be left out.
+  const repeat = window.setInterval.bind(window);
+  const heartbeat = (act, every) => every === 1000 && /^\(\)=>\w+\(\)$/.test(String(act).replace(/\s/g, ""));
+  window.setInterval = (act, every, ...rest) =>
+    repeat(heartbeat(act, every) ? () => { if (!window.HALL.mayRest?.()) act(); } : act, every, ...rest);
 }
 """
 

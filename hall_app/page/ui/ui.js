@@ -222,6 +222,7 @@ function face(parts, overlay, words) {
     },
     toast: parts.toasts.toast,
     connection: parts.connection.set,
+    quality() {},
     problems: parts.problems.set,
     updateScene(scene) {
       parts.scene = scene;
