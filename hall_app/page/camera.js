@@ -86,12 +86,12 @@ export function displayed() {
   return camera ? fromThree([camera.position.x, camera.position.y, camera.position.z]) : null;
 }
 
-/** Move the picture's middle into what a panel at the right, a sheet at the bottom and the bar on top [px] leave free. */
-export function leaveRoom({ panel, sheet, top }) {
+/** Move the picture's middle into what panel at the right, bar on top, sheet or hints at the bottom [px] leave free. */
+export function leaveRoom({ panel, bottom, top }) {
   const m = mutable();
   if (!m?.camera || !m.canvas) return;
   const width = m.canvas.clientWidth, height = m.canvas.clientHeight;
-  if (panel || sheet || top) m.camera.setViewOffset(width, height, panel / 2, (sheet - top) / 2, width, height);
+  if (panel || bottom || top) m.camera.setViewOffset(width, height, panel / 2, (bottom - top) / 2, width, height);
   else m.camera.clearViewOffset();
   requestRender();
 }

@@ -24,10 +24,10 @@ export function createCloseup(ui) {
     }));
   }
 
-  // Far enough for the exhibit to fill what panel or sheet leaves of the picture, with a margin.
+  // Far enough for the exhibit to fill what panel, bar and hints leave of the picture, with a margin.
   function fitting(radius) {
-    const { panel, sheet, top } = ui.visible;
-    const free = Math.min(innerWidth - panel, innerHeight - sheet - top) / innerHeight;
+    const { panel, bottom, top } = ui.visible;
+    const free = Math.min(innerWidth - panel, innerHeight - bottom - top) / innerHeight;
     return (1.15 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
   }
 
@@ -67,7 +67,7 @@ export function createCloseup(ui) {
       studio = null;
       delete root.dataset.closeup;
       camera.freeDistances();
-      camera.leaveRoom({ panel: 0, sheet: 0, top: 0 });
+      camera.leaveRoom({ panel: 0, bottom: 0, top: 0 });
     },
   };
 }

@@ -8,6 +8,7 @@ import { createKeys } from "./keys.js";
 import { glow } from "./light.js";
 import { fetchJson } from "./loading.js";
 import { createMark } from "./mark.js";
+import { createTurning } from "./turning.js";
 import { createWalk } from "./walk.js";
 
 const LONGEST_FRAME = 0.5; // [s] a hidden tab does not leap when it comes back
@@ -32,6 +33,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
     wake();
   });
   gaze.yaw = scene.start.yaw;
+  const turning = createTurning(wake);
 
   const mark = createMark(display, (client) => walk.send({ t: "client", client }));
   const walk = createWalk({
@@ -115,6 +117,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
     if (walking()) step(dt, now);
     if (display !== "page" || opened) return;
     camera.holdGestures();
+    turning.frame(dt, scene, { ...walk.pose, yaw: gaze.yaw });
     const view = [walk.pose.x, walk.pose.z, gaze.eye, gaze.yaw, gaze.pitch].map((v) => v.toFixed(5)).join();
     if (view === drawn && now >= settleUntil) return;
     if (view !== drawn) wake();

@@ -180,11 +180,6 @@ class HallScene:
     def node(self, exhibit: str) -> str:
         return node_name(exhibit)
 
-    def turn(self, exhibit: str, angle: float) -> None:
-        figure, handle = self._figures.get(exhibit), self._handles.get(exhibit)
-        if figure is not None and handle is not None:
-            handle.wxyz = about_y(math.radians(figure.facing) + angle)
-
     def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]:
         """Put the fine model into the studio, for this visitor alone."""
         figure = self._figures[exhibit]
