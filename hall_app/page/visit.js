@@ -117,6 +117,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
     if (walking()) step(dt, now);
     if (display !== "page" || opened) return;
     camera.holdGestures();
+    camera.fitLens();
     turning.frame(dt, scene, { ...walk.pose, yaw: gaze.yaw });
     const view = [walk.pose.x, walk.pose.z, gaze.eye, gaze.yaw, gaze.pitch].map((v) => v.toFixed(5)).join();
     if (view === drawn && now >= settleUntil) return;
