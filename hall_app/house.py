@@ -51,6 +51,7 @@ class House:
         self._models: dict[str, ExhibitModels] = {}
         self._failed: dict[str, Problem] = {}
         self.scene.show_room(self.content.plan)
+        self.scene.show_environment(_environment(self.content))
         self._show()
 
     @property
@@ -117,6 +118,8 @@ class House:
         before, self.content = self.content, content
         if content.plan != before.plan:
             self.scene.show_room(content.plan)
+        if _environment(content) != _environment(before):
+            self.scene.show_environment(_environment(content))
         if moved:
             self.floor, self.grid = floor, grid
             for visitor in self.visitors:
@@ -217,6 +220,12 @@ class House:
         body = self.grid.body
         grid = {"url": f"/grid.bin?v={self.content.revision}", **self.grid.meta()}
         return {"mode": self.walk_mode, **walk_constants(body.radius, body.skin), "grid": grid}
+
+
+def _environment(content: Content) -> bytes | None:
+    """The picture of the room that exhibits reflect, None where there is none."""
+    file = content.folder / "room" / "environment.jpg"
+    return file.read_bytes() if file.is_file() else None
 
 
 def walk_constants(radius: float, skin: float) -> dict[str, float]:

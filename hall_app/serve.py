@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["add_parser", "run"]
 
 _POLL = 1.0  # [s] between two looks at the content folder
-_BEAT = 1 / 15  # [s] between two movements on stage
 
 _EPILOG = """\
 The hall needs no network, no database server and no torch. Answers, accounts of baking and caches go to --data.
@@ -139,14 +138,13 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
     @contextlib.asynccontextmanager
     async def living(app: FastAPI) -> AsyncIterator[None]:
         house.attach(asyncio.get_running_loop())
-        tasks = [asyncio.create_task(_follow_edits(house)), asyncio.create_task(_play(house))]
+        following = asyncio.create_task(_follow_edits(house))
         _greet(house, arguments)
         try:
             yield
         finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
+            following.cancel()
+            await asyncio.gather(following, return_exceptions=True)
             survey.close()
             house.close()
 
@@ -221,13 +219,6 @@ async def _bake_beside(house: House, exhibit: Exhibit) -> None:
     _say(f"Preparing {exhibit.id}: {outcome}")
     house.baked(exhibit, None if preparation.returncode == 0 else outcome)
     await house.replace(house.content)
-
-
-async def _play(house: House) -> None:
-    async def beat() -> None:
-        house.stage.tick(time.monotonic())
-
-    await _for_ever(_BEAT, beat, "moving exhibits")
 
 
 def _show_progress(fraction: float, label: str) -> None:

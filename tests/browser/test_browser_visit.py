@@ -274,7 +274,6 @@ def test_questionnaire_is_answered_and_exported(page, shipped_hall):
 
 
 def test_no_trouble_on_the_way(page):
-    # viser's sorter for Gaussian splats wants eval, which our policy forbids; the hall has no splats.
     # A browser that drops a medium it no longer needs reports the request as aborted.
-    troubles = [t for t in page.troubles if "unsafe-eval" not in t and "ERR_ABORTED" not in t]
+    troubles = [t for t in page.troubles if "ERR_ABORTED" not in t]
     assert troubles == []
