@@ -100,9 +100,7 @@ def _joists(part: Any, holes: Any, beams: list, height: float) -> list[Patch]:
             a, b = np.asarray(piece.coords)[[0, -1]]
             facing = 0.0 if across_x else -90.0
             frame = Frame.on_floor(a, facing, height)
-            patches += box(
-                frame, (0, -JOIST, -0.05), (piece.length, 0, 0.05), "joist", skip="top left right"
-            )
+            patches += box(frame, (0, -JOIST, -0.05), (piece.length, 0, 0.05), "joist", skip="top left right")
     return patches
 
 
@@ -129,8 +127,12 @@ def _laylight(light: Laylight, shape: Any, region: Region) -> list[Patch]:
     nx, nz = max(2, round(wide / 0.8)), max(2, round(deep / 1.0))
     for k in range(1, nx):
         at = -hx + wide * k / nx
-        patches += box(frame, (at - 0.025, -0.04, -hz), (at + 0.025, 0.03, hz), "joist", skip="top front back")
+        patches += box(
+            frame, (at - 0.025, -0.04, -hz), (at + 0.025, 0.03, hz), "joist", skip="top front back"
+        )
     for k in range(1, nz):
         at = -hz + deep * k / nz
-        patches += box(frame, (-hx, -0.075, at - 0.035), (hx, 0.03, at + 0.035), "joist", skip="top left right")
+        patches += box(
+            frame, (-hx, -0.075, at - 0.035), (hx, 0.03, at + 0.035), "joist", skip="top left right"
+        )
     return patches

@@ -48,7 +48,9 @@ def charts_of(patches: Sequence[Patch]) -> Charts:
     return Charts(np.array(chart, np.int32), flat, density, two_sided)
 
 
-def surfaces(patches: Sequence[Patch], occluders: Sequence[tuple[Floats, NDArray[np.int32]]] = ()) -> Surfaces:
+def surfaces(
+    patches: Sequence[Patch], occluders: Sequence[tuple[Floats, NDArray[np.int32]]] = ()
+) -> Surfaces:
     """The room for the light: every patch with its chart, albedo and glow; `occluders` (vertices, faces) have none."""
     from ..light.model import Surfaces
 

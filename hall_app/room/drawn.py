@@ -22,7 +22,7 @@ __all__ = ["LIGHT_SCALE", "room_glb"]
 
 Floats = NDArray[np.float64]
 LIGHT_SCALE = 2.0  # the light map holds light / 2
-_TEXTURE_QUALITY, _LIGHT_QUALITY, _SHEET_QUALITY = 84, 92, 82
+_TEXTURE_QUALITY, _LIGHT_QUALITY, _SHEET_QUALITY = 88, 92, 84
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
@@ -76,7 +76,7 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
     elif material.texture is not None:
         picture = texture(material.texture, material.colour)
         look["baseColorTexture"] = glb.picture(
-            _encoded(picture, "JPEG", quality=_TEXTURE_QUALITY, optimize=True), "image/jpeg"
+            _encoded(picture, "JPEG", quality=_TEXTURE_QUALITY, subsampling=0, optimize=True), "image/jpeg"
         )
     else:
         from .palette import linear
@@ -135,8 +135,6 @@ def _add_light(glb: GlbFile, light: LightMap) -> None:
     picture = np.round(255 * srgb).astype(np.uint8)
     data = _encoded(picture, "JPEG", quality=_LIGHT_QUALITY, subsampling=0, optimize=True)
     look = {"baseColorTexture": glb.picture(data, "image/jpeg"), "metallicFactor": 0.0}
-    material = glb.material(
-        {"name": "lightmap", "pbrMetallicRoughness": look, "extensions": {_UNLIT: {}}}
-    )
+    material = glb.material({"name": "lightmap", "pbrMetallicRoughness": look, "extensions": {_UNLIT: {}}})
     points = np.array([[0, -5, 0], [0.001, -5, 0], [0, -5, 0.001]])
     glb.mesh("lightmap", points, np.array([[0, 2, 1]]), material, np.zeros((3, 2)), unlit=True)

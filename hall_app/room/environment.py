@@ -41,7 +41,13 @@ def environment(plan: PlanFile) -> NDArray[np.uint8]:
     picture[over] = 0.55 * linear(MATERIALS["ceiling"].colour)
     picture[over & (np.abs((at_z + 1.0) % 2.0 - 1.0) < 0.12)] = 0.6 * linear(MATERIALS["lacquer"].colour)
     light = linear(MATERIALS["laylight"].tint)
-    for low_x, high_x, low_z, high_z in ((-1.6, 1.6, -6.5, 6.5), (4.5, 7.5, -5, -2), (4.5, 7.5, 2, 5), (-7.5, -4.5, -5, -2), (-7.5, -4.5, 2, 5)):
+    for low_x, high_x, low_z, high_z in (
+        (-1.6, 1.6, -6.5, 6.5),
+        (4.5, 7.5, -5, -2),
+        (4.5, 7.5, 2, 5),
+        (-7.5, -4.5, -5, -2),
+        (-7.5, -4.5, 2, 5),
+    ):
         well = over & (at_x > low_x) & (at_x < high_x) & (at_z > low_z) & (at_z < high_z)
         bars = (np.abs((at_z + 0.5) % 1.0 - 0.5) < 0.05) | (np.abs((at_x + 0.4) % 0.8 - 0.4) < 0.04)
         picture[well & ~bars] = light

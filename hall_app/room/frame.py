@@ -109,7 +109,9 @@ def _to_wall(a: NDArray[np.float64], before: NDArray[np.float64], regions: Regio
 
     along = (a - before) / np.linalg.norm(a - before)
     ray = shapely.LineString([a, a + _LONGEST * along])
-    inside = [p for p in shapely.get_parts(regions.floor.intersection(ray)) if p.distance(shapely.Point(a)) < 0.01]
+    inside = [
+        p for p in shapely.get_parts(regions.floor.intersection(ray)) if p.distance(shapely.Point(a)) < 0.01
+    ]
     if not inside or inside[0].length > _LONGEST - 0.1:
         return []
     end = a + inside[0].length * along

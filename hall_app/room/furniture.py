@@ -84,8 +84,12 @@ def backdrop_depth(solid: Solid) -> float:
 def _backdrop(frame: Frame, width: float, cloth: str) -> list[Patch]:
     """Cloth in a frame of lacquered wood, gold at the ends of its head; seen from behind as wood."""
     half, post = width / 2, 0.055
-    patches = box(frame, (-half, _LOW, -0.02), (half, _TOP - 0.1, 0.02), cloth, skip="back left right top bottom")
-    patches += box(frame, (-half, _LOW, -0.03), (half, _TOP - 0.1, -0.02), "wood", skip="front left right top bottom")
+    patches = box(
+        frame, (-half, _LOW, -0.02), (half, _TOP - 0.1, 0.02), cloth, skip="back left right top bottom"
+    )
+    patches += box(
+        frame, (-half, _LOW, -0.03), (half, _TOP - 0.1, -0.02), "wood", skip="front left right top bottom"
+    )
     for side in (-1, 1):
         x = side * (half + post)
         patches += box(frame, (x - post, 0, -0.055), (x + post, _TOP, 0.055), "lacquer", skip="bottom top")
@@ -112,7 +116,11 @@ def _dais(solid: Solid) -> list[Patch]:
     frame, wide, deep = placed
     top, deck = solid.height, min(DECK, solid.height / 3)
     patches: list[Patch] = []
-    for low, high, inset in ((0.0, 0.10, 0.0), (0.10, top - deck - 0.07, 0.05), (top - deck - 0.07, top - deck, 0.015)):
+    for low, high, inset in (
+        (0.0, 0.10, 0.0),
+        (0.10, top - deck - 0.07, 0.05),
+        (top - deck - 0.07, top - deck, 0.015),
+    ):
         x, z = wide / 2 - inset, deep / 2 - inset
         patches += box(frame, (-x, low, -z), (x, high, z), "stone", skip="bottom")
     x, z = wide / 2 - 0.07, deep / 2 - 0.07
@@ -134,15 +142,21 @@ def _screen(frame: Frame, wide: float, cloth: str) -> list[Patch]:
 
 def _leaf(frame: Frame, width: float, height: float, cloth: str) -> list[Patch]:
     half, post, low = width / 2, 0.07, 0.34
-    patches = box(frame, (-half, low, -0.02), (half, height - post, 0.012), cloth, skip="back left right top bottom")
-    patches += box(frame, (-half, 0.1, -0.03), (half, height, -0.02), "wood", skip="front left right top bottom")
+    patches = box(
+        frame, (-half, low, -0.02), (half, height - post, 0.012), cloth, skip="back left right top bottom"
+    )
+    patches += box(
+        frame, (-half, 0.1, -0.03), (half, height, -0.02), "wood", skip="front left right top bottom"
+    )
     for side in (-1, 1):
         x0, x1 = sorted((side * half, side * (half - post)))
         patches += box(frame, (x0, 0, -0.04), (x1, height, 0.04), "lacquer", skip="bottom top")
     inner = half - post
     for y0, y1 in ((0.06, 0.12), (low - 0.05, low), (height - post, height)):
         patches += box(frame, (-inner, y0, -0.035), (inner, y1, 0.035), "lacquer", skip="left right")
-    patches += box(frame, (-inner, 0.12, -0.02), (inner, low - 0.05, 0.008), "band", skip="back left right top bottom")
+    patches += box(
+        frame, (-inner, 0.12, -0.02), (inner, low - 0.05, 0.008), "band", skip="back left right top bottom"
+    )
     for y in (low, height - post - 0.012):
         patches += box(frame, (-inner, y, 0.012), (inner, y + 0.012, 0.02), "gold", skip="back left right")
     patches += box(frame, (-half, height, -0.05), (half, height + 0.05, 0.05), "lacquer", skip="bottom")
@@ -166,14 +180,20 @@ def _bench(solid: Solid) -> list[Patch]:
         patches += box(
             frame, (leg - 0.045, 0, -z + 0.06), (leg + 0.045, top - 0.06, z - 0.06), "wood", skip="bottom top"
         )
+    patches += box(frame, (-x + 0.28, 0.14, -0.03), (x - 0.28, 0.21, 0.03), "wood", skip="left right")
     patches += box(
-        frame, (-x + 0.28, 0.14, -0.03), (x - 0.28, 0.21, 0.03), "wood", skip="left right"
-    )
-    patches += box(
-        frame, (-x + 0.28, top - 0.12, -z + 0.09), (x - 0.28, top - 0.06, -z + 0.12), "wood", skip="left right top"
+        frame,
+        (-x + 0.28, top - 0.12, -z + 0.09),
+        (x - 0.28, top - 0.06, -z + 0.12),
+        "wood",
+        skip="left right top",
     )
     return patches + box(
-        frame, (-x + 0.28, top - 0.12, z - 0.12), (x - 0.28, top - 0.06, z - 0.09), "wood", skip="left right top"
+        frame,
+        (-x + 0.28, top - 0.12, z - 0.12),
+        (x - 0.28, top - 0.06, z - 0.09),
+        "wood",
+        skip="left right top",
     )
 
 

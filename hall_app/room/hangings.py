@@ -146,7 +146,9 @@ def _fields(patch: Patch) -> dict:
 def _tassel(frame: Frame) -> list[Patch]:
     patches = tube(frame, [(0.006, -0.10), (0.006, 0.0)], "gold", sides=5, density=2.0)
     patches += tube(frame, [(0.022, -0.15), (0.026, -0.125), (0.010, -0.10)], "gold", sides=8, density=5.0)
-    return patches + tube(frame, [(0.036, -0.42), (0.026, -0.30), (0.022, -0.15)], "band", sides=8, density=5.0)
+    return patches + tube(
+        frame, [(0.036, -0.42), (0.026, -0.30), (0.022, -0.15)], "band", sides=8, density=5.0
+    )
 
 
 def _cord(frame: Frame, low: float, high: float) -> list[Patch]:

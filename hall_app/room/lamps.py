@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-
 from .palette import linear
 from .patch import Frame
 from .regions import Regions
@@ -53,5 +52,3 @@ def _front(solid: Solid) -> tuple[Frame, float, float] | None:
     if solid.at is None:
         return None
     return Frame.on_floor(solid.at, solid.facing), 2.0, solid.height + 1.1
-
-

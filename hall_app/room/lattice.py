@@ -29,9 +29,7 @@ def bars(
     patches = []
     for k in range(1, columns):
         x = -width / 2 + k * step
-        patches += box(
-            frame, (x - half, 0, -DEEP), (x + half, height, 0), material, skip=back + "top bottom"
-        )
+        patches += box(frame, (x - half, 0, -DEEP), (x + half, height, 0), material, skip=back + "top bottom")
     rows = max(2, round(height / (2 * cell)))
     rise = height / rows
     for k in range(columns):
@@ -51,9 +49,7 @@ def bars(
     return patches
 
 
-def screen(
-    start: Sequence[float], end: Sequence[float], height: float, thickness: float
-) -> list[Patch]:
+def screen(start: Sequence[float], end: Sequence[float], height: float, thickness: float) -> list[Patch]:
     """A row of lattice leaves from `start` to `end` [x, z], seen from both sides; panels below, lattice above."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(b - a))
@@ -67,9 +63,7 @@ def screen(
     wide = length / leaves
     for k in range(leaves + 1):
         x0, x1 = max(0.0, k * wide - _STILE / 2), min(length, k * wide + _STILE / 2)
-        patches += box(
-            frame, (x0, 0.10, -deep), (x1, height - 0.10, deep), "lacquer", skip="top bottom"
-        )
+        patches += box(frame, (x0, 0.10, -deep), (x1, height - 0.10, deep), "lacquer", skip="top bottom")
     for k in range(leaves):
         patches += _leaf(frame.moved(x=(k + 0.5) * wide, y=0.10), wide - _STILE, height - 0.20, deep)
     return patches
@@ -80,9 +74,7 @@ def _leaf(frame: Frame, width: float, height: float, deep: float) -> list[Patch]
     patches = []
     panel_top, waist_top = min(_PANEL, 0.4 * height), min(_WAIST, 0.55 * height)
     for low, high in ((0.0, panel_top), (panel_top + 0.05, waist_top)):
-        patches += box(
-            frame, (-half, low, -thin), (half, high, thin), "wood", skip="left right bottom top"
-        )
+        patches += box(frame, (-half, low, -thin), (half, high, thin), "wood", skip="left right bottom top")
         inset = 0.07
         if high - low > 3 * inset:
             patches += box(

@@ -103,7 +103,13 @@ def font_folders() -> list[Path]:
         return [*own, home / "Library/Fonts", Path("/Library/Fonts"), Path("/System/Library/Fonts")]
     if sys.platform == "win32":
         return [*own, Path(os.environ.get("WINDIR", r"C:\Windows")) / "Fonts"]
-    return [*own, home / ".fonts", home / ".local/share/fonts", Path("/usr/local/share/fonts"), Path("/usr/share/fonts")]
+    return [
+        *own,
+        home / ".fonts",
+        home / ".local/share/fonts",
+        Path("/usr/local/share/fonts"),
+        Path("/usr/share/fonts"),
+    ]
 
 
 def _drawn(writing: Writing, blank: bool):
@@ -112,7 +118,9 @@ def _drawn(writing: Writing, blank: bool):
     ground = {"label": _PAPER, "plaque": _GROUND, "board": _GROUND, "banner": "#EFE6D2"}[writing.kind]
     picture = Image.new("RGB", writing.size, ground)
     draw = ImageDraw.Draw(picture)
-    {"label": _label, "plaque": _board, "board": _board, "banner": _banner}[writing.kind](draw, writing, blank)
+    {"label": _label, "plaque": _board, "board": _board, "banner": _banner}[writing.kind](
+        draw, writing, blank
+    )
     return picture
 
 
@@ -164,12 +172,12 @@ def _banner(draw: ImageDraw, writing: Writing, blank: bool) -> None:
     if blank:
         return
     letters = len(writing.zh)
-    room = high - 2.9 * mount
+    room = high - 3.5 * mount
     size = min(round(0.62 * wide), round(0.86 * room / max(letters, 1)))
     font = _font(size, True)
     for k, letter in enumerate(writing.zh):
-        y = 1.35 * mount + room * (k + 0.5) / letters
+        y = 1.3 * mount + room * (k + 0.5) / letters
         draw.text((wide / 2, y), letter, _INK, font, anchor="mm")
-    seal = 0.20 * wide
-    at = (0.68 * wide, high - 1.42 * mount)
+    seal = 0.17 * wide
+    at = (0.5 * wide, high - 1.65 * mount)
     draw.rectangle((at[0] - seal / 2, at[1] - seal / 2, at[0] + seal / 2, at[1] + seal / 2), fill=_SEAL)

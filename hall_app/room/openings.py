@@ -20,7 +20,11 @@ def window(frame: Frame, width: float, height: float, depth: float) -> list[Patc
         patches += box(frame, (x0, 0, -0.05), (x1, height, 0.005), "lacquer", skip="back top bottom")
     for y0, y1 in ((0.0, rim), (height - rim, height)):
         patches += box(
-            frame, (-width / 2 + rim, y0, -0.05), (width / 2 - rim, y1, 0.005), "lacquer", skip="back left right"
+            frame,
+            (-width / 2 + rim, y0, -0.05),
+            (width / 2 - rim, y1, 0.005),
+            "lacquer",
+            skip="back left right",
         )
     patches += bars(frame.moved(y=rim, z=-0.004), width - 2 * rim, height - 2 * rim, "wood")
     return patches + _sheet(frame, width, height, depth, "paper")
@@ -51,7 +55,11 @@ def _leaf(frame: Frame, width: float, height: float) -> list[Patch]:
             frame, (-half + stile, y0, -0.05), (half - stile, y1, -0.004), "lacquer", skip="back left right"
         )
     patches += box(
-        frame, (-half + stile, 0.10, -0.05), (half - stile, waist, -0.025), "band", skip="back left right top bottom"
+        frame,
+        (-half + stile, 0.10, -0.05),
+        (half - stile, waist, -0.025),
+        "band",
+        skip="back left right top bottom",
     )
     inset = 0.06
     patches += box(
@@ -89,9 +97,7 @@ def _surround(frame: Frame, width: float, height: float, *, sill: bool) -> list[
     if sill:
         patches += box(frame, (-half, -_FRAME, 0), (half, 0, proud), "lacquer", skip="back left right")
         ledge = half + _FRAME + 0.04
-        patches += box(
-            frame, (-ledge, -_FRAME - 0.05, 0), (ledge, -_FRAME, 0.055), "lacquer", skip="back"
-        )
+        patches += box(frame, (-ledge, -_FRAME - 0.05, 0), (ledge, -_FRAME, 0.055), "lacquer", skip="back")
     return patches
 
 

@@ -50,9 +50,10 @@ class Frame:
     facing: float = 0.0
 
     @classmethod
-    def on_floor(cls, at: Sequence[float], facing: float = 0.0, height: float = 0.0) -> Frame:
+    def on_floor(cls, at: ArrayLike, facing: float = 0.0, height: float = 0.0) -> Frame:
         """At [x, z] of the plan, `height` [m] above the floor."""
-        return cls(np.array([at[0], height, at[1]], float), facing)
+        x, z = np.asarray(at, float)
+        return cls(np.array([x, height, z]), facing)
 
     @property
     def axes(self) -> Floats:
@@ -137,7 +138,9 @@ def _triangulated(piece: Polygon) -> Floats:
     """(F, 3, 2) triangles of a polygon, counter-clockwise."""
     import shapely
 
-    found = np.array([shapely.get_coordinates(t)[:3] for t in shapely.constrained_delaunay_triangles(piece).geoms])
+    found = np.array(
+        [shapely.get_coordinates(t)[:3] for t in shapely.constrained_delaunay_triangles(piece).geoms]
+    )
     a, b = found[:, 1] - found[:, 0], found[:, 2] - found[:, 0]
     area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     found = found[np.abs(area) > 1e-7]
@@ -202,9 +205,7 @@ def disc(frame: Frame, radius: float, material: str, *, sides: int = 24, up: boo
     return panel(frame.at, right, -front if up else front, shape, material)
 
 
-def prism(
-    frame: Frame, outline: ArrayLike, depth: float, material: str, *, ends: bool = True
-) -> list[Patch]:
+def prism(frame: Frame, outline: ArrayLike, depth: float, material: str, *, ends: bool = True) -> list[Patch]:
     """A profile (N, 2) of local x, y drawn counter-clockwise, raised from -depth/2 to depth/2 along local z."""
     import shapely
 

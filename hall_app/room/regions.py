@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     from ..content.models import Bay, PlanFile
@@ -69,7 +68,7 @@ class Regions:
         spot = shapely.Point(x, z)
         return next((region.height for region in self.all if region.shape.intersects(spot)), None)
 
-    def along(self, start: Sequence[float], end: Sequence[float]) -> list[tuple[float, float, float]]:
+    def along(self, start: ArrayLike, end: ArrayLike) -> list[tuple[float, float, float]]:
         """(from, to, ceiling height) [m] along the line start → end of [x, z] as far as it lies over the floor."""
         import shapely
 

@@ -38,9 +38,7 @@ class Board:
     post: float = 0.0
 
 
-def boards_of(
-    plan: PlanFile, regions: Regions, title: Bilingual, exhibits: Iterable[Exhibit]
-) -> list[Board]:
+def boards_of(plan: PlanFile, regions: Regions, title: Bilingual, exhibits: Iterable[Exhibit]) -> list[Board]:
     """Everything that is written in the hall."""
     boards = [_hung(sign, title) for sign in plan.sign]
     boards += [board for bay in plan.bay if (board := _over_the_door(bay, plan, regions))]
@@ -171,6 +169,10 @@ def _rods(board: Board) -> list[Patch]:
     patches = []
     for y in (-high / 2 - 0.015, high / 2 - 0.015):
         patches += box(
-            board.frame, (-wide / 2 - 0.05, y, -0.02), (wide / 2 + 0.05, y + 0.03, 0.014), "lacquer", skip="back"
+            board.frame,
+            (-wide / 2 - 0.05, y, -0.02),
+            (wide / 2 + 0.05, y + 0.03, 0.014),
+            "lacquer",
+            skip="back",
         )
     return patches

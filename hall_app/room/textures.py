@@ -29,7 +29,7 @@ def noise(rng: np.random.Generator, along: float, across: float) -> Floats:
     weight = np.exp(-2 * np.pi**2 * ((f[None, :] * along) ** 2 + (f[:, None] * across) ** 2))
     field = np.fft.ifft2(white * weight).real
     field -= field.mean()
-    return field / field.std()
+    return np.asarray(field / field.std(), float)
 
 
 def _plaster(rng: np.random.Generator) -> Floats:
@@ -39,20 +39,22 @@ def _plaster(rng: np.random.Generator) -> Floats:
 
 def _stone(rng: np.random.Generator) -> Floats:
     pits = np.minimum(noise(rng, 1.6, 1.6) + 1.4, 0)
-    return 1 + 0.022 * noise(rng, 40, 24) + 0.025 * noise(rng, 3, 3) + 0.03 * noise(rng, 0.8, 0.8) + 0.10 * pits
+    return (
+        1 + 0.022 * noise(rng, 40, 24) + 0.025 * noise(rng, 3, 3) + 0.03 * noise(rng, 0.8, 0.8) + 0.10 * pits
+    )
 
 
 def _tiles(rng: np.random.Generator) -> Floats:
     """Four by four square tiles with narrow joints, each a little lighter or darker, bevelled by wear."""
     tile = SIZE // 4
-    tone = 0.016 * rng.standard_normal((4, 4))
+    tone = 0.022 * rng.standard_normal((4, 4))
     shade = 1 + np.kron(tone, np.ones((tile, tile)))
     shade += 0.012 * noise(rng, 30, 30) + 0.012 * noise(rng, 5, 5) + 0.018 * noise(rng, 1.0, 1.0)
     shade += 0.05 * np.minimum(noise(rng, 1.5, 1.5) + 1.7, 0)
     at = np.arange(SIZE) % tile
     away = np.minimum(at, tile - at).astype(float)  # pixels to the nearest joint's middle
     rim = np.minimum(away[None, :], away[:, None])
-    shade *= 1 - 0.42 * np.exp(-((rim / 1.1) ** 2)) - 0.05 * np.exp(-((rim / 5.0) ** 2))
+    shade *= 1 - 0.46 * np.exp(-((rim / 1.25) ** 2)) - 0.05 * np.exp(-((rim / 5.0) ** 2))
     return shade
 
 
@@ -106,7 +108,7 @@ def _cloth(rng: np.random.Generator) -> Floats:
     threads = noise(rng, 24, 0.9) + noise(rng, 0.9, 24)
     at = np.arange(SIZE)
     weave = np.sin(2 * np.pi * at / 4)[None, :] * np.sin(2 * np.pi * at / 4)[:, None]
-    return 1 + 0.026 * threads + 0.016 * weave + 0.010 * noise(rng, 60, 60)
+    return 1 + 0.020 * threads + 0.016 * weave + 0.006 * noise(rng, 70, 70)
 
 
 def _paper(rng: np.random.Generator) -> Floats:

@@ -17,7 +17,8 @@ __all__ = ["timber"]
 
 BAND = (0.22, 0.20)  # [m] width and depth of the red band under an arcade's beam
 CLERESTORY = 0.08  # [m] the wall over an arcade stands this far out of its middle
-_POST = (0.22, 0.05)  # [m] width of a post on a wall under a beam's end, and how far it stands out
+_FORWARD = 0.11  # [m] brackets stand this far before the arcade's middle, half out of the wall above it
+_CORBEL = (0.62, 0.20, 0.24)  # [m] reach, width and height of the arm under a beam's end at a wall
 
 
 def timber(plan: PlanFile, regions: Regions) -> list[Patch]:
@@ -83,14 +84,26 @@ def _lying(beam: Beam) -> list[Patch]:
         for z, sign in ((half, 1), (-half, -1)):
             y = beam.low - BAND[1] + 0.025
             line = [(0, y, z), (length, y, z), (length, y + 0.018, z), (0, y + 0.018, z)]
-            points = np.array(line[:: sign] if sign > 0 else [line[1], line[0], line[3], line[2]], float)
+            points = np.array(line[::sign] if sign > 0 else [line[1], line[0], line[3], line[2]], float)
             points[:, 2] += sign * 0.003
             patches.append(quad(frame(points), "gold", density=5.0))
     if beam.on_wall:
-        wide, proud = _POST
-        post = frame.moved(x=length)
-        patches += box(post, (-proud, 0, -wide / 2), (0, beam.low, wide / 2), "lacquer", skip="right bottom top")
+        patches += _corbel(frame.moved(x=length, y=beam.low))
     return patches
+
+
+def _corbel(frame: Frame) -> list[Patch]:
+    """An arm out of the wall (at local x = 0, towards -x) under a beam's end, cut upwards in facets."""
+    reach, wide, rise = _CORBEL
+    outline = [
+        (0, -rise),
+        (-0.45 * reach, -rise),
+        (-0.8 * reach, -0.75 * rise),
+        (-reach, -0.4 * rise),
+        (-reach, 0),
+        (0, 0),
+    ]
+    return prism(frame, outline[::-1], wide, "lacquer")
 
 
 def _bracketed(column: Column, beams: list[Beam], regions: Regions) -> list[Patch]:
@@ -104,7 +117,8 @@ def _bracketed(column: Column, beams: list[Beam], regions: Regions) -> list[Patc
                 a, b = np.asarray(column.at), np.asarray(beam.end if beam.start == column.at else beam.start)
                 way = (b - a) / np.linalg.norm(b - a)
                 facing = float(np.degrees(np.arctan2(way[0], way[1])))
-                patches += _dougong(Frame.on_floor(a, facing, base), beam.low - base)
+                frame = Frame.on_floor(a, facing, base).moved(z=_FORWARD)
+                patches += _dougong(frame, beam.low - base)
     return patches
 
 
@@ -132,7 +146,12 @@ def _block(frame: Frame, low: float, high: float, rise: float) -> list[Patch]:
         for (h0, y0), (h1, y1) in zip(levels, levels[1:], strict=False):
             corners = [(-h0, y0, h0), (h0, y0, h0), (h1, y1, h1), (-h1, y1, h1)]
             patches.append(_trapezium(side(corners), "lacquer"))
-    top = [(-high / 2, rise, high / 2), (high / 2, rise, high / 2), (high / 2, rise, -high / 2), (-high / 2, rise, -high / 2)]
+    top = [
+        (-high / 2, rise, high / 2),
+        (high / 2, rise, high / 2),
+        (high / 2, rise, -high / 2),
+        (-high / 2, rise, -high / 2),
+    ]
     patches.append(quad(frame(top), "lacquer", density=5.0))
     return patches
 

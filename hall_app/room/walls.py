@@ -105,7 +105,9 @@ def _lies_on(opening: Opening, wall: Wall) -> bool:
     import shapely
 
     line = shapely.LineString([wall.start, wall.end])
-    return all(line.distance(shapely.Point(p)) < wall.thickness / 2 + 0.05 for p in (opening.start, opening.end))
+    return all(
+        line.distance(shapely.Point(p)) < wall.thickness / 2 + 0.05 for p in (opening.start, opening.end)
+    )
 
 
 def _drawn(face: Face, plan: PlanFile) -> list[Patch]:
@@ -122,7 +124,9 @@ def _drawn(face: Face, plan: PlanFile) -> list[Patch]:
         datum = plan.height - DATUM
         patches += _rail(face, datum, datum + 0.08, 0.03, "lacquer")
         for a, b, ceiling in face.spans:
-            patches += box(face.frame, (a, ceiling - CROWN, 0), (b, ceiling, 0.06), "lacquer", skip="back top left right")
+            patches += box(
+                face.frame, (a, ceiling - CROWN, 0), (b, ceiling, 0.06), "lacquer", skip="back top left right"
+            )
     for hole, a, b in face.holes:
         draw = door if hole.kind == "door" else window
         patches += draw(face.frame.moved(x=(a + b) / 2, y=hole.sill), b - a, hole.height, face.depth)
@@ -164,7 +168,10 @@ def _ends(wall: Wall, plan: PlanFile, regions: Regions) -> list[Patch]:
     if wall.height <= plan.height - 0.05 and regions.along(a, b):
         frame = Frame.on_floor((a + b) / 2, facing)
         patches += box(
-            frame, (-length / 2 - 0.03, wall.height, -half), (length / 2 + 0.03, wall.height + 0.07, half), "lacquer"
+            frame,
+            (-length / 2 - 0.03, wall.height, -half),
+            (length / 2 + 0.03, wall.height + 0.07, half),
+            "lacquer",
         )
     return patches
 
@@ -174,7 +181,11 @@ def bare_outline(plan: PlanFile, regions: Regions) -> list[tuple[Floats, Floats]
     import shapely
 
     built = shapely.union_all(
-        [shapely.LineString([w.start, w.end]).buffer(w.thickness / 2 + 0.06) for w in plan.wall if w.kind == "wall"]
+        [
+            shapely.LineString([w.start, w.end]).buffer(w.thickness / 2 + 0.06)
+            for w in plan.wall
+            if w.kind == "wall"
+        ]
     )
     ring = np.asarray(regions.floor.exterior.coords)
     found = []
