@@ -33,13 +33,13 @@ def bake_room(
     work: where an interrupted bake left its state and where this one leaves its own; gone after success.
     data: the data folder, where garments' own bakes may lie. Raises MissingFontError where the letters cannot be set.
     """
-    from ..light import bake_light
-
     began, cpu = time.perf_counter(), time.process_time()
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     progress(0.0, "geometry")
     room = raise_room(content.plan, content.hall.title, content.exhibits)
+    from ..light import bake_light
+
     walls = surfaces(room.patches, exhibit_solids(content, data))
     light = bake_light(
         walls,

@@ -20,7 +20,7 @@ __all__ = ["TIE", "hangings"]
 Floats = NDArray[np.float64]
 TIE = 2.06  # [m] height of the ties: what hangs wide is above everybody's head
 _HEM = 0.62
-_NEAR, _WIDTH = 0.20, 0.15  # [m] the tied bundle begins this far from the column's middle and is this wide
+_NEAR, _WIDTH = 0.19, 0.13  # [m] the tied bundle begins this far from the column's middle and is this wide
 _PLEATS = 11  # of one half
 _DEPTH = 0.045  # [m] of the pleats
 _RADIUS, _HEIGHT = 0.24, 0.46  # [m] of a lantern
@@ -85,7 +85,7 @@ def _levels(top: float) -> Floats:
 def _row(share: Floats, y: float, reach: float, top: float) -> tuple[Floats, float]:
     """Where the cloth's columns hang at height `y`, and how deep its pleats are there."""
     if y <= TIE:
-        flare = 1.0 + 0.25 * min((TIE - y) / 0.5, 1.0)
+        flare = 1.0 + 0.22 * min((TIE - y) / 0.5, 1.0)
         return _NEAR + share * _WIDTH * flare - 0.01 * (flare - 1), 0.10
     rise = (y - TIE) / (top - TIE)
     edge = 0.17 + share * (reach - 0.17)
