@@ -21,7 +21,7 @@ from .content.problems import Problem
 from .content.views import yaw_of
 from .content.walkable import walking_floor
 from .models import ExhibitModels, models_of
-from .room.showing import ShownRoom, shown_room
+from .room.showing import ShownRoom, shown_room, still_right
 from .scene.nodes import Figure, HallScene
 from .stage import Actor, Stage
 from .visitors import Visitor, Visitors
@@ -120,9 +120,8 @@ class House:
         moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
         grid = await self._bake_grid(floor) if moved else self.grid
         self.content = content
-        room = await asyncio.to_thread(shown_room, content, self.data)
-        if (room.key, room.baked) != (self.room.key, self.room.baked):
-            self._show_room(room)
+        if not still_right(self.room, content, self.data):
+            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
         if moved:
             self.floor, self.grid = floor, grid
             for visitor in self.visitors:

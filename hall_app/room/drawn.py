@@ -130,7 +130,7 @@ def _corners(room: Room, light: LightMap) -> list[Floats]:
 
 def _add_light(glb: GlbFile, light: LightMap) -> None:
     """The light map, carried by a triangle of a millimetre deep under the floor."""
-    stored = np.clip(light.image / LIGHT_SCALE, 0, 1)
+    stored = np.clip(light.image * (light.gain / LIGHT_SCALE), 0, 1)
     srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
     picture = np.round(255 * srgb).astype(np.uint8)
     data = _encoded(picture, "JPEG", quality=_LIGHT_QUALITY, subsampling=0, optimize=True)

@@ -31,7 +31,7 @@ def spots_of(plan: PlanFile, exhibits: Sequence[Exhibit] = ()) -> list[Spot]:
             continue
         frame, ahead, aim = placed
         ceiling = regions.height_at(float(frame.at[0]), float(frame.at[2])) or plan.height
-        lamp = frame.moved(y=ceiling - 0.5, z=ahead)
+        lamp = frame.moved(y=ceiling - 0.6, z=ahead)
         spots.append(
             Spot(
                 position=lamp.at,

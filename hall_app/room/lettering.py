@@ -151,14 +151,16 @@ def _board(draw: ImageDraw, writing: Writing, blank: bool) -> None:
     if blank:
         return
     letters = len(writing.zh)
-    size = min(round(0.52 * high), round(0.8 * wide / max(letters, 1)))
+    middle = 0.42 if writing.en else 0.5
+    size = min(round((0.52 if writing.en else 0.62) * high), round(0.8 * wide / max(letters, 1)))
     font = _fitted(draw, writing.zh, size, 0.86 * wide, True)
     gap = min(0.5 * size, (0.86 * wide - letters * size) / max(letters, 1))
     start = wide / 2 - (letters * size + (letters - 1) * gap) / 2 + size / 2
     for k, letter in enumerate(writing.zh):
-        draw.text((start + k * (size + gap), 0.42 * high), letter, _GOLD, font, anchor="mm")
-    font = _fitted(draw, writing.en, round(0.15 * high), 0.8 * wide, False)
-    draw.text((wide / 2, 0.82 * high), writing.en, _GOLD, font, anchor="mm")
+        draw.text((start + k * (size + gap), middle * high), letter, _GOLD, font, anchor="mm")
+    if writing.en:
+        font = _fitted(draw, writing.en, round(0.15 * high), 0.8 * wide, False)
+        draw.text((wide / 2, 0.82 * high), writing.en, _GOLD, font, anchor="mm")
 
 
 def _banner(draw: ImageDraw, writing: Writing, blank: bool) -> None:

@@ -13,7 +13,7 @@ from .lettering import MissingFontError
 from .places import ENVIRONMENT, GLB, room_folder
 from .raising import raise_room
 
-__all__ = ["ShownRoom", "shown_room"]
+__all__ = ["ShownRoom", "shown_room", "still_right"]
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,11 @@ class ShownRoom:
     environment: bytes
     baked: bool
     lacking: str | None = None
+
+
+def still_right(room: ShownRoom, content: Content, data: Path) -> bool:
+    """True while `room` is what shown_room would give for the content."""
+    return room.key == room_key(content) and room.baked == (room_folder(content, data) is not None)
 
 
 def shown_room(content: Content, data: Path) -> ShownRoom:
