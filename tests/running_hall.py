@@ -43,8 +43,12 @@ def running_hall(
     patience: float = 120,
     program: Sequence[str] = (sys.executable, "-m", "hall_app"),
     env: Mapping[str, str] | None = None,
+    light: bool = False,
 ) -> Iterator[RunningHall]:
-    """Start it, wait until it answers, end it with Ctrl-C's signal; `program` in place of `hall`, more `env`."""
+    """Start it, wait until it answers, end it with Ctrl-C's signal; `program` in place of `hall`, more `env`.
+
+    light: whether to compute the light of a room that is not baked, minutes of work.
+    """
     port, data, log = free_port(), work / "data", work / "serve.log"
     work.mkdir(parents=True, exist_ok=True)
     command = [
@@ -56,6 +60,7 @@ def running_hall(
         data,
         "--port",
         str(port),
+        *(() if light else ("--no-light",)),
     ]
     with log.open("wb") as sink:
         process = subprocess.Popen(

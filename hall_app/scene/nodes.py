@@ -10,13 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..room.studio import studio_glb
 from ..visitors import Marks, Visitor
-from .build import hall_glb, studio_glb
 
 if TYPE_CHECKING:
     import viser
-
-    from ..content.models import PlanFile
 
 __all__ = ["STUDIO", "Figure", "HallScene"]
 
@@ -105,9 +103,9 @@ class HallScene:
 
     # The hall.
 
-    def show_room(self, plan: PlanFile) -> None:
-        """Draw (again) the room of `plan`."""
-        self.server.scene.add_glb("/room", hall_glb(plan), cast_shadow=False, receive_shadow=False)
+    def show_room(self, glb: bytes) -> None:
+        """Draw (again) the room, and the studio of close-ups."""
+        self.server.scene.add_glb("/room", glb, cast_shadow=False, receive_shadow=False)
         self.server.scene.add_glb(
             "/studio", studio_glb(), position=STUDIO, cast_shadow=False, receive_shadow=False
         )
