@@ -15,8 +15,6 @@ Behaviour = Callable[["Stage", str], None]
 BEHAVIOURS: dict[str, Behaviour] = {}
 
 NEAR = 3.0  # [m] from which an exhibit notices its visitor
-TURN_RATE = 0.25  # [rad/s]
-TURN_PERIOD = 1 / 15  # [s]
 
 
 def behaviour(act: Behaviour) -> Behaviour:
@@ -39,8 +37,7 @@ def glow_when_near(stage: Stage, exhibit: str) -> None:
 
 @behaviour
 def turn_slowly(stage: Stage, exhibit: str) -> None:
-    """The model turns on its stand while somebody is in the hall to see it."""
-    stage.every(TURN_PERIOD, lambda seconds: stage.turn(exhibit, TURN_RATE * seconds))
+    """The model turns on its stand while a visitor sees it; each page turns it for itself (page/turning.js)."""
 
 
 @behaviour

@@ -21,6 +21,7 @@ from .content.problems import Problem
 from .content.views import yaw_of
 from .content.walkable import walking_floor
 from .models import ExhibitModels, models_of
+from .room.showing import ShownRoom, shown_room, still_right
 from .scene.nodes import Figure, HallScene
 from .stage import Actor, Stage
 from .visitors import Visitor, Visitors
@@ -50,7 +51,7 @@ class House:
         self.grid: Grid = cached_grid(self.floor, self._grids, progress=self.progress)
         self._models: dict[str, ExhibitModels] = {}
         self._failed: dict[str, Problem] = {}
-        self.scene.show_room(self.content.plan)
+        self._show_room(shown_room(self.content, self.data))
         self._show()
 
     @property
@@ -77,7 +78,11 @@ class House:
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with the content now."""
         asked = (Problem(p.file, p.key, p.what, p.fix) for p in self.survey_problems())
-        return (*self.content.problems, *self.unbaked, *asked)
+        flat = self._failed.get(self.room.key)
+        if self.room.lacking is not None:
+            what, _, fix = self.room.lacking.partition(" – ")
+            flat = Problem("plan.toml", "", f"the hall's boards are blank: {what}", fix)
+        return (*self.content.problems, *self.unbaked, *((flat,) if flat else ()), *asked)
 
     def baked(self, exhibit: Exhibit, failure: str | None) -> None:
         """A bake of the exhibit's garment ended; `failure` says why it did not succeed."""
@@ -114,9 +119,9 @@ class House:
         floor = walking_floor(content.plan, content.exhibits)
         moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
         grid = await self._bake_grid(floor) if moved else self.grid
-        before, self.content = self.content, content
-        if content.plan != before.plan:
-            self.scene.show_room(content.plan)
+        self.content = content
+        if not still_right(self.room, content, self.data):
+            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
         if moved:
             self.floor, self.grid = floor, grid
             for visitor in self.visitors:
@@ -128,6 +133,21 @@ class House:
             if visitor.opened is not None and visitor.opened not in self._models:
                 self.stage.close(visitor)
             visitor.say(news)
+
+    def _show_room(self, room: ShownRoom) -> None:
+        self.room = room
+        self.scene.show_room(room.glb)
+        self.scene.show_environment(room.environment)
+
+    def room_unlit(self) -> bool:
+        """True while the room's light has still to be computed from the content as it is now."""
+        return not self.room.baked and self.room.lacking is None and self.room.key not in self._failed
+
+    def room_baked(self, key: str, failure: str | None) -> None:
+        """A bake of the room of that key ended; `failure` says why it did not succeed."""
+        if failure is not None:
+            what, fix = f"its light could not be computed: {failure}", "run hall build --room"
+            self._failed[key] = Problem("plan.toml", "", what, fix)
 
     async def _bake_grid(self, floor: Floor) -> Grid:
         """The clearance grid of a changed floor, baked in a process of its own."""

@@ -1,4 +1,4 @@
-"""Baking from the server's side: which garments need it, and a child process that does it."""
+"""Baking from the server's side: what needs it, and a child process that does it."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
 class Preparation:
     """One `hall build` in a process of its own; ends with the block that holds it."""
 
-    def __init__(self, content: Path, data: Path, exhibit: str) -> None:
+    def __init__(self, content: Path, data: Path, *what: str) -> None:
+        """what: options of `hall build`, such as "--exhibit", "pibo" or "--room"."""
         command = [sys.executable, "-m", "hall_app", "build", "--content", str(content), "--data", str(data)]
         self._process = subprocess.Popen(
-            [*command, "--exhibit", exhibit, "--into-data", "--json"],
+            [*command, *what, "--into-data", "--json"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["add_parser", "run"]
 
 _POLL = 1.0  # [s] between two looks at the content folder
-_BEAT = 1 / 15  # [s] between two movements on stage
 
 _EPILOG = """\
 The hall needs no network, no database server and no torch. Answers, accounts of baking and caches go to --data.
@@ -60,6 +59,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         choices=("predict", "server"),
         default="predict",
         help="predict: the page walks at once, the server has the last word (default); server: the server walks",
+    )
+    parser.add_argument(
+        "--no-light",
+        dest="light",
+        action="store_false",
+        help="where the room's light has not been computed for this plan, leave it even",
     )
     parser.set_defaults(run=run)
 
@@ -139,14 +144,13 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
     @contextlib.asynccontextmanager
     async def living(app: FastAPI) -> AsyncIterator[None]:
         house.attach(asyncio.get_running_loop())
-        tasks = [asyncio.create_task(_follow_edits(house)), asyncio.create_task(_play(house))]
+        following = asyncio.create_task(_follow_edits(house, arguments.light))
         _greet(house, arguments)
         try:
             yield
         finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
+            following.cancel()
+            await asyncio.gather(following, return_exceptions=True)
             survey.close()
             house.close()
 
@@ -165,21 +169,24 @@ def _greet(house: House, arguments: argparse.Namespace) -> None:
         _say(f"  left out: {problem}")
     shown = f"[{arguments.host}]" if ":" in arguments.host else arguments.host
     _say(f"{exhibits}, {wrong} problem{'' if wrong == 1 else 's'}")
+    if not house.room.baked:
+        later = "" if arguments.light and house.room_unlit() else " (hall build --room computes it)"
+        _say(f"The room's light is not computed for this plan: it is shown evenly lit{later}")
     _say(f"Open     http://{shown}:{arguments.port}   (Ctrl-C ends)")
 
 
 def _bake_missing(content: Content, data: Path) -> None:
     """Bake garments that have no bake yet, in a process of their own, before the doors open."""
     for exhibit in stale_garments(content, data):
-        with Preparation(content.folder, data, exhibit.id) as preparation:
+        with Preparation(content.folder, data, "--exhibit", exhibit.id) as preparation:
             while preparation.poll() is None:
                 _say(f"\rPreparing {exhibit.id}: {preparation.line()}", end="")
                 time.sleep(0.3)
         _say(f"\rPreparing {exhibit.id}: {preparation.outcome()}")
 
 
-async def _follow_edits(house: House) -> None:
-    """Show edits within a second or two; bake changed garments beside the serving process."""
+async def _follow_edits(house: House, light: bool) -> None:
+    """Show edits within a second or two; bake changed garments and the room beside the serving process."""
     from .content.reload import Watcher
 
     watcher = Watcher(house.content.folder, house.content)
@@ -195,6 +202,8 @@ async def _follow_edits(house: House) -> None:
         for exhibit in stale_garments(house.content, house.data):
             if not house.given_up(exhibit):
                 await _bake_beside(house, exhibit)
+        if light and house.room_unlit():
+            await _light_beside(house)
 
     await _for_ever(_POLL, look, "following edits")
 
@@ -213,21 +222,26 @@ async def _for_ever(period: float, act: Callable[[], Awaitable[None]], what: str
 
 
 async def _bake_beside(house: House, exhibit: Exhibit) -> None:
-    with Preparation(house.content.folder, house.data, exhibit.id) as preparation:
-        _say(f"Preparing {exhibit.id} …")
-        while preparation.poll() is None:
-            await asyncio.sleep(0.5)
-    outcome = preparation.outcome().strip()
-    _say(f"Preparing {exhibit.id}: {outcome}")
-    house.baked(exhibit, None if preparation.returncode == 0 else outcome)
+    house.baked(exhibit, await _built(house, exhibit.id, "--exhibit", exhibit.id))
     await house.replace(house.content)
 
 
-async def _play(house: House) -> None:
-    async def beat() -> None:
-        house.stage.tick(time.monotonic())
+async def _light_beside(house: House) -> None:
+    """Compute the light of a room that was raised flat; it is shown as soon as it is there."""
+    key = house.room.key
+    house.room_baked(key, await _built(house, "the room's light", "--room"))
+    await house.replace(house.content)
 
-    await _for_ever(_BEAT, beat, "moving exhibits")
+
+async def _built(house: House, name: str, *what: str) -> str | None:
+    """Run one build in a process of its own; why it failed, or None."""
+    with Preparation(house.content.folder, house.data, *what) as preparation:
+        _say(f"Preparing {name} …")
+        while preparation.poll() is None:
+            await asyncio.sleep(0.5)
+    outcome = preparation.outcome().strip()
+    _say(f"Preparing {name}: {outcome}")
+    return None if preparation.returncode == 0 else outcome
 
 
 def _show_progress(fraction: float, label: str) -> None:

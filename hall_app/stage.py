@@ -1,4 +1,4 @@
-"""The stage behaviours act on: who is near what, what is clicked, what moves by itself."""
+"""The stage behaviours act on: who is near what, what is clicked."""
 
 from __future__ import annotations
 
@@ -27,20 +27,11 @@ class Actor:
 
 
 class Figures(Protocol):
-    """The drawn side: what a behaviour may move or open."""
+    """The drawn side: what a behaviour may name or open."""
 
     def node(self, exhibit: str) -> str: ...
-    def turn(self, exhibit: str, angle: float) -> None: ...
     def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]: ...
     def hide_closeup(self, visitor: Visitor) -> None: ...
-
-
-@dataclass(slots=True)
-class _Periodic:
-    period: float
-    act: Callable[[float], None]
-    started: float | None = None
-    last: float = -math.inf
 
 
 @dataclass
@@ -57,7 +48,6 @@ class Stage:
     def _clear(self) -> None:
         self._clicks: dict[str, list[Callable[[Visitor], None]]] = defaultdict(list)
         self._near: dict[str, list[tuple[float, Callable[[Visitor, bool], None]]]] = defaultdict(list)
-        self._periodic: list[_Periodic] = []
         self._opening: dict[str, dict[str, Any]] = defaultdict(dict)
 
     def play(self, actors: tuple[Actor, ...]) -> None:
@@ -84,12 +74,6 @@ class Stage:
 
     def on_open(self, exhibit: str, extra: dict[str, Any]) -> None:
         self._opening[exhibit].update(extra)
-
-    def every(self, period: float, act: Callable[[float], None]) -> None:
-        self._periodic.append(_Periodic(period, act))
-
-    def turn(self, exhibit: str, angle: float) -> None:
-        self.figures.turn(exhibit, angle)
 
     def notice(self, visitor: Visitor, exhibit: str, on: bool, *, glow: bool) -> None:
         node = self.figures.node(exhibit)
@@ -126,14 +110,3 @@ class Stage:
                     continue
                 (visitor.near.add if inside else visitor.near.discard)(key)
                 act(visitor, inside)
-
-    def tick(self, now: float) -> None:
-        """Play what moves by itself; `now` is a monotonic clock [s]."""
-        if not self.visitors:
-            return
-        for motion in self._periodic:
-            if motion.started is None:
-                motion.started = now
-            if now - motion.last >= motion.period:
-                motion.last = now
-                motion.act(now - motion.started)

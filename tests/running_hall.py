@@ -9,7 +9,7 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -36,14 +36,23 @@ def free_port() -> int:
 
 
 @contextlib.contextmanager
-def running_hall(content: Path, work: Path, *options: str, patience: float = 120) -> Iterator[RunningHall]:
-    """Start it, wait until it answers, end it with Ctrl-C's signal."""
+def running_hall(
+    content: Path,
+    work: Path,
+    *options: str,
+    patience: float = 120,
+    program: Sequence[str] = (sys.executable, "-m", "hall_app"),
+    env: Mapping[str, str] | None = None,
+    light: bool = False,
+) -> Iterator[RunningHall]:
+    """Start it, wait until it answers, end it with Ctrl-C's signal; `program` in place of `hall`, more `env`.
+
+    light: whether to compute the light of a room that is not baked, minutes of work.
+    """
     port, data, log = free_port(), work / "data", work / "serve.log"
     work.mkdir(parents=True, exist_ok=True)
     command = [
-        sys.executable,
-        "-m",
-        "hall_app",
+        *program,
         "serve",
         "--content",
         content,
@@ -51,13 +60,14 @@ def running_hall(content: Path, work: Path, *options: str, patience: float = 120
         data,
         "--port",
         str(port),
+        *(() if light else ("--no-light",)),
     ]
     with log.open("wb") as sink:
         process = subprocess.Popen(
             [*command, *options],
             stdout=sink,
             stderr=subprocess.STDOUT,
-            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            env={**os.environ, "PYTHONUNBUFFERED": "1", **(env or {})},
         )
         hall = RunningHall(f"http://127.0.0.1:{port}", port, content, data, log, process)
         try:

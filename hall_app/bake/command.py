@@ -19,12 +19,14 @@ Progress = Callable[[float, str], None]
 
 _EPILOG = """\
 Each garment is baked from its pattern, weave and recipe (exhibit.toml: [garment]) into baked/ beside it: the
-simulated garment, both models, film and pictures of the drape. What is up to date is left alone. An interrupted
-build goes on where it stopped. Films need the extra 'bake' (pip install '.[bake]'); without it they are left out.
+simulated garment, both models, film and pictures of the drape. The room is raised from plan.toml and its light
+computed, into room/. What is up to date is left alone. An interrupted build goes on where it stopped. Films need the
+extra 'bake' (pip install '.[bake]'); without it they are left out.
 
 examples:
   hall build                      everything that changed, in ./assets
   hall build --exhibit pibo -f    this one again, changed or not
+  hall build --room               the room alone
   hall build --media              music, pictures and the foreign model as well"""
 
 
@@ -40,6 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)")
     parser.add_argument("--data", type=Path, default=Path("hall-data"), metavar="FOLDER", help="work folder")
     parser.add_argument("--exhibit", metavar="ID", help="this exhibit alone")
+    parser.add_argument("--room", action="store_true", help="the room alone")
     parser.add_argument("-f", "--force", action="store_true", help="bake again what is up to date")
     parser.add_argument("--no-film", action="store_true", help="leave the film of the drape out")
     parser.add_argument(
@@ -65,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         with _progress(arguments.json, "media") as progress:
             make_media(folder, progress)
     content = load(folder)
-    for exhibit in _chosen(content, arguments.exhibit):
+    for exhibit in () if arguments.room else _chosen(content, arguments.exhibit):
         key = bake_key(content, exhibit)
         target = data_bake(arguments.data, exhibit.id, key) if arguments.into_data else baked_here(exhibit)
         record = read_record(target)
@@ -78,7 +81,33 @@ def run(arguments: argparse.Namespace) -> int:
             {"exhibit": exhibit.id, "state": "baked", **summary},
             _sentence(exhibit.id, summary),
         )
+    if arguments.exhibit is None:
+        _build_room(content, arguments)
     return 0
+
+
+def _build_room(content: Content, arguments: argparse.Namespace) -> None:
+    """The room, if the plan or what is written in it changed."""
+    from ..room.key import room_key
+    from ..room.places import data_room, room_here, room_record
+
+    key = room_key(content)
+    target = data_room(arguments.data, key) if arguments.into_data else room_here(content.folder)
+    record = room_record(target)
+    if record is not None and record.get("key") == key and not arguments.force:
+        _tell(arguments.json, {"room": key, "state": "up to date"}, "room: up to date")
+        return
+    from ..room.bake import bake_room
+
+    work = arguments.data / "bake-work" / f"room-{key}"
+    with _progress(arguments.json, "room") as progress:
+        record = bake_room(content, key=key, target=target, work=work, data=arguments.data, progress=progress)
+    size = f"{record['triangles']} triangles, {record['bytes'] / 1e6:.2f} MB"
+    _tell(
+        arguments.json,
+        {"room": key, "state": "baked", **record},
+        f"room: baked in {record['seconds']:.0f} s ({size})",
+    )
 
 
 def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:

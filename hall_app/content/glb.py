@@ -64,6 +64,11 @@ def read_glb(path: Path) -> GlbInfo:
         raise GlbError(f"its glTF part is inconsistent ({error!r})", "export the model again") from error
 
 
+def open_glb(path: Path) -> tuple[dict[str, Any], bytes]:
+    """The glTF document and the binary blob of the GLB at `path`. Raises GlbError if it is none."""
+    return _chunks(path.read_bytes())
+
+
 def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
     broken = "the GLB is broken or cut off"
     if len(data) < 20 or struct.unpack_from("<I", data)[0] != MAGIC:

@@ -2,17 +2,20 @@
 
 from .exhibit_file import Body, ExhibitFile, GarmentRecipe, Media, Models, Place, Record
 from .hall_file import Eye, HallFile, Start
-from .plan_file import Bay, Opening, PlanFile, Round, Solid, Wall
+from .plan_file import Bay, Curtain, Lantern, Laylight, Opening, PlanFile, Round, Sign, Solid, Wall
 from .values import Bilingual, Table
 
 __all__ = [
     "Bay",
     "Bilingual",
     "Body",
+    "Curtain",
     "ExhibitFile",
     "Eye",
     "GarmentRecipe",
     "HallFile",
+    "Lantern",
+    "Laylight",
     "Media",
     "Models",
     "Opening",
@@ -20,6 +23,7 @@ __all__ = [
     "PlanFile",
     "Record",
     "Round",
+    "Sign",
     "Solid",
     "Start",
     "Table",

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from .values import Bilingual, Metres, Point, Ring, Table
+from .values import Bilingual, Metres, Point, Ring, Table, Text
 
 
 class Wall(Table):
@@ -52,7 +52,9 @@ class Solid(Table):
     id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")] = Field(
         description="short name, a-z, 0-9 and -; an exhibit's place.on refers to it"
     )
-    kind: Literal["booth", "bench", "stand", "column"] = Field(description="booth, bench, stand or column")
+    kind: Literal["booth", "dais", "step", "bench", "stand", "column", "rope"] = Field(
+        description="booth, dais, step, bench, stand, column, or a rope between two posts"
+    )
     height: Metres = Field(description="height [m]")
     polygon: Ring | None = Field(None, description="footprint as corner points [[x, z], …]")
     size: tuple[Metres, Metres] | None = Field(
@@ -63,7 +65,7 @@ class Solid(Table):
     round: Round | None = Field(None, description="round footprint {x, z, radius}")
     backdrop: Literal["none", "pale", "dark"] = Field(
         "none",
-        description="cloth wall at the back of a booth: pale behind dark dress, dark behind pale dress",
+        description="cloth at the back of a booth or dais: pale behind dark dress, dark behind pale dress",
     )
     label: Bilingual | None = Field(None, description="name of the thing, both languages")
 
@@ -83,6 +85,41 @@ class Bay(Table):
     )
     name: Bilingual = Field(description="name shown on the minimap")
     polygon: Ring = Field(description="its floor, [[x, z], …]")
+    height: Metres | None = Field(
+        None, description="height of its ceiling [m]; without it nave_height over the bay nave, else height"
+    )
+
+
+class Laylight(Table):
+    """A paper ceiling with light above it."""
+
+    at: Point = Field(description="its middle, [x, z]")
+    size: tuple[Metres, Metres] = Field(description="width along x and depth along z [m]")
+
+
+class Lantern(Table):
+    """A paper lantern that hangs from the ceiling."""
+
+    at: Point = Field(description="below which it hangs, [x, z]")
+    height: Annotated[float, Field(ge=2.5, le=20)] = Field(3.1, description="height of its middle [m]")
+
+
+class Curtain(Table):
+    """A pair of curtains tied back to both ends of an opening."""
+
+    start: Point = Field(alias="from", description="one end, the middle of a column, [x, z]")
+    end: Point = Field(alias="to", description="the other end, [x, z]")
+
+
+class Sign(Table):
+    """A hanging board: the plaque with the hall's title, or a banner of calligraphy."""
+
+    kind: Literal["plaque", "banner"] = Field(description="plaque or banner")
+    at: Point = Field(description="the wall's face it hangs on, [x, z]")
+    facing: float = Field(0.0, description="degrees its front is turned; 0 looks to +z")
+    height: Annotated[float, Field(ge=2.0, le=20)] = Field(description="height of its middle [m]")
+    size: tuple[Metres, Metres] = Field(description="width and height [m]")
+    text: Text | None = Field(None, description="what it says; without it the hall's title")
 
 
 class PlanFile(Table):
@@ -95,3 +132,7 @@ class PlanFile(Table):
     opening: tuple[Opening, ...] = Field((), description="doors and windows, one [[opening]] each")
     solid: tuple[Solid, ...] = Field((), description="booths, benches, stands, columns, one [[solid]] each")
     bay: tuple[Bay, ...] = Field((), description="named parts of the hall, one [[bay]] each")
+    laylight: tuple[Laylight, ...] = Field((), description="paper ceilings, one [[laylight]] each")
+    lantern: tuple[Lantern, ...] = Field((), description="lanterns, one [[lantern]] each")
+    curtain: tuple[Curtain, ...] = Field((), description="curtains, one [[curtain]] each")
+    sign: tuple[Sign, ...] = Field((), description="plaque and banners, one [[sign]] each")

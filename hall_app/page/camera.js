@@ -1,37 +1,13 @@
-// The camera: viser's page hooks (pinned to viser 1.1.1, asserted in tests/browser) behind five small verbs.
+// The camera behind a few small verbs.
 // World: y up, metres. three.js sees it through the orientation of viser's root node.
 
+import { requestRender, viser as mutable } from "./hooks.js";
+
 const ROTATE = 1, DOLLY = 16, TOUCH_ROTATE = 64, TOUCH_DOLLY = 1024;
+const LENS = 58; // [deg] vertical field of view: scene/nodes.py
+const NARROWEST = 40; // [deg] of width on an upright screen
+const WIDEST = 78; // [deg] of height there
 const PITCH_LIMIT = (75 * Math.PI) / 180;
-
-const mutable = () => window.__viserMutable;
-
-/** True when every hook this page needs is there. */
-export function hooksPresent() {
-  const m = mutable();
-  return Boolean(m && m.cameraControl && m.camera && m.canvas && m.nodePoseData && window.__viserSceneTree);
-}
-
-/** Names of the scene nodes the page has received. */
-export function nodeNames() {
-  const tree = window.__viserSceneTree;
-  return tree ? Object.keys(tree.getState()) : [];
-}
-
-/** The drawn meshes below a node; empty while its model is still being read. */
-export function meshesOf(name) {
-  const found = [];
-  const object = mutable()?.nodeRefFromName?.[name];
-  if (object) object.traverse((child) => { if (child.isMesh) found.push(child); });
-  return found;
-}
-
-export function drawnOnce() {
-  const info = window.__viserTestpoints?.rendererInfo;
-  return Boolean(info && info.render.calls > 0 && info.render.triangles > 0);
-}
-
-export function requestRender() { mutable()?.requestRender?.(); }
 
 // v rotated by the unit quaternion (w, x, y, z).
 function rotate([w, x, y, z], [a, b, c]) {
@@ -104,6 +80,21 @@ export function orbit(azimuth, polar) { mutable()?.cameraControl?.rotate(azimuth
 
 export function dolly(metres) { mutable()?.cameraControl?.dolly(metres, false); }
 
+const halfTan = (degrees) => Math.tan((degrees * Math.PI) / 360);
+
+/** An upright phone would see a slot of the hall: give it more height. `near`: a close-up, which has its own distance. */
+export function fitLens(near = false) {
+  const camera = mutable()?.camera, canvas = mutable()?.canvas;
+  if (!camera || !canvas?.clientHeight) return;
+  const aspect = canvas.clientWidth / canvas.clientHeight;
+  const upright = (360 / Math.PI) * Math.atan(halfTan(NARROWEST) / aspect);
+  const wanted = near ? LENS : Math.min(WIDEST, Math.max(LENS, upright));
+  if (Math.abs(camera.fov - wanted) < 0.01) return;
+  camera.fov = wanted;
+  camera.updateProjectionMatrix();
+  requestRender();
+}
+
 /** Vertical field of view [rad]. */
 export function fieldOfView() { return ((mutable()?.camera?.fov ?? 58) * Math.PI) / 180; }
 
@@ -113,45 +104,12 @@ export function displayed() {
   return camera ? fromThree([camera.position.x, camera.position.y, camera.position.z]) : null;
 }
 
-/** Move the picture's middle into what a panel at the right, a sheet at the bottom and the bar on top [px] leave free. */
-export function leaveRoom({ panel, sheet, top }) {
+/** Move the picture's middle into what panel at the right, bar on top, sheet or hints at the bottom [px] leave free. */
+export function leaveRoom({ panel, bottom, top }) {
   const m = mutable();
   if (!m?.camera || !m.canvas) return;
   const width = m.canvas.clientWidth, height = m.canvas.clientHeight;
-  if (panel || sheet || top) m.camera.setViewOffset(width, height, panel / 2, (sheet - top) / 2, width, height);
+  if (panel || bottom || top) m.camera.setViewOffset(width, height, panel / 2, (bottom - top) / 2, width, height);
   else m.camera.clearViewOffset();
-  requestRender();
-}
-
-/** Colours as the palette has them: viser's client maps tones by default, which greys warm whites. */
-export function plainTones() {
-  const gl = mutable()?.scene?.__r3f?.root?.getState?.().gl;
-  if (!gl || gl.toneMapping === 0) return;
-  gl.toneMapping = 0;
-  mutable().scene.traverse((object) => {
-    for (const material of [object.material ?? []].flat()) material.needsUpdate = true;
-  });
-  requestRender();
-}
-
-/** Text the server left in the page to say which of its clients this page is: "<id>.<token>". */
-export function clientMark() {
-  const prefix = "/_visitor/";
-  const name = nodeNames().find((candidate) => candidate.startsWith(prefix));
-  return name ? name.slice(prefix.length) : null;
-}
-
-/** Light an exhibit up, or let it be. */
-export function glow(name, on) {
-  for (const mesh of meshesOf(name)) {
-    for (const material of [mesh.material].flat()) {
-      if (!material.emissive) continue;
-      material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
-      const still = material.userData.still;
-      // Its own colour, so that dark lacquer stays lacquer.
-      material.emissive.setHex(on ? material.color.getHex() : still.hex);
-      material.emissiveIntensity = on ? 0.3 : still.strength;
-    }
-  }
   requestRender();
 }

@@ -1,6 +1,7 @@
 // The close-up: the fine model in its own studio, turned by dragging, by wheel, by two fingers or by keys.
 
 import * as camera from "./camera.js";
+import { meshesOf, requestRender } from "./hooks.js";
 
 const TURN = 0.12; // [rad] a key press
 const STEP = 0.08; // of the exhibit's size, a key press
@@ -12,26 +13,27 @@ export function createCloseup(ui) {
   // The model comes over viser's socket: two frames after its meshes stand in the scene it has been drawn.
   function awaitModel(node, patience = performance.now() + 60000) {
     if (!studio || performance.now() > patience) return;
-    if (camera.meshesOf(node).length === 0) {
+    if (meshesOf(node).length === 0) {
       requestAnimationFrame(() => awaitModel(node, patience));
       return;
     }
-    camera.requestRender();
+    requestRender();
     requestAnimationFrame(() => requestAnimationFrame((now) => {
       drawnAt = now;
       if (studio) root.dataset.closeup = "drawn";
     }));
   }
 
-  // Far enough for the exhibit to fill what panel or sheet leaves of the picture, with a margin.
+  // Far enough for the exhibit to fill what panel, bar and hints leave of the picture, with a margin.
   function fitting(radius) {
-    const { panel, sheet, top } = ui.visible;
-    const free = Math.min(innerWidth - panel, innerHeight - sheet - top) / innerHeight;
+    const { panel, bottom, top } = ui.visible;
+    const free = Math.min(innerWidth - panel, innerHeight - bottom - top) / innerHeight;
     return (1.15 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
   }
 
   function place() {
     const { x, y, z, radius } = studio;
+    camera.fitLens(true);
     const distance = fitting(radius);
     camera.orbitGestures(radius * 0.1, Math.max(radius * 5, 1.5 * distance));
     camera.lookAt([x + distance * 0.25, y + radius * 0.15, z + distance * 0.97], [x, y, z]);
@@ -66,7 +68,7 @@ export function createCloseup(ui) {
       studio = null;
       delete root.dataset.closeup;
       camera.freeDistances();
-      camera.leaveRoom({ panel: 0, sheet: 0, top: 0 });
+      camera.leaveRoom({ panel: 0, bottom: 0, top: 0 });
     },
   };
 }

@@ -5,8 +5,8 @@ import { clampPitch } from "./camera.js";
 const RADIANS_PER_PIXEL = 0.0042;
 const METRES_PER_PIXEL = 0.004;
 
-/** `gaze` holds yaw, pitch [rad] and eye [m]; `active()` says whether dragging looks around. */
-export function createGaze(surface, eye, active) {
+/** `gaze` holds yaw, pitch [rad] and eye [m]; `active()` says whether dragging looks around, `onTurn()` hears of it. */
+export function createGaze(surface, eye, active, onTurn) {
   const gaze = { yaw: 0, pitch: 0, eye: eye.default };
   let drag = null;
 
@@ -32,6 +32,7 @@ export function createGaze(surface, eye, active) {
     if (!active()) return;
     if (drag.middle) raise(dy);
     else turn(dx, dy);
+    onTurn();
   }, true);
   const end = (event) => { if (drag && (!event.pointerId || event.pointerId === drag.id)) drag = null; };
   addEventListener("pointerup", end, true);

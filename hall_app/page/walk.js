@@ -7,7 +7,7 @@ const SEND_EVERY = 1 / 30; // [s]
 const RETRY_AFTER = 1000; // [ms]
 const RETRY_WHEN_FULL = 5000; // [ms]
 
-/** `on` receives moved(pose), open(message), closed(), near(message), content(message), connection(state). */
+/** `on` receives moved(pose), open(message), closed(), near(message), content(message), connection(state), heard(). */
 export function createWalk({ scene, grid, display, mark, on }) {
   const pose = { x: scene.start.x, z: scene.start.z };
   const options = { speed: scene.walk.speed, radius: scene.walk.radius, skin: scene.walk.skin, maxDt: scene.walk.max_dt };
@@ -65,6 +65,7 @@ export function createWalk({ scene, grid, display, mark, on }) {
     };
     socket.onmessage = (event) => {
       const message = JSON.parse(event.data);
+      on.heard();
       receive[message.t]?.(message);
     };
     socket.onclose = (event) => {

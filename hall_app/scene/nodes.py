@@ -10,18 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ..room.studio import studio_glb
 from ..visitors import Marks, Visitor
-from .build import hall_glb, studio_glb
 
 if TYPE_CHECKING:
     import viser
-
-    from ..content.models import PlanFile
 
 __all__ = ["STUDIO", "Figure", "HallScene"]
 
 # The studio lies far outside the hall: one WebGL context, no second page, and the walker's pose is untouched.
 STUDIO = (500.0, 0.0, 0.0)
+ENVIRONMENT = 0.6  # strength of the room's reflection beside the lights
 FIELD_OF_VIEW = math.radians(58)  # 75 degrees, the client's own, stretches dress at the rim
 
 
@@ -74,18 +73,19 @@ class HallScene:
     def _configure(self) -> None:
         scene, gui = self.server.scene, self.server.gui
         scene.set_up_direction("+y")
-        scene.configure_environment_map(None)
+        self.show_environment(None)
         scene.configure_default_lights(False, False)
+        # They touch the exhibits alone: the room is drawn unlit and carries its own light.
         # viser's lamps shine from their position towards the origin, the hemisphere's sky lies where it stands.
         scene.add_light_hemisphere(
             "/light/sky",
-            sky_color=(255, 247, 232),
-            ground_color=(128, 108, 88),
-            intensity=1.6,
+            sky_color=(255, 246, 230),
+            ground_color=(120, 96, 78),
+            intensity=1.2,
             position=(0.0, 10.0, 0.0),
         )
         scene.add_light_directional(
-            "/light/key", color=(255, 244, 226), intensity=3.0, position=(7.0, 5.0, 3.5)
+            "/light/key", color=(255, 244, 226), intensity=1.8, position=(7.0, 5.0, 3.5)
         )
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
         self.server.initial_camera.fov = FIELD_OF_VIEW
@@ -103,11 +103,31 @@ class HallScene:
 
     # The hall.
 
-    def show_room(self, plan: PlanFile) -> None:
-        """Draw (again) the room of `plan`."""
-        self.server.scene.add_glb("/room", hall_glb(plan), cast_shadow=False, receive_shadow=False)
+    def show_room(self, glb: bytes) -> None:
+        """Draw (again) the room, and the studio of close-ups."""
+        self.server.scene.add_glb("/room", glb, cast_shadow=False, receive_shadow=False)
         self.server.scene.add_glb(
             "/studio", studio_glb(), position=STUDIO, cast_shadow=False, receive_shadow=False
+        )
+
+    def show_environment(self, jpeg: bytes | None) -> None:
+        """What silk and metal reflect: a plain equirectangular JPEG of the room; None: nothing.
+
+        viser's own call takes its presets only, so its message is queued directly (pinned, asserted in tests).
+        """
+        from viser import _messages
+
+        upright = (1.0, 0.0, 0.0, 0.0)
+        self.server.scene._websock_interface.queue_message(
+            _messages.EnvironmentMapMessage(
+                hdri_data=jpeg,
+                background=False,
+                background_blurriness=0.0,
+                background_intensity=1.0,
+                background_wxyz=upright,
+                environment_intensity=ENVIRONMENT,
+                environment_wxyz=upright,
+            )
         )
 
     def place_camera(self, x: float, z: float, yaw: float, eye: float) -> None:
@@ -157,11 +177,6 @@ class HallScene:
 
     def node(self, exhibit: str) -> str:
         return node_name(exhibit)
-
-    def turn(self, exhibit: str, angle: float) -> None:
-        figure, handle = self._figures.get(exhibit), self._handles.get(exhibit)
-        if figure is not None and handle is not None:
-            handle.wxyz = about_y(math.radians(figure.facing) + angle)
 
     def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]:
         """Put the fine model into the studio, for this visitor alone."""

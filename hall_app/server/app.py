@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import gzip
+import asyncio
 import tomllib
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -14,6 +14,7 @@ from typing import Any
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from ..content.views import exhibit_json, media_file, media_type, scene_json
 from ..house import House
@@ -49,6 +50,7 @@ def create_app(house: House, *, lifespan: Callable[[FastAPI], Any] | None = None
             response.headers.setdefault(name, value)
         return response
 
+    app.add_middleware(_HeadToo)
     _add_page(app, house)
     _add_api(app, house)
     _add_media(app, house)
@@ -61,6 +63,17 @@ def create_app(house: House, *, lifespan: Callable[[FastAPI], Any] | None = None
 @asynccontextmanager
 async def _still(app: FastAPI) -> AsyncIterator[None]:
     yield
+
+
+class _HeadToo:
+    """Answers HEAD wherever there is a GET; the server itself leaves the body out."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        asked = {**scope, "method": "GET"} if scope.get("method") == "HEAD" else scope
+        await self.app(asked, receive, send)
 
 
 class _Revalidated(StaticFiles):
@@ -126,9 +139,9 @@ def _add_api(app: FastAPI, house: House) -> None:
     @app.get("/grid.bin")
     async def grid(request: Request) -> Response:
         """Clearance samples, int16 little endian; their frame is in /api/scene."""
-        samples, headers = house.grid.to_bytes(), {"Vary": "Accept-Encoding"}
-        if "gzip" in request.headers.get("accept-encoding", ""):
-            samples, headers["Content-Encoding"] = gzip.compress(samples, 6), "gzip"
+        packed = "gzip" in request.headers.get("accept-encoding", "")
+        samples = await asyncio.to_thread(house.grid.packed if packed else house.grid.to_bytes)
+        headers = {"Vary": "Accept-Encoding", **({"Content-Encoding": "gzip"} if packed else {})}
         return Response(samples, media_type="application/octet-stream", headers=headers)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import hashlib
 import json
 import os
@@ -69,6 +70,14 @@ class Grid:
     def to_bytes(self) -> bytes:
         """The samples as little-endian int16, row by row (/grid.bin)."""
         return self.samples.astype("<i2").tobytes()
+
+    @cached_property
+    def _packed(self) -> bytes:
+        return gzip.compress(self.to_bytes(), 6)
+
+    def packed(self) -> bytes:
+        """to_bytes() under gzip; packed once, not for every visitor."""
+        return self._packed
 
     def nearest_free(self, x: float, z: float, mask: np.ndarray | None = None) -> tuple[float, float]:
         """The sample nearest to (x, z) [m] where the body can stand; `mask` (nz, nx) bool narrows the choice.

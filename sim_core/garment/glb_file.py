@@ -43,7 +43,7 @@ class GlbFile:
             "count": len(array),
             "type": kind,
         }
-        if kind == "VEC4":
+        if kind == "VEC4" or (kind == "VEC2" and component == U16):
             accessor["normalized"] = True
         if kind in ("VEC3", "SCALAR"):
             flat = array.reshape(len(array), -1)
@@ -57,9 +57,21 @@ class GlbFile:
 
         stream = BytesIO()
         Image.fromarray(picture).save(stream, "PNG", optimize=True)
-        self.images.append({"bufferView": self._view(stream.getvalue()), "mimeType": "image/png"})
         transform = {"KHR_texture_transform": {"scale": scale}}
-        return {"index": len(self.images) - 1, "texCoord": 0, "extensions": transform}
+        return {**self.picture(stream.getvalue(), "image/png"), "extensions": transform}
+
+    def picture(self, data: bytes, mime: str) -> dict[str, Any]:
+        """Stores an encoded picture, "image/png", "image/jpeg" or "image/webp"; returns a reference to its texture.
+
+        A file with WebP names EXT_texture_webp among its extensions.
+        """
+        self.images.append({"bufferView": self._view(data), "mimeType": mime})
+        return {"index": len(self.images) - 1, "texCoord": 0}
+
+    def _texture_entry(self, image: int) -> dict[str, Any]:
+        if self.images[image]["mimeType"] == "image/webp":
+            return {"sampler": 0, "extensions": {"EXT_texture_webp": {"source": image}}}
+        return {"sampler": 0, "source": image}
 
     def material(self, material: dict[str, Any]) -> int:
         """Adds a material."""
@@ -74,20 +86,27 @@ class GlbFile:
         material: int,
         uv: np.ndarray | None = None,
         colours: np.ndarray | None = None,
+        *,
+        uv1: np.ndarray | None = None,
+        unlit: bool = False,
     ) -> None:
         """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
 
-        Normals are the mesh's own, area-weighted; a mesh with colours is drawn unlit and has none.
+        uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted; an
+        unlit mesh, as every mesh with colours, has none.
         """
         attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
-        if colours is None:
+        if colours is None and not unlit:
             shading = normals(vertices, faces).astype("<f4")
             attributes["NORMAL"] = self._accessor(shading, "VEC3", FLOAT, VERTICES)
-        else:
+        elif colours is not None:
             fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
             attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)
         if uv is not None:
             attributes["TEXCOORD_0"] = self._accessor(uv.astype("<f4"), "VEC2", FLOAT, VERTICES)
+        if uv1 is not None:
+            fractions = np.round(np.clip(uv1, 0, 1) * 65535).astype("<u2")
+            attributes["TEXCOORD_1"] = self._accessor(fractions, "VEC2", U16, VERTICES)
         kind, component = ("<u2", U16) if len(vertices) < 65535 else ("<u4", U32)
         index = self._accessor(faces.astype(kind).reshape(-1), "SCALAR", component, INDICES)
         primitive = {"attributes": attributes, "indices": index, "material": material}
@@ -112,7 +131,7 @@ class GlbFile:
         if self.images:
             document["images"] = self.images
             document["samplers"] = [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}]
-            document["textures"] = [{"source": k, "sampler": 0} for k in range(len(self.images))]
+            document["textures"] = [self._texture_entry(k) for k in range(len(self.images))]
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self.blob)

@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import mmap
+import signal
 import subprocess
 import sys
 import tempfile
@@ -42,11 +43,20 @@ async def _serve(port: int, round_trip: float, tally: Path) -> None:
     with tally.open("r+b") as file:
         counter = mmap.mmap(file.fileno(), 8)
 
+    writers: set[asyncio.StreamWriter] = set()
+
     async def connect(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         far_reader, far_writer = await asyncio.open_connection("127.0.0.1", port)
+        writers.update((writer, far_writer))
         ways = ((reader, far_writer), (far_reader, writer))
         await asyncio.gather(*(_hold(source, sink, round_trip / 2, counter) for source, sink in ways))
+        writers.difference_update((writer, far_writer))
 
+    def cut() -> None:
+        for writer in tuple(writers):
+            writer.transport.abort()
+
+    asyncio.get_running_loop().add_signal_handler(signal.SIGUSR1, cut)
     server = await asyncio.start_server(connect, "127.0.0.1", 0)
     sys.stdout.write(f"{server.sockets[0].getsockname()[1]}\n")
     sys.stdout.flush()
@@ -55,10 +65,15 @@ async def _serve(port: int, round_trip: float, tally: Path) -> None:
 
 @dataclass(frozen=True)
 class Wire:
-    """Where it begins, and where it keeps count."""
+    """Where it begins, where it keeps count, the process that holds it."""
 
     port: int
     tally: Path
+    process: subprocess.Popen
+
+    def cut(self) -> None:
+        """Break every connection; new ones may come."""
+        self.process.send_signal(signal.SIGUSR1)
 
     def carried(self) -> int:
         """Bytes so far, both directions."""
@@ -75,7 +90,7 @@ def wire(port: int, round_trip: float = 0.0) -> Iterator[Wire]:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None
             try:
-                yield Wire(int(process.stdout.readline()), tally)
+                yield Wire(int(process.stdout.readline()), tally, process)
             finally:
                 process.kill()
 

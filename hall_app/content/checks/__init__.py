@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 from ..loading import Content
 from ..problems import Problem
+from .backdrops import backdrop_problems
 from .bakes import bake_problems
 from .budget import budget_problems
 from .reach import reach_problems
+from .rooms import room_problems
 from .scale import scale_problems
 from .unused import unused_problems
 from .words import word_problems
@@ -18,6 +20,8 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     scale_problems,
     budget_problems,
     reach_problems,
+    backdrop_problems,
     bake_problems,
+    room_problems,
     unused_problems,
 )

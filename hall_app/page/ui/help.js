@@ -1,8 +1,7 @@
-// Help: every key and gesture, the music's volume, the catalogue and the hall's own questionnaire.
+// Help: every key and gesture, the catalogue and the hall's own questionnaire.
 
 import { createDialog } from "./dialogs.js";
 import { el, setAttribute } from "./elements.js";
-import { createVolume } from "./top_bar.js";
 
 // [keys, text]; a key in {braces} is a text of the group "help".
 const SECTIONS = {
@@ -47,15 +46,9 @@ function keycap(words, key) {
     : el("kbd", { text: key });
 }
 
-/** createHelp({words, music, scene, onSurvey}) -> {element, open, updateScene} */
-export function createHelp({ words, music, scene, onSurvey }) {
+/** createHelp({words, scene, onSurvey}) -> {element, open, updateScene} */
+export function createHelp({ words, scene, onSurvey }) {
   const dialog = createDialog({ words, titleKey: "help.title", testid: "help-dialog", kind: "help" });
-  const volume = el(
-    "label",
-    { class: "help-volume" },
-    words.text(el("span"), "help.volume"),
-    createVolume({ words, music, testid: "help-volume" }),
-  );
   const survey = words.text(
     el("button", { type: "button", class: "button quiet-button", testid: "help-survey" }),
     "help.survey",
@@ -72,9 +65,8 @@ export function createHelp({ words, music, scene, onSurvey }) {
       section(words, "keyboard"),
       el("div", {}, section(words, "mouse"), section(words, "touch")),
     ),
-    el("footer", { class: "help-foot" }, volume, catalogue, survey),
+    el("footer", { class: "help-foot" }, catalogue, survey),
   );
-  music.follow(() => setAttribute(volume, "hidden", !music.available));
   const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);
   updateScene(scene);
   return { element: dialog.element, open: dialog.open, updateScene };

@@ -1,4 +1,4 @@
-// The top edge: brand with seal on the left; language, exhibits, music, feedback and help on the right.
+// The top edge: brand with seal on the left; language, exhibits, music, feedback, settings and help on the right.
 
 import { el, setAttribute, setLabel } from "./elements.js";
 import { icon } from "./icons.js";
@@ -47,31 +47,20 @@ export function createLanguageSwitch({ words, onChoose }) {
       lang,
       text: SHORT[lang],
       testid: `lang-${lang}`,
-      on: { click: () => onChoose(lang) },
+      on: { click: () => choose(lang) },
     }),
   );
+  function choose(lang) {
+    onChoose(lang);
+    // A narrow bar shows only the other language: the focus goes on to it.
+    if (document.activeElement?.offsetParent === null) buttons.find((button) => button.lang !== lang).focus();
+  }
   const element = el("div", { class: "segments", role: "group" }, ...buttons);
   words.follow(() => {
     element.setAttribute("aria-label", words.t("bar.language"));
     for (const button of buttons) button.setAttribute("aria-pressed", String(button.lang === words.lang));
   });
   return element;
-}
-
-/** A range input bound to the music; the bar and the help window each hold one. */
-export function createVolume({ words, music, testid }) {
-  const slider = el("input", { type: "range", class: "volume", min: 0, max: 100, step: 5, testid });
-  slider.addEventListener("input", () => {
-    music.setVolume(slider.valueAsNumber / 100);
-    if (!music.on) music.toggle();
-  });
-  words.label(slider, "bar.volume");
-  music.follow(() => {
-    const shown = music.on ? Math.round(100 * music.volume) : 0;
-    slider.value = shown;
-    slider.style.setProperty("--level", `${shown}%`);
-  });
-  return slider;
 }
 
 function tool({ words, name, key, testid, onClick }) {
@@ -103,16 +92,16 @@ function musicTool(words, music) {
   return button;
 }
 
-/** createTools({words, music, onList, onHelp, onSurvey, hasSurvey}) -> {element, updateScene} */
-export function createTools({ words, music, onList, onHelp, onSurvey, scene }) {
-  const list = tool({ words, name: "list", key: "bar.list", testid: "list", onClick: onList });
-  const survey = tool({ words, name: "survey", key: "bar.survey", testid: "hall-survey", onClick: onSurvey });
-  const help = tool({ words, name: "help", key: "bar.help", testid: "help", onClick: onHelp });
-  const volume = createVolume({ words, music, testid: "volume" });
+/** createTools({words, music, scene, onList, onHelp, onSurvey, onSettings}) -> {element, updateScene} */
+export function createTools({ words, music, scene, onList, onHelp, onSurvey, onSettings }) {
+  const one = (name, onClick, testid = name) => tool({ words, name, key: `bar.${name}`, testid, onClick });
+  const list = one("list", onList);
+  const survey = one("survey", onSurvey, "hall-survey");
+  const settings = one("settings", onSettings);
+  const help = one("help", onHelp);
   survey.classList.add("wide-only");
-  const element = el("nav", { class: "tools glass" }, list, musicTool(words, music), volume, survey, help);
+  const element = el("nav", { class: "tools glass" }, list, musicTool(words, music), survey, settings, help);
   words.follow(() => element.setAttribute("aria-label", words.t("bar.tools")));
-  music.follow(() => setAttribute(volume, "hidden", !music.available));
   const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);
   updateScene(scene);
   return { element, updateScene };

@@ -1,5 +1,6 @@
 // The overlay over the hall: builds its parts, keeps language, exhibit and connection in step between them.
 
+import { LEVELS } from "../judge.js";
 import { createCaption } from "./caption.js";
 import { el, ownsEnter } from "./elements.js";
 import { createEnter } from "./enter.js";
@@ -11,18 +12,21 @@ import { createMusic } from "./music.js";
 import { createConnection, createProblems, createToasts, createVoice } from "./notices.js";
 import { createPanel } from "./panel.js";
 import { createViewer } from "./panel_pictures.js";
+import { createSettings } from "./settings.js";
 import { createSurveyDialog } from "./survey_dialog.js";
 import { createBrand, createLanguageSwitch, createTools } from "./top_bar.js";
 import { createStick, noticeTouch } from "./touch.js";
 import { createWords } from "./words.js";
 
+// As judge.js has them, and the one that leaves it to the judge.
+const CHOICES = ["auto", ...LEVELS];
 const SHEET = "(max-width: 720px)"; // the panel lies at the bottom instead of standing at the right
 
 /**
  * createUi({root, scene, texts, lang, actions}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * actions: enter(), open(id), close(), goTo(x, z, yaw?), setLang(lang), move(forward, right).
+ * actions: enter(), open(id), close(), goTo(x, z, yaw?), setLang(lang), setQuality(choice), move(forward, right).
  */
 export function createUi({ root, scene, texts, lang, actions }) {
   const words = createWords(texts, lang);
@@ -66,10 +70,12 @@ function createParts({ words, scene, actions }) {
       onList: () => parts.list.open(),
       onHelp: () => parts.help.open(),
       onSurvey: hallSurvey,
+      onSettings: () => parts.settings.open(),
     }),
+    settings: createSettings({ words, music, choices: CHOICES, onQuality: actions.setQuality }),
     minimap: createMinimap({ words, scene, goTo, onBay: (bay) => announceBay(parts, bay) }),
     list: createExhibitsList({ words, scene, onOpen: actions.open, onGo: goTo }),
-    help: createHelp({ words, music, scene, onSurvey: hallSurvey }),
+    help: createHelp({ words, scene, onSurvey: hallSurvey }),
     panel: createPanel({
       words,
       onClose: actions.close,
@@ -115,7 +121,7 @@ function arrange(parts) {
     voice,
   } = parts;
   enter.actions.append(languages);
-  const dialogs = [parts.list, parts.help, parts.viewer, parts.survey].map(({ element }) => element);
+  const dialogs = [parts.list, parts.settings, parts.help, parts.viewer, parts.survey].map(({ element }) => element);
   for (const dialog of dialogs) {
     // The browser gives the focus back; to the hall it comes without a frame, as on entering.
     dialog.addEventListener("close", () => document.activeElement === stage && focusStage(stage));
@@ -222,6 +228,7 @@ function face(parts, overlay, words) {
     },
     toast: parts.toasts.toast,
     connection: parts.connection.set,
+    quality: parts.settings.quality,
     problems: parts.problems.set,
     updateScene(scene) {
       parts.scene = scene;
@@ -242,15 +249,16 @@ function face(parts, overlay, words) {
     get lang() {
       return words.lang;
     },
-    /** What covers the picture [px]: the panel's width at the right, or the sheet's height at the bottom. */
+    /** What covers the picture [px]: the panel's width at the right, bar on top, sheet or hints at the bottom. */
     get visible() {
       const { offsetLeft, offsetHeight } = panel.element; // layout, not the sliding picture of it
-      if (!panel.detail()) return { panel: 0, sheet: 0, top: 0 };
+      if (!panel.detail()) return { panel: 0, bottom: 0, top: 0 };
       const bar = overlay.querySelector(".top");
       const top = bar.offsetTop + bar.offsetHeight;
-      return matchMedia(SHEET).matches
-        ? { panel: 0, sheet: offsetHeight, top }
-        : { panel: overlay.clientWidth - offsetLeft, sheet: 0, top };
+      if (matchMedia(SHEET).matches) return { panel: 0, bottom: offsetHeight, top };
+      const low = overlay.querySelector(".low");
+      const bottom = overlay.clientHeight - low.offsetTop - low.offsetHeight + hints.element.offsetHeight;
+      return { panel: overlay.clientWidth - offsetLeft, bottom, top };
     },
   });
 }

@@ -1,0 +1,45 @@
+// viser's page hooks, no public API: pinned to viser 1.1.1 (server/page.py) and asserted in tests/browser.
+
+export const viser = () => window.__viserMutable;
+
+/** True when every hook this page needs is there. */
+export function hooksPresent() {
+  const m = viser();
+  return Boolean(m && m.cameraControl && m.camera && m.canvas && m.nodePoseData && window.__viserSceneTree);
+}
+
+/** three.js' renderer, null before the first frame. */
+export function renderer() {
+  return viser()?.scene?.__r3f?.root?.getState?.().gl ?? null;
+}
+
+/** Names of the scene nodes the page has received. */
+export function nodeNames() {
+  const tree = window.__viserSceneTree;
+  return tree ? Object.keys(tree.getState()) : [];
+}
+
+/** The drawn meshes below a node; empty while its model is still being read. */
+export function meshesOf(name) {
+  const found = [];
+  const object = viser()?.nodeRefFromName?.[name];
+  if (object) object.traverse((child) => { if (child.isMesh) found.push(child); });
+  return found;
+}
+
+export function drawnOnce() {
+  const info = window.__viserTestpoints?.rendererInfo;
+  return Boolean(info && info.render.calls > 0 && info.render.triangles > 0);
+}
+
+/** Pictures drawn so far. */
+export function framesDrawn() { return window.__viserTestpoints?.rendererInfo?.render?.frame ?? 0; }
+
+export function requestRender() { viser()?.requestRender?.(); }
+
+/** Text the server left in the page to say which of its clients this page is: "<id>.<token>". */
+export function clientMark() {
+  const prefix = "/_visitor/";
+  const name = nodeNames().find((candidate) => candidate.startsWith(prefix));
+  return name ? name.slice(prefix.length) : null;
+}

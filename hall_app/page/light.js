@@ -1,0 +1,99 @@
+// The hall's light. The room is drawn unlit and carries its own baked light map; the few real lights touch garments only.
+//
+// The room's GLB brings the map as the base colour of a hidden triangle whose material is named "lightmap", and the
+// coordinates of its meshes "hall_*" as a second set. glTF has no word for light maps, so the page lays it on. Where
+// that cannot be done the room stays evenly lit, but whole.
+
+import { meshesOf, renderer, requestRender, viser } from "./hooks.js";
+
+const MAP = "lightmap";
+const ROOM = "hall_";
+const STRENGTH = 2 * Math.PI; // the map holds light / 2, and three.js divides a light map by pi
+
+const listOf = (material) => [material ?? []].flat();
+
+/** Colours as the palette has them: viser's client maps tones by default, which greys warm whites. */
+export function plainTones() {
+  const gl = renderer();
+  if (!gl || gl.toneMapping === 0) return;
+  gl.toneMapping = 0;
+  viser().scene.traverse((object) => {
+    for (const material of listOf(object.material)) material.needsUpdate = true;
+  });
+  requestRender();
+}
+
+/**
+ * Lay the light map on the meshes of a room. Idempotent and cheap, so it runs ahead of every drawn picture: viser
+ * makes new meshes whenever the room changes or its socket had to connect again.
+ * Returns how many meshes carry the map now.
+ */
+export function layLight(meshes) {
+  const bearer = meshes.find((mesh) => mesh.material?.name === MAP && mesh.material.map);
+  if (!bearer) return 0;
+  const map = bearer.material.map;
+  bearer.visible = false;
+  map.channel = 1;
+  let lit = 0, changed = false;
+  for (const mesh of meshes) {
+    const { material, geometry } = mesh;
+    if (!mesh.name.startsWith(ROOM) || !material.isMeshBasicMaterial || !geometry.attributes.uv1) continue;
+    lit += 1;
+    if (material.lightMap === map) continue;
+    material.lightMap = map;
+    material.lightMapIntensity = STRENGTH;
+    material.needsUpdate = true;
+    changed = true;
+  }
+  if (changed) requestRender();
+  return lit;
+}
+
+/** Filter textures seen at a slant with `wanted` samples, as far as the machine can. */
+export function sharpen(meshes, wanted) {
+  const anisotropy = Math.min(wanted, renderer()?.capabilities.getMaxAnisotropy() ?? 1);
+  let changed = false;
+  for (const mesh of meshes) {
+    for (const material of listOf(mesh.material)) {
+      for (const texture of Object.values(material)) {
+        if (!texture?.isTexture || texture.anisotropy === anisotropy) continue;
+        texture.anisotropy = anisotropy;
+        texture.needsUpdate = true;
+        changed = true;
+      }
+    }
+  }
+  if (changed) requestRender();
+}
+
+let kept = null; // the environment map while it is taken off
+
+/** Reflections of the room on the exhibits, on or off. viser's client puts its environment map on again at times. */
+export function reflect(on) {
+  const scene = viser()?.scene;
+  if (!scene) return;
+  if (!on && scene.environment) {
+    kept = scene.environment;
+    kept.addEventListener("dispose", (event) => { if (kept === event.target) kept = null; });
+    scene.environment = null;
+  } else if (on && !scene.environment && kept) {
+    scene.environment = kept;
+    kept = null;
+  } else return;
+  requestRender();
+}
+
+/** Light an exhibit up, or let it be. */
+export function glow(name, on) {
+  for (const mesh of meshesOf(name)) {
+    for (const material of [mesh.material].flat()) {
+      if (!material.emissive) continue;
+      material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
+      const still = material.userData.still;
+      // Its own colour, so that dark lacquer stays lacquer.
+      material.emissive.setHex(on ? material.color.getHex() : still.hex);
+      material.emissiveIntensity = on ? 0.3 : still.strength;
+    }
+  }
+  requestRender();
+}

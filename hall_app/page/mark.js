@@ -1,0 +1,26 @@
+// Which of viser's clients this page is. viser mounts the mark a moment after its socket opens, and another one
+// whenever that had to connect again.
+
+import { clientMark } from "./hooks.js";
+import { until } from "./loading.js";
+
+const PATIENCE = 10000; // [ms]
+const LOOK_EVERY = 1000; // [ms]
+
+/** createMark(display, onNew) -> {find()}; onNew(mark) when the page has become another client. */
+export function createMark(display, onNew) {
+  const read = () => (display === "page" ? clientMark() : document.querySelector("[data-hall-client]")?.dataset.hallClient);
+  let mark = null;
+  setInterval(() => {
+    const now = read();
+    if (!mark || !now || now === mark) return;
+    mark = now;
+    onNew(mark);
+  }, LOOK_EVERY);
+  return {
+    async find() {
+      mark = await until(read, PATIENCE);
+      return mark;
+    },
+  };
+}

@@ -1,0 +1,86 @@
+"""`hall build --room`: raise the room, compute its light, write both and the environment beside the content."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..content.loading import Content
+from .charts import surfaces
+from .drawn import room_glb
+from .environment import environment_jpeg
+from .lamps import spots_of
+from .occluders import exhibit_solids
+from .places import ENVIRONMENT, GLB, RECORD
+from .raising import raise_room
+
+__all__ = ["bake_room"]
+
+Progress = Callable[[float, str], None]
+
+
+def bake_room(
+    content: Content, *, key: str, target: Path, work: Path, data: Path, progress: Progress
+) -> dict[str, Any]:
+    """Bake the content's room into `target` and return the record kept beside it.
+
+    work: where an interrupted bake left its state and where this one leaves its own; gone after success.
+    data: the data folder, where garments' own bakes may lie. Raises MissingFontError where the letters cannot be set.
+    """
+    began, cpu = time.perf_counter(), time.process_time()
+    out = work / "out"
+    out.mkdir(parents=True, exist_ok=True)
+    progress(0.0, "geometry")
+    room = raise_room(content.plan, content.hall.title, content.exhibits)
+    from ..light import bake_light
+
+    walls = surfaces(room.patches, exhibit_solids(content, data))
+    light = bake_light(
+        walls,
+        spots_of(content.plan, content.exhibits),
+        progress=lambda share, label: progress(0.02 + 0.93 * share, label),
+        checkpoint=work / "light.npz",
+    )
+    progress(0.96, "files")
+    data_glb = room_glb(room, light)
+    (out / GLB).write_bytes(data_glb)
+    (out / ENVIRONMENT).write_bytes(environment_jpeg(content.plan))
+    record = {
+        "key": key,
+        "triangles": room.triangles,
+        "bytes": len(data_glb),
+        "seconds": round(time.perf_counter() - began, 1),
+        "cpu_seconds": round(time.process_time() - cpu, 1),
+        "light": _plain(light.record),
+    }
+    text = json.dumps(record, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
+    (out / RECORD).write_text(text, "utf-8")
+    _publish(out, target)
+    shutil.rmtree(work, ignore_errors=True)
+    progress(1.0, "done")
+    return record
+
+
+def _plain(value: Any) -> Any:
+    """The light's record as JSON takes it."""
+    if isinstance(value, dict):
+        return {str(name): _plain(inner) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _publish(out: Path, target: Path) -> None:
+    """Move the finished files into place, the record last: until then the old one is what counts."""
+    target.mkdir(parents=True, exist_ok=True)
+    (target / RECORD).unlink(missing_ok=True)
+    for name in (GLB, ENVIRONMENT, RECORD):
+        beside = target / f"{name}.part"
+        shutil.copyfile(out / name, beside)
+        beside.replace(target / name)

@@ -1,0 +1,89 @@
+"""What silk and metal reflect: a small round picture of the hall, painted from its colours."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .palette import MATERIALS, linear
+
+if TYPE_CHECKING:
+    from ..content.models import PlanFile
+
+__all__ = ["environment_jpeg"]
+
+_SIZE = (256, 512)  # [pixels] height, width
+_QUALITY = 88
+
+
+def environment_jpeg(plan: PlanFile) -> bytes:
+    """A 512 × 256 equirectangular JPEG: ceiling with laylights, walls with windows, dark timber, grey floor."""
+    from PIL import Image
+
+    stream = BytesIO()
+    Image.fromarray(environment(plan)).save(stream, "JPEG", quality=_QUALITY, optimize=True)
+    return stream.getvalue()
+
+
+def environment(plan: PlanFile) -> NDArray[np.uint8]:
+    """(256, 512, 3) uint8 sRGB seen from the middle of the hall at eye height; −z in the middle, +x to the right."""
+    way = _directions()
+    x, y, z = np.moveaxis(way, -1, 0)
+    picture = _walls(x, y, z)
+    picture[y < 0] = _floor(-y[y < 0])
+    up = y > 0.02
+    reach = 3.6 / np.maximum(y, 0.02)
+    at_x, at_z = x * reach, z * reach
+    over = up & (np.abs(at_x) < 9) & (np.abs(at_z) < 9)
+    picture[over] = 0.55 * linear(MATERIALS["ceiling"].colour)
+    picture[over & (np.abs((at_z + 1.0) % 2.0 - 1.0) < 0.12)] = 0.6 * linear(MATERIALS["lacquer"].colour)
+    light = linear(MATERIALS["laylight"].tint)
+    for low_x, high_x, low_z, high_z in (
+        (-1.6, 1.6, -6.5, 6.5),
+        (4.5, 7.5, -5, -2),
+        (4.5, 7.5, 2, 5),
+        (-7.5, -4.5, -5, -2),
+        (-7.5, -4.5, 2, 5),
+    ):
+        well = over & (at_x > low_x) & (at_x < high_x) & (at_z > low_z) & (at_z < high_z)
+        bars = (np.abs((at_z + 0.5) % 1.0 - 0.5) < 0.05) | (np.abs((at_x + 0.4) % 0.8 - 0.4) < 0.04)
+        picture[well & ~bars] = light
+    stored = np.clip(picture, 0, 1)
+    srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
+    return np.round(255 * srgb).astype(np.uint8)
+
+
+def _directions() -> NDArray[np.float64]:
+    """(256, 512, 3) unit vectors of the picture's pixels."""
+    high, wide = _SIZE
+    polar = np.pi * (np.arange(high) + 0.5)[:, None] / high
+    turn = 2 * np.pi * ((np.arange(wide) + 0.5)[None, :] / wide - 0.5)
+    flat = np.sin(polar)
+    return np.stack(
+        [flat * np.sin(turn), np.broadcast_to(np.cos(polar), (high, wide)), -flat * np.cos(turn)], axis=-1
+    )
+
+
+def _walls(x: NDArray, y: NDArray, z: NDArray) -> NDArray[np.float64]:
+    """A ring of plaster, wainscot, timber and four pairs of windows, lighter above than below."""
+    slope = y / np.maximum(np.hypot(x, z), 1e-6)
+    picture = 0.62 * (1 + 0.25 * slope.clip(-0.5, 0.6))[..., None] * linear(MATERIALS["plaster"].colour)
+    picture[slope < -0.08] = 0.45 * linear(MATERIALS["panel"].colour)
+    picture[np.abs(slope + 0.07) < 0.015] = 0.5 * linear(MATERIALS["lacquer"].colour)
+    picture[(slope > 0.26) & (slope < 0.33)] = 0.6 * linear(MATERIALS["band"].colour)
+    picture[slope >= 0.33] = 0.5 * linear(MATERIALS["lacquer"].colour)
+    turn = np.degrees(np.arctan2(x, -z)) % 90
+    pillar = np.abs(turn - 24) < 2.2
+    picture[pillar & (slope > -0.5) & (slope < 0.33)] = 0.45 * linear(MATERIALS["lacquer"].colour)
+    window = (np.abs(turn - 45) < 8) & (slope > -0.03) & (slope < 0.2)
+    bars = np.abs((turn % 2.0) - 1.0) < 0.25
+    picture[window & ~bars] = 0.95 * linear(MATERIALS["paper"].tint)
+    return picture
+
+
+def _floor(down: NDArray) -> NDArray[np.float64]:
+    """Grey tiles, lighter under the laylight."""
+    return (0.34 + 0.34 * down)[:, None] * linear(MATERIALS["floor"].colour)
