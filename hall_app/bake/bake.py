@@ -166,7 +166,7 @@ def _record(key: str, garment, light, maps, seconds: dict[str, float]) -> dict[s
     errors = {name: value for name, value in facts["errors"].items() if not isinstance(value, list)}
     apart = detail.get("hausdorff", {})
     errors |= {f"hall_hausdorff_{name.removesuffix('_m')}": value for name, value in apart.items()}
-    errors["vertices"], errors["hall_triangles"] = len(garment.rest), len(light.faces)
+    errors["vertices"], errors["hall_triangles"] = len(garment.positions), len(light.faces)
     return {
         "key": key,
         "digest": garment.digest(),

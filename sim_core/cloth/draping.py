@@ -42,7 +42,10 @@ class Phase:
     speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
     rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
     pins: tuple[int, ...] = ()  # vertices held still in this phase, beside those of the run
-    sewing: tuple[float, float] = (0.0, 0.0)  # share of their first distance that sewing pairs may have, from..to
+    sewing: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # share of their first distance that sewing pairs may have, from..to
     body: tuple[float, float] | None = None  # keys of a moving body, from..to (None: where it is)
 
 
@@ -107,9 +110,7 @@ def drape(
     """
     start = time.perf_counter()
     x, v = _checked_state(sheet, positions, velocities)
-    run = _Run(
-        sheet, phases, collider, contact or Contact(), pins, holds, np.asarray(down, float), substeps
-    )
+    run = _Run(sheet, phases, collider, contact or Contact(), pins, holds, np.asarray(down, float), substeps)
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
     )
@@ -247,7 +248,16 @@ class _Run:
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
         moving = self.moving and (self.moving.name, self.moving.origin, self.moving.cell, self.moving.count)
-        return (self.phases, self.contact, self.pins, self.down, self.fixed, moving, *self.packed, *self.holds)
+        return (
+            self.phases,
+            self.contact,
+            self.pins,
+            self.down,
+            self.fixed,
+            moving,
+            *self.packed,
+            *self.holds,
+        )
 
     def schedule(self) -> list[_Moment]:
         """What each frame is under; gravity is constant within a frame, so that energies compare."""
@@ -259,7 +269,9 @@ class _Run:
             path = phase.body or (place, place)
             place = path[1]
             for k in range(count):
-                ends = [(a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)]
+                ends = [
+                    (a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)
+                ]
                 frames.append(_Moment(phase, low + (high - low) * (k + 1) / count, ends[0], ends[1]))
         return frames
 

@@ -56,7 +56,9 @@ class Holds(NamedTuple):
             low = np.full(count, -np.inf) if low is None else np.ascontiguousarray(low, float)
             high = np.full(count, np.inf) if high is None else np.ascontiguousarray(high, float)
             if len(low) != count or len(high) != count or (low > high).any():
-                raise SimCoreError(f"holds: bounds of {len(low)} and {len(high)} vertices, low <= high, needed")
+                raise SimCoreError(
+                    f"holds: bounds of {len(low)} and {len(high)} vertices, low <= high, needed"
+                )
         same = np.arange(count, dtype=np.int32)
         for a, b in pairs:  # chains of pairs count as one point, too
             same[same == same[b]] = same[a]

@@ -40,7 +40,9 @@ class MovingGrid:
             return self._pack(GRID, round(low), round(low)), (0.0, 0.0)
         k = min(int(low + 1e-9), self.count - 2)
         if high > k + 1 + 1e-9:
-            raise SimCoreError(f"body: a frame goes from key {early:.2f} to {late:.2f} – at most to the next key")
+            raise SimCoreError(
+                f"body: a frame goes from key {early:.2f} to {late:.2f} – at most to the next key"
+            )
         return self._pack(MOVING, k, k + 1), (early - k, late - k)
 
     def _pack(self, kind: int, first: int, second: int) -> Packed:

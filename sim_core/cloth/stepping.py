@@ -29,8 +29,12 @@ class Surroundings(NamedTuple):
     sample_clearance: float  # [m] of midpoints and centroids
     cap: float  # [m] largest push per substep
     speed_limit: float  # [m/s]
-    sewing: tuple[float, float]  # share of their first distance that pairs may have, at begin and end of the frame
-    body: tuple[float, float]  # where a moving grid stands between its keys, 0..1, at begin and end of the frame
+    sewing: tuple[
+        float, float
+    ]  # share of their first distance that pairs may have, at begin and end of the frame
+    body: tuple[
+        float, float
+    ]  # where a moving grid stands between its keys, 0..1, at begin and end of the frame
 
 
 @njit(cache=True, error_model="numpy")

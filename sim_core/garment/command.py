@@ -86,7 +86,7 @@ def _report(args: argparse.Namespace, garment: Garment, level: dict[str, Any], s
     e = facts["errors"]
     inside = e["inside_vertices"] + e["inside_midpoints"] + e["inside_centroids"]
     lines = [
-        f"{garment.name}: {len(garment.rest)} vertices, {len(garment.faces)} triangles -> {args.out}",
+        f"{garment.name}: {len(garment.positions)} vertices, {len(garment.faces)} triangles -> {args.out}",
         f"  inside the stand {inside}, area strain p95 {e['area_strain_p95']:.2%}, "
         f"self-intersections {e['self_intersections']}, moving {e['rest_p99_m'] * 1e3:.3f} mm per 1/25 s (p99)",
         f"  hall: {level['triangles']} triangles, {sizes['hall.glb'] / 1e6:.2f} MB; "

@@ -113,7 +113,9 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         tuple(legs),
         table.layer,
         table.doubled,
-        None if table.along is None else _told(f"{key}.along", lambda: _known(Path.read(table.along or ""), made)),
+        None
+        if table.along is None
+        else _told(f"{key}.along", lambda: _known(Path.read(table.along or ""), made)),
         read_dye(table.dye),
     )
     try:
@@ -163,7 +165,9 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
             raise CutProblem(f"{key}.middle", "only a pattern with mirror = true has a middle")
         off = max(float(np.abs(leg[:, 0]).max()) for leg in paths[0].legs(made[paths[0].panel]))
         if off > 1e-6 and made[paths[0].panel].along is None:
-            raise CutProblem(f"{key}.middle", f"{texts[0]!r} leaves x = 0 by {1000 * off:.1f} mm – lay it there")
+            raise CutProblem(
+                f"{key}.middle", f"{texts[0]!r} leaves x = 0 by {1000 * off:.1f} mm – lay it there"
+            )
         return Seam("middle", paths[0])
     lengths = [path.length(made[path.panel]) for path in paths]
     if abs(lengths[0] - lengths[1]) > EASE * max(lengths):
@@ -171,7 +175,9 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
         raise CutProblem(f"{key}.{kind}", f"sides of {both} mm – make them equal within {EASE:.0%}")
     counts = [len(path.legs(made[path.panel])) for path in paths]
     if counts[0] != counts[1] and 1 not in counts:
-        raise CutProblem(f"{key}.{kind}", f"{counts[0]} legs meet {counts[1]} – as many on both sides, or one")
+        raise CutProblem(
+            f"{key}.{kind}", f"{counts[0]} legs meet {counts[1]} – as many on both sides, or one"
+        )
     return Seam(kind, paths[0], paths[1])  # type: ignore[arg-type]
 
 

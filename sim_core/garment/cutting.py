@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -40,6 +40,22 @@ class Panel:
         i, j, count = self.corners.index(start), self.corners.index(end), len(self.corners)
         steps = (j - i) % count if ahead else (i - j) % count
         return tuple((i + k) % count if ahead else (i - k - 1) % count for k in range(steps))
+
+    def to_dict(self) -> dict[str, Any]:
+        """A plain dictionary that JSON can hold."""
+        legs = [leg.tolist() for leg in self.legs]
+        return {**self.__dict__, "legs": legs, "along": self.along and str(self.along)}
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Panel:
+        """The panel `to_dict` described."""
+        changed = {
+            "corners": tuple(data["corners"]),
+            "legs": tuple(np.asarray(leg, float) for leg in data["legs"]),
+            "along": Path.read(data["along"]) if data["along"] else None,
+            "dye": tuple(data["dye"]) if data["dye"] else None,
+        }
+        return Panel(**{**data, **changed})
 
 
 @dataclass(frozen=True)

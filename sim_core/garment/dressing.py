@@ -42,7 +42,7 @@ class FigureLike(Protocol):
 
 @dataclass(frozen=True)
 class Worn:
-    """A dressed half: the cut cloth, its draped pattern vertices (P, 3), the last run and the seam gap before welding."""
+    """A dressed half: the cut cloth, its draped pattern vertices (P, 3), both runs, the seam gap before welding [m]."""
 
     cloth: Cloth
     positions: np.ndarray
@@ -50,6 +50,8 @@ class Worn:
     sewn: Drape
     draped: Drape
     gap: float
+    materials: list[Material]
+    choices: dict[str, str]
 
 
 def dress(
@@ -70,8 +72,10 @@ def dress(
     [m], as a display stitch keeps them. checkpoint: file to go on from; a second is written beside it.
     """
     cloth = pattern.cloth(edge)
-    materials, kind = robe_materials(cloth_parameters(weave, relax(weave)), pattern, cloth, edge)
-    apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[cloth.panel]
+    materials, kind, choices = robe_materials(cloth_parameters(weave, relax(weave)), pattern, cloth, edge)
+    apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[
+        cloth.panel
+    ]
     body = schedule.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
     contact = Contact(0.005, 0.0025, 0.004, every=2, speed_limit=2.5)
@@ -81,8 +85,15 @@ def dress(
     x = open_.gathered(start)
     holds = _holds(pattern, cloth, open_, stitch, x)
     sewn = drape(
-        open_.sheet, x, schedule.sewing(), collider=body, contact=contact, holds=holds,
-        checkpoint=checkpoint, keep=True, **stages.hooks(open_, 0, schedule.sewing())
+        open_.sheet,
+        x,
+        schedule.sewing(),
+        collider=body,
+        contact=contact,
+        holds=holds,
+        checkpoint=checkpoint,
+        keep=True,
+        **stages.hooks(open_, 0, schedule.sewing()),
     )
     gap = _gap(cloth, open_, sewn.positions)
 
@@ -93,12 +104,19 @@ def dress(
     phases = schedule.dressing(_nape(pattern, cloth, shut))
     second = checkpoint.with_name(checkpoint.name + ".2") if checkpoint else None
     draped = drape(
-        shut.sheet, x, phases, velocities=v, collider=body, contact=contact,
-        holds=_holds(pattern, cloth, shut, stitch, x), checkpoint=second, **stages.hooks(shut, sewn.frames, phases)
+        shut.sheet,
+        x,
+        phases,
+        velocities=v,
+        collider=body,
+        contact=contact,
+        holds=_holds(pattern, cloth, shut, stitch, x),
+        checkpoint=second,
+        **stages.hooks(shut, sewn.frames, phases),
     )
     if checkpoint:
         checkpoint.unlink(missing_ok=True)
-    return Worn(cloth, draped.positions[shut.number], shut, sewn, draped, gap)
+    return Worn(cloth, draped.positions[shut.number], shut, sewn, draped, gap, materials, choices)
 
 
 class _Stages:
@@ -152,8 +170,8 @@ def _laying(figure: FigureLike) -> Laying:
 
 def robe_materials(
     parameters: ClothParameters, pattern: Pattern, cloth: Cloth, edge: float
-) -> tuple[list[Material], np.ndarray]:
-    """Single and doubled cloth, and which each face (F,) is of.
+) -> tuple[list[Material], np.ndarray, dict[str, str]]:
+    """Single and doubled cloth, which each face (F,) is of, and what was simplified, in words.
 
     As far as the scene needs it: stretch is lowered until the robe's weight strains it by SAG, bending takes the
     weave's lower bound (fibres free to slide) but no less than the mesh resolves. Doubled: twice the mass and
@@ -185,7 +203,12 @@ def robe_materials(
         bend=6 * single.bend,
     )
     doubled = np.array([panel.doubled for panel in pattern.panels])
-    return [single, twice], doubled[cloth.panel].astype(np.int32)
+    choices = {
+        "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: {SAG:.1%} strain by its weight",
+        "bend": f"lower bound {free:.2e} N m (fibres free), at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
+        "doubled": "bands: twice the mass and stretch, six times the bending",
+    }
+    return [single, twice], doubled[cloth.panel].astype(np.int32), choices
 
 
 def _holds(

@@ -74,15 +74,17 @@ class GlbFile:
         material: int,
         uv: np.ndarray | None = None,
         colours: np.ndarray | None = None,
+        shading: np.ndarray | None = None,
     ) -> None:
         """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
 
-        Normals are the mesh's own, area-weighted; a mesh with colours is drawn unlit and has none.
+        Normals are the mesh's own, area-weighted, unless `shading` (V, 3) gives them; a mesh with colours is drawn
+        unlit and has none.
         """
         attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
         if colours is None:
-            shading = normals(vertices, faces).astype("<f4")
-            attributes["NORMAL"] = self._accessor(shading, "VEC3", FLOAT, VERTICES)
+            shading = normals(vertices, faces) if shading is None else shading
+            attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
         else:
             fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
             attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)

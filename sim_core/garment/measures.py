@@ -32,7 +32,9 @@ def measured(
         try:
             number = _reckoned(ast.parse(value, mode="eval").body, known, along)
         except SyntaxError as error:
-            raise ValueError(f"{value!r} is no expression – use names, numbers, + - * / and brackets") from error
+            raise ValueError(
+                f"{value!r} is no expression – use names, numbers, + - * / and brackets"
+            ) from error
         except ZeroDivisionError as error:
             raise ValueError(f"{value!r} divides by zero") from error
     if not math.isfinite(number):
@@ -41,7 +43,11 @@ def measured(
 
 
 def _reckoned(node: ast.expr, known: Mapping[str, float], along: Callable[[str], float] | None) -> float:
-    if isinstance(node, ast.Constant) and isinstance(node.value, int | float) and not isinstance(node.value, bool):
+    if (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, int | float)
+        and not isinstance(node.value, bool)
+    ):
         return float(node.value)
     if isinstance(node, ast.Name):
         if node.id not in known:

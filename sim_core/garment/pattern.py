@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -12,13 +13,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment.cut_file import CutProblem, PanelTable, SeamTable, read_cut, read_dye
 from sim_core.garment.cutting import Panel, Seam
+from sim_core.garment.cutting import Path as Path_
 from sim_core.garment.sewing import Cloth, cut_cloth
 from sim_core.mesh import PanelMesh, panel_mesh
 
 
 @dataclass(frozen=True)
 class Pattern:
-    """A cutting pattern: outline (N, 2) [m], x along the weft, y (down) along the warp; edge [m] of its mesh; dye as sRGB.
+    """A cutting pattern: outline (N, 2) [m], x along the weft, y (down) along the warp; edge [m] of its mesh; sRGB dye.
 
     A garment of several panels has panels and seams; mirror: they are one half, cut a second time turned over about
     x = 0, the middle. outline is then the first panel's.
@@ -63,6 +65,35 @@ class Pattern:
             return
         low, high = self.outline.min(0), self.outline.max(0)
         panel_mesh(self.outline, edge=float((high - low).min()) / 4 or self.edge)
+
+    def to_dict(self) -> dict[str, Any]:
+        """A plain dictionary that JSON can hold: what is needed to mesh the pattern again."""
+        return {
+            "name": self.name,
+            "outline": np.asarray(self.outline, float).tolist(),
+            "edge": self.edge,
+            "dye": self.dye,
+            "panels": [panel.to_dict() for panel in self.panels],
+            "seams": [{"kind": s.kind, "a": str(s.a), "b": s.b and str(s.b)} for s in self.seams],
+            "mirror": self.mirror,
+        }
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Pattern:
+        """The pattern `to_dict` described."""
+        seams = [
+            Seam(s["kind"], Path_.read(s["a"]), Path_.read(s["b"]) if s["b"] else None) for s in data["seams"]
+        ]
+        return Pattern(
+            data["name"],
+            np.asarray(data["outline"], float),
+            data["edge"],
+            {},
+            tuple(data["dye"]) if data["dye"] else None,  # type: ignore[arg-type]
+            tuple(Panel.from_dict(panel) for panel in data["panels"]),
+            tuple(seams),
+            data["mirror"],
+        )
 
     def panel(self, name: str) -> Panel:
         """The panel of that name; raises SimCoreError where there is none."""
