@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .encode import encode_film
 
-__all__ = ["Film", "Look", "SIZE", "filming"]
+__all__ = ["Film", "Look", "SIZE", "Solid", "filming", "stills"]
 
 SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
@@ -27,29 +27,55 @@ Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
-class Look:
-    """What stays the same in every picture: cloth faces (F, 3), stand, colours sRGB 0..1, height seen [m]."""
+class Solid:
+    """Something beside the cloth: mesh, sRGB colour 0..1, gloss; lift [m] it stands above its own y = 0."""
 
+    vertices: NDArray[np.floating]
     faces: NDArray[np.int32]
-    stand_vertices: NDArray[np.float64]
-    stand_faces: NDArray[np.int32]
     colour: tuple[float, float, float]
+    gloss: float
+    lift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """What stays the same in every picture.
+
+    cloth: faces (F, 3) and colour, sRGB 0..1, of each part; solids: the first may move; alpha: cover of the cloth;
+    height seen [m]; lift [m] of the cloth.
+    """
+
+    cloth: tuple[tuple[NDArray[np.int32], tuple[float, float, float]], ...]
+    solids: tuple[Solid, ...]
     alpha: float
     height: float
+    lift: float = 0.0
 
 
-def picture(look: Look, positions: NDArray[np.floating], angle: float, size: tuple[int, int]) -> Picture:
-    """The garment seen from `angle` [deg] about +y, 0 = the front."""
+def picture(
+    look: Look,
+    positions: NDArray[np.floating],
+    angle: float,
+    size: tuple[int, int],
+    moved: NDArray[np.floating] | None = None,
+) -> Picture:
+    """The garment seen from `angle` [deg] about +y, 0 = the front; moved: vertices of the first solid."""
     from sim_core.picture import Camera, Surface, render
 
     turn, middle = math.radians(angle), look.height / 2
     away = 1.28 * look.height / (2 * math.tan(math.radians(15)))
     eye = (away * math.sin(turn), middle + 0.12 * look.height, away * math.cos(turn))
-    cloth = Surface(
-        np.asarray(positions, float), look.faces, look.colour, alpha=look.alpha, sheen=0.5, through=0.3
-    )
-    stand = Surface(look.stand_vertices, look.stand_faces, (0.28, 0.13, 0.10), gloss=0.35)
-    return render([cloth, stand], Camera(eye, (0.0, middle, 0.0), 30.0), size)
+    x = np.asarray(positions, float) + [0.0, look.lift, 0.0]
+    cloth = [
+        Surface(x, faces, colour, alpha=look.alpha, sheen=0.5, through=0.3 if look.alpha < 1 else 0.0)
+        for faces, colour in look.cloth
+    ]
+    solids = []
+    for number, solid in enumerate(look.solids):
+        vertices = solid.vertices if moved is None or number else moved
+        raised = np.asarray(vertices, float) + [0.0, solid.lift, 0.0]
+        solids.append(Surface(raised, solid.faces, solid.colour, gloss=solid.gloss))
+    return render([*cloth, *solids], Camera(eye, (0.0, middle, 0.0), 30.0), size)
 
 
 class Film:
@@ -60,17 +86,22 @@ class Film:
         self._pictures: list[Future[None]] = []
         folder.mkdir(parents=True, exist_ok=True)
 
-    def shoot(self, positions: NDArray[np.floating], angle: float = STILLS["front"]) -> None:
+    def shoot(
+        self,
+        positions: NDArray[np.floating],
+        moved: NDArray[np.floating] | None = None,
+        angle: float = STILLS["front"],
+    ) -> None:
         """Take the next picture; one that lies there from an interrupted build is kept."""
         path = self._folder / f"{len(self._pictures):05d}.png"
-        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), angle, path))
+        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), moved, angle, path))
 
-    def walk_round(self, positions: NDArray[np.floating]) -> None:
+    def walk_round(self, positions: NDArray[np.floating], moved: NDArray[np.floating] | None = None) -> None:
         """Once round the finished garment, slowly beginning and ending."""
         for index in range(1, ROUND + 1):
             share = index / ROUND
             eased = share * share * (3 - 2 * share)
-            self.shoot(positions, STILLS["front"] + 360.0 * eased)
+            self.shoot(positions, moved, STILLS["front"] + 360.0 * eased)
 
     def write(
         self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
@@ -92,13 +123,21 @@ class Film:
             tick(0.8 + 0.2 * (number + 1) / len(paths))
 
 
-def _shoot(look: Look, positions: NDArray[np.floating], angle: float, path: Path) -> None:
+def _shoot(
+    look: Look,
+    positions: NDArray[np.floating],
+    moved: NDArray[np.floating] | None,
+    angle: float,
+    path: Path,
+) -> None:
     from PIL import Image
 
     if path.is_file():
         return
     partial = path.with_suffix(".part")
-    Image.fromarray(picture(look, positions, angle, SIZE)).save(partial, format="png", compress_level=1)
+    Image.fromarray(picture(look, positions, angle, SIZE, moved)).save(
+        partial, format="png", compress_level=1
+    )
     partial.replace(path)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -59,7 +59,7 @@ def write_glb(
     """Writes the garment and, where it has them, stand or figure; returns the size in bytes.
 
     Panels of one dye are one node: the garment's name, then its name and a number. Twins on a seam share place and
-    normal, so that no seam shows but for its change of colour.
+    normal, so that no seam shows but for its change of colour. A figure and its robe stand on its base.
 
     maps: tileable albedo, normal (n, m, 3) and opacity (n, m), uint8, size [m] of the tile. TEXCOORD_0 is in
     pattern millimetres, v not flipped; KHR_texture_transform brings it to tiles. close: the weave itself; hall:
@@ -71,15 +71,17 @@ def write_glb(
         raise SimCoreError(
             f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
         )
-    glb = GlbFile()
-    _write_panels(glb, garment, maps, precision)
+    glb, lift = GlbFile(), np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
+    _write_panels(glb, replace(garment, positions=garment.positions + lift), maps, precision)
     if stand is None and "stand" in garment.provenance:
         stand = Stand(**garment.provenance["stand"])
     if stand is not None:
         vertices, faces = stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
     if figure is not None:
-        glb.mesh("figure", figure.vertices, figure.faces, glb.material(_linen()), shading=figure.normals)
+        glb.mesh(
+            "figure", figure.vertices + lift, figure.faces, glb.material(_linen()), shading=figure.normals
+        )
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))

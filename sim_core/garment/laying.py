@@ -26,7 +26,7 @@ class Laying:
     """
 
     top: float
-    fold: float = -0.03
+    fold: float = -0.015
     front: float = 0.17
     back: float = -0.15
     bend: float = 0.04

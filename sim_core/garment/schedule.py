@@ -37,9 +37,9 @@ class Schedule:
     lower: float = 1.92
     settle: float = 0.88
     release: float = 0.6
-    rest: float = 1.6
+    rest: float = 3.0
     friction: float = 0.45
-    frames_per_key: int = 2
+    frames_per_key: int = 1
     at_rest: float = 8e-6  # [m] p99 of the displacement per frame at which it is called at rest
 
     def keys(self) -> int:
