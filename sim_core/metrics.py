@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
-from sim_core.triangles import nearest, winding
+from sim_core.triangles import crossings, nearest, winding
 
 __all__ = [
     "Distances",
@@ -24,6 +24,8 @@ __all__ = [
     "surface_distance",
 ]
 
+MANY = 30_000_000  # points x faces above which rays are counted
+COLUMN = 0.01  # [m]
 FAR = 0.1  # [m] nobody asks how far beyond this a cloth is from a solid
 
 
@@ -166,8 +168,12 @@ def hausdorff(
 
 
 def area_strain(rest: np.ndarray, positions: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Relative change of area (F,) between the flat rest (V, 2) and positions (V, 3)."""
-    a, b = rest[faces[:, 1]] - rest[faces[:, 0]], rest[faces[:, 2]] - rest[faces[:, 0]]
+    """Relative change of area (F,) between flat and draped faces.
+
+    rest: (V, 2) [m], or (F, 3, 2) by corner where vertices of several panels are welded; positions: (V, 3) [m].
+    """
+    corner = rest if rest.ndim == 3 else rest[faces]
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     flat = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     p, q = positions[faces[:, 1]] - positions[faces[:, 0]], positions[faces[:, 2]] - positions[faces[:, 0]]
     return np.linalg.norm(np.cross(p, q), axis=1) / flat - 1
@@ -185,7 +191,14 @@ def _signed(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.n
         low, high = vertices[own].min((0, 1)), vertices[own].max((0, 1))
         boxed = np.flatnonzero(((points >= low) & (points <= high)).all(1))
         if len(boxed):
-            inside = boxed[winding(points[boxed], vertices, own) > 0.5]
+            # The winding number costs points x faces; many of both are counted along rays instead.
+            many = len(boxed) * len(own) > MANY
+            count = (
+                crossings(points[boxed], vertices, own, COLUMN)
+                if many
+                else winding(points[boxed], vertices, own)
+            )
+            inside = boxed[count > 0.5]
             distance[inside] = -np.abs(distance[inside])
     return distance
 

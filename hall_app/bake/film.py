@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from .encode import encode_film
 
-__all__ = ["Film", "Look", "SIZE", "filming"]
+__all__ = ["Film", "Look", "SIZE", "Solid", "filming", "stills"]
 
 SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
@@ -28,24 +28,48 @@ Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
-class Look:
-    """What stays the same in every picture: cloth faces (F, 3), stand, colours sRGB 0..1, height seen [m]."""
+class Solid:
+    """Something beside the cloth: mesh, sRGB colour 0..1, gloss; lift [m] it stands above its own y = 0."""
 
+    vertices: NDArray[np.floating]
     faces: NDArray[np.int32]
-    stand_vertices: NDArray[np.float64]
-    stand_faces: NDArray[np.int32]
     colour: tuple[float, float, float]
+    gloss: float
+    lift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """What stays the same in every picture.
+
+    cloth: faces (F, 3) and colour, sRGB 0..1, of each part; solids: the first may move; alpha: cover of the cloth;
+    height seen [m]; lift [m] of the cloth.
+    """
+
+    cloth: tuple[tuple[NDArray[np.int32], tuple[float, float, float]], ...]
+    solids: tuple[Solid, ...]
     alpha: float
     height: float
+    lift: float = 0.0
 
 
-def _surfaces(look: Look, positions: NDArray[np.floating]) -> list[Any]:
+def _surfaces(
+    look: Look, positions: NDArray[np.floating], moved: NDArray[np.floating] | None = None
+) -> list[Any]:
+    """What is drawn; moved: vertices of the first solid."""
     from sim_core.picture import Surface
 
-    cloth = Surface(
-        np.asarray(positions, float), look.faces, look.colour, alpha=look.alpha, sheen=0.5, through=0.3
-    )
-    return [cloth, Surface(look.stand_vertices, look.stand_faces, (0.28, 0.13, 0.10), gloss=0.35)]
+    x = np.asarray(positions, float) + [0.0, look.lift, 0.0]
+    cloth = [
+        Surface(x, faces, colour, alpha=look.alpha, sheen=0.5, through=0.3 if look.alpha < 1 else 0.0)
+        for faces, colour in look.cloth
+    ]
+    solids = []
+    for number, solid in enumerate(look.solids):
+        vertices = solid.vertices if moved is None or number else moved
+        raised = np.asarray(vertices, float) + [0.0, solid.lift, 0.0]
+        solids.append(Surface(raised, solid.faces, solid.colour, gloss=solid.gloss))
+    return [*cloth, *solids]
 
 
 def _camera(look: Look, angle: float) -> Any:
@@ -67,21 +91,26 @@ class Film:
         self._count = 0
         folder.mkdir(parents=True, exist_ok=True)
 
-    def shoot(self, positions: NDArray[np.floating], *angles: float) -> None:
+    def shoot(
+        self,
+        positions: NDArray[np.floating],
+        moved: NDArray[np.floating] | None = None,
+        angles: Sequence[float] = (STILLS["front"],),
+    ) -> None:
         """The next pictures, of one state of the cloth from each angle; what an interrupted build left is kept."""
         views = [
-            (angle, self._folder / f"{self._count + number:05d}.png")
-            for number, angle in enumerate(angles or (STILLS["front"],))
+            (float(angle), self._folder / f"{self._count + number:05d}.png")
+            for number, angle in enumerate(angles)
         ]
         self._count += len(views)
-        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), views))
+        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), moved, views))
 
-    def walk_round(self, positions: NDArray[np.floating]) -> None:
+    def walk_round(self, positions: NDArray[np.floating], moved: NDArray[np.floating] | None = None) -> None:
         """Once round the finished garment, slowly beginning and ending."""
         shares = np.arange(1, ROUND + 1) / ROUND
         angles = STILLS["front"] + 360.0 * shares * shares * (3 - 2 * shares)
         for piece in np.array_split(angles, 6):
-            self.shoot(positions, *piece)
+            self.shoot(positions, moved, piece.tolist())
 
     def write(
         self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
@@ -106,7 +135,12 @@ def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | N
     encode_film(path, shown, count, rate=RATE, sound=sound)
 
 
-def _shoot(look: Look, positions: NDArray[np.floating], views: list[tuple[float, Path]]) -> None:
+def _shoot(
+    look: Look,
+    positions: NDArray[np.floating],
+    moved: NDArray[np.floating] | None,
+    views: list[tuple[float, Path]],
+) -> None:
     from PIL import Image
 
     from sim_core.picture import lighting, render
@@ -114,7 +148,7 @@ def _shoot(look: Look, positions: NDArray[np.floating], views: list[tuple[float,
     left = [(angle, path) for angle, path in views if not path.is_file()]
     if not left:
         return
-    surfaces = _surfaces(look, positions)
+    surfaces = _surfaces(look, positions, moved)
     lit = lighting(surfaces)
     for angle, path in left:
         partial = path.with_suffix(".part")

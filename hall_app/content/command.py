@@ -17,7 +17,9 @@ Look through a content folder: form of the TOML files, files named and present, 
 of media, models (readable, in metres, within budget), exhibits inside the hall and reachable on foot,
 licences, bakes, unused files. One line a problem: file, key, what is wrong, how to put it right.
 
-Exit status: 0 no problem, 1 problems, 2 wrong arguments."""
+With --garments instead: what every baked garment was measured to be, marked ! where it breaks a limit.
+
+Exit status: 0 no problem, 1 problems or a broken limit, 2 wrong arguments."""
 
 
 def add_parser(subparsers: argparse._SubParsersAction) -> None:
@@ -32,6 +34,11 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
         "folder", nargs="?", type=Path, metavar="FOLDER", help="default: ./assets, else packaged"
     )
     parser.add_argument("--content", type=Path, metavar="FOLDER", help="the same as FOLDER")
+    parser.add_argument(
+        "--garments",
+        action="store_true",
+        help="the measured figures of every baked garment, with their limits",
+    )
     parser.add_argument("--json", action="store_true", help="write the problems as JSON")
     parser.set_defaults(run=run)
 
@@ -44,6 +51,12 @@ def run(args: argparse.Namespace) -> int:
     folder: Path | None = args.folder or args.content
     try:
         folder = content_folder(folder)
+        if args.garments:
+            from ..bake.quality import garments_checked
+
+            text, status = garments_checked(folder, as_json=args.json)
+            sys.stdout.write(text)
+            return status
         problems = check(folder)
     except ContentError as error:
         problems = list(error.problems)

@@ -48,7 +48,14 @@ class GarmentRecipe(Table):
 
     pattern: ContentPath = Field(description="pattern file, e.g. patterns/pibo.toml")
     weave: ContentPath = Field(description="weave file, e.g. weaves/gauze.toml")
-    recipe: Literal["scarf_on_stand"] = Field(description="how it is draped; so far scarf_on_stand")
+    recipe: Literal["scarf_on_stand", "robe_on_figure"] = Field(
+        description="how it is draped: scarf_on_stand or robe_on_figure"
+    )
+    mannequin: ContentPath | None = Field(
+        None, description="figure of robe_on_figure, e.g. mannequins/woman.npz"
+    )
+    arm: float = Field(45.0, ge=0, le=70, description="degrees its upper arms hang below horizontal")
+    elbow: float = Field(12.0, ge=0, le=100, description="degrees its forearms are bent forward")
     edge: float = Field(0.012, ge=0.004, le=0.1, description="edge length of the simulated cloth mesh [m]")
     seed: int = Field(1, ge=0, description="seed of every random number of the recipe")
     hall_error_px: float = Field(

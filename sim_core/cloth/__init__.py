@@ -2,7 +2,9 @@
 
 from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 from sim_core.cloth.draping import Contact, Drape, Phase, drape
+from sim_core.cloth.holding import Holds
 from sim_core.cloth.material import Material
+from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.sheet import Sheet
 
 __all__ = [
@@ -13,7 +15,9 @@ __all__ = [
     "Drape",
     "GridSdf",
     "HalfSpace",
+    "Holds",
     "Material",
+    "MovingGrid",
     "Phase",
     "Sheet",
     "Solid",

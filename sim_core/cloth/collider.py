@@ -9,17 +9,23 @@ import numpy as np
 
 from sim_core.errors import SimCoreError
 
-CAPSULE, CYLINDER, BOX, HALFSPACE, GRID = range(5)
+CAPSULE, CYLINDER, BOX, HALFSPACE, GRID, MOVING = range(6)
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
 _NO_GRID = np.zeros((2, 2, 2))
+_AT_REST = np.zeros(2)
 
 
 class Packed(NamedTuple):
-    """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid."""
+    """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid.
+
+    A moving grid lies between `grid` and `later`: blend (2,) is how far, 0..1, and how fast [1/s].
+    """
 
     kind: np.ndarray
     data: np.ndarray
     grid: np.ndarray
+    later: np.ndarray = _NO_GRID
+    blend: np.ndarray = _AT_REST
 
 
 def _vector(name: str, value: object) -> np.ndarray:

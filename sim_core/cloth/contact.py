@@ -30,8 +30,8 @@ def near_samples(packed, x, samples, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def _resolve(x, v, i, n, depth, dt, friction, cap):
-    """Pushes vertex i out along n = (nx, ny, nz) and applies friction."""
+def _resolve(x, v, i, n, depth, speed, dt, friction, cap):
+    """Pushes vertex i out along n = (nx, ny, nz), at least as fast as the surface moves, and applies friction."""
     push = min(depth, cap)
     vn = v[i, 0] * n[0] + v[i, 1] * n[1] + v[i, 2] * n[2]
     tx, ty, tz = v[i, 0] - vn * n[0], v[i, 1] - vn * n[1], v[i, 2] - vn * n[2]
@@ -39,7 +39,7 @@ def _resolve(x, v, i, n, depth, dt, friction, cap):
     lost = 0.0
     if slide > 0.0:
         lost = min(1.0, friction * push / (dt * slide))
-    vn = max(vn, 0.0)
+    vn = max(vn, speed)
     for c in range(3):
         t = tx if c == 0 else (ty if c == 1 else tz)
         x[i, c] += push * n[c] - lost * t * dt
@@ -54,11 +54,11 @@ def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, 
         i = near[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        d, nx, ny, nz = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
+        d, nx, ny, nz, speed = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
         depth = clearance - d
         if depth > 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
             deepest = max(deepest, depth)
-            _resolve(x, v, i, (nx, ny, nz), depth, dt, friction, cap)
+            _resolve(x, v, i, (nx, ny, nz), depth, speed, dt, friction, cap)
     return deepest
 
 
@@ -76,7 +76,7 @@ def collide_samples(packed, inverse_mass, x, v, near, clearance, cap):
         px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
         py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
         pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
-        d, nx, ny, nz = signed_distance(packed, px, py, pz)
+        d, nx, ny, nz, _ = signed_distance(packed, px, py, pz)
         if d >= clearance or nx * nx + ny * ny + nz * nz < 0.5:
             continue
         push = min(clearance - d, cap) / (w * w * count)

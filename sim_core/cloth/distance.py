@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE
+from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING
 
 
 @njit(cache=True, error_model="numpy")
@@ -99,8 +99,12 @@ def _grid(r, grid, x, y, z):
 
 @njit(cache=True, error_model="numpy")
 def signed_distance(packed, x, y, z):
-    """Distance [m] and unit gradient at a point. The gradient is 0 where a grid has none (medial axis)."""
-    best, bx, by, bz = np.inf, 0.0, 1.0, 0.0
+    """Distance [m], unit gradient and the surface's speed along it [m/s] at a point.
+
+    The gradient is 0 where a grid has none (medial axis). A moving grid is blended between two keys; its surface
+    moves by what the distance loses.
+    """
+    best, bx, by, bz, speed = np.inf, 0.0, 1.0, 0.0, 0.0
     for p in range(len(packed.kind)):
         kind, row = packed.kind[p], packed.data[p]
         reach = best + row[19]
@@ -108,6 +112,7 @@ def signed_distance(packed, x, y, z):
             reach
         ):
             continue  # not even the ball around it is nearer than the best
+        w = 0.0
         if kind == CAPSULE:
             d, gx, gy, gz = _capsule(row, x, y, z)
         elif kind == CYLINDER:
@@ -119,6 +124,12 @@ def signed_distance(packed, x, y, z):
             d = (x - row[3]) * gx + (y - row[4]) * gy + (z - row[5]) * gz
         else:
             d, gx, gy, gz = _grid(row, packed.grid, x, y, z)
+            if kind == MOVING:
+                e, hx, hy, hz = _grid(row, packed.later, x, y, z)
+                s = packed.blend[0]
+                w = -(e - d) * packed.blend[1]
+                d, gx = (1.0 - s) * d + s * e, (1.0 - s) * gx + s * hx
+                gy, gz = (1.0 - s) * gy + s * hy, (1.0 - s) * gz + s * hz
             size = math.sqrt(gx * gx + gy * gy + gz * gz)
             # Between two surfaces the sampled gradient shrinks; pushing along it throws vertices to and fro.
             if size < 0.75:
@@ -126,8 +137,8 @@ def signed_distance(packed, x, y, z):
             else:
                 gx, gy, gz = gx / size, gy / size, gz / size
         if d < best:
-            best, bx, by, bz = d, gx, gy, gz
-    return best, bx, by, bz
+            best, bx, by, bz, speed = d, gx, gy, gz, w
+    return best, bx, by, bz, speed
 
 
 @njit(cache=True, error_model="numpy")

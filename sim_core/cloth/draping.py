@@ -13,8 +13,10 @@ from sim_core.cloth.checkpoint import RunState, load_checkpoint, run_key, save_c
 from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.contact import contact_samples
 from sim_core.cloth.forces import energies, stable_step
+from sim_core.cloth.holding import Holds
+from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.repulsion import Shell
-from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.sheet import Sheet, Stencil
 from sim_core.cloth.stepping import Surroundings, advance
 from sim_core.errors import SimCoreError
 
@@ -39,6 +41,12 @@ class Phase:
     label: str = "draping"
     speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
     rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
+    pins: tuple[int, ...] = ()  # vertices held still in this phase, beside those of the run
+    sewing: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # share of their first distance that sewing pairs may have, from..to
+    body: tuple[float, float] | None = None  # keys of a moving body, from..to (None: where it is)
 
 
 @dataclass(frozen=True)
@@ -79,9 +87,10 @@ def drape(
     positions: np.ndarray,
     phases: Sequence[Phase],
     *,
-    collider: Solid | None = None,
+    collider: Solid | MovingGrid | None = None,
     contact: Contact | None = None,
     pins: Sequence[int] = (),
+    holds: Holds | None = None,
     down: Sequence[float] = (0.0, -1.0, 0.0),
     substeps: int | None = None,
     velocities: np.ndarray | None = None,
@@ -89,24 +98,28 @@ def drape(
     on_frame: OnFrame | None = None,
     checkpoint: Path | None = None,
     checkpoint_seconds: float | None = None,
+    keep: bool = False,
 ) -> Drape:
     """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
 
     substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
-    checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits.
+    checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
+    it behind, finished, for a caller who has more to do.
     Raises SimCoreError on bad input or when the step had to be halved 8 times in one frame.
     """
     start = time.perf_counter()
     x, v = _checked_state(sheet, positions, velocities)
-    run = _Run(sheet, phases, collider, contact or Contact(), pins, np.asarray(down, float), substeps)
+    run = _Run(sheet, phases, collider, contact or Contact(), pins, holds, np.asarray(down, float), substeps)
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
     )
     state = (load_checkpoint(checkpoint, key) if checkpoint else None) or RunState(x, v)
     pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
     _run_frames(run, state, _Hooks(progress, on_frame, checkpoint, key, pause))
-    if checkpoint:
+    if checkpoint and keep:
+        save_checkpoint(checkpoint, key, state)
+    elif checkpoint:
         checkpoint.unlink(missing_ok=True)
     return _result(state, time.perf_counter() - start)
 
@@ -138,12 +151,12 @@ def _run_frames(run: _Run, state: RunState, hooks: _Hooks) -> None:
     saved, schedule = time.perf_counter(), run.schedule()
     try:
         while state.frame < len(schedule):
-            phase, gravity = schedule[state.frame]
+            now = schedule[state.frame]
             if hooks.progress:
-                hooks.progress(state.frame / len(schedule), phase.label)
-            run.frame(state, phase, gravity)
-            if phase.rest is not None and state.trace[-1][0] < phase.rest:
-                state.frame = _end_of(schedule, state.frame, phase)
+                hooks.progress(state.frame / len(schedule), now.phase.label)
+            run.frame(state, now)
+            if now.phase.rest is not None and state.trace[-1][0] < now.phase.rest:
+                state.frame = _end_of(schedule, state.frame, now.phase)
             hooks.heard(state)
             if hooks.checkpoint and time.perf_counter() - saved > hooks.pause:
                 save_checkpoint(hooks.checkpoint, hooks.key, state)
@@ -169,8 +182,18 @@ def _result(state: RunState, seconds: float) -> Drape:
     )
 
 
-def _end_of(schedule: list[tuple[Phase, float]], frame: int, phase: Phase) -> int:
-    while frame < len(schedule) and schedule[frame][0] is phase:
+@dataclass(frozen=True)
+class _Moment:
+    """What holds during one frame: its phase, gravity [m/s2], sewing share and body key at its begin and end."""
+
+    phase: Phase
+    gravity: float
+    sewing: tuple[float, float]
+    body: tuple[float, float]
+
+
+def _end_of(schedule: list[_Moment], frame: int, phase: Phase) -> int:
+    while frame < len(schedule) and schedule[frame].phase is phase:
         frame += 1
     return frame
 
@@ -196,19 +219,26 @@ class _Run:
         self,
         sheet: Sheet,
         phases: Sequence[Phase],
-        collider: Solid | None,
+        collider: Solid | MovingGrid | None,
         contact: Contact,
         pins: Sequence[int],
+        holds: Holds | None,
         down: np.ndarray,
         substeps: int | None,
     ) -> None:
         if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
             raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
         self.sheet, self.phases, self.contact, self.fixed = sheet, tuple(phases), contact, substeps
-        self.pins = np.unique(np.asarray(pins, np.int64))
-        self.stencil = sheet.pinned(self.pins)
-        self.packed = collider.packed() if collider else _NOTHING
-        self.vertices, self.middles = contact_samples(sheet.edges, sheet.faces, len(sheet.rest))
+        self.pins = np.asarray(pins, np.int64)
+        self.holds = holds or Holds.of(len(sheet.rest))
+        self._pinned: dict[tuple[int, ...], Stencil] = {}
+        self.moving = collider if isinstance(collider, MovingGrid) else None
+        self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
+        vertices, middles = contact_samples(sheet.edges, sheet.faces, len(sheet.rest))
+        image = np.zeros(len(sheet.rest), bool)
+        image[self.holds.slaves[:, 0]] = True
+        self.vertices = vertices[~image[vertices[:, 0]]]
+        self.middles = middles[~image[middles].any(1)]
         self.down = down
         c = contact
         self.shell = Shell(
@@ -217,25 +247,49 @@ class _Run:
 
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
-        return (self.phases, self.contact, self.pins, self.down, self.fixed, *self.packed)
+        moving = self.moving and (self.moving.name, self.moving.origin, self.moving.cell, self.moving.count)
+        return (
+            self.phases,
+            self.contact,
+            self.pins,
+            self.down,
+            self.fixed,
+            moving,
+            *self.packed,
+            *self.holds,
+        )
 
-    def schedule(self) -> list[tuple[Phase, float]]:
-        """Per frame its phase and gravity; gravity is constant within a frame, so that energies compare."""
-        frames: list[tuple[Phase, float]] = []
+    def schedule(self) -> list[_Moment]:
+        """What each frame is under; gravity is constant within a frame, so that energies compare."""
+        frames: list[_Moment] = []
+        place = 0.0
         for phase in self.phases:
             count = max(1, round(phase.seconds / FRAME))
             low, high = phase.gravity
-            frames += [(phase, low + (high - low) * (k + 1) / count) for k in range(count)]
+            path = phase.body or (place, place)
+            place = path[1]
+            for k in range(count):
+                ends = [
+                    (a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)
+                ]
+                frames.append(_Moment(phase, low + (high - low) * (k + 1) / count, ends[0], ends[1]))
         return frames
 
-    def frame(self, state: RunState, phase: Phase, gravity: float) -> None:
+    def stencil(self, phase: Phase) -> Stencil:
+        """The sheet's stencil with the phase's pins."""
+        if phase.pins not in self._pinned:
+            pins = np.unique(np.concatenate([self.pins, np.asarray(phase.pins, np.int64)]))
+            self._pinned[phase.pins] = self.sheet.pinned(pins)
+        return self._pinned[phase.pins]
+
+    def frame(self, state: RunState, now: _Moment) -> None:
         """One frame at 0.7 of the stable step of the current tangent; rolled back and halved if it blows up."""
         before_x = state.positions
         for _ in range(_MAX_HALVINGS):
             x, v = before_x.copy(), state.velocities.copy()
-            count = self.fixed or self._substeps(x, state.safety)
-            self._advance(state, phase, gravity, x, v, count)
-            if self.fixed or self._healthy(state, gravity, x, v):
+            count = self.fixed or self._substeps(now.phase, x, state.safety)
+            self._advance(state, now, x, v, count)
+            if self.fixed or self._healthy(state, now, x, v):
                 break
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         else:
@@ -248,18 +302,17 @@ class _Run:
         state.frame, state.substeps = state.frame + 1, state.substeps + count
         state.safety = min(1.0, state.safety * 1.1)
 
-    def _substeps(self, x: np.ndarray, safety: float) -> int:
-        step = 0.7 * safety * stable_step(self.stencil, x, self.sheet.material.stiffness_damping)
+    def _substeps(self, phase: Phase, x: np.ndarray, safety: float) -> int:
+        step = 0.7 * safety * stable_step(self.stencil(phase), x, self.sheet.material.stiffness_damping)
         if not np.isfinite(step) or step <= 0:
             raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
         return int(np.ceil(FRAME / step))
 
-    def _advance(
-        self, state: RunState, phase: Phase, gravity: float, x: np.ndarray, v: np.ndarray, count: int
-    ) -> None:
-        material, c = self.sheet.material, self.contact
+    def _advance(self, state: RunState, now: _Moment, x: np.ndarray, v: np.ndarray, count: int) -> None:
+        material, c, phase = self.sheet.material, self.contact, now.phase
+        packed, body = self.moving.packed(*now.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
-            self.down * gravity,
+            self.down * now.gravity,
             float(material.mass_damping if phase.damping is None else phase.damping),
             float(material.stiffness_damping),
             float(material.friction if phase.friction is None else phase.friction),
@@ -267,26 +320,36 @@ class _Run:
             float(c.sample_clearance),
             float(c.cap),
             float(c.speed_limit if phase.speed_limit is None else phase.speed_limit),
+            now.sewing,
+            body,
         )
         args = (
-            self.stencil,
+            self.stencil(phase),
             self.sheet.rest,
             self.sheet.faces,
-            self.packed,
+            packed,
             self.vertices,
             self.middles,
+            self.holds,
             self.shell,
             around,
         )
         advance(*args, x, v, state.last_step, FRAME / count, count)
 
-    def _healthy(self, state: RunState, gravity: float, x: np.ndarray, v: np.ndarray) -> bool:
-        """Finite, and no more energy than before (contact may add a little: it lifts and separates)."""
+    def _healthy(self, state: RunState, now: _Moment, x: np.ndarray, v: np.ndarray) -> bool:
+        """Finite, and no more energy than before (contact may add a little: it lifts and separates).
+
+        Where sewing or a moving body does work, no edge may be twice its length instead.
+        """
         if not (np.isfinite(x).all() and np.isfinite(v).all()):
             return False
+        stencil, gravity = self.stencil(now.phase), now.gravity
+        if now.sewing[0] != now.sewing[1] or now.body[0] != now.body[1]:
+            side2 = ((x[stencil.edges[:, 0]] - x[stencil.edges[:, 1]]) ** 2).sum(1)
+            return bool((side2 < 4 * stencil.length2).all())
 
         def energy(px: np.ndarray, pv: np.ndarray) -> tuple[float, float]:
-            stored = sum(energies(self.stencil, px, pv))
+            stored = sum(energies(stencil, px, pv))
             return stored, -gravity * float(self.sheet.mass @ (px @ self.down))
 
         (stored, height), (stored_after, height_after) = (

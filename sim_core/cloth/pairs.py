@@ -129,9 +129,9 @@ def _one_sheet(x, rest, i, j, near2, n, m):
 
 
 @njit(cache=True, error_model="numpy")
-def _vertex_near_face(x, i, face, reach):
+def _vertex_near_face(x, i, face, same, reach):
     a, b, c = face
-    if i == a or i == b or i == c:
+    if same[i] == same[a] or same[i] == same[b] or same[i] == same[c]:
         return False
     u, v, w = triangle_weights(x[i], x[a], x[b], x[c])
     gap = 0.0
@@ -141,10 +141,11 @@ def _vertex_near_face(x, i, face, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def vertex_face_pairs(x, rest, faces, reach, near):
+def vertex_face_pairs(x, rest, faces, same, reach, near):
     """(vertex, face) pairs (K, 2) int32 nearer than `reach`, without the faces around the vertex.
 
-    near [m]: pairs closer than this at rest (V, 2) count as one sheet while their normals agree.
+    near [m]: pairs closer than this at rest (V, 2) count as one sheet while their normals agree. same (V,):
+    vertices with equal numbers count as one.
     """
     centre = (x[faces[:, 0]] + x[faces[:, 1]] + x[faces[:, 2]]) / 3.0
     face_normal, vertex_normal = normals_of(x, faces)
@@ -173,7 +174,7 @@ def vertex_face_pairs(x, rest, faces, reach, near):
                         x, rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]
                     ):
                         continue
-                    if _vertex_near_face(x, i, faces[f], reach):
+                    if _vertex_near_face(x, i, faces[f], same, reach):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = i, f
                         count += 1
@@ -181,10 +182,10 @@ def vertex_face_pairs(x, rest, faces, reach, near):
 
 
 @njit(cache=True, error_model="numpy")
-def _edges_near(x, first, second, reach):
+def _edges_near(x, first, second, same, reach):
     a, b = first
     c, d = second
-    if a == c or a == d or b == c or b == d:
+    if same[a] == same[c] or same[a] == same[d] or same[b] == same[c] or same[b] == same[d]:
         return False
     s, t = segment_parameters(x[a], x[b], x[c], x[d])
     gap = 0.0
@@ -210,7 +211,7 @@ def _balls(x, faces, edges):
 
 
 @njit(cache=True, error_model="numpy")
-def edge_edge_pairs(x, rest, faces, edges, reach, near):
+def edge_edge_pairs(x, rest, faces, edges, same, reach, near):
     """(edge, edge) pairs (K, 2) int32 nearer than `reach` that share no vertex; `near` as for vertices and faces."""
     balls = _balls(x, faces, edges)
     cell = 2.0 * balls[:, 3].max() + reach
@@ -233,7 +234,7 @@ def edge_edge_pairs(x, rest, faces, edges, reach, near):
                     g = order[q]
                     if _one_sheet(x, rest, edges[e, 0], edges[g, 0], near * near, balls[s, 4:], balls[q, 4:]):
                         continue
-                    if _edges_near(x, edges[e], edges[g], reach):
+                    if _edges_near(x, edges[e], edges[g], same, reach):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = e, g
                         count += 1

@@ -86,13 +86,12 @@ def repel(x, v, inverse_mass, faces, edges, points, crossings, shell, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, rest, faces, edges, shell):
-    """Vertex-face and edge-edge candidates within thickness + skin."""
+def candidate_pairs(x, rest, faces, edges, length2, same, shell):
+    """Vertex-face and edge-edge candidates within thickness + skin; same (V,): vertices to be sewn share a number."""
     reach = shell.thickness + shell.skin
     side = 0.0
     for e in range(len(edges)):
-        i, j = edges[e]
-        side += math.sqrt((rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2)
+        side += math.sqrt(length2[e])
     near = 3.5 * side / len(edges)
-    points = vertex_face_pairs(x, rest, faces, reach, near)
-    return points, edge_edge_pairs(x, rest, faces, edges, reach, near)
+    points = vertex_face_pairs(x, rest, faces, same, reach, near)
+    return points, edge_edge_pairs(x, rest, faces, edges, same, reach, near)

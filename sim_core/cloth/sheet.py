@@ -1,7 +1,12 @@
-"""A flat panel turned into the stencils of the explicit solver: edge tensions and quadratic bending."""
+"""Flat panels turned into the stencils of the explicit solver: edge tensions and quadratic bending.
+
+Everything is computed from the pattern coordinates of each face's corners, not of vertices: panels that are welded
+along a seam keep their own coordinates there, and what welding changes is an index list.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -32,7 +37,10 @@ class Stencil(NamedTuple):
 
 @dataclass(frozen=True)
 class Sheet:
-    """A panel ready to be simulated: rest (V, 2) [m], faces (F, 3), edges (E, 2), mass (V,) [kg], stencil."""
+    """Cloth ready to be simulated: rest (V, 2) [m], faces (F, 3), edges (E, 2), mass (V,) [kg], stencil.
+
+    corner: (F, 3, 2) [m] the faces in their panels; material: the one whose damping and friction hold for all.
+    """
 
     rest: np.ndarray
     faces: np.ndarray
@@ -41,6 +49,7 @@ class Sheet:
     mass: np.ndarray
     material: Material
     stencil: Stencil
+    corner: np.ndarray
 
     @staticmethod
     def of(rest: np.ndarray, faces: np.ndarray, material: Material) -> Sheet:
@@ -49,16 +58,59 @@ class Sheet:
         Raises SimCoreError on wrong shapes, non-finite coordinates, indices out of range, needles,
         unused vertices and edges with more than two faces.
         """
-        rest, faces = _checked(rest, faces)
+        rest, faces = _checked_indices(rest, faces)
+        corner = rest[faces]
+        return Sheet._assembled(rest, corner, faces, (material,), np.zeros(len(faces), np.int32))
+
+    @staticmethod
+    def of_corners(
+        corner: np.ndarray, faces: np.ndarray, materials: Sequence[Material], kind: np.ndarray
+    ) -> Sheet:
+        """Assembles panels that share vertices along welded seams.
+
+        corner: (F, 3, 2) float [m], pattern coordinates of each face's corners; faces: (F, 3) int into the welded
+        vertices; kind: (F,) which of `materials` each face is made of. Sides that two panels bring together should
+        be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
+        coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
+        """
+        corner, faces = np.ascontiguousarray(corner, float), np.ascontiguousarray(faces)
+        if corner.shape != (*faces.shape, 2) or len(kind) != len(faces) or not materials:
+            raise SimCoreError(
+                f"corner: {corner.shape}, faces: {faces.shape} – expected (F, 3, 2) and (F, 3), kind (F,)"
+            )
+        count = int(faces.max()) + 1 if faces.size else 0
+        rest = np.full((count, 2), np.nan)
+        rest[faces.ravel()[::-1]] = corner.reshape(-1, 2)[::-1]
+        used = ~np.isnan(rest[:, 0])
+        if not used.all():
+            raise SimCoreError(f"faces: vertex {np.flatnonzero(~used)[0]} belongs to no face – remove it")
+        rest, faces = _checked_indices(rest, faces)
+        return Sheet._assembled(rest, corner, faces, tuple(materials), np.asarray(kind, np.int32))
+
+    @staticmethod
+    def _assembled(
+        rest: np.ndarray,
+        corner: np.ndarray,
+        faces: np.ndarray,
+        materials: tuple[Material, ...],
+        kind: np.ndarray,
+    ) -> Sheet:
+        _check_needles(corner)
         edges, face_edges = face_edge_table(faces)
-        area = _areas(rest, faces)
-        mass = np.bincount(faces.ravel(), np.repeat(area / 3, 3), len(rest)) * material.density
-        own, around, coupling = _membrane(rest, faces, face_edges, area, len(edges), material.elasticity())
-        bending = _bending(rest, faces, edges, face_edges, area, material.bend)
+        area = _areas(corner)
+        mass, stiffness = np.zeros(len(rest)), np.zeros((len(faces), 3, 3))
+        for number, material in enumerate(materials):
+            own = np.flatnonzero(kind == number)
+            share = np.bincount(faces[own].ravel(), np.repeat(area[own] / 3, 3), len(rest))
+            mass += share * material.density
+            stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
+        own, around, coupling = _membrane(stiffness, face_edges, len(edges))
+        bend = np.array([material.bend for material in materials])[kind]
+        bending = _bending(corner, len(rest), faces, edges, face_edges, area, bend)
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
-        length2 = ((rest[edges[:, 0]] - rest[edges[:, 1]]) ** 2).sum(1)
+        length2 = _edge_lengths2(corner, face_edges, len(edges))
         stencil = Stencil(1 / mass, edges, length2, own, around, coupling, rows, neighbour, edge_of, bend)
-        return Sheet(rest, faces, edges, face_edges, mass, material, stencil)
+        return Sheet(rest, faces, edges, face_edges, mass, materials[0], stencil, corner)
 
     def pinned(self, pins: np.ndarray) -> Stencil:
         """The stencil with the vertices `pins` (K,) held in place."""
@@ -78,7 +130,7 @@ def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return edges.astype(np.int32), index.reshape(-1, 3).astype(np.int32)
 
 
-def _checked(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     rest = np.ascontiguousarray(rest, float)
     faces = np.ascontiguousarray(faces)
     if rest.ndim != 2 or rest.shape[1] != 2:
@@ -97,33 +149,45 @@ def _checked(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarra
     unused = np.setdiff1d(np.arange(len(rest)), faces)
     if len(unused):
         raise SimCoreError(f"rest: vertex {unused[0]} belongs to no face – remove it")
-    sides = rest[faces] - rest[np.roll(faces, 1, axis=1)]
-    longest = (sides**2).sum(2).max(1)
-    thin = np.flatnonzero(_areas(rest, faces) < 1e-3 * longest)
-    if len(thin):
-        raise SimCoreError(f"faces: face {thin[0]} is a needle or has no area – re-mesh the panel")
     return rest, faces.astype(np.int32)
 
 
-def _areas(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    a, b = rest[faces[:, 1]] - rest[faces[:, 0]], rest[faces[:, 2]] - rest[faces[:, 0]]
+def _check_needles(corner: np.ndarray) -> None:
+    sides = corner - np.roll(corner, 1, axis=1)
+    longest = (sides**2).sum(2).max(1)
+    thin = np.flatnonzero(_areas(corner) < 1e-3 * longest)
+    if len(thin):
+        raise SimCoreError(f"faces: face {thin[0]} is a needle or has no area – re-mesh the panel")
+
+
+def _areas(corner: np.ndarray) -> np.ndarray:
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def _membrane(
-    rest: np.ndarray,
-    faces: np.ndarray,
-    face_edges: np.ndarray,
-    area: np.ndarray,
-    count: int,
-    elastic: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Five coefficients per edge: eps = l^2 - L^2 = R g fixes the Green strain g, so K = A R^-T D R^-1."""
-    corner = rest[faces]
+def _edge_lengths2(corner: np.ndarray, face_edges: np.ndarray, count: int) -> np.ndarray:
+    """Squared rest length (E,) [m2]; where two panels meet, of the mean of both their lengths."""
+    side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+    length2 = (side**2).sum(2).ravel()
+    edge = face_edges.ravel()
+    low, high = np.full(count, np.inf), np.zeros(count)
+    np.minimum.at(low, edge, length2)
+    np.maximum.at(high, edge, length2)
+    return np.where(low == high, low, (0.5 * (np.sqrt(low) + np.sqrt(high))) ** 2)
+
+
+def _stiffness(corner: np.ndarray, area: np.ndarray, elastic: np.ndarray) -> np.ndarray:
+    """K (F, 3, 3) of W = eps.K.eps / 2: eps = l^2 - L^2 = R g fixes the Green strain g, so K = A R^-T D R^-1."""
     side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # side a lies opposite corner a
     x, y = side[..., 0], side[..., 1]
     inverse = np.linalg.inv(2 * np.stack([x * x, y * y, 2 * x * y], axis=-1))
-    stiffness = area[:, None, None] * np.einsum("fba,bc,fcd->fad", inverse, elastic, inverse)
+    return area[:, None, None] * np.einsum("fba,bc,fcd->fad", inverse, elastic, inverse)
+
+
+def _membrane(
+    stiffness: np.ndarray, face_edges: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Five coefficients per edge: its own, and those of the other edges of its faces."""
     own = np.bincount(face_edges.ravel(), stiffness[:, range(3), range(3)].ravel(), count)
     around = np.repeat(np.arange(count, dtype=np.int32)[:, None], 4, axis=1)
     coupling = np.zeros((count, 4))
@@ -156,14 +220,18 @@ def _without_repeats(values: np.ndarray) -> list[np.ndarray]:
 
 
 def _bending(
-    rest: np.ndarray,
+    corner: np.ndarray,
+    count: int,
     faces: np.ndarray,
     edges: np.ndarray,
     face_edges: np.ndarray,
     area: np.ndarray,
-    bend: float,
+    bend: np.ndarray,
 ) -> sparse.csr_array:
-    """Q (V, V) of the quadratic isometric bending energy x.Q.x/2 (Bergou et al. 2006), hinge by hinge."""
+    """Q (V, V) of the quadratic isometric bending energy x.Q.x/2 (Bergou et al. 2006), hinge by hinge.
+
+    bend: (F,) [N m]; a hinge between two cloths takes the mean.
+    """
     face = np.repeat(np.arange(len(faces)), 3)
     order = np.argsort(face_edges.ravel(), kind="stable")
     edge_sorted = face_edges.ravel()[order]
@@ -172,19 +240,30 @@ def _bending(
     edge = edge_sorted[inner]
     start, end = edges[edge, 0], edges[edge, 1]
     opposite = [faces.ravel()[first], faces.ravel()[second]]
+    cotangent = _cotangents(corner)
 
-    def cotangent(at: np.ndarray, to: np.ndarray, other: np.ndarray) -> np.ndarray:
-        a, b = rest[to] - rest[at], rest[other] - rest[at]
-        return (a * b).sum(1) / np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    def at(flat: np.ndarray, vertex: np.ndarray) -> np.ndarray:
+        """Cotangent of the face of corner `flat` at `vertex`, one of its two other corners."""
+        own, ahead = flat // 3, (flat + 1) % 3
+        ahead = np.where(faces[own, ahead] == vertex, ahead, (flat + 2) % 3)
+        return cotangent[own, ahead]
 
-    c01, c02 = (cotangent(start, end, far) for far in opposite)
-    c03, c04 = (cotangent(end, start, far) for far in opposite)
+    # flat % 3 is the corner; (flat + 1) % 3 and (flat + 2) % 3 are the others, since faces start at multiples of 3
+    c01, c02 = at(first, start), at(second, start)
+    c03, c04 = at(first, end), at(second, end)
     weights = np.stack([c03 + c04, c01 + c02, -c01 - c03, -c02 - c04], axis=1)
-    factor = BENDING_SCALE * 3 * bend / (area[face[first]] + area[face[second]])
+    stiff = 0.5 * (bend[face[first]] + bend[face[second]])
+    factor = BENDING_SCALE * 3 * stiff / (area[face[first]] + area[face[second]])
     index = np.stack([start, end, *opposite], axis=1)
     values = factor[:, None, None] * weights[:, :, None] * weights[:, None, :]
     row, column = np.repeat(index, 4, axis=1), np.tile(index, (1, 4))
-    return sparse.coo_array((values.ravel(), (row.ravel(), column.ravel())), (len(rest),) * 2).tocsr()
+    return sparse.coo_array((values.ravel(), (row.ravel(), column.ravel())), (count, count)).tocsr()
+
+
+def _cotangents(corner: np.ndarray) -> np.ndarray:
+    """Cotangent (F, 3) of the angle at every corner."""
+    a, b = np.roll(corner, -1, axis=1) - corner, np.roll(corner, -2, axis=1) - corner
+    return (a * b).sum(2) / np.abs(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _neighbours(

@@ -7,8 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.collider import MOVING
 from sim_core.cloth.contact import collide_samples, collide_vertices, near_samples
 from sim_core.cloth.forces import edge_tensions, kick
+from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 CONTACT_REACH = 0.02  # [m] samples further away than this are left out until the cloth has moved half of it
@@ -27,6 +29,12 @@ class Surroundings(NamedTuple):
     sample_clearance: float  # [m] of midpoints and centroids
     cap: float  # [m] largest push per substep
     speed_limit: float  # [m/s]
+    sewing: tuple[
+        float, float
+    ]  # share of their first distance that pairs may have, at begin and end of the frame
+    body: tuple[
+        float, float
+    ]  # where a moving grid stands between its keys, 0..1, at begin and end of the frame
 
 
 @njit(cache=True, error_model="numpy")
@@ -64,7 +72,7 @@ def _moved(x, mark, shift):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v, last, dt, substeps):
+def advance(stencil, rest, faces, packed, vertices, middles, holds, shell, around, x, v, last, dt, substeps):
     """Simulates `substeps` steps of dt [s]; x, v (V, 3) change in place; returns how often pairs were looked for.
 
     v lives half a step behind x; `last` is the previous step (0 at the start). Lists are renewed before the cloth
@@ -85,15 +93,27 @@ def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v
             if moved_layer > 0.5 * shell.skin:
                 moved_layer = _moved(x, mark_layer, shift) if moved_layer < np.inf else np.inf
                 if moved_layer > 0.4 * shell.skin:
-                    points, crossings = candidate_pairs(x, rest, faces, stencil.edges, shell)
+                    points, crossings = candidate_pairs(
+                        x, rest, faces, stencil.edges, stencil.length2, holds.same, shell
+                    )
                     mark_layer[:], shift[:], moved_layer, searches = x, 0.0, 0.0, searches + 1
             repel(x, v, inverse, faces, stencil.edges, points, crossings, shell, dt * shell.every)
         mean, way = _drift(x, v, dt, around.speed_limit)
         shift += mean
         moved_layer += way + around.cap * solids
         moved_solid += way + np.sqrt((mean * mean).sum()) + around.cap * solids
+        if len(holds.pairs) > 0:
+            early, late = around.sewing
+            share = early + (late - early) * (step + 1) / substeps
+            draw_together(holds, inverse, x, v, share, (early - late) / (substeps * dt))
         if not solids:
+            bound(holds, x, v)
+            mirror(holds, x, v)
             continue
+        if packed.kind[0] == MOVING:
+            early, late = around.body
+            packed.blend[0] = early + (late - early) * (step + 1) / substeps
+            packed.blend[1] = (late - early) / (substeps * dt)
         if moved_solid > 0.5 * CONTACT_REACH:
             moved_solid = _moved(x, mark_solid, still) if moved_solid < np.inf else np.inf
             if moved_solid > 0.4 * CONTACT_REACH:
@@ -106,4 +126,6 @@ def advance(stencil, rest, faces, packed, vertices, middles, shell, around, x, v
         if step % SAMPLES_EVERY == 0 or step == substeps - 1:
             collide_samples(packed, inverse, x, v, near_m, around.sample_clearance, around.cap)
         collide_vertices(packed, inverse, x, v, near_v, around.clearance, dt, around.friction, around.cap)
+        bound(holds, x, v)
+        mirror(holds, x, v)
     return searches

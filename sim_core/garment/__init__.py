@@ -5,6 +5,7 @@ from sim_core.garment.glb import write_glb
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.placing import Gathering
+from sim_core.garment.robe import robe_on_figure
 from sim_core.garment.scarf import scarf_on_stand
 from sim_core.garment.stand import Stand
 
@@ -15,6 +16,7 @@ __all__ = [
     "Stand",
     "choose_detail",
     "detail",
+    "robe_on_figure",
     "scarf_on_stand",
     "write_glb",
 ]

@@ -9,37 +9,74 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from sim_core import metrics
+from sim_core.cloth import Solid
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet import face_edge_table
 from sim_core.errors import SimCoreError
 from sim_core.garment.model import Garment
+from sim_core.garment.pattern import Pattern
 from sim_core.garment.stand import Stand
 from sim_core.mesh import panel_mesh
 
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
 
 
-def detail(garment: Garment, edge: float) -> Garment:
+def detail(garment: Garment, edge: float, *, solid: Solid | None = None) -> Garment:
     """The garment on a mesh of step `edge` [m], its distance from the original measured in the provenance.
 
-    Texture coordinates and outline stay exact. Where a chord of the coarser mesh would cut into the stand,
-    the mesh is moved out. Raises SimCoreError if the garment has seams (the pattern is meshed as one panel).
+    Texture coordinates and outlines stay exact, and twins on a welded seam stay in one place. Where a chord of the
+    coarser mesh would cut into the stand, or into `solid`, the mesh is moved out. Raises SimCoreError where the
+    garment does not tell how it was cut.
     """
-    if len(garment.seams):
-        raise SimCoreError(f"garment {garment.name}: has seams – levels of detail know single panels only")
-    panel = panel_mesh(garment.outline, edge=edge)
-    face, weight = locate(panel.vertices, garment.rest, garment.faces)
-    positions = np.einsum("nk,nkc->nc", weight, garment.positions[garment.faces[face]])
-    faces = panel.faces.astype(np.int32)
-    if "stand" in garment.provenance:
-        positions = _cleared(positions, faces, Stand(**garment.provenance["stand"]))
-    apart = metrics.hausdorff(garment.positions, garment.faces, positions, faces, spacing=_SPACING)
-    coarse = replace(garment, rest=panel.vertices, faces=faces, positions=positions)
+    if not garment.cut:
+        raise SimCoreError(f"garment {garment.name}: does not tell how it was cut – bake it again")
+    coarse = _sampled(garment, Pattern.from_dict(garment.cut), edge)
+    if solid is None and "stand" in garment.provenance:
+        solid = Stand(**garment.provenance["stand"]).collider()
+    if solid is not None:
+        coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
+    apart = metrics.hausdorff(
+        garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=_SPACING
+    )
     errors = {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
-    return coarse.noted(detail={"edge": edge, "triangles": len(faces), "hausdorff": errors})
+    return coarse.noted(detail={"edge": edge, "triangles": len(coarse.faces), "hausdorff": errors})
 
 
-def choose_detail(garment: Garment, budget: float, *, edges: Sequence[float] | None = None) -> Garment:
+def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
+    """The pattern meshed again; every new point where the drape has it, twins at their mean."""
+    if not pattern.panels:
+        mesh = panel_mesh(pattern.outline, edge=edge)
+        count = len(mesh.vertices)
+        vertices, faces = mesh.vertices, mesh.faces.astype(np.int32)
+        panel, owner, weld = (np.zeros(n, np.int32) for n in (len(faces), count, count))
+        weld[:] = np.arange(count)
+    else:
+        cloth = pattern.cloth(edge).mirrored() if pattern.mirror else pattern.cloth(edge)
+        vertices, faces, panel, owner, weld = (
+            cloth.vertices,
+            cloth.faces,
+            cloth.panel,
+            cloth.panel_of,
+            cloth.closed,
+        )
+    worn, out = garment.worn(), np.zeros((len(vertices), 3))
+    for number in range(len(garment.panels)):
+        own = garment.pattern_faces[garment.panel == number]
+        new = np.flatnonzero(owner == number)
+        face, weight = locate(vertices[new], garment.pattern, own)
+        out[new] = np.einsum("nk,nkc->nc", weight, worn[own[face]])
+    count = np.bincount(weld)
+    mean = np.stack([np.bincount(weld, out[:, c]) / count for c in range(3)], axis=1)
+    return replace(garment, pattern=vertices, pattern_faces=faces, weld=weld, panel=panel, positions=mean)
+
+
+def choose_detail(
+    garment: Garment,
+    budget: float,
+    *,
+    edges: Sequence[float] | None = None,
+    solid: Solid | None = None,
+) -> Garment:
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
     edges: mesh steps to try, finest first until one fails (by default 1.25 to 4 times the garment's own).
@@ -49,7 +86,7 @@ def choose_detail(garment: Garment, budget: float, *, edges: Sequence[float] | N
     tried: list[dict[str, float]] = []
     best, chosen = garment, {"edge": own, "triangles": len(garment.faces)}
     for edge in sorted(edges or own * np.array([1.25, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0])):
-        coarse = detail(garment, float(edge))
+        coarse = detail(garment, float(edge), solid=solid)
         facts = coarse.provenance["detail"]
         p99 = facts["hausdorff"]["p99_m"]
         tried.append({"edge": float(edge), "triangles": facts["triangles"], "p99_m": p99})
@@ -84,16 +121,17 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _mean_edge(garment: Garment) -> float:
-    side = garment.rest[garment.faces] - garment.rest[np.roll(garment.faces, 1, axis=1)]
+    corner = garment.rest_corners()
+    side = corner - np.roll(corner, 1, axis=1)
     return float(np.sqrt((side**2).sum(2)).mean())
 
 
-def _cleared(positions: np.ndarray, faces: np.ndarray, stand: Stand) -> np.ndarray:
-    """Moves a mesh off the stand until vertices, midpoints and centroids are 1 mm away; few vertices move."""
+def _cleared(positions: np.ndarray, faces: np.ndarray, solid: Solid) -> np.ndarray:
+    """Moves a mesh off the solid until vertices, midpoints and centroids are 1 mm away; few vertices move."""
     x, v = positions.copy(), np.zeros_like(positions)
     edges, _ = face_edge_table(faces)
     vertices, middles = contact_samples(edges, faces, len(x))
-    packed, free = stand.collider().packed(), np.ones(len(x))
+    packed, free = solid.packed(), np.ones(len(x))
     for _ in range(60):
         collide_samples(packed, free, x, v, middles, 0.001, 0.0005)
         collide_vertices(packed, free, x, v, vertices, 0.001, 1.0, 0.0, 0.0005)

@@ -1,21 +1,37 @@
-"""Our own GLB writer: the garment, and the stand as a second node, with the weave's maps at true scale."""
+"""Our own GLB writer: the garment, its stand or figure as a further node, the weave's maps at true scale."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from sim_core.cloth import Cylinder
 from sim_core.errors import SimCoreError
 from sim_core.garment.glb_file import GlbFile
-from sim_core.garment.model import Garment
+from sim_core.garment.model import Colour, Garment
 from sim_core.garment.slub import slub_normal
+from sim_core.garment.solids import solid_mesh
 from sim_core.garment.stand import Stand
+from sim_core.picture import normals
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
+LINEN = (0.84, 0.80, 0.73)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m]."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    normals: np.ndarray
+    base: tuple[float, float]
 
 
 class MapsLike(Protocol):
@@ -38,8 +54,12 @@ def write_glb(
     *,
     precision: Precision = "close",
     stand: Stand | None = None,
+    figure: Shown | None = None,
 ) -> int:
-    """Writes the garment and, where it has one, its stand; returns the size in bytes.
+    """Writes the garment and, where it has them, stand or figure; returns the size in bytes.
+
+    Panels of one dye are one node: the garment's name, then its name and a number. Twins on a seam share place and
+    normal, so that no seam shows but for its change of colour. A figure and its robe stand on its base.
 
     maps: tileable albedo, normal (n, m, 3) and opacity (n, m), uint8, size [m] of the tile. TEXCOORD_0 is in
     pattern millimetres, v not flipped; KHR_texture_transform brings it to tiles. close: the weave itself; hall:
@@ -51,15 +71,20 @@ def write_glb(
         raise SimCoreError(
             f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
         )
-    glb = GlbFile()
-    cloth = _cloth_close(glb, garment, maps) if precision == "close" else _cloth_hall(glb, garment, maps)
-    uv = garment.rest * 1000.0
-    glb.mesh(garment.name, garment.positions, garment.faces, cloth, uv)
+    glb, lift = GlbFile(), np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
+    _write_panels(glb, replace(garment, positions=garment.positions + lift), maps, precision)
     if stand is None and "stand" in garment.provenance:
         stand = Stand(**garment.provenance["stand"])
     if stand is not None:
         vertices, faces = stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
+    if figure is not None:
+        glb.mesh(
+            "figure", figure.vertices + lift, figure.faces, glb.material(_linen()), shading=figure.normals
+        )
+        base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
+        foot = solid_mesh(base, 48 if precision == "close" else 28)
+        glb.mesh("base", *foot, glb.material(_lacquer()))
     data = glb.bytes(garment.name, ["KHR_materials_sheen", "KHR_texture_transform"])
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -67,6 +92,28 @@ def write_glb(
     beside.write_bytes(data)
     beside.replace(path)
     return len(data)
+
+
+def _write_panels(glb: GlbFile, garment: Garment, maps: MapsLike, precision: Precision) -> None:
+    """One mesh per dye, darkest last; textures are stored once."""
+    shading, worn = normals(garment.positions, garment.faces)[garment.weld], garment.worn()
+    looks: dict[Any, list[int]] = {}
+    for number in range(len(garment.panels)):
+        looks.setdefault(garment.dye_of(number), []).append(number)
+    textures: dict[str, Any] = {}
+    for count, (dye, own) in enumerate(looks.items()):
+        faces = garment.pattern_faces[np.isin(garment.panel, own)]
+        used, index = np.unique(faces, return_inverse=True)
+        make = _cloth_close if precision == "close" else _cloth_hall
+        name = garment.name if count == 0 else f"{garment.name} {count + 1}"
+        glb.mesh(
+            name,
+            worn[used],
+            index.reshape(-1, 3).astype(np.int32),
+            make(glb, dye, maps, textures),
+            garment.pattern[used] * 1000.0,
+            shading=shading[used],
+        )
 
 
 def _linear(srgb: np.ndarray) -> np.ndarray:
@@ -79,8 +126,8 @@ def _mean_colour(maps: MapsLike) -> np.ndarray:
     return (_linear(maps.albedo / 255.0) * weight[..., None]).sum((0, 1)) / weight.sum()
 
 
-def _dyed(garment: Garment, mean: np.ndarray) -> np.ndarray:
-    return mean if garment.dye is None else _linear(np.asarray(garment.dye))
+def _dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
+    return mean if dye is None else _linear(np.asarray(dye))
 
 
 def _silk(colour: np.ndarray, alpha: float, name: str) -> dict[str, Any]:
@@ -103,6 +150,24 @@ def _silk(colour: np.ndarray, alpha: float, name: str) -> dict[str, Any]:
     }
 
 
+def _once(kept: dict[str, Any], name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    if name not in kept:
+        kept[name] = make()
+    return kept[name]
+
+
+def _linen() -> dict[str, Any]:
+    """The figure's cover: matt, light, without colour of its own."""
+    return {
+        "name": "linen",
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*(float(c) for c in _linear(np.asarray(LINEN))), 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.9,
+        },
+    }
+
+
 def _lacquer() -> dict[str, Any]:
     return {
         "name": "lacquer",
@@ -114,32 +179,34 @@ def _lacquer() -> dict[str, Any]:
     }
 
 
-def _cloth_close(glb: GlbFile, garment: Garment, maps: MapsLike) -> int:
+def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
     mean = _mean_colour(maps)
     # The map is dyed by a factor, so that its mean becomes the dye and its variation stays the yarns'.
-    factor = _dyed(garment, mean) / np.maximum(mean, 1e-3)
+    factor = _dyed(dye, mean) / np.maximum(mean, 1e-3)
     material = _silk(factor, 1.0, "silk_close")
     sheer = float(maps.opacity.mean()) < 250
     picture = np.dstack([maps.albedo, maps.opacity]) if sheer else maps.albedo
     tile = [1e-3 / float(maps.size[0]), 1e-3 / float(maps.size[1])]
-    material["pbrMetallicRoughness"]["baseColorTexture"] = glb.texture(picture, tile)
-    material["normalTexture"] = {**glb.texture(maps.normal, tile), "scale": 1.0}
+    material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
+        textures, "colour", lambda: glb.texture(picture, tile)
+    )
+    normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile))
+    material["normalTexture"] = {**normal, "scale": 1.0}
     if sheer:
         material["alphaMode"] = "BLEND"
-    tint = _dyed(garment, mean)
+    tint = _dyed(dye, mean)
     material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = [
         float(c) for c in 0.55 * (0.5 * tint + 0.5)
     ]
     return glb.material(material)
 
 
-def _cloth_hall(glb: GlbFile, garment: Garment, maps: MapsLike) -> int:
+def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
     cover = float(maps.opacity.mean()) / 255
-    material = _silk(
-        _dyed(garment, _mean_colour(maps)), round(cover, 4) if cover < 0.98 else 1.0, "silk_hall"
-    )
+    material = _silk(_dyed(dye, _mean_colour(maps)), round(cover, 4) if cover < 0.98 else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
-    material["normalTexture"] = {**glb.texture(slub_normal(256), tile), "scale": 0.5}
+    normal = _once(textures, "normal", lambda: glb.texture(slub_normal(256), tile))
+    material["normalTexture"] = {**normal, "scale": 0.5}
     if cover < 0.98:
         material["alphaMode"] = "BLEND"
     return glb.material(material)

@@ -89,16 +89,17 @@ class GlbFile:
         *,
         uv1: np.ndarray | None = None,
         unlit: bool = False,
+        shading: np.ndarray | None = None,
     ) -> None:
         """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
 
-        uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted; an
-        unlit mesh, as every mesh with colours, has none.
+        uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted,
+        unless `shading` (V, 3) gives them; an unlit mesh, as every mesh with colours, has none.
         """
         attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
         if colours is None and not unlit:
-            shading = normals(vertices, faces).astype("<f4")
-            attributes["NORMAL"] = self._accessor(shading, "VEC3", FLOAT, VERTICES)
+            shading = normals(vertices, faces) if shading is None else shading
+            attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
         elif colours is not None:
             fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
             attributes["COLOR_0"] = self._accessor(fractions.astype("<u2"), "VEC4", U16, VERTICES)

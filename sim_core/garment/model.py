@@ -1,4 +1,4 @@
-"""The `Garment` value: flat rest mesh, drape, weave, material and where all of it came from."""
+"""The `Garment` value: flat panels, how they are welded, the drape, weave, material and where all of it came from."""
 
 from __future__ import annotations
 
@@ -13,53 +13,92 @@ import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
 
-FORMAT = 1
-_ARRAYS = {
-    "outline": (float, 2),
-    "rest": (float, 2),
-    "faces": (np.int32, 3),
+FORMAT = 2
+_ARRAYS: dict[str, tuple[type, int]] = {
+    "pattern": (float, 2),
+    "pattern_faces": (np.int32, 3),
+    "weld": (np.int32, 0),
+    "panel": (np.int32, 0),
     "positions": (float, 3),
-    "seams": (np.int32, 2),
 }
+
+Colour = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Garment:
-    """A draped garment.
+    """A draped garment. P pattern vertices, V draped vertices, F faces.
 
-    outline (N, 2) and rest (V, 2) [m] in pattern axes (x weft, y down the warp); faces (F, 3) int32;
-    positions (V, 3) [m], y up; seams (K, 2) int32 vertex pairs sewn together; weave and material as plain
-    dictionaries; provenance: inputs, seed, versions, seconds per stage, measured errors.
+    pattern (P, 2) [m] in pattern axes (x weft, y down the warp), each panel in its own; pattern_faces (F, 3) int32;
+    weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
+    panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
+    meshed from (`Pattern.to_dict`); weave and material as plain dictionaries; provenance: inputs, seed, versions,
+    seconds per stage, measured errors.
     """
 
     name: str
-    outline: np.ndarray
-    rest: np.ndarray
-    faces: np.ndarray
+    pattern: np.ndarray
+    pattern_faces: np.ndarray
+    weld: np.ndarray
+    panel: np.ndarray
     positions: np.ndarray
-    seams: np.ndarray
+    panels: tuple[str, ...] = ("cloth",)
+    dyes: tuple[Colour | None, ...] = (None,)
+    cut: dict[str, Any] = field(default_factory=dict)
     weave: dict[str, Any] = field(default_factory=dict)
     material: dict[str, Any] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
-    dye: tuple[float, float, float] | None = None
+    dye: Colour | None = None
 
     def __post_init__(self) -> None:
         for name, (kind, width) in _ARRAYS.items():
-            array = getattr(self, name)
-            if array.ndim != 2 or array.shape[1] != width or array.dtype != np.dtype(kind):
+            array, shape = getattr(self, name), f"(n, {width})" if width else "(n,)"
+            if array.ndim != (2 if width else 1) or array.shape[-1] != (width or len(array)):
                 raise SimCoreError(
-                    f"garment.{name}: {array.shape} {array.dtype} – expected (n, {width}) {np.dtype(kind)}"
+                    f"garment.{name}: {array.shape} {array.dtype} – expected {shape} {np.dtype(kind)}"
+                )
+            if array.dtype != np.dtype(kind):
+                raise SimCoreError(
+                    f"garment.{name}: {array.shape} {array.dtype} – expected {shape} {np.dtype(kind)}"
                 )
             if kind is float and not np.isfinite(array).all():
                 raise SimCoreError(f"garment.{name}: holds numbers that are not finite")
-        if len(self.rest) != len(self.positions):
+        if len(self.pattern) != len(self.weld) or len(self.pattern_faces) != len(self.panel):
             raise SimCoreError(
-                f"garment: {len(self.rest)} rest and {len(self.positions)} draped vertices – must agree"
+                f"garment: {len(self.pattern)} pattern vertices, {len(self.weld)} welds, {len(self.pattern_faces)} "
+                f"faces, {len(self.panel)} panels – must agree"
             )
-        for name in ("faces", "seams"):
+        if len(self.panels) != len(self.dyes):
+            raise SimCoreError(f"garment: {len(self.panels)} panels, {len(self.dyes)} dyes – must agree")
+        for name, count in (
+            ("pattern_faces", len(self.pattern)),
+            ("weld", len(self.positions)),
+            ("panel", len(self.panels)),
+        ):
             index = getattr(self, name)
-            if index.size and (index.min() < 0 or index.max() >= len(self.rest)):
-                raise SimCoreError(f"garment.{name}: names vertex {index.max()} of {len(self.rest)}")
+            if index.size and (index.min() < 0 or index.max() >= count):
+                raise SimCoreError(f"garment.{name}: names number {index.max()} of {count}")
+        if self.weld.size and len(np.unique(self.weld)) != len(self.positions):
+            raise SimCoreError(
+                f"garment.weld: not every one of {len(self.positions)} draped vertices is named"
+            )
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Faces (F, 3) int32 of the draped vertices: welded panels share theirs along a seam."""
+        return self.weld[self.pattern_faces]
+
+    def worn(self) -> np.ndarray:
+        """Draped positions (P, 3) [m] of the pattern vertices."""
+        return self.positions[self.weld]
+
+    def rest_corners(self) -> np.ndarray:
+        """Pattern coordinates (F, 3, 2) [m] of every face's corners."""
+        return self.pattern[self.pattern_faces]
+
+    def dye_of(self, panel: int) -> Colour | None:
+        """The dye of a panel: its own, else the garment's."""
+        return self.dyes[panel] or self.dye
 
     def save(self, path: Path) -> None:
         """Writes one .npz: the arrays and a JSON header (text) under `header`."""
@@ -69,6 +108,9 @@ class Garment:
             "format": FORMAT,
             "name": self.name,
             "dye": self.dye,
+            "panels": self.panels,
+            "dyes": self.dyes,
+            "cut": self.cut,
             "weave": self.weave,
             "material": self.material,
             "provenance": self.provenance,
@@ -87,24 +129,28 @@ class Garment:
             # Opened here, since numpy leaves a damaged file open.
             with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
                 header = json.loads(data["header"].tobytes().decode())
+                if not isinstance(header, dict) or header.get("format") != FORMAT:
+                    raise FileProblem(f"{path}: written in another format – bake the garment again")
                 arrays = {name: np.ascontiguousarray(data[name]) for name in _ARRAYS}
         except FileNotFoundError as error:
             raise FileProblem(f"{path}: no such file – bake the garment first") from error
+        except FileProblem:
+            raise
         except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError, TypeError) as error:
             raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise FileProblem(f"{path}: written in another format – bake the garment again")
-        dye = header.get("dye")
         try:
             return Garment(
                 name=header["name"],
+                panels=tuple(header["panels"]),
+                dyes=tuple(_colour(dye) for dye in header["dyes"]),
+                cut=header["cut"],
                 weave=header["weave"],
                 material=header["material"],
                 provenance=header["provenance"],
-                dye=(dye[0], dye[1], dye[2]) if dye else None,
+                dye=_colour(header.get("dye")),
                 **arrays,
             )
-        except (SimCoreError, KeyError) as error:
+        except (SimCoreError, KeyError, TypeError) as error:
             raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
 
     def digest(self) -> str:
@@ -118,3 +164,7 @@ class Garment:
     def noted(self, **facts: Any) -> Garment:
         """The same garment with more provenance."""
         return replace(self, provenance={**self.provenance, **facts})
+
+
+def _colour(dye: Any) -> Colour | None:
+    return (dye[0], dye[1], dye[2]) if dye else None

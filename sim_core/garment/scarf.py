@@ -5,14 +5,11 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import platform
-import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 
 from sim_core import metrics
@@ -22,6 +19,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.placing import Gathering, gathered_strip
+from sim_core.garment.records import Clock, versions
 from sim_core.garment.stand import Stand
 from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 
@@ -58,7 +56,7 @@ def scarf_on_stand(
     stand, width, step = stand or Stand(), float(np.ptp(pattern.outline[:, 0])), edge or pattern.edge
     gathering = gathering or Gathering().resolved(width, step)
     _check_fits(pattern, stand, gathering)
-    clock = _Clock()
+    clock = Clock()
     panel = pattern.mesh(step)
     clock.lap("mesh")
     parameters = cloth_parameters(weave, relax(weave))
@@ -93,14 +91,15 @@ def _garment(
     solver = {"simulated": result.frames / 25, "substeps": result.substeps, "rollbacks": result.rollbacks}
     return Garment(
         name=pattern.name,
-        outline=np.ascontiguousarray(pattern.outline, float),
-        rest=sheet.rest,
-        faces=sheet.faces,
+        pattern=sheet.rest,
+        pattern_faces=sheet.faces,
+        weld=np.arange(len(sheet.rest), dtype=np.int32),
+        panel=np.zeros(len(sheet.faces), np.int32),
         positions=result.positions,
-        seams=np.zeros((0, 2), np.int32),
+        cut=pattern.to_dict(),
         weave=weave.to_dict(),
         material=material,
-        provenance={"recipe": "scarf_on_stand", "versions": _versions(), **solver},
+        provenance={"recipe": "scarf_on_stand", "versions": versions(), **solver},
         dye=pattern.dye,
     )
 
@@ -188,24 +187,3 @@ def _hash(pattern: Pattern, weave: Weave, edge: float, seed: int, *settings: obj
     parts = [pattern.outline.tolist(), pattern.dye, weave.to_dict(), edge, seed, [repr(s) for s in settings]]
     text = json.dumps([ENGINE_VERSION, *parts], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def _versions() -> dict[str, str]:
-    return {
-        "cloth_engine": str(ENGINE_VERSION),
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "numba": numba.__version__,
-    }
-
-
-class _Clock:
-    """Seconds per stage."""
-
-    def __init__(self) -> None:
-        self.laps: dict[str, float] = {}
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        now = time.perf_counter()
-        self.laps[name], self._last = round(now - self._last, 2), now

@@ -61,14 +61,17 @@ def _without_duplicates(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return keep, np.searchsorted(keep, first)
 
 
-def panel_mesh(outline, *, edge: float, holes=(), threshold: float = 0.7, smooth: int = 3) -> PanelMesh:
+def panel_mesh(
+    outline, *, edge: float, holes=(), threshold: float = 0.7, smooth: int = 3, sampled: bool = False
+) -> PanelMesh:
     """Triangulate one pattern panel.
 
     outline: (N, 2) [m], y down, in either direction, closed without repeating the first point.  edge: [m] length L of
     a lattice step; outline steps are at most that.  holes: contours inside the outline.  threshold: lattice points
     nearer to the outline than threshold * edge are redundant; 0.5 to 0.9. Other thresholds are tried where the
     smallest angle stays below 30 degrees (or below the outline's own sharpest corner).  smooth: most smoothing passes
-    tried; a pass is kept only where it raises the smallest angle.
+    tried; a pass is kept only where it raises the smallest angle.  sampled: the contours are sampled already, so that
+    every point becomes a boundary vertex, in its order where the cloth lies to the left in (x, -y).
     Raises OutlineError saying what is wrong with the outline, where, and what to do.
     """
     begin = perf_counter()
@@ -76,7 +79,7 @@ def panel_mesh(outline, *, edge: float, holes=(), threshold: float = 0.7, smooth
         raise OutlineError(f"threshold {threshold} – give a fraction of the edge between 0.5 and 0.9")
     contours = clean_contours(outline, holes)
     check_edge(edge, contours)
-    samples = sampled_contours(contours, edge)
+    samples = contours if sampled else sampled_contours(contours, edge)
     boundary = _loops(samples)
     vertices, faces = _best_fill(samples, boundary, edge, threshold, smooth)
     verify(vertices, faces, boundary, edge)

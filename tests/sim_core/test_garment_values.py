@@ -47,8 +47,10 @@ def arched(edge: float = 0.02) -> Garment:
     x = np.column_stack([0.15 - panel.vertices[:, 0], 1.5 + r * np.cos(angle) - down, r * np.sin(angle)])
     x[:, 2] += 0.02 * down * np.sin(40 * panel.vertices[:, 0])
     facts = {"stand": {}, "edge": edge}
-    seams = np.zeros((0, 2), np.int32)
-    return Garment("strip", outline, panel.vertices, panel.faces.astype(np.int32), x, seams, provenance=facts)
+    faces, weld = panel.faces.astype(np.int32), np.arange(len(x), dtype=np.int32)
+    cut = Pattern("strip", outline, edge).to_dict()
+    one = np.zeros(len(faces), np.int32)
+    return Garment("strip", panel.vertices, faces, weld, one, x, cut=cut, provenance=facts)
 
 
 @pytest.mark.parametrize(
@@ -130,16 +132,22 @@ def test_bad_garment_files_are_named(tmp_path: Path) -> None:
 
 
 def _arrays(garment: Garment) -> dict[str, np.ndarray]:
-    return {name: getattr(garment, name) for name in ("outline", "rest", "faces", "positions", "seams")}
+    return {
+        name: getattr(garment, name) for name in ("pattern", "pattern_faces", "weld", "panel", "positions")
+    }
 
 
 def test_inconsistent_garments_are_refused() -> None:
     good = arched(0.05)
     for change, word in (
-        ({"faces": good.faces + len(good.rest)}, "faces"),
-        ({"positions": good.positions[:-1]}, "must agree"),
+        ({"pattern_faces": good.faces + len(good.pattern)}, "pattern_faces"),
+        ({"positions": good.positions[:-1]}, "weld"),
+        ({"weld": good.weld[:-1]}, "must agree"),
+        ({"weld": np.minimum(good.weld, 3)}, "not every one"),
+        ({"panel": good.panel + 1}, "panel"),
+        ({"dyes": (None, None)}, "dyes"),
         ({"positions": np.full_like(good.positions, np.nan)}, "not finite"),
-        ({"rest": good.positions}, "rest"),
+        ({"pattern": good.positions}, "pattern"),
     ):
         with pytest.raises(SimCoreError, match=word):
             Garment(**{**good.__dict__, **change})
@@ -182,9 +190,8 @@ def test_detail_is_coarser_measured_and_clear_of_the_stand() -> None:
     assert 0 < apart["mean_m"] < apart["p99_m"] <= apart["max_m"] < 0.03
     inside = metrics.penetration(coarse.positions, coarse.faces, *Stand().mesh(48))
     assert inside.total == 0
-    seams = np.array([[0, 1]], np.int32)
-    with pytest.raises(SimCoreError, match="seams"):
-        detail(Garment(**{**fine.__dict__, "seams": seams}), 0.05)
+    with pytest.raises(SimCoreError, match="how it was cut"):
+        detail(Garment(**{**fine.__dict__, "cut": {}}), 0.05)
 
 
 def test_cheapest_detail_within_the_budget() -> None:
@@ -238,7 +245,7 @@ def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
         normal = accessor(document, blob, primitive["attributes"]["NORMAL"])
         assert np.linalg.norm(normal, axis=1) == pytest.approx(np.ones(len(normal)), abs=1e-5)
     uv = accessor(document, blob, document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"])
-    assert uv == pytest.approx(garment.rest * 1000, abs=1e-3)
+    assert uv == pytest.approx(garment.pattern * 1000, abs=1e-3)
     cloth, lacquer = document["materials"]
     assert cloth["doubleSided"] is True
     assert cloth["alphaMode"] == "BLEND"

@@ -1,0 +1,153 @@
+"""Signed distance of a closed mesh on a grid: exact near the surface, swept beyond. See README.md."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from sim_core.cloth.collider import GridSdf
+from sim_core.cloth.field_loops import crossings, interpolate, spread, splat, sweep
+from sim_core.errors import SimCoreError
+
+__all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
+
+SPLAT_CELLS = 1.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
+Box = tuple[Sequence[float], Sequence[float]]
+
+
+@dataclass(frozen=True)
+class DistanceField:
+    """Signed distance at the nodes origin + cell * (i, j, k); negative inside.
+
+    origin (3,) [m]; cell [m]; values (nx, ny, nz) float32 [m].
+    """
+
+    origin: np.ndarray
+    cell: float
+    values: np.ndarray = field(repr=False)
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Trilinear distance (N,) [m] at points (N, 3); outside the grid the border's value and the way there."""
+        return self.with_gradient(points)[0]
+
+    def with_gradient(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Distance (N,) and the gradient (N, 3) of the trilinear interpolation, not normalised."""
+        return interpolate(self.values, self.origin, self.cell, np.ascontiguousarray(points, float))
+
+    def box(self) -> Box:
+        """Lowest and highest node [m]."""
+        return self.origin, self.origin + self.cell * (np.array(self.values.shape) - 1)
+
+    def solid(self) -> GridSdf:
+        """The field as a solid a cloth can lie on."""
+        x, y, z = (float(c) for c in self.origin)
+        return GridSdf((x, y, z), self.cell, self.values)
+
+
+def field_of(
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    *,
+    cell: float = 0.008,
+    band: float = 0.05,
+    hulls: Sequence[np.ndarray] = (),
+    box: Box | None = None,
+    far: bool = True,
+) -> DistanceField:
+    """The field of a closed mesh, vertices (V, 3) [m] and faces (F, 3) counter-clockwise from outside.
+
+    band: within it nodes hold their distance to the nearest face; beyond it they hold a fast-sweeping solution
+    of |grad d| = 1 or, without `far`, the band itself. hulls: point sets (N, 3) whose convex hulls are united
+    with the mesh (hands that cloth must slide over). box: lowest and highest corner, else the mesh's bounds and
+    the band around. A point is inside where faces wind about it more than 0 times, so closed parts may overlap.
+    Raises SimCoreError on wrong shapes, non-finite input, an open mesh and a grid beyond 200 million nodes.
+    """
+    vertices, faces = _checked(vertices, faces, cell, band)
+    hulls = [np.ascontiguousarray(points, float) for points in hulls]
+    origin, shape = _grid(vertices if not hulls else np.concatenate([vertices, *hulls]), cell, band, box)
+    values = _signed(vertices, faces, origin, shape, cell, band, far)
+    for points in hulls:
+        np.minimum(values, _signed(*hull_mesh(points), origin, shape, cell, band, far), out=values)
+    return DistanceField(origin, cell, values)
+
+
+def united(first: DistanceField, second: DistanceField, *, thicker: float = 0.0) -> DistanceField:
+    """min(first, second - thicker) on the grid of the first: outside, the distance to either [m].
+
+    The second is sampled where its grid differs.
+    """
+    if first.values.shape == second.values.shape and np.allclose(first.origin, second.origin):
+        other = second.values
+    else:
+        axes = [o + first.cell * np.arange(n) for o, n in zip(first.origin, first.values.shape, strict=True)]
+        nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        other = second.at(nodes).reshape(first.values.shape).astype(np.float32)
+    return DistanceField(first.origin, first.cell, np.minimum(first.values, other - np.float32(thicker)))
+
+
+def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Convex hull of points (N, 3): its corners and its faces, counter-clockwise from outside."""
+    hull = ConvexHull(points)
+    corner = points[hull.simplices]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    inward = (normal * hull.equations[:, :3]).sum(1) < 0
+    faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
+    used, index = np.unique(faces, return_inverse=True)
+    return np.ascontiguousarray(points[used], float), index.reshape(-1, 3).astype(np.int32)
+
+
+def _signed(
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    origin: np.ndarray,
+    shape: tuple[int, int, int],
+    cell: float,
+    band: float,
+    far: bool,
+) -> np.ndarray:
+    """Signed distance (nx, ny, nz) float32 of one closed mesh."""
+    nearest = np.full(shape, -1, np.int32)
+    distance = np.full(shape, np.inf, np.float32)
+    splat(vertices, faces, origin, cell, SPLAT_CELLS * cell, distance, nearest)
+    spread(vertices, faces, origin, cell, band, distance, nearest)
+    if far:
+        sweep(distance, nearest >= 0, cell)
+    else:
+        distance[nearest < 0] = band
+    return crossings(vertices, faces, origin, cell, distance)
+
+
+def _grid(
+    points: np.ndarray, cell: float, band: float, box: Box | None
+) -> tuple[np.ndarray, tuple[int, int, int]]:
+    low, high = (points.min(0) - band, points.max(0) + band) if box is None else map(np.asarray, box)
+    counts = np.ceil((high - low) / cell - 1e-9).astype(int) + 1
+    if counts.min() < 2 or counts.prod() > 2e8:
+        raise SimCoreError(f"field: {counts} nodes of {cell} m – take larger cells or a smaller box")
+    return np.array(low, float), (int(counts[0]), int(counts[1]), int(counts[2]))
+
+
+def _checked(
+    vertices: np.ndarray, faces: np.ndarray, cell: float, band: float
+) -> tuple[np.ndarray, np.ndarray]:
+    vertices, faces = np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces, np.int32)
+    if not (np.isfinite(cell) and np.isfinite(band) and 0 < cell and 2 * cell <= band):
+        raise SimCoreError(
+            f"field: cell {cell}, band {band} – lengths in metres, the band at least two cells"
+        )
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or faces.ndim != 2 or faces.shape[1:] != (3,):
+        raise SimCoreError(f"field: shapes {vertices.shape}, {faces.shape} – expected (V, 3) and (F, 3)")
+    if len(faces) == 0 or faces.min() < 0 or faces.max() >= len(vertices):
+        raise SimCoreError(f"field: faces name vertices beyond the {len(vertices)} there are, or none")
+    if not np.isfinite(vertices).all():
+        raise SimCoreError("field: vertices are not finite – mend the mesh")
+    there = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
+    forward = np.where(faces[:, [0, 1, 2]] < faces[:, [1, 2, 0]], 1, -1).ravel()
+    _, index = np.unique(there[:, 0] * len(vertices) + there[:, 1], return_inverse=True)
+    open_edges = int((np.bincount(index.reshape(-1), forward) != 0).sum())
+    if open_edges:
+        raise SimCoreError(f"field: the mesh is open or ill-wound at {open_edges} edges – close it first")
+    return vertices, faces

@@ -1,0 +1,117 @@
+"""What holds a cloth beside solids: sewing pairs, bounds across the middle plane, the other half as a mirror image."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from sim_core.errors import SimCoreError
+
+
+class Holds(NamedTuple):
+    """The arrays the compiled loops read; all may be empty. V vertices.
+
+    pairs (K, 2) int32 are drawn together from their spans (K,) [m]; same (V,) int32 gives both ends of a pair one
+    number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it mirrors in x = 0.
+    """
+
+    pairs: np.ndarray
+    spans: np.ndarray
+    same: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    slaves: np.ndarray
+
+    @staticmethod
+    def of(
+        count: int,
+        *,
+        pairs: np.ndarray | None = None,
+        positions: np.ndarray | None = None,
+        low: np.ndarray | None = None,
+        high: np.ndarray | None = None,
+        slaves: np.ndarray | None = None,
+    ) -> Holds:
+        """Holds of a sheet of `count` vertices; spans of the pairs are taken from positions (V, 3) [m].
+
+        Raises SimCoreError for indices out of range and bounds that leave no room.
+        """
+        none = np.zeros((0, 2), np.int32)
+        pairs = none if pairs is None else np.ascontiguousarray(pairs, np.int32).reshape(-1, 2)
+        slaves = none if slaves is None else np.ascontiguousarray(slaves, np.int32).reshape(-1, 2)
+        for name, index in (("pairs", pairs), ("slaves", slaves)):
+            if index.size and (index.min() < 0 or index.max() >= count):
+                raise SimCoreError(f"holds.{name}: vertex {index.max()} – there are 0 to {count - 1}")
+        spans = np.zeros(len(pairs))
+        if len(pairs):
+            if positions is None:
+                raise SimCoreError("holds: pairs need positions – give where the sheet starts")
+            spans = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
+        if low is None and high is None:
+            low = high = np.zeros(0)
+        else:
+            low = np.full(count, -np.inf) if low is None else np.ascontiguousarray(low, float)
+            high = np.full(count, np.inf) if high is None else np.ascontiguousarray(high, float)
+            if len(low) != count or len(high) != count or (low > high).any():
+                raise SimCoreError(
+                    f"holds: bounds of {len(low)} and {len(high)} vertices, low <= high, needed"
+                )
+        same = np.arange(count, dtype=np.int32)
+        for a, b in pairs:  # chains of pairs count as one point, too
+            same[same == same[b]] = same[a]
+        return Holds(pairs, spans, same, low, high, slaves)
+
+
+@njit(cache=True, error_model="numpy")
+def draw_together(holds, inverse_mass, x, v, share, rate):
+    """No pair is further apart than `share` of its span; what is gets the speed of closing, rate * span [m/s]."""
+    for k in range(len(holds.pairs)):
+        i, j = holds.pairs[k]
+        limit = share * holds.spans[k]
+        dx, dy, dz = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], x[i, 2] - x[j, 2]
+        gap = math.sqrt(dx * dx + dy * dy + dz * dz)
+        total = inverse_mass[i] + inverse_mass[j]
+        if gap <= limit or total == 0.0:
+            continue
+        a, b = inverse_mass[i] / total, inverse_mass[j] / total
+        if limit <= 0.0:  # held together: one point, one velocity
+            for c in range(3):
+                mid, mean = b * x[i, c] + a * x[j, c], b * v[i, c] + a * v[j, c]
+                x[i, c], x[j, c], v[i, c], v[j, c] = mid, mid, mean, mean
+            continue
+        nx, ny, nz = dx / gap, dy / gap, dz / gap
+        push = gap - limit
+        apart = (v[i, 0] - v[j, 0]) * nx + (v[i, 1] - v[j, 1]) * ny + (v[i, 2] - v[j, 2]) * nz
+        excess = max(apart + rate * holds.spans[k], 0.0)
+        for c in range(3):
+            n = nx if c == 0 else (ny if c == 1 else nz)
+            x[i, c] -= a * push * n
+            x[j, c] += b * push * n
+            v[i, c] -= a * excess * n
+            v[j, c] += b * excess * n
+
+
+@njit(cache=True, error_model="numpy")
+def bound(holds, x, v):
+    """Keeps x[:, 0] between the bounds; a vertex on one loses its speed across it."""
+    for i in range(len(holds.low)):
+        if x[i, 0] < holds.low[i]:
+            x[i, 0] = holds.low[i]
+            v[i, 0] = max(v[i, 0], 0.0)
+        if x[i, 0] > holds.high[i]:
+            x[i, 0] = holds.high[i]
+            v[i, 0] = min(v[i, 0], 0.0)
+        if holds.low[i] == holds.high[i]:
+            v[i, 0] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def mirror(holds, x, v):
+    """Puts every slave where the mirror image of its master is."""
+    for k in range(len(holds.slaves)):
+        i, j = holds.slaves[k]
+        x[i, 0], x[i, 1], x[i, 2] = -x[j, 0], x[j, 1], x[j, 2]
+        v[i, 0], v[i, 1], v[i, 2] = -v[j, 0], v[j, 1], v[j, 2]

@@ -1,0 +1,116 @@
+"""Panels and seams of a garment as values: outlines made of legs between named corners, paths along them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+__all__ = ["Panel", "Path", "Seam"]
+
+Colour = tuple[float, float, float]
+SeamKind = Literal["joined", "sewn", "middle"]
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One piece of cloth.
+
+    corners: names in order; legs: leg k runs from corner k to the next one, (n, 2) [m] with both ends, y down along
+    the warp; layer: which lies further out where panels overlap; doubled: cut twice as high and folded along its
+    length; along: the path of another panel that it is laid beside before sewing (None: it lies in the garment's
+    own plane, x outwards from the middle, y = 0 the shoulder fold); dye: sRGB 0..1 (None: the pattern's).
+    """
+
+    name: str
+    corners: tuple[str, ...]
+    legs: tuple[np.ndarray, ...]
+    layer: int = 0
+    doubled: bool = False
+    along: Path | None = None
+    dye: Colour | None = None
+
+    def outline(self) -> np.ndarray:
+        """The closed outline (N, 2) [m], first point not repeated."""
+        return np.concatenate([leg[:-1] for leg in self.legs])
+
+    def path(self, start: str, end: str, *, ahead: bool) -> tuple[int, ...]:
+        """Numbers of the legs from corner `start` to corner `end`, in the outline's order or against it."""
+        i, j, count = self.corners.index(start), self.corners.index(end), len(self.corners)
+        steps = (j - i) % count if ahead else (i - j) % count
+        return tuple((i + k) % count if ahead else (i - k - 1) % count for k in range(steps))
+
+    def to_dict(self) -> dict[str, Any]:
+        """A plain dictionary that JSON can hold."""
+        legs = [leg.tolist() for leg in self.legs]
+        return {**self.__dict__, "legs": legs, "along": self.along and str(self.along)}
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Panel:
+        """The panel `to_dict` described."""
+        changed = {
+            "corners": tuple(data["corners"]),
+            "legs": tuple(np.asarray(leg, float) for leg in data["legs"]),
+            "along": Path.read(data["along"]) if data["along"] else None,
+            "dye": tuple(data["dye"]) if data["dye"] else None,
+        }
+        return Panel(**{**data, **changed})
+
+
+@dataclass(frozen=True)
+class Path:
+    """A way along a panel's outline from one corner to another; ahead: in the order in which they are listed."""
+
+    panel: str
+    start: str
+    end: str
+    ahead: bool
+
+    def __str__(self) -> str:
+        return f"{self.panel}: {self.start} {'>' if self.ahead else '<'} {self.end}"
+
+    def legs(self, panel: Panel) -> list[np.ndarray]:
+        """The legs (n, 2) [m] in the path's direction."""
+        numbers = panel.path(self.start, self.end, ahead=self.ahead)
+        return [panel.legs[k] if self.ahead else panel.legs[k][::-1] for k in numbers]
+
+    def length(self, panel: Panel) -> float:
+        """[m]"""
+        return float(sum(arc_length(leg)[-1] for leg in self.legs(panel)))
+
+    @staticmethod
+    def read(text: str) -> Path:
+        """'panel: from > to' runs in the order of the outline, 'panel: from < to' against it.
+
+        Raises ValueError for anything else.
+        """
+        panel, colon, way = text.partition(":")
+        ahead = ">" in way
+        start, sign, end = way.partition(">" if ahead else "<")
+        if not (colon and sign and panel.strip() and start.strip() and end.strip()):
+            raise ValueError(f"{text!r} – write 'panel: from > to', or '<' for against the outline's order")
+        return Path(panel.strip(), start.strip(), end.strip(), ahead)
+
+
+@dataclass(frozen=True)
+class Seam:
+    """joined: flat before dressing; sewn: drawn together on the figure; middle: to its own mirror image (b None).
+
+    The first point of a meets the first point of b.
+    """
+
+    kind: SeamKind
+    a: Path
+    b: Path | None = None
+
+
+def arc_length(points: np.ndarray) -> np.ndarray:
+    """Length [m] along a polyline (n, 2) up to each point."""
+    return np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+
+
+def at_length(points: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Points (m, 2) of a polyline (n, 2) at arc lengths (m,) [m]."""
+    arc = arc_length(points)
+    return np.column_stack([np.interp(lengths, arc, points[:, 0]), np.interp(lengths, arc, points[:, 1])])
