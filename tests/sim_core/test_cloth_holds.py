@@ -126,7 +126,7 @@ def test_a_rising_body_lifts_the_cloth() -> None:
     again = drape(sheet, x, phases, collider=body, contact=Contact(0.004, 0.001, speed_limit=2.5))
     assert again.positions.tobytes() == done.positions.tobytes()
     with pytest.raises(SimCoreError, match="keys"):
-        drape(sheet, x, [Phase(0.32, body=(0.0, 3.0))], collider=body)
+        drape(sheet, x, [Phase(0.36, body=(0.0, 3.0))], collider=body)
     with pytest.raises(SimCoreError, match="next key"):
         drape(sheet, x, [Phase(0.04, body=(0.0, 2.0))], collider=body)
 
