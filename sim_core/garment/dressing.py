@@ -61,7 +61,7 @@ def dress(
     *,
     edge: float,
     schedule: Schedule,
-    stitch: tuple[float, float, float] | None = (0.26, 0.42, 0.095),
+    stitch: tuple[float, float, float] | None = None,
     progress: Callable[[float, str], None] | None = None,
     on_frame: Callable[[int, np.ndarray, Pose], None] | None = None,
     checkpoint: Path | None = None,
