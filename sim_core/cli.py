@@ -10,7 +10,8 @@ from sim_core.errors import SimCoreError
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "garment")
+ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
+ELSEWHERE = {"mannequin": "sim_core.garment.figure_command"}  # commands that share another room
 BENCHES = ("weave", "mesh", "cloth")
 
 DESCRIPTION = """\
@@ -20,6 +21,7 @@ The simulation core, one stage at a time: files in, files out.
   mesh     a panel outline (JSON) becomes a triangle mesh
   cloth    a mesh falls onto a collider under gravity
   garment  a pattern and a weave become a draped garment and its GLB models
+  mannequin  free body data become the figure that garments are dressed on
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed
@@ -35,6 +37,8 @@ Arguments behind `--` go to the programs, e.g. `simcore bench mesh -- --quick`.
 
 def _room_command(room: str):
     """Import `sim_core.<room>.command`, or None where that room is not installed."""
+    if room in ELSEWHERE:
+        return import_module(ELSEWHERE[room])
     try:
         return import_module(f"sim_core.{room}.command")
     except ModuleNotFoundError as error:

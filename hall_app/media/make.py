@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, str], None]
 QUALITY = 88  # of JPEG
+DRAWN = ("beizi", "pibo")  # simulated exhibits with drawings and a piece of music
 
 
 def make_media(folder: Path, progress: Progress = lambda fraction, label: None) -> None:
@@ -29,8 +30,8 @@ def make_media(folder: Path, progress: Progress = lambda fraction, label: None) 
     steps: tuple[tuple[str, Callable[[Path], None]], ...] = (
         ("music of the hall", _hall_music),
         ("music of the scarf", _scarf_music),
-        ("drawing of the weave", _weave),
-        ("drawing of the pattern", _pattern),
+        ("drawings of the weaves", _weaves),
+        ("drawings of the patterns", _patterns),
         ("the mirror", _mirror),
     )
     for number, (label, step) in enumerate(steps):
@@ -54,23 +55,26 @@ def _hall_music(folder: Path) -> None:
 
 
 def _scarf_music(folder: Path) -> None:
+    """One piece for both garments: they hang in one hall."""
     from .encode import write_sound
     from .music import falling_gauze
 
     sound = falling_gauze()
-    for ending in (".webm", ".mp3"):
-        write_sound(_place(folder / f"exhibits/pibo/media/listening{ending}"), sound)
+    for exhibit in DRAWN:
+        for ending in (".webm", ".mp3"):
+            write_sound(_place(folder / f"exhibits/{exhibit}/media/listening{ending}"), sound)
 
 
-def _weave(folder: Path) -> None:
+def _weaves(folder: Path) -> None:
     from sim_core.garment import Pattern
     from sim_core.weave import Weave
 
     from .drawings import weave_drawing
 
-    pattern, weave = (folder / path for path in _recipe(folder))
-    picture = weave_drawing(interlacing(Weave.load(weave), Pattern.load(pattern).dye))
-    picture.save(_place(folder / "exhibits/pibo/media/weave.jpg"), quality=QUALITY)
+    for exhibit in DRAWN:
+        pattern, weave = (folder / path for path in _recipe(folder, exhibit))
+        picture = weave_drawing(interlacing(Weave.load(weave), Pattern.load(pattern).dye))
+        picture.save(_place(folder / f"exhibits/{exhibit}/media/weave.jpg"), quality=QUALITY)
 
 
 def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> Interlacing:
@@ -87,22 +91,24 @@ def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> 
     )
 
 
-def _pattern(folder: Path) -> None:
+def _patterns(folder: Path) -> None:
     from sim_core.garment import Pattern
 
+    from .cutting_plan import cutting_plan
     from .drawings import pattern_drawing
 
-    pattern = Pattern.load(folder / _recipe(folder)[0])
-    picture = pattern_drawing([pattern.outline])
-    picture.save(_place(folder / "exhibits/pibo/media/pattern.jpg"), quality=QUALITY)
+    for exhibit in DRAWN:
+        pattern = Pattern.load(folder / _recipe(folder, exhibit)[0])
+        picture = cutting_plan(pattern) if pattern.panels else pattern_drawing([pattern.outline])
+        picture.save(_place(folder / f"exhibits/{exhibit}/media/pattern.jpg"), quality=QUALITY)
 
 
-def _recipe(folder: Path) -> tuple[str, str]:
-    """Pattern and weave files of the scarf, relative to the content folder."""
-    file, problems = read_table(folder, "exhibits/pibo/exhibit.toml", ExhibitFile)
+def _recipe(folder: Path, exhibit: str) -> tuple[str, str]:
+    """Pattern and weave files of a garment, relative to the content folder."""
+    file, problems = read_table(folder, f"exhibits/{exhibit}/exhibit.toml", ExhibitFile)
     if file is None:
         raise ContentError(problems)
-    assert file.garment is not None  # the scarf is simulated
+    assert file.garment is not None  # both are simulated
     return file.garment.pattern, file.garment.weave
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from sim_core.cloth.collider import GridSdf
-from sim_core.cloth.field_loops import crossings, interpolate, spread, splat, sweep
+from sim_core.cloth.field_loops import crossings, interpolate, splat, spread, sweep
 from sim_core.errors import SimCoreError
 
 __all__ = ["DistanceField", "field_of", "hull_mesh", "united"]

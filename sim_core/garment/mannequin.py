@@ -76,8 +76,8 @@ class Mannequin:
             upper = np.array([side * np.cos(down), -np.sin(down), 0.0])
             lower = np.cos(fore) * upper + np.array([0.0, 0.0, np.sin(fore)])
             shoulder, joint, wrist = self.heads[first : first + 3]
-            raised = _turn(joint - shoulder, upper)
-            bent = _turn(raised @ (wrist - joint), lower) @ raised
+            raised = turn_between(joint - shoulder, upper)
+            bent = turn_between(raised @ (wrist - joint), lower) @ raised
             shift = shoulder - raised @ shoulder
             moves.append((raised, shift))
             below = raised @ joint + shift - bent @ joint
@@ -137,7 +137,7 @@ def _checked(path: Path, name: str, mark_names: list[str], data: dict[str, np.nd
     return Mannequin(name, vertices, faces, np.array(data["heads"]), weights, marks)
 
 
-def _turn(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+def turn_between(start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """The smallest rotation (3, 3) that takes the direction of `start` to that of `end`."""
     a, b = start / np.linalg.norm(start), end / np.linalg.norm(end)
     v, c = np.cross(a, b), float(a @ b)

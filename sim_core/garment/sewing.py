@@ -87,16 +87,18 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
         owner.append(np.full(len(mesh.faces), number, np.int32))
         panel_of.append(np.full(len(mesh.vertices), number, np.int32))
         start += len(mesh.vertices)
+    alone = np.arange(start, dtype=np.int32)
     cloth = Cloth(
-        tuple(by_name),
-        np.concatenate(vertices),
-        np.concatenate(faces).astype(np.int32),
-        np.concatenate(owner),
-        np.concatenate(panel_of),
-        *(np.arange(start, dtype=np.int32),) * 2,
-        np.zeros((0, 2), np.int32),
-        np.zeros(0, np.int32),
-        paths,
+        names=tuple(by_name),
+        vertices=np.concatenate(vertices),
+        faces=np.concatenate(faces).astype(np.int32),
+        panel=np.concatenate(owner),
+        panel_of=np.concatenate(panel_of),
+        joined=alone,
+        closed=alone,
+        pairs=np.zeros((0, 2), np.int32),
+        middle=np.zeros(0, np.int32),
+        paths=paths,
     )
     return _stitched(cloth, by_name, seams)
 
