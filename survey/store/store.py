@@ -115,6 +115,15 @@ class Store:
         with self._read() as connection:
             return connection.execute(query).scalar_one()
 
+    def versions(self, questionnaire: str) -> tuple[int, ...]:
+        """The versions that were answered, the earliest first."""
+        table = tables.version
+        query = (
+            select(table.c.version).where(table.c.questionnaire == questionnaire).order_by(table.c.version)
+        )
+        with self._read() as connection:
+            return tuple(connection.execute(query).scalars())
+
     def rows(self, questionnaire: Questionnaire) -> tuple[Stored, ...]:
         """All answers to this version that stand, in the order in which they were received."""
         table = tables.submission
