@@ -22,7 +22,7 @@ from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 __all__ = ["FigureLike", "Worn", "dress"]
 
 OVER = 0.012  # [m] of the laid cloth above shoulders and arms
-SAG = 0.003  # strain under the coat's own weight; silk strains a hundredth of it, which nobody sees
+SAG = 0.002  # strain under the coat's own weight; silk strains a hundredth of it, which nobody sees
 FOLD = 1.3  # bending length (B / rho g)^(1/3) in edges: below 1.15 folds look like crumpled paper
 GAP = 0.004  # [m] from the middle, which the fronts do not pass
 
