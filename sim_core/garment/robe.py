@@ -54,7 +54,7 @@ def robe_on_figure(
         weave,
         figure,
         edge=step,
-        schedule=schedule,
+        timing=schedule,
         progress=progress and (lambda share, label: progress(0.94 * share, label)),
         on_frame=heard if on_frame else None,
         checkpoint=checkpoint,
