@@ -76,8 +76,6 @@ def garment_lines(content: Content) -> list[Line]:
 
 def _of(exhibit: str, recipe: str, record: dict[str, Any]) -> list[Line]:
     measured = {**record.get("errors", {}), "drape_s": record.get("seconds", {}).get("drape")}
-    if "hall_figure_triangles" in measured:
-        measured["hall_all_triangles"] = measured["hall_triangles"] + measured["hall_figure_triangles"]
     lines = []
     for limit in LIMITS:
         if limit.recipes and recipe not in limit.recipes:

@@ -25,7 +25,7 @@ OnFrame = Callable[[np.ndarray, "np.ndarray | None"], None]
 Colour = tuple[float, float, float]
 
 LACQUER, LINEN = (0.28, 0.13, 0.10), (0.84, 0.80, 0.73)
-HALL_CELL = 0.02  # [m] of a figure's vertices in the hall
+HALL_FIGURE = 1800  # triangles of a figure in the hall
 
 
 @dataclass(frozen=True)
@@ -193,8 +193,8 @@ class RobeOnFigure:
         from sim_core.garment.shown import shown_figure
 
         body = self._figure().mesh(self._schedule.pose)
-        cell = HALL_CELL if precision == "hall" else None
-        return {"figure": shown_figure(*body, garment.positions, garment.faces, cell=cell)}
+        most = HALL_FIGURE if precision == "hall" else None
+        return {"figure": shown_figure(*body, garment.positions, garment.faces, triangles=most)}
 
     def clear_of(self, garment: Garment) -> Any:
         return None

@@ -90,7 +90,7 @@ def test_coat_survives_file_detail_and_model(
     edges = np.sort(coarse.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert np.unique(edges, axis=0, return_counts=True)[1].max() == 2
     assert coarse.provenance["detail"]["hausdorff"]["max_m"] < 0.06
-    shown = shown_figure(*figure.mesh(Pose(45.0, 12.0)), coat.positions, coat.faces, cell=0.03)
+    shown = shown_figure(*figure.mesh(Pose(45.0, 12.0)), coat.positions, coat.faces, triangles=900)
     everything = shown_figure(*figure.mesh(Pose(45.0, 12.0)), np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert 0 < len(shown.faces) < 0.5 * len(everything.faces)
     maps = texture_maps(ling, relax(ling), pixels=64)
