@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sim_core import metrics
-from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
+from sim_core.cloth import Contact, Drape, Holds, Phase, drape
 from sim_core.cloth.draping import ENGINE_VERSION
 from sim_core.cloth.field import DistanceField, field_of, united
 from sim_core.errors import SimCoreError
@@ -28,7 +28,9 @@ from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
 from sim_core.weave import Weave, cloth_parameters, relax
 
-__all__ = ["PiboSettings", "pibo_on_figure"]
+__all__ = ["HELD", "PiboSettings", "pibo_on_figure"]
+
+HELD = Pose(58.0, 78.0)  # forearms forward, so that a scarf stays on them
 
 PHASES = (
     Phase(0.12, (0.0, 0.0), 400.0, 1.0, "letting go"),
@@ -66,7 +68,7 @@ def pibo_on_figure(
     figure: Mannequin,
     *,
     beneath: Garment | None = None,
-    pose: Pose = Pose(58.0, 78.0),
+    pose: Pose = HELD,
     edge: float | None = None,
     seed: int = 0,
     settings: PiboSettings | None = None,
@@ -156,9 +158,7 @@ def _field(solids: dict[str, Solid], s: PiboSettings) -> DistanceField:
     points = np.concatenate([vertices for vertices, _ in solids.values()])
     low = np.array([-2 * s.cell, -0.05, float(points[:, 2].min()) - 0.15])
     high = points.max(0) + [0.10, 0.06, 0.08]
-    fields = [
-        field_of(*solid, cell=s.cell, band=0.08, box=(low, high)) for solid in solids.values()
-    ]
+    fields = [field_of(*solid, cell=s.cell, band=0.08, box=(low, high)) for solid in solids.values()]
     field = fields[0]
     for other in fields[1:]:
         field = united(field, other, thicker=s.robe)

@@ -74,9 +74,7 @@ def _linear(at: np.ndarray, s: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(at, s, points[:, c]) for c in range(3)], axis=1)
 
 
-def swept(
-    rest: np.ndarray, path: np.ndarray, accordion: Accordion, rng: np.random.Generator
-) -> np.ndarray:
+def swept(rest: np.ndarray, path: np.ndarray, accordion: Accordion, rng: np.random.Generator) -> np.ndarray:
     """Start positions (P, 3) of a strip rest (P, 2): x [m] along it from the middle, y across.
 
     The frame of the section is carried along the path (N, 3) without turning about it; at the middle its width is

@@ -62,7 +62,9 @@ def test_weights_are_shares_and_every_bone_moves_something(woman: Mannequin) -> 
     assert (woman.weights[low, 0] > 1 - 1e-4).all()  # legs and hips stay
 
 
-@pytest.mark.parametrize(("arm", "elbow"), [(0.0, 0.0), (30.0, 0.0), (45.0, 12.0), (58.0, 78.0), (20.0, 90.0)])
+@pytest.mark.parametrize(
+    ("arm", "elbow"), [(0.0, 0.0), (30.0, 0.0), (45.0, 12.0), (58.0, 78.0), (20.0, 90.0)]
+)
 def test_arms_reach_the_direction_asked(woman: Mannequin, arm: float, elbow: float) -> None:
     marks, rest = woman.landmarks(arm, elbow), woman.landmarks()
     for side, sign in (("l", 1.0), ("r", -1.0)):
