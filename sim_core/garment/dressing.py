@@ -78,7 +78,7 @@ def dress(
     ]
     body = schedule.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
-    contact = Contact(0.005, 0.0025, 0.004, every=2, speed_limit=2.5)
+    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5)
     stages = _Stages(cloth, schedule, progress, on_frame)
 
     open_ = half_sheet(cloth, cloth.joined, materials, kind, apart)

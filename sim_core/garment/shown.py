@@ -11,17 +11,18 @@ from sim_core.raster import depth_map, lit
 __all__ = ["shown_figure", "seen"]
 
 DIRECTIONS, PIXELS = 96, 700
+HIGHEST, LOWEST = 0.85, -0.2  # sines of the elevations from which a visitor may look
 BIAS = 0.003  # [m] less than the cloth's distance from the skin
 BASE = (0.21, 0.025)  # [m] radius and height of the disc it stands on
 
 
 def seen(vertices: np.ndarray, cloth: np.ndarray, cloth_faces: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Which vertices (V,) of a figure are seen from any of many directions past the cloth (C, 3), or themselves."""
+    """Which vertices (V,) of a figure are seen past the cloth (C, 3) from any of the directions a visitor may look."""
     everything = np.concatenate([vertices, cloth])
     found = np.zeros(len(vertices), bool)
     golden = np.pi * (3 - np.sqrt(5))
     for k in range(DIRECTIONS):
-        y = 1 - 2 * (k + 0.5) / DIRECTIONS
+        y = HIGHEST - (HIGHEST - LOWEST) * (k + 0.5) / DIRECTIONS
         ring = np.sqrt(1 - y * y)
         rows = _axes(np.array([ring * np.cos(golden * k), y, ring * np.sin(golden * k)]))
         flat = everything @ rows.T
