@@ -84,7 +84,9 @@ def _models(inputs: Inputs, draping: Recipe, garment: Garment, out: Path) -> Gar
     beside = draping.beside(light, "hall")
     write_glb(out / "hall.glb", light, inputs.maps, precision="hall", **beside)
     figure = beside.get("figure")
-    return light.noted(hall_figure_triangles=0 if figure is None else len(figure.faces))
+    under = beside.get("beneath")
+    beneath = 0 if under is None else len(under[0].faces)
+    return light.noted(hall_figure_triangles=beneath + (0 if figure is None else len(figure.faces)))
 
 
 def budget(nearest: float, pixels: float) -> float:
@@ -102,6 +104,8 @@ def _drape(
     def told(share: float, label: str) -> None:
         progress(0.6 * share, label)
 
+    draping.prepare(lambda share, label: progress(0.0, f"{label}, {share:.0%}"), work / "beneath.npz")
+    seconds["beneath"], clock = round(time.perf_counter() - clock, 2), time.perf_counter()
     if not film:
         garment = draping.drape(told, work / "drape.npz", None)
         seconds["drape"] = round(time.perf_counter() - clock, 2)

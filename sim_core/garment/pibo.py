@@ -28,7 +28,7 @@ from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
 from sim_core.weave import Weave, cloth_parameters, relax
 
-__all__ = ["HELD", "PiboSettings", "pibo_on_figure"]
+__all__ = ["HELD", "PiboSettings", "field_under", "pibo_on_figure", "solids_under"]
 
 HELD = Pose(58.0, 78.0)  # forearms forward, so that a scarf stays on them
 
@@ -54,12 +54,14 @@ class PiboSettings:
     cell: float = 0.008
     reach: float = 0.075
     low: float = 0.02
-    back: float = 0.20
-    arm: float = 0.13
-    end: float = 0.22
-    waves: float = 3.0
+    back: float = 0.22
+    gap: float = 0.15
+    arm: float = 0.15
+    end: float = 0.24
+    waves: float = 5.0
     clearance: float = 0.004
     shell: float = 0.003
+    self_friction: float = 0.5  # folds lie many deep in the gap: less lets them creep for ever
 
 
 def pibo_on_figure(
@@ -87,14 +89,14 @@ def pibo_on_figure(
         raise SimCoreError(f"pattern {pattern.name}: pibo_on_figure needs one [[panel]] and mirror = true")
     s, step, clock = settings or PiboSettings(), edge or pattern.edge, Clock()
     cloth = pattern.cloth(step)
-    solids = _solids(figure, pose, beneath)
-    field = _field(solids, s)
+    solids = solids_under(figure, pose, beneath)
+    field = field_under(solids, s)
     clock.lap("field")
-    path, accordion = _laying(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
+    path, forearm, accordion = _laying(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
     parameters = cloth_parameters(weave, relax(weave))
     material, choices = scarf_material(parameters, float(np.ptp(cloth.vertices[:, 0])) / 2, step)
     half = half_sheet(cloth, cloth.closed, [material], *np.zeros((2, len(cloth.faces)), np.int32))
-    start = half.gathered(swept(cloth.vertices, path, accordion, np.random.default_rng(seed)))
+    start = half.gathered(swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed)))
     clock.lap("laying")
 
     def heard(index: int, x: np.ndarray) -> None:
@@ -107,7 +109,9 @@ def pibo_on_figure(
         start,
         phases,
         collider=field.solid(),
-        contact=Contact(s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5),
+        contact=Contact(
+            s.clearance, 0.5 * s.clearance, s.shell, self_friction=s.self_friction, every=2, speed_limit=2.5
+        ),
         holds=_holds(half),
         progress=progress,
         on_frame=heard if on_frame else None,
@@ -145,7 +149,7 @@ def pibo_on_figure(
 Solid = tuple[np.ndarray, np.ndarray]
 
 
-def _solids(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str, Solid]:
+def solids_under(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str, Solid]:
     """Closed meshes under the scarf: the posed body and, its openings capped, the robe."""
     solids = {"body": (figure.posed(pose.arm, pose.elbow), figure.faces)}
     if beneath is not None:
@@ -153,10 +157,12 @@ def _solids(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str,
     return solids
 
 
-def _field(solids: dict[str, Solid], s: PiboSettings) -> DistanceField:
-    """min(body, robe - thickness) over the left half and a little of the right."""
+def field_under(solids: dict[str, Solid], s: PiboSettings, *, whole: bool = False) -> DistanceField:
+    """min(body, robe - thickness) over the left half and a little of the right, or over both."""
     points = np.concatenate([vertices for vertices, _ in solids.values()])
-    low = np.array([-2 * s.cell, -0.05, float(points[:, 2].min()) - 0.15])
+    low = np.array(
+        [float(points[:, 0].min()) - 0.10 if whole else -2 * s.cell, -0.05, float(points[:, 2].min()) - 0.15]
+    )
     high = points.max(0) + [0.10, 0.06, 0.08]
     fields = [field_of(*solid, cell=s.cell, band=0.08, box=(low, high)) for solid in solids.values()]
     field = fields[0]
@@ -167,8 +173,8 @@ def _field(solids: dict[str, Solid], s: PiboSettings) -> DistanceField:
 
 def _laying(
     figure: Mannequin, pose: Pose, field: DistanceField, length: float, s: PiboSettings
-) -> tuple[np.ndarray, Accordion]:
-    """The path of the left half and the section along it, from the figure's landmarks."""
+) -> tuple[np.ndarray, np.ndarray, Accordion]:
+    """The path of the left half, the forearm and the section along the path, from the figure's landmarks."""
     marks = figure.landmarks(pose.arm, pose.elbow)
     elbow, wrist, hip, waist = (marks[name] for name in ("elbow_l", "wrist_l", "hip", "waist"))
     arm = elbow + 0.5 * (wrist - elbow)
@@ -188,8 +194,8 @@ def _laying(
     room = np.array([0.05, 0.05, 0.05, 0.04, 0.04, 0.045, 0.05, 0.05])
     path = arranged_path(knots, field, room, length)
     top = float(np.argmax(path[:, 1])) * 0.005
-    stations = (0.0, top - 0.22, top - 0.06, top + 0.08, length)
-    return path, Accordion(stations, (s.back, s.arm, s.arm, s.arm, s.end), s.waves)
+    stations = (0.0, top - 0.28, top - 0.12, top - 0.04, top + 0.08, length)
+    return path, wrist - elbow, Accordion(stations, (s.back, s.gap, s.gap, s.arm, s.arm, s.end), s.waves)
 
 
 def _holds(half: Half) -> Holds:

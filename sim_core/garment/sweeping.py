@@ -74,16 +74,18 @@ def _linear(at: np.ndarray, s: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(at, s, points[:, c]) for c in range(3)], axis=1)
 
 
-def swept(rest: np.ndarray, path: np.ndarray, accordion: Accordion, rng: np.random.Generator) -> np.ndarray:
+def swept(
+    rest: np.ndarray, path: np.ndarray, arm: np.ndarray, accordion: Accordion, rng: np.random.Generator
+) -> np.ndarray:
     """Start positions (P, 3) of a strip rest (P, 2): x [m] along it from the middle, y across.
 
-    The frame of the section is carried along the path (N, 3) without turning about it; at the middle its width is
-    upright, so that over the forearm it lies along the arm. Every section is as long as the cloth is wide.
+    Along the path (N, 3) the section's width turns from upright, at the middle, to lie along the forearm, whose
+    direction is arm (3,), where the path is highest. Every section is as long as the cloth is wide.
     """
     width = float(np.ptp(rest[:, 1]))
     across = rest[:, 1] - rest[:, 1].min()
     along = rest[:, 0]
-    tangent, lateral, outward = _frames(path)
+    _, lateral, outward = _frames(path, arm, int(np.argmax(path[:, 1])))
     s = STEP * np.arange(len(path))
     phase, lean = rng.uniform(0, 2 * np.pi), rng.uniform(0, 2 * np.pi)
     sections = [_section(float(e), width, accordion, phase, lean) for e in accordion.extent(s)]
@@ -102,17 +104,16 @@ def swept(rest: np.ndarray, path: np.ndarray, accordion: Accordion, rng: np.rand
     return out
 
 
-def _frames(path: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Tangent, lateral and outward unit vectors (N, 3), rotation-minimising from an upright start."""
+def _frames(path: np.ndarray, arm: np.ndarray, top: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Tangent, lateral and outward unit vectors (N, 3): the width upright at the middle, along -`arm` from `top` on."""
     tangent = np.gradient(path, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     tangent[0] = [1.0, 0.0, 0.0]
-    lateral = np.zeros_like(path)
-    current = np.array([0.0, 1.0, 0.0])
-    for k, t in enumerate(tangent):
-        current = current - (current @ t) * t
-        current /= np.linalg.norm(current)
-        lateral[k] = current
+    share = np.clip(np.arange(len(path)) / top, 0, 1)
+    turn = (share * share * (3 - 2 * share))[:, None]
+    lateral = (1 - turn) * [0.0, 1.0, 0.0] - turn * arm / np.linalg.norm(arm)
+    lateral = lateral - (lateral * tangent).sum(1, keepdims=True) * tangent
+    lateral /= np.linalg.norm(lateral, axis=1, keepdims=True)
     return tangent, lateral, np.cross(tangent, lateral)
 
 
