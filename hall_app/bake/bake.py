@@ -102,6 +102,8 @@ def _drape(
     def told(share: float, label: str) -> None:
         progress(0.6 * share, label)
 
+    draping.prepare(lambda share, label: progress(0.0, f"{label}, {share:.0%}"), work / "beneath.npz")
+    seconds["beneath"], clock = round(time.perf_counter() - clock, 2), time.perf_counter()
     if not film:
         garment = draping.drape(told, work / "drape.npz", None)
         seconds["drape"] = round(time.perf_counter() - clock, 2)
