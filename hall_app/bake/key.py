@@ -14,7 +14,7 @@ BAKE_VERSION = 2
 
 
 def bake_key(content: Content, exhibit: Exhibit) -> str:
-    """16 hex digits over recipe, settings, pattern, weave, mannequin and BAKE_VERSION.
+    """16 hex digits over recipe, settings, patterns, weaves, mannequin and BAKE_VERSION.
 
     Raises ValueError for an exhibit without a garment.
     """
@@ -23,7 +23,9 @@ def bake_key(content: Content, exhibit: Exhibit) -> str:
         raise ValueError(f"exhibit {exhibit.id} has no garment to bake")
     digest = hashlib.sha256(f"bake {BAKE_VERSION}\n".encode())
     digest.update(json.dumps(recipe.model_dump(), sort_keys=True).encode())
-    for path in (recipe.pattern, recipe.weave, *((recipe.mannequin,) if recipe.mannequin else ())):
+    for path in filter(
+        None, (recipe.pattern, recipe.weave, recipe.mannequin, recipe.robe_pattern, recipe.robe_weave)
+    ):
         digest.update(f"\0{path}\0".encode())
         digest.update((content.folder / path).read_bytes())
     return digest.hexdigest()[:16]

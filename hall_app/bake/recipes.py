@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -25,22 +25,30 @@ OnFrame = Callable[[np.ndarray, "np.ndarray | None"], None]
 Colour = tuple[float, float, float]
 
 LACQUER, LINEN = (0.28, 0.13, 0.10), (0.84, 0.80, 0.73)
-HALL_CELL = 0.02  # [m] of a figure's vertices in the hall
+HALL_FIGURE = 1800  # triangles of a figure in the hall
+HALL_ROBE = 0.003  # [m] by how much the robe under a scarf may deviate in the hall, p99
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a recipe is given: the exhibit's table, pattern, weave with its maps, and the mannequin file if named."""
+    """What a recipe is given: the exhibit's table, pattern, weave with its maps; mannequin file and robe if named."""
 
     table: GarmentRecipe
     pattern: Pattern
     weave: Weave
     maps: TextureMaps
     mannequin: Path | None
+    robe_pattern: Pattern | None = None
+    robe_weave: Weave | None = None
+    robe_maps: TextureMaps | None = None
 
 
 class Recipe(Protocol):
     """One way to drape, made from Inputs."""
+
+    def prepare(self, progress: Progress, checkpoint: Path) -> None:
+        """Whatever must be there before the film begins: the robe under a scarf."""
+        ...
 
     def drape(self, progress: Progress, checkpoint: Path, on_frame: OnFrame | None) -> Garment:
         """Simulate; on_frame(positions (P, 3) of the look's cloth, moved solid (V, 3) or None) hears every frame."""
@@ -70,7 +78,12 @@ def read_inputs(folder: Path, table: GarmentRecipe) -> Inputs:
 
     pattern, weave = Pattern.load(folder / table.pattern), Weave.load(folder / table.weave)
     mannequin = folder / table.mannequin if table.mannequin else None
-    return Inputs(table, pattern, weave, texture_maps(weave, relax(weave), pixels=512), mannequin)
+    maps = texture_maps(weave, relax(weave), pixels=512)
+    if table.robe_pattern is None or table.robe_weave is None:
+        return Inputs(table, pattern, weave, maps, mannequin)
+    robe, cloth = Pattern.load(folder / table.robe_pattern), Weave.load(folder / table.robe_weave)
+    woven = texture_maps(cloth, relax(cloth), pixels=512)
+    return Inputs(table, pattern, weave, maps, mannequin, robe, cloth, woven)
 
 
 def shown_colour(dye: Colour | None, maps: TextureMaps) -> Colour:
@@ -89,6 +102,9 @@ class ScarfOnStand:
 
     def __init__(self, inputs: Inputs) -> None:
         self._in = inputs
+
+    def prepare(self, progress: Progress, checkpoint: Path) -> None:
+        return None
 
     def drape(self, progress: Progress, checkpoint: Path, on_frame: OnFrame | None) -> Garment:
         from sim_core.garment import scarf_on_stand
@@ -135,6 +151,9 @@ class RobeOnFigure:
         if inputs.mannequin is None:
             raise SimCoreError("recipe robe_on_figure: names no mannequin – add garment.mannequin")
         self._in, self._schedule = inputs, Schedule(Pose(inputs.table.arm, inputs.table.elbow))
+
+    def prepare(self, progress: Progress, checkpoint: Path) -> None:
+        return None
 
     def _figure(self) -> Figure:
         from sim_core.garment.figure import Figure
@@ -193,14 +212,112 @@ class RobeOnFigure:
         from sim_core.garment.shown import shown_figure
 
         body = self._figure().mesh(self._schedule.pose)
-        cell = HALL_CELL if precision == "hall" else None
-        return {"figure": shown_figure(*body, garment.positions, garment.faces, cell=cell)}
+        most = HALL_FIGURE if precision == "hall" else None
+        return {"figure": shown_figure(*body, garment.positions, garment.faces, triangles=most)}
 
     def clear_of(self, garment: Garment) -> Any:
         return None
 
 
+class PiboOnFigure:
+    """A scarf round the back and over the forearms of the mannequin, which wears a robe."""
+
+    def __init__(self, inputs: Inputs) -> None:
+        from sim_core.errors import SimCoreError
+
+        table = inputs.table
+        if not (inputs.mannequin and inputs.robe_pattern and inputs.robe_weave):
+            raise SimCoreError(
+                "recipe pibo_on_figure: needs garment.mannequin, robe_pattern and robe_weave – add them"
+            )
+        robe = table.model_copy(update={"pattern": table.robe_pattern, "edge": table.robe_edge})
+        self._in = inputs
+        self._under = RobeOnFigure(
+            replace(
+                inputs,
+                table=robe,
+                pattern=inputs.robe_pattern,
+                weave=inputs.robe_weave,
+                maps=inputs.robe_maps,
+            )
+        )
+        self._robes: dict[str, Garment] = {}
+
+    def prepare(self, progress: Progress, checkpoint: Path) -> None:
+        from sim_core.garment import Garment
+
+        done = checkpoint.with_name("robe.npz")
+        if not done.is_file():
+            self._under.drape(progress, checkpoint, None).save(done)
+        self._robes["close"] = Garment.load(done)
+
+    def drape(self, progress: Progress, checkpoint: Path, on_frame: OnFrame | None) -> Garment:
+        from sim_core.garment.mannequin import Mannequin
+        from sim_core.garment.pibo import pibo_on_figure
+        from sim_core.garment.schedule import Pose
+
+        table, robe = self._in.table, self._robes["close"]
+        assert self._in.mannequin is not None
+        garment = pibo_on_figure(
+            self._in.pattern,
+            self._in.weave,
+            Mannequin.load(self._in.mannequin),
+            beneath=robe,
+            pose=Pose(table.arm, table.elbow),
+            edge=table.edge,
+            seed=table.seed,
+            progress=progress,
+            checkpoint=checkpoint,
+            on_frame=None if on_frame is None else lambda index, x: on_frame(x.astype(np.float32), None),
+        )
+        under = {f"robe_{name}": value for name, value in robe.provenance["errors"].items()}
+        errors = {**garment.provenance["errors"], **under}
+        stages = {**garment.provenance["seconds"], "robe": robe.provenance["seconds"]["drape"]}
+        return garment.noted(errors=errors, seconds=stages)
+
+    def look(self) -> Look:
+        cloth = self._in.pattern.cloth(self._in.table.edge).mirrored()
+        return self._look(cloth.faces)
+
+    def still(self, garment: Garment) -> Look:
+        return self._look(garment.faces)
+
+    def _look(self, faces: np.ndarray) -> Look:
+        robe = self._robes["close"]
+        dressed = self._under.still(robe)
+        lift = dressed.lift
+        layers = tuple(Solid(robe.positions, part, colour, 0.08, lift) for part, colour in dressed.cloth)
+        colour = shown_colour(self._in.pattern.dye, self._in.maps)
+        alpha = max(cover(self._in.maps), 0.6)
+        return Look(((faces, colour),), (*dressed.solids, *layers), alpha, dressed.height, lift)
+
+    def beside(self, garment: Garment, precision: str) -> dict[str, Any]:
+        assert self._in.robe_maps is not None
+        robe = self._robe_at(precision)
+        return {**self._under.beside(robe, precision), "beneath": (robe, self._in.robe_maps)}
+
+    def _robe_at(self, precision: str) -> Garment:
+        """The robe as fine as the model needs it; in the hall its own cheapest level."""
+        from sim_core.garment import choose_detail
+
+        if precision not in self._robes:
+            own = self._robes["close"]
+            self._robes[precision] = choose_detail(own, HALL_ROBE)
+        return self._robes[precision]
+
+    def clear_of(self, garment: Garment) -> Any:
+        from sim_core.garment.mannequin import Mannequin
+        from sim_core.garment.pibo import PiboSettings, field_under, solids_under
+        from sim_core.garment.schedule import Pose
+
+        assert self._in.mannequin is not None
+        pose = Pose(self._in.table.arm, self._in.table.elbow)
+        solids = solids_under(Mannequin.load(self._in.mannequin), pose, self._robe_at("hall"))
+        return field_under(solids, PiboSettings(), whole=True).solid()
+
+
 RECIPES: dict[str, Callable[[Inputs], Recipe]] = {
     "scarf_on_stand": ScarfOnStand,
     "robe_on_figure": RobeOnFigure,
+    "pibo_on_figure": PiboOnFigure,
 }

@@ -48,12 +48,17 @@ class GarmentRecipe(Table):
 
     pattern: ContentPath = Field(description="pattern file, e.g. patterns/pibo.toml")
     weave: ContentPath = Field(description="weave file, e.g. weaves/gauze.toml")
-    recipe: Literal["scarf_on_stand", "robe_on_figure"] = Field(
-        description="how it is draped: scarf_on_stand or robe_on_figure"
+    recipe: Literal["scarf_on_stand", "robe_on_figure", "pibo_on_figure"] = Field(
+        description="how it is draped: scarf_on_stand, robe_on_figure or pibo_on_figure"
     )
     mannequin: ContentPath | None = Field(
-        None, description="figure of robe_on_figure, e.g. mannequins/woman.npz"
+        None, description="figure of robe_on_figure and pibo_on_figure, e.g. mannequins/woman.npz"
     )
+    robe_pattern: ContentPath | None = Field(
+        None, description="pattern of the robe under the scarf of pibo_on_figure, e.g. patterns/robe.toml"
+    )
+    robe_weave: ContentPath | None = Field(None, description="its weave, e.g. weaves/juan.toml")
+    robe_edge: float = Field(0.02, ge=0.004, le=0.1, description="edge length of its mesh [m]")
     arm: float = Field(45.0, ge=0, le=70, description="degrees its upper arms hang below horizontal")
     elbow: float = Field(12.0, ge=0, le=100, description="degrees its forearms are bent forward")
     edge: float = Field(0.012, ge=0.004, le=0.1, description="edge length of the simulated cloth mesh [m]")

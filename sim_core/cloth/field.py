@@ -14,7 +14,7 @@ from sim_core.errors import SimCoreError
 
 __all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
 
-SPLAT_CELLS = 1.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
+EXACT_CELLS = 2.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
 Box = tuple[Sequence[float], Sequence[float]]
 
 
@@ -53,24 +53,27 @@ def field_of(
     *,
     cell: float = 0.008,
     band: float = 0.05,
+    exact: float | None = None,
     hulls: Sequence[np.ndarray] = (),
     box: Box | None = None,
     far: bool = True,
 ) -> DistanceField:
     """The field of a closed mesh, vertices (V, 3) [m] and faces (F, 3) counter-clockwise from outside.
 
-    band: within it nodes hold their distance to the nearest face; beyond it they hold a fast-sweeping solution
-    of |grad d| = 1 or, without `far`, the band itself. hulls: point sets (N, 3) whose convex hulls are united
-    with the mesh (hands that cloth must slide over). box: lowest and highest corner, else the mesh's bounds and
-    the band around. A point is inside where faces wind about it more than 0 times, so closed parts may overlap.
+    band: within it nodes hold their distance to a face handed on by a neighbour, nearly always the nearest, and
+    within `exact` (2.5 cells when left out, at most the band) to the nearest face for certain; beyond the band a
+    fast-sweeping solution of |grad d| = 1 or, without `far`, the band itself. hulls: point sets (N, 3) whose convex
+    hulls are united with the mesh (hands that cloth must slide over). box: lowest and highest corner, else the
+    mesh's bounds and the band around. A point is inside where faces wind about it more than 0 times, so closed parts may overlap.
     Raises SimCoreError on wrong shapes, non-finite input, an open mesh and a grid beyond 200 million nodes.
     """
     vertices, faces = _checked(vertices, faces, cell, band)
     hulls = [np.ascontiguousarray(points, float) for points in hulls]
     origin, shape = _grid(vertices if not hulls else np.concatenate([vertices, *hulls]), cell, band, box)
-    values = _signed(vertices, faces, origin, shape, cell, band, far)
+    exact = min(band, EXACT_CELLS * cell if exact is None else exact)
+    values = _signed(vertices, faces, origin, shape, cell, band, exact, far)
     for points in hulls:
-        np.minimum(values, _signed(*hull_mesh(points), origin, shape, cell, band, far), out=values)
+        np.minimum(values, _signed(*hull_mesh(points), origin, shape, cell, band, exact, far), out=values)
     return DistanceField(origin, cell, values)
 
 
@@ -106,13 +109,16 @@ def _signed(
     shape: tuple[int, int, int],
     cell: float,
     band: float,
+    exact: float,
     far: bool,
 ) -> np.ndarray:
     """Signed distance (nx, ny, nz) float32 of one closed mesh."""
     nearest = np.full(shape, -1, np.int32)
     distance = np.full(shape, np.inf, np.float32)
-    splat(vertices, faces, origin, cell, SPLAT_CELLS * cell, distance, nearest)
+    splat(vertices, faces, origin, cell, min(exact, EXACT_CELLS * cell), distance, nearest)
     spread(vertices, faces, origin, cell, band, distance, nearest)
+    if exact > EXACT_CELLS * cell:  # quick now: only faces that beat what was handed on are measured
+        splat(vertices, faces, origin, cell, exact, distance, nearest)
     if far:
         sweep(distance, nearest >= 0, cell)
     else:

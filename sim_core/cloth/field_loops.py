@@ -23,6 +23,11 @@ def splat(vertices, faces, origin, cell, reach, distance, nearest):
         size = math.sqrt(mx * mx + my * my + mz * mz)
         if size > 0.0:
             mx, my, mz = mx / size, my / size, mz / size
+        cx, cy, cz = (a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0
+        ball = 0.0
+        for q in (a, b, c):
+            ball = max(ball, (q[0] - cx) ** 2 + (q[1] - cy) ** 2 + (q[2] - cz) ** 2)
+        ball = math.sqrt(ball)
         i0 = max(0, math.ceil((min(a[0], b[0], c[0]) - reach - origin[0]) / cell))
         j0 = max(0, math.ceil((min(a[1], b[1], c[1]) - reach - origin[1]) / cell))
         k0 = max(0, math.ceil((min(a[2], b[2], c[2]) - reach - origin[2]) / cell))
@@ -35,12 +40,14 @@ def splat(vertices, faces, origin, cell, reach, distance, nearest):
                 p[1] = origin[1] + cell * j
                 for k in range(k0, k1 + 1):
                     p[2] = origin[2] + cell * k
-                    flat = abs((p[0] - a[0]) * mx + (p[1] - a[1]) * my + (p[2] - a[2]) * mz)
-                    best = distance[i, j, k]
-                    if flat >= best or flat > reach:
-                        continue  # not even the face's plane is nearer
+                    best = min(distance[i, j, k], reach)
+                    rim = best + ball
+                    if (p[0] - cx) ** 2 + (p[1] - cy) ** 2 + (p[2] - cz) ** 2 >= rim * rim:
+                        continue  # not even the ball around the face is nearer
+                    if abs((p[0] - a[0]) * mx + (p[1] - a[1]) * my + (p[2] - a[2]) * mz) >= best:
+                        continue  # nor its plane
                     d2 = _gap2(p, a, b, c)
-                    if d2 < best * best and d2 <= reach * reach:
+                    if d2 < best * best:
                         distance[i, j, k] = math.sqrt(d2)
                         nearest[i, j, k] = f
 

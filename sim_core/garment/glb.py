@@ -55,8 +55,11 @@ def write_glb(
     precision: Precision = "close",
     stand: Stand | None = None,
     figure: Shown | None = None,
+    beneath: tuple[Garment, MapsLike] | None = None,
 ) -> int:
     """Writes the garment and, where it has them, stand or figure; returns the size in bytes.
+
+    beneath: another garment the figure wears under it, with its own weave's maps.
 
     Panels of one dye are one node: the garment's name, then its name and a number. Twins on a seam share place and
     normal, so that no seam shows but for its change of colour. A figure and its robe stand on its base.
@@ -72,7 +75,8 @@ def write_glb(
             f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
         )
     glb, lift = GlbFile(), np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
-    _write_panels(glb, replace(garment, positions=garment.positions + lift), maps, precision)
+    for worn, woven in (*((beneath,) if beneath else ()), (garment, maps)):
+        _write_panels(glb, replace(worn, positions=worn.positions + lift), woven, precision)
     if stand is None and "stand" in garment.provenance:
         stand = Stand(**garment.provenance["stand"])
     if stand is not None:
