@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..content.glb import read_glb
 from ..content.loading import Content, Exhibit
 from .encode import film_possible
 from .film import filming, stills
@@ -83,10 +84,7 @@ def _models(inputs: Inputs, draping: Recipe, garment: Garment, out: Path) -> Gar
     )
     beside = draping.beside(light, "hall")
     write_glb(out / "hall.glb", light, inputs.maps, precision="hall", **beside)
-    figure = beside.get("figure")
-    under = beside.get("beneath")
-    beneath = 0 if under is None else len(under[0].faces)
-    return light.noted(hall_figure_triangles=beneath + (0 if figure is None else len(figure.faces)))
+    return light.noted(hall_all_triangles=read_glb(out / "hall.glb").triangles)
 
 
 def budget(nearest: float, pixels: float) -> float:
@@ -145,7 +143,7 @@ def _record(
     errors |= {f"hall_hausdorff_{name.removesuffix('_m')}": value for name, value in apart.items()}
     errors["vertices"], errors["triangles"] = len(garment.positions), len(garment.faces)
     errors["hall_triangles"] = len(light.faces)
-    errors["hall_figure_triangles"] = light.provenance["hall_figure_triangles"]
+    errors["hall_all_triangles"] = light.provenance["hall_all_triangles"]
     return {
         "key": key,
         "digest": garment.digest(),

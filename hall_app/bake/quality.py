@@ -43,6 +43,7 @@ LIMITS = (
     Limit("hall_hausdorff_p99"),
     Limit("hall_hausdorff_max"),
     Limit("drape_s", 180),
+    Limit("drape_cpu_s", recipes=(ROBE,)),
 )
 
 
@@ -77,8 +78,7 @@ def garment_lines(content: Content) -> list[Line]:
 
 def _of(exhibit: str, recipe: str, record: dict[str, Any]) -> list[Line]:
     measured = {**record.get("errors", {}), "drape_s": record.get("seconds", {}).get("drape")}
-    if "hall_figure_triangles" in measured:
-        measured["hall_all_triangles"] = measured["hall_triangles"] + measured["hall_figure_triangles"]
+    measured["drape_cpu_s"] = record.get("stages", {}).get("drape_cpu")
     lines = []
     for limit in LIMITS:
         if limit.recipes and recipe not in limit.recipes:

@@ -25,9 +25,8 @@ OnFrame = Callable[[np.ndarray, "np.ndarray | None"], None]
 Colour = tuple[float, float, float]
 
 LACQUER, LINEN = (0.28, 0.13, 0.10), (0.84, 0.80, 0.73)
-HALL_ROBE = 0.012  # [m] by how much the robe under a scarf may deviate in the hall, p99
-HALL_ROBE_EDGES = (0.03, 0.036, 0.042)  # [m] levels tried for it
-HALL_CELL = 0.02  # [m] of a figure's vertices in the hall
+HALL_FIGURE = 1800  # triangles of a figure in the hall
+HALL_ROBE = 0.003  # [m] by how much the robe under a scarf may deviate in the hall, p99
 
 
 @dataclass(frozen=True)
@@ -213,8 +212,8 @@ class RobeOnFigure:
         from sim_core.garment.shown import shown_figure
 
         body = self._figure().mesh(self._schedule.pose)
-        cell = HALL_CELL if precision == "hall" else None
-        return {"figure": shown_figure(*body, garment.positions, garment.faces, cell=cell)}
+        most = HALL_FIGURE if precision == "hall" else None
+        return {"figure": shown_figure(*body, garment.positions, garment.faces, triangles=most)}
 
     def clear_of(self, garment: Garment) -> Any:
         return None
@@ -303,7 +302,7 @@ class PiboOnFigure:
 
         if precision not in self._robes:
             own = self._robes["close"]
-            self._robes[precision] = choose_detail(own, HALL_ROBE, edges=HALL_ROBE_EDGES)
+            self._robes[precision] = choose_detail(own, HALL_ROBE)
         return self._robes[precision]
 
     def clear_of(self, garment: Garment) -> Any:

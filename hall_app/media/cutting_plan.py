@@ -34,7 +34,7 @@ def cutting_plan(pattern: Pattern) -> Image.Image:
         x, y = corner + scale * (np.asarray(place) - low)
         return float(x), float(y)
 
-    for panel, outline, shift in zip(pattern.panels, points, shifts, strict=True):
+    for panel, outline in zip(pattern.panels, points, strict=True):
         fill = _tint(panel.dye or pattern.dye or (0.94, 0.9, 0.82))
         drawn = [at(p) for p in [*outline, outline[0]]]
         sheet.pen.polygon([(OVER * x, OVER * y) for x, y in drawn], fill=fill)

@@ -15,12 +15,12 @@ from sim_core.cloth.contact import contact_samples
 from sim_core.cloth.forces import energies, stable_step
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, schedule
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet, Stencil
 from sim_core.cloth.stepping import Surroundings, advance
 from sim_core.errors import SimCoreError
 
-FRAME = 1 / 25  # [s]
 ENGINE_VERSION = 1  # raise when equal inputs give other bits: old checkpoints are then left alone
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2)))
 _MAX_HALVINGS = 8
@@ -28,43 +28,6 @@ CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]
 OnFrame = Callable[[int, np.ndarray], None]
-
-
-@dataclass(frozen=True)
-class Phase:
-    """A stretch of a run: seconds, gravity [m/s2] from..to, mass damping [1/s], friction (None: the material's)."""
-
-    seconds: float
-    gravity: tuple[float, float] = (9.81, 9.81)
-    damping: float | None = None
-    friction: float | None = None
-    label: str = "draping"
-    speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
-    rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
-    pins: tuple[int, ...] = ()  # vertices held still in this phase, beside those of the run
-    sewing: tuple[float, float] = (
-        0.0,
-        0.0,
-    )  # share of their first distance that sewing pairs may have, from..to
-    body: tuple[float, float] | None = None  # keys of a moving body, from..to (None: where it is)
-
-
-@dataclass(frozen=True)
-class Contact:
-    """How the cloth touches: clearance [m] of vertices and of midpoints and centroids, self-contact shell.
-
-    thickness [m] is the distance two layers of cloth keep (0: no self-contact).
-    """
-
-    clearance: float = 0.003
-    sample_clearance: float = 0.001
-    thickness: float = 0.0
-    skin: float = 0.008
-    spring: float = 0.03
-    self_friction: float = 0.2
-    every: int = 1
-    cap: float = 0.0005
-    speed_limit: float = 1e3
 
 
 @dataclass(frozen=True)
@@ -148,15 +111,15 @@ def _run_frames(run: _Run, state: RunState, hooks: _Hooks) -> None:
     if hooks.on_frame:
         for index, frame in enumerate(state.film):
             hooks.on_frame(index, frame)
-    saved, schedule = time.perf_counter(), run.schedule()
+    saved, moments = time.perf_counter(), schedule(run.phases)
     try:
-        while state.frame < len(schedule):
-            now = schedule[state.frame]
+        while state.frame < len(moments):
+            now = moments[state.frame]
             if hooks.progress:
-                hooks.progress(state.frame / len(schedule), now.phase.label)
+                hooks.progress(state.frame / len(moments), now.phase.label)
             run.frame(state, now)
             if now.phase.rest is not None and state.trace[-1][0] < now.phase.rest:
-                state.frame = _end_of(schedule, state.frame, now.phase)
+                state.frame = _end_of(moments, state.frame, now.phase)
             hooks.heard(state)
             if hooks.checkpoint and time.perf_counter() - saved > hooks.pause:
                 save_checkpoint(hooks.checkpoint, hooks.key, state)
@@ -182,18 +145,8 @@ def _result(state: RunState, seconds: float) -> Drape:
     )
 
 
-@dataclass(frozen=True)
-class _Moment:
-    """What holds during one frame: its phase, gravity [m/s2], sewing share and body key at its begin and end."""
-
-    phase: Phase
-    gravity: float
-    sewing: tuple[float, float]
-    body: tuple[float, float]
-
-
-def _end_of(schedule: list[_Moment], frame: int, phase: Phase) -> int:
-    while frame < len(schedule) and schedule[frame].phase is phase:
+def _end_of(moments: list[Moment], frame: int, phase: Phase) -> int:
+    while frame < len(moments) and moments[frame].phase is phase:
         frame += 1
     return frame
 
@@ -259,22 +212,6 @@ class _Run:
             *self.holds,
         )
 
-    def schedule(self) -> list[_Moment]:
-        """What each frame is under; gravity is constant within a frame, so that energies compare."""
-        frames: list[_Moment] = []
-        place = 0.0
-        for phase in self.phases:
-            count = max(1, round(phase.seconds / FRAME))
-            low, high = phase.gravity
-            path = phase.body or (place, place)
-            place = path[1]
-            for k in range(count):
-                ends = [
-                    (a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)
-                ]
-                frames.append(_Moment(phase, low + (high - low) * (k + 1) / count, ends[0], ends[1]))
-        return frames
-
     def stencil(self, phase: Phase) -> Stencil:
         """The sheet's stencil with the phase's pins."""
         if phase.pins not in self._pinned:
@@ -282,7 +219,7 @@ class _Run:
             self._pinned[phase.pins] = self.sheet.pinned(pins)
         return self._pinned[phase.pins]
 
-    def frame(self, state: RunState, now: _Moment) -> None:
+    def frame(self, state: RunState, now: Moment) -> None:
         """One frame at 0.7 of the stable step of the current tangent; rolled back and halved if it blows up."""
         before_x = state.positions
         for _ in range(_MAX_HALVINGS):
@@ -308,7 +245,7 @@ class _Run:
             raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
         return int(np.ceil(FRAME / step))
 
-    def _advance(self, state: RunState, now: _Moment, x: np.ndarray, v: np.ndarray, count: int) -> None:
+    def _advance(self, state: RunState, now: Moment, x: np.ndarray, v: np.ndarray, count: int) -> None:
         material, c, phase = self.sheet.material, self.contact, now.phase
         packed, body = self.moving.packed(*now.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
@@ -336,7 +273,7 @@ class _Run:
         )
         advance(*args, x, v, state.last_step, FRAME / count, count)
 
-    def _healthy(self, state: RunState, now: _Moment, x: np.ndarray, v: np.ndarray) -> bool:
+    def _healthy(self, state: RunState, now: Moment, x: np.ndarray, v: np.ndarray) -> bool:
         """Finite, and no more energy than before (contact may add a little: it lifts and separates).
 
         Where sewing or a moving body does work, no edge may be twice its length instead.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sim_core.garment.schedule import Pose
     from sim_core.weave import Weave
 
-HALL_CELL = 0.02  # [m] of the figure's vertices in the hall's model
+HALL_FIGURE = 1800  # triangles of the figure in the hall's model
 
 DESCRIPTION = """\
 Drapes what PATTERN.toml cuts, woven as WEAVE.toml says, by a recipe, and writes to --out:
@@ -77,7 +77,11 @@ def run(args: argparse.Namespace) -> int:
             figure=_shown(worn_by, args, garment, None),
         ),
         "hall.glb": write_glb(
-            args.out / "hall.glb", hall, maps, precision="hall", figure=_shown(worn_by, args, hall, HALL_CELL)
+            args.out / "hall.glb",
+            hall,
+            maps,
+            precision="hall",
+            figure=_shown(worn_by, args, hall, HALL_FIGURE),
         ),
     }
     if args.picture:
@@ -122,13 +126,13 @@ def _draped(args: argparse.Namespace, pattern: Pattern, weave: Weave, figure: Fi
 
 
 def _shown(
-    figure: Figure | None, args: argparse.Namespace, garment: Garment, cell: float | None
+    figure: Figure | None, args: argparse.Namespace, garment: Garment, triangles: int | None
 ) -> Shown | None:
     from sim_core.garment.shown import shown_figure
 
     if figure is None:
         return None
-    return shown_figure(*figure.mesh(_pose(args)), garment.positions, garment.faces, cell=cell)
+    return shown_figure(*figure.mesh(_pose(args)), garment.positions, garment.faces, triangles=triangles)
 
 
 def _progress(fraction: float, label: str) -> None:

@@ -44,7 +44,8 @@ class Panel:
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold."""
         legs = [leg.tolist() for leg in self.legs]
-        return {**self.__dict__, "legs": legs, "along": self.along and str(self.along)}
+        changed = {"corners": list(self.corners), "legs": legs, "along": self.along and str(self.along)}
+        return {**self.__dict__, **changed, "dye": self.dye and list(self.dye)}
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Panel:

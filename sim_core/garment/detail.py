@@ -1,8 +1,8 @@
-"""Levels of detail: the pattern meshed again, coarser, and the drape sampled where the new points lie."""
+"""Levels of detail: the drape thinned where it is flat, or its pattern meshed again, coarser, and sampled."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,8 +16,23 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.stand import Stand
+from sim_core.garment.thinning import Thinning
 from sim_core.mesh import panel_mesh
 
+SHARES = (
+    0.6,
+    0.45,
+    0.35,
+    0.28,
+    0.22,
+    0.18,
+    0.15,
+    0.12,
+    0.1,
+    0.08,
+    0.065,
+    0.05,
+)  # of the triangles, tried in turn
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
 
 
@@ -35,10 +50,7 @@ def detail(garment: Garment, edge: float, *, solid: Solid | None = None) -> Garm
         solid = Stand(**garment.provenance["stand"]).collider()
     if solid is not None:
         coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
-    apart = metrics.hausdorff(
-        garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=_SPACING
-    )
-    errors = {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
+    errors = _apart(garment, coarse)
     return coarse.noted(detail={"edge": edge, "triangles": len(coarse.faces), "hausdorff": errors})
 
 
@@ -70,6 +82,55 @@ def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
     return replace(garment, pattern=vertices, pattern_faces=faces, weld=weld, panel=panel, positions=mean)
 
 
+def thinned(garment: Garment, counts: Sequence[int], *, solid: Solid | None = None) -> Iterator[Garment]:
+    """The garment with about each of `counts` triangles, the largest first, its distance measured.
+
+    Triangles go where the drape is flat (see `thinning`); what stays keeps place and texture coordinates. Of a
+    mirrored garment one half is thinned and mirrored. The last one may come again when nothing more can go.
+    """
+    pattern = Pattern.from_dict(garment.cut) if garment.cut else None
+    twice = 2 if pattern is not None and pattern.mirror else 1
+    vertices, faces = len(garment.pattern) // twice, len(garment.pattern_faces) // twice
+    own, weld = np.unique(garment.weld[:vertices], return_inverse=True)
+    mesh = Thinning(
+        garment.positions[own], garment.pattern_faces[:faces], weld.reshape(-1), garment.pattern[:vertices]
+    )
+    if solid is None and "stand" in garment.provenance:
+        solid = Stand(**garment.provenance["stand"]).collider()
+    for count in sorted(counts, reverse=True):
+        mesh.to(count // twice)
+        left, index = mesh.faces(), mesh.numbers()
+        if twice == 2:
+            left = np.concatenate([left, left[:, [0, 2, 1]] + vertices])
+            index = np.concatenate([index, index + faces])
+        yield _kept(garment, left.astype(np.int32), garment.panel[index], solid)
+
+
+def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid | None) -> Garment:
+    """The garment with these faces of its pattern vertices alone."""
+    used, new = np.unique(faces, return_inverse=True)
+    own, weld = np.unique(garment.weld[used], return_inverse=True)
+    coarse = replace(
+        garment,
+        pattern=garment.pattern[used],
+        pattern_faces=new.reshape(-1, 3).astype(np.int32),
+        weld=weld.reshape(-1).astype(np.int32),
+        panel=panel,
+        positions=garment.positions[own],
+    )
+    if solid is not None:
+        coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
+    errors = _apart(garment, coarse)
+    return coarse.noted(detail={"triangles": len(coarse.faces), "hausdorff": errors})
+
+
+def _apart(garment: Garment, coarse: Garment) -> dict[str, float]:
+    apart = metrics.hausdorff(
+        garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=_SPACING
+    )
+    return {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
+
+
 def choose_detail(
     garment: Garment,
     budget: float,
@@ -79,17 +140,20 @@ def choose_detail(
 ) -> Garment:
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
-    edges: mesh steps to try, finest first until one fails (by default 1.25 to 4 times the garment's own).
-    The garment itself is returned when none will do. The choice and all that was tried go into the provenance.
+    The garment is thinned by steps until it fails; with `edges`, mesh steps [m], it is meshed again instead, finest
+    first. The garment itself is returned when none will do. The choice and all that was tried go into the provenance.
     """
-    own = float(garment.provenance.get("edge", 0.0)) or _mean_edge(garment)
+    best, chosen = garment, {"triangles": len(garment.faces)}
     tried: list[dict[str, float]] = []
-    best, chosen = garment, {"edge": own, "triangles": len(garment.faces)}
-    for edge in sorted(edges or own * np.array([1.25, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0])):
-        coarse = detail(garment, float(edge), solid=solid)
+    if edges is None:
+        counts = [round(len(garment.faces) * share) for share in SHARES]
+        levels = thinned(garment, counts, solid=solid)
+    else:
+        levels = (detail(garment, float(edge), solid=solid) for edge in sorted(edges))
+    for coarse in levels:
         facts = coarse.provenance["detail"]
         p99 = facts["hausdorff"]["p99_m"]
-        tried.append({"edge": float(edge), "triangles": facts["triangles"], "p99_m": p99})
+        tried.append({**{k: v for k, v in facts.items() if k != "hausdorff"}, "p99_m": p99})
         if p99 > budget:
             break
         best, chosen = coarse, facts
@@ -118,12 +182,6 @@ def locate(points: np.ndarray, rest: np.ndarray, faces: np.ndarray) -> tuple[np.
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
-def _mean_edge(garment: Garment) -> float:
-    corner = garment.rest_corners()
-    side = corner - np.roll(corner, 1, axis=1)
-    return float(np.sqrt((side**2).sum(2)).mean())
 
 
 def _cleared(positions: np.ndarray, faces: np.ndarray, solid: Solid) -> np.ndarray:

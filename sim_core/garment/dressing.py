@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
-from sim_core.cloth.draping import FRAME
+from sim_core.cloth.phases import schedule
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern
@@ -22,7 +22,7 @@ from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 __all__ = ["FigureLike", "Worn", "dress"]
 
 OVER = 0.012  # [m] of the laid cloth above shoulders and arms
-SAG = 0.003  # strain under the coat's own weight; silk strains a hundredth of it, which nobody sees
+SAG = 0.002  # strain under the coat's own weight; silk strains a hundredth of it, which nobody sees
 FOLD = 1.3  # bending length (B / rho g)^(1/3) in edges: below 1.15 folds look like crumpled paper
 GAP = 0.004  # [m] from the middle, which the fronts do not pass
 
@@ -60,7 +60,7 @@ def dress(
     figure: FigureLike,
     *,
     edge: float,
-    schedule: Schedule,
+    timing: Schedule,
     stitch: tuple[float, float, float] | None = None,
     progress: Callable[[float, str], None] | None = None,
     on_frame: Callable[[int, np.ndarray, Pose], None] | None = None,
@@ -76,10 +76,10 @@ def dress(
     apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[
         cloth.panel
     ]
-    body = schedule.body(figure.origin, figure.cell, figure.field, figure.name)
+    body = timing.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
     contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5)
-    stages = _Stages(cloth, schedule, progress, on_frame)
+    stages = _Stages(cloth, timing, progress, on_frame)
 
     open_ = half_sheet(cloth, cloth.joined, materials, kind, apart)
     x = open_.gathered(start)
@@ -87,13 +87,13 @@ def dress(
     sewn = drape(
         open_.sheet,
         x,
-        schedule.sewing(),
+        timing.sewing(),
         collider=body,
         contact=contact,
         holds=holds,
         checkpoint=checkpoint,
         keep=True,
-        **stages.hooks(open_, 0, schedule.sewing()),
+        **stages.hooks(open_, 0, timing.sewing()),
     )
     gap = _gap(cloth, open_, sewn.positions)
 
@@ -101,7 +101,7 @@ def dress(
     x = shut.gathered(sewn.positions[open_.number])
     v = shut.gathered(sewn.velocities[open_.number])
     v[shut.middle, 0] = 0.0
-    phases = schedule.dressing(_nape(pattern, cloth, shut))
+    phases = timing.dressing(_nape(pattern, cloth, shut))
     second = checkpoint.with_name(checkpoint.name + ".2") if checkpoint else None
     draped = drape(
         shut.sheet,
@@ -125,17 +125,17 @@ class _Stages:
     def __init__(
         self,
         cloth: Cloth,
-        schedule: Schedule,
+        timing: Schedule,
         progress: Callable[[float, str], None] | None,
         on_frame: Callable[[int, np.ndarray, Pose], None] | None,
     ) -> None:
-        self._cloth, self._schedule, self._progress, self._on_frame = cloth, schedule, progress, on_frame
+        self._cloth, self._timing, self._progress, self._on_frame = cloth, timing, progress, on_frame
 
     def hooks(self, half: Half, first: int, phases: tuple[Phase, ...]) -> dict[str, Any]:
         """The keyword arguments of `drape` that report one run whose first frame is number `first`."""
         own = _frames(phases)
-        whole = _frames(self._schedule.sewing()) + _frames(self._schedule.dressing(()))
-        poses = _poses(self._schedule, phases)
+        whole = _frames(self._timing.sewing()) + _frames(self._timing.dressing(()))
+        poses = _poses(self._timing, phases)
 
         def told(fraction: float, label: str) -> None:
             assert self._progress is not None
@@ -149,17 +149,12 @@ class _Stages:
 
 
 def _frames(phases: tuple[Phase, ...]) -> int:
-    return sum(max(1, round(phase.seconds / FRAME)) for phase in phases)
+    return len(schedule(phases))
 
 
-def _poses(schedule: Schedule, phases: tuple[Phase, ...]) -> list[Pose]:
+def _poses(dressing: Schedule, phases: tuple[Phase, ...]) -> list[Pose]:
     """The figure's pose at the end of every frame."""
-    poses, key = [], 0.0
-    for phase in phases:
-        count, path = max(1, round(phase.seconds / FRAME)), phase.body or (key, key)
-        key = path[1]
-        poses += [schedule.pose_of(path[0] + (path[1] - path[0]) * (k + 1) / count) for k in range(count)]  # type: ignore[arg-type]
-    return poses
+    return [dressing.pose_of(moment.body[1]) for moment in schedule(phases)]
 
 
 def _laying(figure: FigureLike) -> Laying:

@@ -22,7 +22,8 @@ class Laying:
     """Lengths in metres, y up, +z the figure's front.
 
     top: height of the cloth over shoulders and arms; fold: z of the shoulder fold; front, back: z of the sheets;
-    bend: radius of the two bends; turn: way along the edge over which a band turns upright before the neck.
+    bend: radius of the two bends; turn: where, along the edge before the shoulder fold, a band begins to turn upright
+    and where it has, before it meets the neck.
     """
 
     top: float
@@ -30,7 +31,7 @@ class Laying:
     front: float = 0.17
     back: float = -0.15
     bend: float = 0.04
-    turn: float = 0.16
+    turn: tuple[float, float] = (0.17, 0.075)
 
     def place(self, points: np.ndarray) -> np.ndarray:
         """Positions (N, 3) of points (N, 2) of the garment's plane: x outwards, y down in front, up in the back."""
@@ -69,7 +70,8 @@ def _beside(pattern: Pattern, band: Panel, cloth: Cloth, own: np.ndarray, laying
     order = np.argsort(arc)
     down = cloth.vertices[edge, 1]  # y in the garment's plane: how far below the shoulder fold
     place = laying.place(cloth.vertices[edge])
-    share = np.clip(1 - down / laying.turn, 0, 1)
+    begin, end = laying.turn
+    share = np.clip((begin - down) / (begin - end), 0, 1)
     rise = 0.5 * np.pi * share * share * (3 - 2 * share)
 
     def at(values: np.ndarray) -> np.ndarray:

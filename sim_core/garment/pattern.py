@@ -72,7 +72,7 @@ class Pattern:
             "name": self.name,
             "outline": np.asarray(self.outline, float).tolist(),
             "edge": self.edge,
-            "dye": self.dye,
+            "dye": self.dye and list(self.dye),
             "panels": [panel.to_dict() for panel in self.panels],
             "seams": [{"kind": s.kind, "a": str(s.a), "b": s.b and str(s.b)} for s in self.seams],
             "mirror": self.mirror,

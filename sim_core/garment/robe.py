@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -44,6 +45,7 @@ def robe_on_figure(
     if not pattern.panels or not pattern.mirror:
         raise SimCoreError(f"pattern {pattern.name}: robe_on_figure needs [[panel]] tables and mirror = true")
     schedule, step, clock = schedule or Schedule(), edge or pattern.edge, Clock()
+    busy = time.process_time()
 
     def heard(index: int, half: np.ndarray, pose: Pose) -> None:
         assert on_frame is not None
@@ -54,12 +56,13 @@ def robe_on_figure(
         weave,
         figure,
         edge=step,
-        schedule=schedule,
+        timing=schedule,
         progress=progress and (lambda share, label: progress(0.94 * share, label)),
         on_frame=heard if on_frame else None,
         checkpoint=checkpoint,
     )
     clock.lap("drape")
+    clock.laps["drape_cpu"] = round(time.process_time() - busy, 2)
     garment = _garment(pattern, weave, worn).noted(edge=step)
     if progress:
         progress(0.95, "checking")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sim_core.garment.glb import Shown
+from sim_core.garment.thinning import Thinning
 from sim_core.picture import normals
 from sim_core.raster import depth_map, lit
 
@@ -50,42 +51,21 @@ def shown_figure(
     cloth: np.ndarray,
     cloth_faces: np.ndarray,
     *,
-    cell: float | None = None,
-    rings: int = 3,
+    triangles: int | None = None,
+    rings: int = 2,
 ) -> Shown:
     """The visible part of a figure with `rings` of faces around it.
 
-    cell [m]: vertices in one cube of that size become one (None: all are kept). Normals are the fine figure's.
+    triangles: thinned to that many (None: all are kept). Normals are the fine figure's.
     """
     visible = seen(vertices, cloth, cloth_faces, faces)
     for _ in range(rings):
         visible[faces[visible[faces].any(1)]] = True
     kept = faces[visible[faces].all(1)]
     shading = normals(vertices, faces)
-    if cell is not None:
-        vertices, shading, kept = _clustered(vertices, shading, kept, cell)
+    if triangles is not None:
+        mesh = Thinning(vertices, kept, np.arange(len(vertices)))
+        mesh.to(triangles)
+        kept = mesh.faces()
     used, index = np.unique(kept, return_inverse=True)
     return Shown(vertices[used], index.reshape(-1, 3).astype(np.int32), shading[used], BASE)
-
-
-def _clustered(
-    vertices: np.ndarray, shading: np.ndarray, faces: np.ndarray, cell: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """One vertex per cube and side of the surface: its mean place, moved out to keep the curve, and mean normal."""
-    used = np.unique(faces)
-    turned = np.abs(shading[used]).argmax(1) * 2 + (
-        np.take_along_axis(shading[used], np.abs(shading[used]).argmax(1)[:, None], 1)[:, 0] > 0
-    )
-    keys = np.column_stack([np.floor(vertices[used] / cell).astype(int), turned])
-    _, label = np.unique(keys, axis=0, return_inverse=True)
-    label = label.reshape(-1)
-    count = np.bincount(label)
-    place = np.stack([np.bincount(label, vertices[used, c]) / count for c in range(3)], axis=1)
-    normal = np.stack([np.bincount(label, shading[used, c]) / count for c in range(3)], axis=1)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    number = np.zeros(len(vertices), int)
-    number[used] = label
-    new = number[faces]
-    solid = (new[:, 0] != new[:, 1]) & (new[:, 1] != new[:, 2]) & (new[:, 2] != new[:, 0])
-    _, first = np.unique(np.sort(new[solid], axis=1), axis=0, return_index=True)
-    return place, normal, new[solid][np.sort(first)]

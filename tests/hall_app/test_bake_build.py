@@ -31,6 +31,7 @@ def folder(tmp_path):
     """The shipped content with a coarse scarf that has not been baked."""
     home = tmp_path / "content"
     shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked"))
+    shutil.rmtree(home / "exhibits" / "beizi")  # a minute of its own: tests/sim_core/test_garment_robe.py
     toml = home / "exhibits" / "pibo" / "exhibit.toml"
     lines = toml.read_text("utf-8").splitlines()
     lines = ["edge = 0.06" if line.startswith("edge = ") else line for line in lines]

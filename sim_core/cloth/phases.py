@@ -1,0 +1,72 @@
+"""What a run goes through: phases of gravity, damping, friction, sewing and a moving body, frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["FRAME", "Contact", "Moment", "Phase", "schedule"]
+
+FRAME = 1 / 25  # [s]
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of a run: seconds, gravity [m/s2] from..to, mass damping [1/s], friction (None: the material's)."""
+
+    seconds: float
+    gravity: tuple[float, float] = (9.81, 9.81)
+    damping: float | None = None
+    friction: float | None = None
+    label: str = "draping"
+    speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
+    rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
+    pins: tuple[int, ...] = ()  # vertices held still in this phase, beside those of the run
+    sewing: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # share of their first distance that sewing pairs may have, from..to
+    body: tuple[float, float] | None = None  # keys of a moving body, from..to (None: where it is)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How the cloth touches: clearance [m] of vertices and of midpoints and centroids, self-contact shell.
+
+    thickness [m] is the distance two layers of cloth keep (0: no self-contact).
+    """
+
+    clearance: float = 0.003
+    sample_clearance: float = 0.001
+    thickness: float = 0.0
+    skin: float = 0.008
+    spring: float = 0.03
+    self_friction: float = 0.2
+    every: int = 1
+    cap: float = 0.0005
+    speed_limit: float = 1e3
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What holds during one frame: its phase, gravity [m/s2], sewing share and body key at its begin and end."""
+
+    phase: Phase
+    gravity: float
+    sewing: tuple[float, float]
+    body: tuple[float, float]
+
+
+def schedule(phases: Sequence[Phase]) -> list[Moment]:
+    """What each frame is under; gravity is constant within a frame, so that energies compare."""
+    frames: list[Moment] = []
+    place = 0.0
+    for phase in phases:
+        count = max(1, round(phase.seconds / FRAME))
+        low, high = phase.gravity
+        path = phase.body or (place, place)
+        place = path[1]
+        for k in range(count):
+            ends = [(a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)]
+            frames.append(Moment(phase, low + (high - low) * (k + 1) / count, ends[0], ends[1]))
+    return frames
