@@ -64,7 +64,8 @@ def field_of(
     within `exact` (2.5 cells when left out, at most the band) to the nearest face for certain; beyond the band a
     fast-sweeping solution of |grad d| = 1 or, without `far`, the band itself. hulls: point sets (N, 3) whose convex
     hulls are united with the mesh (hands that cloth must slide over). box: lowest and highest corner, else the
-    mesh's bounds and the band around. A point is inside where faces wind about it more than 0 times, so closed parts may overlap.
+    mesh's bounds and the band around. A point is inside where faces wind about it more than 0 times, so closed
+    parts may overlap.
     Raises SimCoreError on wrong shapes, non-finite input, an open mesh and a grid beyond 200 million nodes.
     """
     vertices, faces = _checked(vertices, faces, cell, band)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,19 @@ __all__ = ["HELD", "PiboSettings", "field_under", "pibo_on_figure", "solids_unde
 
 HELD = Pose(58.0, 78.0)  # forearms forward, so that a scarf stays on them
 
-PHASES = (
+FALLING = (
     Phase(0.12, (0.0, 0.0), 400.0, 1.0, "letting go"),
     Phase(0.28, (0.0, 2.0), 15.0, 1.0, "letting go"),
     Phase(0.52, (2.0, 9.81), 6.0, 1.0, "falling"),
     Phase(1.60, (9.81, 9.81), 2.5, 0.8, "swinging"),
     Phase(0.80, (9.81, 9.81), 6.0, 0.8, "settling"),
-    Phase(3.20, (9.81, 9.81), 12.0, 0.8, "at rest", rest=8e-6),
+    Phase(0.80, (9.81, 9.81), 12.0, 0.8, "settling"),
+)
+# Then with a softer shell: stacked folds that push each other hard tremble for ever.
+RESTING = (
+    Phase(1.80, (9.81, 9.81), 7.0, 2.0, "coming to rest"),
+    Phase(0.80, (9.81, 9.81), 30.0, 2.0, "coming to rest"),
+    Phase(1.20, (9.81, 9.81), 80.0, 2.0, "at rest", rest=8e-6),
 )
 
 
@@ -61,7 +67,8 @@ class PiboSettings:
     waves: float = 5.0
     clearance: float = 0.004
     shell: float = 0.003
-    self_friction: float = 0.5  # folds lie many deep in the gap: less lets them creep for ever
+    spring: tuple[float, float] = (0.03, 0.005)  # of the shell, falling and resting
+    self_friction: tuple[float, float] = (0.5, 1.0)
 
 
 def pibo_on_figure(
@@ -74,7 +81,7 @@ def pibo_on_figure(
     edge: float | None = None,
     seed: int = 0,
     settings: PiboSettings | None = None,
-    phases: tuple[Phase, ...] = PHASES,
+    phases: tuple[tuple[Phase, ...], tuple[Phase, ...]] = (FALLING, RESTING),
     progress: Callable[[float, str], None] | None = None,
     on_frame: Callable[[int, np.ndarray], None] | None = None,
     checkpoint: Path | None = None,
@@ -99,24 +106,8 @@ def pibo_on_figure(
     start = half.gathered(swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed)))
     clock.lap("laying")
 
-    def heard(index: int, x: np.ndarray) -> None:
-        assert on_frame is not None
-        own = x[half.number]
-        on_frame(index, np.concatenate([own, own * np.array([-1.0, 1.0, 1.0], own.dtype)]))
-
-    worn = drape(
-        half.sheet,
-        start,
-        phases,
-        collider=field.solid(),
-        contact=Contact(
-            s.clearance, 0.5 * s.clearance, s.shell, self_friction=s.self_friction, every=2, speed_limit=2.5
-        ),
-        holds=_holds(half),
-        progress=progress,
-        on_frame=heard if on_frame else None,
-        checkpoint=checkpoint,
-    )
+    hooks = _Hooks(half, phases, progress, on_frame, checkpoint)
+    worn = _draped(half, start, field, s, phases, hooks)
     clock.lap("drape")
     garment = _garment(pattern, weave, cloth, worn, half, {**asdict(material), "choices": choices})
     errors = pibo_errors(garment, solids) | {
@@ -147,6 +138,78 @@ def pibo_on_figure(
 
 
 Solid = tuple[np.ndarray, np.ndarray]
+Phases = tuple[tuple[Phase, ...], tuple[Phase, ...]]
+
+
+@dataclass(frozen=True)
+class _Hooks:
+    """Who hears of the two runs as if they were one, and where they are kept."""
+
+    half: Half
+    phases: Phases
+    progress: Callable[[float, str], None] | None
+    on_frame: Callable[[int, np.ndarray], None] | None
+    checkpoint: Path | None
+
+    def of(self, run: int, first: int) -> dict[str, Any]:
+        """Keyword arguments of `drape` for one run whose first frame is number `first`."""
+        seconds = [sum(phase.seconds for phase in phases) for phases in self.phases]
+        before, own, whole = sum(seconds[:run]), seconds[run], sum(seconds)
+
+        def told(share: float, label: str) -> None:
+            assert self.progress is not None
+            self.progress((before + share * own) / whole, label)
+
+        def heard(index: int, x: np.ndarray) -> None:
+            assert self.on_frame is not None
+            left = x[self.half.number]
+            self.on_frame(
+                first + index, np.concatenate([left, left * np.array([-1.0, 1.0, 1.0], left.dtype)])
+            )
+
+        path = self.checkpoint
+        return {
+            "progress": told if self.progress else None,
+            "on_frame": heard if self.on_frame else None,
+            "checkpoint": path.with_name(f"{path.name}.{run}") if path else None,
+            "keep": run == 0 and path is not None,
+        }
+
+    def finished(self) -> None:
+        """The first run's checkpoint is needed no longer."""
+        if self.checkpoint:
+            self.checkpoint.with_name(f"{self.checkpoint.name}.0").unlink(missing_ok=True)
+
+
+def _draped(
+    half: Half, start: np.ndarray, field: DistanceField, s: PiboSettings, phases: Phases, hooks: _Hooks
+) -> Drape:
+    """Both runs; frames and substeps of the result are those of both."""
+    solid, holds, runs = field.solid(), _holds(half), []
+    for run in (0, 1):
+        shell = {"spring": s.spring[run], "self_friction": s.self_friction[run], "every": 2}
+        contact = Contact(s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, **shell)
+        first = runs[0].frames if runs else 0
+        runs.append(
+            drape(
+                half.sheet,
+                runs[0].positions if runs else start,
+                phases[run],
+                velocities=runs[0].velocities if runs else None,
+                collider=solid,
+                contact=contact,
+                holds=holds,
+                **hooks.of(run, first),
+            )
+        )
+    hooks.finished()
+    fall, rest = runs
+    return replace(
+        rest,
+        frames=fall.frames + rest.frames,
+        substeps=fall.substeps + rest.substeps,
+        rollbacks=fall.rollbacks + rest.rollbacks,
+    )
 
 
 def solids_under(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str, Solid]:

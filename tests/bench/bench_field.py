@@ -70,7 +70,8 @@ def main() -> None:
     for r in rows:
         print(
             f"{r['cell_m'] * 1e3:3.0f}  {r['exact_m'] * 1e3:4.0f} mm {r['nodes'] / 1e6:5.2f} M "
-            f"{r['seconds_band']:6.2f} s {r['seconds_far']:6.2f} s   {r['node_mean_m'] * 1e3:.4f} / {r['node_max_m'] * 1e3:.2f} mm  "
+            f"{r['seconds_band']:6.2f} s {r['seconds_far']:6.2f} s   "
+            f"{r['node_mean_m'] * 1e3:.4f} / {r['node_max_m'] * 1e3:.2f} mm  "
             f"{r['far_p99_m'] * 1e3:5.1f} mm  {r['skin_mean_m'] * 1e3:.2f} / {r['skin_p99_m'] * 1e3:.2f} / "
             f"{r['skin_max_m'] * 1e3:.2f} mm"
         )

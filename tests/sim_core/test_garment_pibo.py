@@ -1,0 +1,120 @@
+"""The scarf on a figure: its path, its section, the capped robe under it, and a coarse drape."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core import metrics
+from sim_core.cloth import Capsule, Phase
+from sim_core.cloth.field import field_of
+from sim_core.errors import SimCoreError
+from sim_core.garment import Garment, Pattern
+from sim_core.garment.mannequin import Mannequin
+from sim_core.garment.pibo import FALLING, PiboSettings, pibo_on_figure
+from sim_core.garment.solids import solid_mesh
+from sim_core.garment.sweeping import Accordion, arranged_path, swept
+from sim_core.garment.worn_solid import capped
+from sim_core.triangles import winding
+from sim_core.weave import Weave
+
+ASSETS = Path(__file__).parents[2] / "assets"
+SHORT = (
+    (*FALLING[:2], Phase(0.4, (2.0, 9.81), 6.0, 1.0, "falling")),
+    (Phase(0.2, (9.81, 9.81), 20.0, 2.0, "coming to rest"),),
+)
+
+
+@pytest.fixture(scope="module")
+def woman() -> Mannequin:
+    return Mannequin.load(ASSETS / "mannequins" / "woman.npz")
+
+
+def _path() -> np.ndarray:
+    rod = field_of(*solid_mesh(Capsule((0.2, 1.0, -0.3), (0.2, 1.0, 0.3), 0.04), 32), cell=0.01, band=0.06)
+    knots = np.array([[0.0, 1.0, 0.0], [0.1, 1.0, 0.0], [0.2, 1.02, 0.0], [0.3, 1.0, 0.0], [0.31, 0.9, 0.0]])
+    return arranged_path(knots, rod, np.full(5, 0.03), 1.0)
+
+
+def test_the_path_keeps_its_room_and_is_as_long_as_the_cloth() -> None:
+    path = _path()
+    assert path[0, 0] == 0.0
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    assert np.abs(steps - 0.005).max() < 0.0005
+    assert steps.sum() >= 1.0
+    far = np.linalg.norm((path - [0.2, 1.0, 0.0])[:, :2], axis=1)
+    assert far.min() > 0.04 + 0.025
+    rod = field_of(*solid_mesh(Capsule((0.2, 1.0, -0.3), (0.2, 1.0, 0.3), 0.04), 32), cell=0.01)
+    with pytest.raises(SimCoreError, match="does not reach round the arm"):
+        arranged_path(path[::20], rod, np.full(len(path[::20]), 0.03), 0.3)
+
+
+def test_every_section_is_as_long_as_the_cloth_is_wide() -> None:
+    along, across = np.meshgrid(np.linspace(0, 0.95, 40), np.linspace(0, 0.4, 161), indexing="ij")
+    rest = np.column_stack([along.ravel(), across.ravel()])
+    accordion = Accordion((0.0, 0.4, 1.0), (0.2, 0.12, 0.24), 4.0)
+    x = swept(rest, _path(), np.array([0.0, 0.0, 1.0]), accordion, np.random.default_rng(1))
+    length = np.linalg.norm(np.diff(x.reshape(40, 161, 3), axis=1), axis=2).sum(1)
+    assert np.abs(length / 0.4 - 1).max() < 0.02
+    first = x.reshape(40, 161, 3)[0]
+    assert np.abs(first[:, 0]).max() < 1e-9  # the middle lies in the mirror plane, upright
+    assert np.ptp(first[:, 1]) > 0.15
+
+
+def test_a_robe_capped_at_its_openings_has_an_inside() -> None:
+    vertices, faces = solid_mesh(Capsule((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 0.2), 32)
+    middle = vertices[faces].mean(1)[:, 1]
+    tube = faces[(middle > 0.1) & (middle < 0.9)]
+    used, index = np.unique(tube, return_inverse=True)
+    closed = capped(vertices[used], index.reshape(-1, 3).astype(np.int32))
+    assert len(closed[0]) == len(used) + 2
+    inside = winding(np.array([[0.0, 0.5, 0.0], [0.0, 1.3, 0.0]]), *closed)
+    assert inside == pytest.approx([1.0, 0.0], abs=1e-6)
+    again = capped(*closed)
+    assert len(again[0]) == len(closed[0])  # nothing is open any more
+
+
+@pytest.mark.slow
+def test_a_coarse_scarf_stays_on_the_forearms(woman: Mannequin) -> None:
+    pattern, weave = (
+        Pattern.load(ASSETS / "patterns/pibo-long.toml"),
+        Weave.load(ASSETS / "weaves/gauze.toml"),
+    )
+    frames: list[np.ndarray] = []
+    shares: list[float] = []
+    garment = pibo_on_figure(
+        pattern,
+        weave,
+        woman,
+        edge=0.03,
+        settings=PiboSettings(clearance=0.007),
+        phases=SHORT,
+        on_frame=lambda index, x: frames.append(x),
+        progress=lambda share, label: shares.append(share),
+    )
+    facts = garment.provenance["errors"]
+    assert facts["inside_vertices"] + facts["inside_midpoints"] + facts["inside_centroids"] == 0
+    assert facts["area_strain_p95"] < 0.03
+    assert facts["asymmetry_m"] < 1e-9
+    assert garment.positions[:, 1].min() > 0.2  # it has not fallen
+    over = woman.landmarks(58.0, 78.0)
+    arm = 0.5 * (over["elbow_l"] + over["wrist_l"])
+    near = np.linalg.norm(garment.positions - arm, axis=1)
+    assert (garment.positions[near < 0.12][:, 1] > arm[1] + 0.02).any()
+    assert len(frames) == round(25 * sum(p.seconds for run in SHORT for p in run))
+    assert frames[0].shape == (len(garment.pattern), 3)
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+    with pytest.raises(SimCoreError, match="mirror = true"):
+        pibo_on_figure(Pattern.load(ASSETS / "patterns/pibo.toml"), weave, woman)
+
+
+def test_the_baked_scarf_is_clear_of_body_and_robe(woman: Mannequin) -> None:
+    folder = ASSETS / "exhibits" / "pibo-figure" / "baked"
+    if not folder.is_dir():
+        pytest.skip("not baked here: run hall build --exhibit pibo-figure")
+    garment = Garment.load(folder / "garment.npz")
+    inside = metrics.penetration(garment.positions, garment.faces, woman.posed(58.0, 78.0), woman.faces)
+    assert inside.total == 0
