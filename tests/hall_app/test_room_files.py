@@ -17,7 +17,7 @@ from hall_app.content.colours import difference, hex_of, main_colour
 from hall_app.content.glb import open_glb, read_glb
 from hall_app.content.loading import load
 from hall_app.room import lettering, raise_room, room_glb
-from hall_app.room.environment import environment_jpeg
+from hall_app.room.environment import environment_jpeg, painted
 from hall_app.room.key import room_key
 from hall_app.room.lettering import MissingFontError, Writing, write
 from hall_app.room.palette import BACKDROPS, MATERIALS, linear
@@ -247,8 +247,8 @@ def test_half_a_bake_is_none(tmp_path):
     assert any("not whole" in problem.what for problem in check(house))
 
 
-def test_environment_is_warm_above_and_grey_below(content):
-    picture = np.asarray(Image.open(io.BytesIO(environment_jpeg(content.plan)))).astype(float)
+def test_environment_is_warm_above_and_grey_below():
+    picture = np.asarray(Image.open(io.BytesIO(environment_jpeg(painted())))).astype(float)
     assert picture.shape == (256, 512, 3)
     above, below = picture[:60].mean((0, 1)), picture[-60:].mean((0, 1))
     assert above.mean() > below.mean()
