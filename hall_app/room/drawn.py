@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim_core.garment.glb_file import GlbFile
 
-from .palette import MATERIALS
+from .palette import MATERIALS, linear
 from .patch import Patch
 from .raising import Room
 from .textures import texture
@@ -74,13 +75,8 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
             _encoded(room.sheet.picture, "WEBP", quality=_SHEET_QUALITY, method=6), "image/webp"
         )
     elif material.texture is not None:
-        picture = texture(material.texture, material.colour)
-        look["baseColorTexture"] = glb.picture(
-            _encoded(picture, "JPEG", quality=_TEXTURE_QUALITY, subsampling=0, optimize=True), "image/jpeg"
-        )
+        look["baseColorTexture"] = glb.picture(_tile(material.texture, material.colour), "image/jpeg")
     else:
-        from .palette import linear
-
         look["baseColorFactor"] = [*linear(material.colour).tolist(), 1.0]
     return glb.material(
         {
@@ -90,6 +86,13 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
             "extensions": {_UNLIT: {}},
         }
     )
+
+
+@lru_cache(maxsize=64)
+def _tile(name: str, colour: str) -> bytes:
+    """A material's texture as JPEG; the same for every room."""
+    options = {"quality": _TEXTURE_QUALITY, "subsampling": 0, "optimize": True}
+    return _encoded(texture(name, colour), "JPEG", **options)
 
 
 def _encoded(picture: NDArray[np.uint8], kind: str, **options: Any) -> bytes:
