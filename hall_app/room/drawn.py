@@ -19,11 +19,10 @@ from .textures import texture
 if TYPE_CHECKING:
     from ..light.model import LightMap
 
-__all__ = ["LIGHT_SCALE", "room_glb"]
+__all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
-LIGHT_SCALE = 2.0  # the light map holds light / 2
-_TEXTURE_QUALITY, _LIGHT_QUALITY, _SHEET_QUALITY = 88, 92, 84
+_TEXTURE_QUALITY, _SHEET_QUALITY = 88, 84
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
@@ -133,10 +132,9 @@ def _corners(room: Room, light: LightMap) -> list[Floats]:
 
 def _add_light(glb: GlbFile, light: LightMap) -> None:
     """The light map, carried by a triangle of a millimetre deep under the floor."""
-    stored = np.clip(light.image * (light.gain / LIGHT_SCALE), 0, 1)
-    srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
-    picture = np.round(255 * srgb).astype(np.uint8)
-    data = _encoded(picture, "JPEG", quality=_LIGHT_QUALITY, subsampling=0, optimize=True)
+    from ..light import light_jpeg
+
+    data = light_jpeg(light)
     look = {"baseColorTexture": glb.picture(data, "image/jpeg"), "metallicFactor": 0.0}
     material = glb.material({"name": "lightmap", "pbrMetallicRoughness": look, "extensions": {_UNLIT: {}}})
     points = np.array([[0, -5, 0], [0.001, -5, 0], [0, -5, 0.001]])
