@@ -1,4 +1,4 @@
-"""`hall bench`: walking and the page, measured in a checkout."""
+"""`hall bench`: walking, the page and its picture, measured in a checkout."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from pathlib import Path
 
 __all__ = ["add_parser", "run"]
 
-PARTS = ("walking", "page")
+PARTS = ("walking", "page", "look")
 
 _EPILOG = """\
 walking  a million random moves among all obstacles, tested by an independent exact method; the clearance grid's
          time, bytes and error; the page's prediction against the server
 page     cold load, bytes, close-up and key-to-camera time in a real Chromium (needs the extra 'test')
+look     CPU time a picture of the same hall: light baked as shipped, one ambient light, viser's default environment
 
 Arguments after -- go to the part's own program, e.g.  hall bench walking -- --moves 100000"""
 
@@ -28,7 +29,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("part", nargs="?", choices=PARTS, help="one part; both when left out")
+    parser.add_argument("part", nargs="?", choices=PARTS, help="one part; all when left out")
     parser.add_argument(
         "rest", nargs=argparse.REMAINDER, metavar="-- ARGUMENTS", help="for the part's program"
     )

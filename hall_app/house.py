@@ -21,7 +21,7 @@ from .content.problems import Problem
 from .content.views import yaw_of
 from .content.walkable import walking_floor
 from .models import ExhibitModels, models_of
-from .room.showing import ShownRoom, shown_room
+from .room.showing import ShownRoom, shown_room, still_right
 from .scene.nodes import Figure, HallScene
 from .stage import Actor, Stage
 from .visitors import Visitor, Visitors
@@ -120,9 +120,6 @@ class House:
         moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
         grid = await self._bake_grid(floor) if moved else self.grid
         self.content = content
-        room = await asyncio.to_thread(shown_room, content, self.data)
-        if (room.key, room.baked) != (self.room.key, self.room.baked):
-            self._show_room(room)
         if moved:
             self.floor, self.grid = floor, grid
             for visitor in self.visitors:
@@ -134,6 +131,8 @@ class House:
             if visitor.opened is not None and visitor.opened not in self._models:
                 self.stage.close(visitor)
             visitor.say(news)
+        if not still_right(self.room, content, self.data):  # a second or two: the last to change
+            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
 
     def _show_room(self, room: ShownRoom) -> None:
         self.room = room

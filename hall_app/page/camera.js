@@ -4,6 +4,9 @@
 import { requestRender, viser as mutable } from "./hooks.js";
 
 const ROTATE = 1, DOLLY = 16, TOUCH_ROTATE = 64, TOUCH_DOLLY = 1024;
+const LENS = 58; // [deg] vertical field of view: scene/nodes.py
+const NARROWEST = 40; // [deg] of width on an upright screen
+const WIDEST = 78; // [deg] of height there
 const PITCH_LIMIT = (75 * Math.PI) / 180;
 
 // v rotated by the unit quaternion (w, x, y, z).
@@ -76,6 +79,21 @@ export function lookAt(eye, target) {
 export function orbit(azimuth, polar) { mutable()?.cameraControl?.rotate(azimuth, polar, false); }
 
 export function dolly(metres) { mutable()?.cameraControl?.dolly(metres, false); }
+
+const halfTan = (degrees) => Math.tan((degrees * Math.PI) / 360);
+
+/** An upright phone would see a slot of the hall: give it more height. `near`: a close-up, which has its own distance. */
+export function fitLens(near = false) {
+  const camera = mutable()?.camera, canvas = mutable()?.canvas;
+  if (!camera || !canvas?.clientHeight) return;
+  const aspect = canvas.clientWidth / canvas.clientHeight;
+  const upright = (360 / Math.PI) * Math.atan(halfTan(NARROWEST) / aspect);
+  const wanted = near ? LENS : Math.min(WIDEST, Math.max(LENS, upright));
+  if (Math.abs(camera.fov - wanted) < 0.01) return;
+  camera.fov = wanted;
+  camera.updateProjectionMatrix();
+  requestRender();
+}
 
 /** Vertical field of view [rad]. */
 export function fieldOfView() { return ((mutable()?.camera?.fov ?? 58) * Math.PI) / 180; }

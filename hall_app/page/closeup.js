@@ -33,6 +33,7 @@ export function createCloseup(ui) {
 
   function place() {
     const { x, y, z, radius } = studio;
+    camera.fitLens(true);
     const distance = fitting(radius);
     camera.orbitGestures(radius * 0.1, Math.max(radius * 5, 1.5 * distance));
     camera.lookAt([x + distance * 0.25, y + radius * 0.15, z + distance * 0.97], [x, y, z]);

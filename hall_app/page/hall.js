@@ -20,7 +20,7 @@ function createActions(parts) {
     enter: () => parts.visit.enter(),
     open: (id) => parts.visit.open(id),
     close: () => parts.visit.close(),
-    goTo: (x, z, yaw) => parts.visit.goTo(x, z, yaw),
+    goTo: (...there) => parts.visit.goTo(...there),
     move: (forward, right) => parts.visit.move(forward, right),
     setLang(next) {
       remember("hall.lang", next);

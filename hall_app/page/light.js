@@ -4,7 +4,7 @@
 // coordinates of its meshes "hall_*" as a second set. glTF has no word for light maps, so the page lays it on. Where
 // that cannot be done the room stays evenly lit, but whole.
 
-import { meshesOf, renderer, requestRender, viser } from "./hooks.js";
+import { renderer, requestRender, viser } from "./hooks.js";
 
 const MAP = "lightmap";
 const ROOM = "hall_";
@@ -80,20 +80,5 @@ export function reflect(on) {
     scene.environment = kept;
     kept = null;
   } else return;
-  requestRender();
-}
-
-/** Light an exhibit up, or let it be. */
-export function glow(name, on) {
-  for (const mesh of meshesOf(name)) {
-    for (const material of [mesh.material].flat()) {
-      if (!material.emissive) continue;
-      material.userData.still ??= { hex: material.emissive.getHex(), strength: material.emissiveIntensity };
-      const still = material.userData.still;
-      // Its own colour, so that dark lacquer stays lacquer.
-      material.emissive.setHex(on ? material.color.getHex() : still.hex);
-      material.emissiveIntensity = on ? 0.3 : still.strength;
-    }
-  }
   requestRender();
 }

@@ -3,9 +3,9 @@
 import * as camera from "./camera.js";
 import { createCloseup } from "./closeup.js";
 import { createGaze } from "./gaze.js";
+import { createGlow } from "./glow.js";
 import { requestRender } from "./hooks.js";
 import { createKeys } from "./keys.js";
-import { glow } from "./light.js";
 import { fetchJson } from "./loading.js";
 import { createMark } from "./mark.js";
 import { createTurning } from "./turning.js";
@@ -14,6 +14,7 @@ import { createWalk } from "./walk.js";
 const LONGEST_FRAME = 0.5; // [s] a hidden tab does not leap when it comes back
 const SETTLE = 1500; // [ms] viser may place its own first camera that long after the scene has arrived
 
+const EXHIBITS = "/exhibits/"; // scene nodes
 const exhibitUrl = (id) => `/api/exhibits/${encodeURIComponent(id)}`;
 const clamp = (value) => Math.max(-1, Math.min(1, value));
 
@@ -34,6 +35,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
   });
   gaze.yaw = scene.start.yaw;
   const turning = createTurning(wake);
+  const glow = createGlow({ wake, onHover: (node) => ui.hover(node && !opened ? node.slice(EXHIBITS.length) : null) });
 
   const mark = createMark(display, (client) => walk.send({ t: "client", client }));
   const walk = createWalk({
@@ -54,7 +56,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
       gaze.yaw = pose.yaw;
       if (entered) openLinked();
     } else if (pose.t === "hi" && opened) open(opened); // back after a lost connection
-    else if (headingThere !== null) Object.assign(gaze, { yaw: headingThere, pitch: 0 });
+    else if (headingThere !== null) Object.assign(gaze, headingThere);
     headingThere = null;
   }
 
@@ -63,6 +65,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
     const detail = await fetchJson(exhibitUrl(message.id));
     if (opened !== message.id) return; // closed again meanwhile
     keys.release();
+    ui.hover(null);
     ui.showExhibit(detail, { play: message.play === true });
     closeup.enter(message);
   }
@@ -76,7 +79,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
   }
 
   function comeNear({ id, on, glow: lit, caption, node }) {
-    if (lit) glow(node, on);
+    if (lit) glow.near(node, on);
     if (!caption) return;
     near = on ? id : (near === id ? null : near);
     ui.near(near);
@@ -117,7 +120,9 @@ export function createVisit({ scene, grid, display, ui, wake }) {
     if (walking()) step(dt, now);
     if (display !== "page" || opened) return;
     camera.holdGestures();
+    camera.fitLens();
     turning.frame(dt, scene, { ...walk.pose, yaw: gaze.yaw });
+    glow.frame(now, scene.nodes.filter((name) => name.startsWith(EXHIBITS)));
     const view = [walk.pose.x, walk.pose.z, gaze.eye, gaze.yaw, gaze.pitch].map((v) => v.toFixed(5)).join();
     if (view === drawn && now >= settleUntil) return;
     if (view !== drawn) wake();
@@ -143,8 +148,9 @@ export function createVisit({ scene, grid, display, ui, wake }) {
       walk.send({ t: "close" });
       leave(); // at once, and also while the server is away
     },
-    goTo(x, z, yaw) {
-      headingThere = yaw ?? null;
+    /** To (x, z) [m], looking along `yaw` and `pitch` [rad] if given. */
+    goTo(x, z, yaw, pitch = 0) {
+      headingThere = yaw === undefined ? null : { yaw, pitch };
       walk.send({ t: "goto", x, z });
     },
     move(forward, right) {

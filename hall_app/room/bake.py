@@ -14,7 +14,7 @@ import numpy as np
 from ..content.loading import Content
 from .charts import surfaces
 from .drawn import room_glb
-from .environment import environment_jpeg
+from .environment import environment_jpeg, seen
 from .lamps import spots_of
 from .occluders import exhibit_solids
 from .places import ENVIRONMENT, GLB, RECORD
@@ -33,13 +33,13 @@ def bake_room(
     work: where an interrupted bake left its state and where this one leaves its own; gone after success.
     data: the data folder, where garments' own bakes may lie. Raises MissingFontError where the letters cannot be set.
     """
-    from ..light import bake_light
-
     began, cpu = time.perf_counter(), time.process_time()
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     progress(0.0, "geometry")
     room = raise_room(content.plan, content.hall.title, content.exhibits)
+    from ..light import bake_light
+
     walls = surfaces(room.patches, exhibit_solids(content, data))
     light = bake_light(
         walls,
@@ -50,7 +50,7 @@ def bake_room(
     progress(0.96, "files")
     data_glb = room_glb(room, light)
     (out / GLB).write_bytes(data_glb)
-    (out / ENVIRONMENT).write_bytes(environment_jpeg(content.plan))
+    (out / ENVIRONMENT).write_bytes(environment_jpeg(seen(content.plan, walls, light)))
     record = {
         "key": key,
         "triangles": room.triangles,

@@ -11,9 +11,9 @@ from .patch import Frame, Patch, box, disc, panel, strip, tube
 if TYPE_CHECKING:
     from ..content.models import PlanFile, Solid
 
-__all__ = ["DECK", "backdrop_depth", "furniture"]
+__all__ = ["furniture"]
 
-DECK = 0.04  # [m] thickness of the wooden deck on a plinth of stone
+_DECK = 0.04  # [m] thickness of the wooden deck on a plinth of stone
 _RIM = 0.05  # [m] of stone left uncovered round the deck
 _LOW, _TOP = 0.12, 2.42  # [m] cloth above the deck: foot and head
 _STAND_OFF = 0.09  # [m] a backdrop's middle before the booth's back edge
@@ -66,7 +66,7 @@ def _footprint(solid: Solid, low: float, high: float, material: str, grow: float
 
 def _booth(solid: Solid) -> list[Patch]:
     """A plinth of stone, a deck of wood, a framed cloth at the back."""
-    deck = min(DECK, solid.height / 3)
+    deck = min(_DECK, solid.height / 3)
     patches = _footprint(solid, 0.0, solid.height - deck, "stone")
     patches += _footprint(solid, solid.height - deck, solid.height, "wood", grow=-_RIM)
     if solid.backdrop != "none" and (placed := _frame(solid)):
@@ -74,11 +74,6 @@ def _booth(solid: Solid) -> list[Patch]:
         back = frame.moved(y=solid.height, z=-deep / 2 + _STAND_OFF)
         patches += _backdrop(back, min(wide - 0.3, 2.3), solid.backdrop)
     return patches
-
-
-def backdrop_depth(solid: Solid) -> float:
-    """How far [m] the backdrop reaches from the back edge of its booth."""
-    return _STAND_OFF + 0.06
 
 
 def _backdrop(frame: Frame, width: float, cloth: str) -> list[Patch]:
@@ -93,8 +88,7 @@ def _backdrop(frame: Frame, width: float, cloth: str) -> list[Patch]:
     for side in (-1, 1):
         x = side * (half + post)
         patches += box(frame, (x - post, 0, -0.055), (x + post, _TOP, 0.055), "lacquer", skip="bottom top")
-        foot = x - side * 0.0
-        patches += box(frame, (foot - 0.09, 0, -0.08), (foot + 0.09, 0.10, 0.10), "lacquer", skip="bottom")
+        patches += box(frame, (x - 0.09, 0, -0.08), (x + 0.09, 0.10, 0.10), "lacquer", skip="bottom")
         tip = side * (half + 2 * post + 0.14)
         low, high = sorted((tip, tip - side * 0.05))
         patches += box(frame, (low, _TOP - 0.105, -0.068), (high, _TOP + 0.005, 0.068), "gold")
@@ -114,7 +108,7 @@ def _dais(solid: Solid) -> list[Patch]:
     if placed is None:
         return _booth(solid)
     frame, wide, deep = placed
-    top, deck = solid.height, min(DECK, solid.height / 3)
+    top, deck = solid.height, min(_DECK, solid.height / 3)
     patches: list[Patch] = []
     for low, high, inset in (
         (0.0, 0.10, 0.0),

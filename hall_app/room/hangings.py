@@ -20,7 +20,7 @@ __all__ = ["TIE", "hangings"]
 Floats = NDArray[np.float64]
 TIE = 2.06  # [m] height of the ties: what hangs wide is above everybody's head
 _HEM = 0.62
-_NEAR, _WIDTH = 0.20, 0.15  # [m] the tied bundle begins this far from the column's middle and is this wide
+_BUNDLE, _GATHERED = 0.262, 0.062  # [m] where the tied bundle hangs beside the column's middle, its radius
 _PLEATS = 11  # of one half
 _DEPTH = 0.045  # [m] of the pleats
 _RADIUS, _HEIGHT = 0.24, 0.46  # [m] of a lantern
@@ -61,38 +61,40 @@ def _underside(at: Floats, plan: PlanFile, regions: Regions) -> float:
 
 def _half(frame: Frame, reach: float, top: float) -> list[Patch]:
     """One half, from the column at the frame's origin to `reach` [m] along local x, tied to the column."""
-    columns, levels = 2 * _PLEATS + 1, _levels(top)
-    share = np.linspace(0, 1, columns)
-    lines = []
-    for y in levels:
-        x, depth = _row(share, y, reach, top)
-        zigzag = np.where(np.arange(columns) % 2 == 0, 0.5, -0.5) * depth
-        lines.append(frame(np.column_stack([x, np.full(columns, y), zigzag])))
+    columns = 2 * _PLEATS + 1
+    lines = [frame(_row(columns, y, reach, top)) for y in _levels(top)]
     grid = np.array(lines)  # (levels, columns, 3), from the hem upwards
     patches = [
         strip(grid[:, k + 1], grid[:, k], "curtain", two_sided=True, density=5.0) for k in range(columns - 1)
     ]
-    middle = _NEAR + _WIDTH / 2
-    tie = frame.moved(x=middle, y=TIE - 0.05)
-    return patches + tube(tie, [(0.088, 0), (0.08, 0.05), (0.088, 0.10)], "gold", sides=12)
+    tie = frame.moved(x=_BUNDLE, y=TIE - 0.06)
+    ring = [(0.086, 0.0), (0.080, 0.02), (0.080, 0.09), (0.086, 0.11)]
+    return patches + tube(tie, ring, "gold", sides=12)
 
 
 def _levels(top: float) -> Floats:
-    above = TIE + (top - TIE) * np.array([0.0, 0.06, 0.16, 0.32, 0.55, 0.8, 1.0])
-    return np.concatenate([[_HEM, (_HEM + TIE) / 2, TIE - 0.12], above])
+    above = TIE + (top - TIE) * np.array([0.0, 0.07, 0.17, 0.33, 0.56, 0.8, 1.0])
+    return np.concatenate([[_HEM, TIE - 0.55, TIE - 0.16], above])
 
 
-def _row(share: Floats, y: float, reach: float, top: float) -> tuple[Floats, float]:
-    """Where the cloth's columns hang at height `y`, and how deep its pleats are there."""
+def _row(columns: int, y: float, reach: float, top: float) -> Floats:
+    """(columns, 3) local points of the cloth at height `y`: a gathered bundle below the tie, a pleated sheet above."""
+    share = np.linspace(0, 1, columns)
+    pleat = np.where(np.arange(columns) % 2 == 0, 0.5, -0.5)
+    wide = 1.0 + 0.28 * min(max(TIE - y, 0.0) / 0.6, 1.0) ** 0.7
+    round_ = (_GATHERED + 0.034 * pleat) * wide
+    angle = np.pi * (1 - 2 * share)
+    bundle = np.column_stack([_BUNDLE + round_ * np.cos(angle), np.full(columns, y), round_ * np.sin(angle)])
     if y <= TIE:
-        flare = 1.0 + 0.25 * min((TIE - y) / 0.5, 1.0)
-        return _NEAR + share * _WIDTH * flare - 0.01 * (flare - 1), 0.10
+        return bundle
     rise = (y - TIE) / (top - TIE)
-    edge = 0.17 + share * (reach - 0.17)
-    tied = _NEAR + share * _WIDTH
     # The inner edge falls steeply first and sweeps to the tie at last; the outer edge hangs straight.
     bow = rise ** (0.30 + 0.28 * share)
-    return tied + (edge - tied) * bow, _DEPTH + 0.055 * (1 - rise) ** 2
+    tied, edge = _BUNDLE + 0.06 * (2 * share - 1), 0.17 + share * (reach - 0.17)
+    depth = _DEPTH + 0.05 * (1 - rise) ** 2
+    sheet = np.column_stack([tied + (edge - tied) * bow, np.full(columns, y), pleat * depth])
+    spread = min(rise / 0.25, 1.0)
+    return bundle + (sheet - bundle) * spread
 
 
 def _valance(a: Floats, b: Floats, top: float) -> list[Patch]:

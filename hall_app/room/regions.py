@@ -92,7 +92,9 @@ class Regions:
             for high in self.all:
                 if high.height <= low.height:
                     continue
-                shared = shapely.line_merge(high.shape.boundary.intersection(low.shape.boundary))
+                shared = shapely.line_merge(high.shape.boundary.intersection(low.shape.boundary)).simplify(
+                    1e-6
+                )
                 for piece in shapely.get_parts(shared):
                     if piece.geom_type != "LineString":
                         continue

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from ..content.loading import Content
 from .drawn import room_glb
-from .environment import environment_jpeg
+from .environment import environment_jpeg, painted
 from .key import room_key
 from .lettering import MissingFontError
 from .places import ENVIRONMENT, GLB, room_folder
 from .raising import raise_room
 
-__all__ = ["ShownRoom", "shown_room"]
+__all__ = ["ShownRoom", "shown_room", "still_right"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,11 @@ class ShownRoom:
     lacking: str | None = None
 
 
+def still_right(room: ShownRoom, content: Content, data: Path) -> bool:
+    """True while `room` is what shown_room would give for the content."""
+    return room.key == room_key(content) and room.baked == (room_folder(content, data) is not None)
+
+
 def shown_room(content: Content, data: Path) -> ShownRoom:
     """Read the baked room of the content as it is now, or raise an evenly lit one, which takes a second or two."""
     key, folder = room_key(content), room_folder(content, data)
@@ -39,4 +44,4 @@ def shown_room(content: Content, data: Path) -> ShownRoom:
     except MissingFontError as error:
         room = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)
         lacking = str(error)
-    return ShownRoom(key, room_glb(room), environment_jpeg(content.plan), False, lacking)
+    return ShownRoom(key, room_glb(room), environment_jpeg(painted()), False, lacking)

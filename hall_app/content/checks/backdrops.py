@@ -40,7 +40,9 @@ def _against(exhibit: Exhibit, solid: Solid) -> list[Problem]:
         f" (ΔE {away[solid.backdrop]:.0f}, at least {LEAST:.0f})"
     )
     if away[other] >= LEAST:
-        fix = f'write backdrop = "{other}" (ΔE {away[other]:.0f}) for {solid.id!r} in plan.toml, or move it to such a booth'
+        fix = (
+            f'write backdrop = "{other}" (ΔE {away[other]:.0f}) for {solid.id!r}, or move it to such a booth'
+        )
     else:
         fix = f"change its dye or its booth: the {other} backdrop would not do either (ΔE {away[other]:.0f})"
     return [Problem(exhibit.toml, "place.on", what, fix)]

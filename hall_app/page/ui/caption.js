@@ -28,7 +28,7 @@ export function createCaption({ words, scene, onOpen }) {
     title.textContent = words.pick(exhibit.title);
     line.textContent = words.pick(exhibit.caption);
     setAttribute(line, "hidden", !line.textContent);
-    how.textContent = words.t(touched ? "caption.tap" : "caption.closer");
+    how.textContent = words.t(touched ? "caption.tap" : shown() === beside ? "caption.closer" : "caption.click");
   }
 
   words.follow(render);

@@ -58,7 +58,7 @@ export function createExhibitsList({ words, scene, onOpen, onGo }) {
     go.addEventListener("click", () => {
       dialog.close();
       const stand = standBefore(exhibit, current);
-      onGo(stand.x, stand.z, stand.yaw);
+      onGo(stand.x, stand.z, stand.yaw, stand.pitch);
     });
     return el("li", {}, open, go);
   }

@@ -40,19 +40,25 @@ export function solidDistance(point, solid) {
   );
 }
 
+const BEST = 2.4; // [m] a whole garment is in the picture
+const NEAREST = 1.6;
+const FARTHEST = 4;
+const DOWN = -0.12; // [rad] towards its middle
+
 /**
- * Where a visitor stands to see an exhibit: in front of it, as near as the solids leave `room` [m].
- * Returns {x, z, yaw}; the yaw looks at the exhibit (facing is degrees about +y, 0 = +z).
+ * Where a visitor stands to see an exhibit whole: in front of it, as near to the best distance as the solids leave
+ * `room` [m]. Returns {x, z, yaw, pitch}; the yaw looks at the exhibit (facing is degrees about +y, 0 = +z).
  */
 export function standBefore(exhibit, { outline, solids }, room = 0.5) {
   const yaw = ((exhibit.facing ?? 0) * Math.PI) / 180;
   const at = (distance) => [exhibit.x + distance * Math.sin(yaw), exhibit.z + distance * Math.cos(yaw)];
   const free = (point) =>
     insidePolygon(point, outline) && solids.every((solid) => solidDistance(point, solid) >= room);
-  let distance = 1.8;
-  while (distance < 4 && !free(at(distance))) distance += 0.1;
-  const [x, z] = at(distance < 4 ? distance : 1.8);
-  return { x, z, yaw };
+  const distances = [];
+  for (let distance = BEST; distance >= NEAREST; distance -= 0.1) distances.push(distance);
+  for (let distance = BEST; distance <= FARTHEST; distance += 0.1) distances.push(distance);
+  const [x, z] = at(distances.find((distance) => free(at(distance))) ?? BEST);
+  return { x, z, yaw, pitch: DOWN };
 }
 
 /** The bay that holds [x, z], or null. */

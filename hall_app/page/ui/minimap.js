@@ -133,7 +133,7 @@ export function createMinimap({ words, scene, goTo, onBay }) {
     const { point, exhibit } = focused ? { point: null, exhibit: focused } : aim(event);
     if (exhibit) {
       const stand = standBefore(exhibit, current);
-      goTo(stand.x, stand.z, stand.yaw);
+      goTo(stand.x, stand.z, stand.yaw, stand.pitch);
     } else {
       goTo(point[0], point[1]);
     }

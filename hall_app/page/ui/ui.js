@@ -26,7 +26,7 @@ const SHEET = "(max-width: 720px)"; // the panel lies at the bottom instead of s
  * createUi({root, scene, texts, lang, actions}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * actions: enter(), open(id), close(), goTo(x, z, yaw?), setLang(lang), setQuality(choice), move(forward, right).
+ * actions: enter(), open(id), close(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
  */
 export function createUi({ root, scene, texts, lang, actions }) {
   const words = createWords(texts, lang);
@@ -51,10 +51,10 @@ function createParts({ words, scene, actions }) {
     if (words.setLang(next)) actions.setLang(next);
   };
   const hallSurvey = () => parts.survey.open(parts.scene.questionnaire, null);
-  const goTo = (x, z, yaw) => {
+  const goTo = (...there) => {
     if (parts.panel.detail()) actions.close();
     if (matchMedia(SHEET).matches) parts.minimap.fold(true);
-    actions.goTo(x, z, yaw);
+    actions.goTo(...there);
   };
   return Object.assign(parts, {
     music,

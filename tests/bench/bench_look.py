@@ -1,0 +1,154 @@
+"""What the hall's light costs: CPU time a picture of the same hall, lit in three ways, with software WebGL.
+
+    python tests/bench/bench_look.py [--rounds 4] [--content FOLDER] [--json FILE]
+
+shipped    room unlit, its light baked; two lights and the room's reflection for the exhibits
+ambient    the same models with lit materials, one ambient light and nothing else
+default    the same models with lit materials under viser's default environment map
+
+All three halls run at once and are drawn in turn by one Chromium at 960x540, resolution 1 and equal sharpness; a
+picture's cost is the CPU time of Chromium's GPU process, which holds the software renderer. Best of several rounds.
+The row "shipped, low" is what a machine with software WebGL is really given.
+"""
+
+import argparse
+import contextlib
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from bench.browser import enter, open_browser  # noqa: E402
+from running_hall import running_hall  # noqa: E402
+
+ROOT = Path(__file__).parents[2]
+LOOKS = {"shipped": "medium", "ambient": "medium", "default": "medium", "shipped, low": "low"}
+MOST_OF_AMBIENT, MOST_OF_DEFAULT = 1 / 2, 1 / 3  # what the shipped look may cost
+VIEW = {"width": 960, "height": 540}
+DRAW = """
+(ms) => new Promise((done) => {
+  const before = hall.framesDrawn(), end = performance.now() + ms;
+  const more = () => {
+    window.__viserMutable.requestRender();
+    if (performance.now() < end) requestAnimationFrame(more);
+    else done(hall.framesDrawn() - before);
+  };
+  more();
+})
+"""
+
+
+def gpu_process() -> int:
+    """Process id of the GPU process of the Chromium this program has started."""
+    parents, gpus = {}, []
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            pid = int(folder.name)
+            parents[pid] = int((folder / "stat").read_text().rsplit(")", 1)[1].split()[1])
+            if b"--type=gpu-process" in (folder / "cmdline").read_bytes():
+                gpus.append(pid)
+    for pid in gpus:
+        above = pid
+        while above := parents.get(above, 0):
+            if above == os.getpid():
+                return pid
+    raise RuntimeError("Chromium has no GPU process – its flags must ask for software WebGL")
+
+
+def cpu_seconds(pid: int) -> float:
+    """CPU time a process has used so far, all threads."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def cost(page, gpu: int, seconds: float) -> float:
+    """CPU milliseconds a picture while `page` draws for so long."""
+    page.bring_to_front()
+    page.wait_for_timeout(500)  # the page before draws on for a moment
+    page.evaluate(DRAW, 500)
+    began = cpu_seconds(gpu)
+    pictures = page.evaluate(DRAW, 1000 * seconds)
+    return 1000 * (cpu_seconds(gpu) - began) / pictures
+
+
+def stand(page, place: dict) -> None:
+    page.evaluate("({x, z, yaw}) => hall.goTo(x, z, yaw)", place)
+    page.wait_for_timeout(600)
+
+
+def views(page) -> dict[str, dict]:
+    """The entry, and the place before the first exhibit."""
+    scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
+    stands = """async (scene) => { const {standBefore} = await import("/static/ui/map_geometry.js");
+        return standBefore(scene.exhibits[0], scene); }"""
+    return {"entry": scene["start"], "exhibit": page.evaluate(stands, scene)}
+
+
+def measured(rounds: int, seconds: float, content: Path) -> dict[str, dict[str, list[float]]]:
+    """Look -> view -> CPU ms a picture in each round."""
+    with contextlib.ExitStack() as stack:
+        work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        browser = stack.enter_context(open_browser())
+        program = (sys.executable, str(Path(__file__).with_name("look_hall.py")))
+        halls, pages = {}, {}
+        for look, quality in LOOKS.items():
+            how = look.split(",")[0]
+            if how not in halls:
+                halls[how] = stack.enter_context(
+                    running_hall(content, work / how, program=program, env={"HALL_LOOK": how})
+                )
+            page = pages[look] = browser.new_context(viewport=VIEW).new_page()
+            page.add_init_script(f"localStorage.setItem('hall.quality', '{quality}')")
+            enter(page, f"{halls[how].url}/?lang=en")
+            page.evaluate("() => { document.querySelector('#hall-ui').style.display = 'none'; }")
+        where, gpu = views(pages["shipped"]), gpu_process()
+        time.sleep(4)  # the pages' first look at the machine's speed
+        found = {look: {view: [] for view in where} for look in LOOKS}
+        for number in range(rounds):
+            for view, place in where.items():
+                for look, page in pages.items():
+                    stand(page, place)
+                    found[look][view].append(cost(page, gpu, seconds))
+            print(f"round {number + 1} of {rounds}", flush=True)
+    return found
+
+
+def summary(found: dict[str, dict[str, list[float]]]) -> dict:
+    """Best of the rounds, and the shipped look's share of the others, the worst of the views."""
+    best = {look: {view: min(values) for view, values in row.items()} for look, row in found.items()}
+    share = {
+        other: max(best["shipped"][view] / best[other][view] for view in best[other])
+        for other in ("ambient", "default")
+    }
+    reached = share["ambient"] <= MOST_OF_AMBIENT and share["default"] <= MOST_OF_DEFAULT
+    return {"cpu_ms": best, "share": share, "reached": reached}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--rounds", type=int, default=4)
+    parser.add_argument("--seconds", type=float, default=2.5, help="of drawing, each time")
+    parser.add_argument("--content", type=Path, default=ROOT / "assets")
+    parser.add_argument("--json", type=Path, metavar="FILE")
+    arguments = parser.parse_args()
+    found = measured(arguments.rounds, arguments.seconds, arguments.content)
+    result = summary(found)
+    print(f"\n{'CPU ms a picture, best of ' + str(arguments.rounds):34}{'entry':>10}{'exhibit':>10}")
+    for look, row in result["cpu_ms"].items():
+        print(f"{look:34}{row['entry']:10.1f}{row['exhibit']:10.1f}")
+    for other, most in (("ambient", MOST_OF_AMBIENT), ("default", MOST_OF_DEFAULT)):
+        print(f"{'shipped / ' + other:34}{result['share'][other]:10.2f}{'asked':>10} {most:.2f}")
+    if arguments.json:
+        arguments.json.write_text(json.dumps({"summary": result, "rounds": found}, indent=1))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,143 @@
+"""The picture's quality: the judge's verdicts on fed frame times, the visitor's choice, an idle hall at rest."""
+
+from pathlib import Path
+
+import pytest
+from bench.browser import enter
+
+pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+
+JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "judge.js"
+FEED = """
+async ([source, level, runs, cautious]) => {
+  const url = URL.createObjectURL(new Blob([source], {type: "text/javascript"}));
+  const {judge, newJudgement} = await import(url);
+  URL.revokeObjectURL(url);
+  let now = 0;
+  const state = newJudgement(level, {now, cautious}), levels = [];
+  const time = (ms) => Array.isArray(ms) ? ms[levels.length % ms.length] : (ms[state.level] ?? ms);
+  for (const [ms, seconds] of runs) {
+    for (const end = now + 1000 * seconds; now < end; ) {
+      const taken = time(ms);
+      now += taken;
+      judge(state, taken, now);
+      levels.push([now / 1000, state.level]);
+    }
+  }
+  return levels;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def verdicts(chromium):
+    """verdicts(level, runs) -> [(s, level)] after each picture; runs: [(ms, a pattern of ms, or ms by level, s)]."""
+    tab = chromium.new_page()
+
+    def feed(level, runs, cautious=False):
+        return tab.evaluate(FEED, [JUDGE.read_text("utf-8"), level, runs, cautious])
+
+    yield feed
+    tab.close()
+
+
+def changes(levels) -> list[tuple[float, str]]:
+    return [
+        (s, level) for (_, before), (s, level) in zip(levels, levels[1:], strict=False) if level != before
+    ]
+
+
+def test_a_fast_machine_goes_up_within_seconds(verdicts):
+    (at, level), *more = changes(verdicts("medium", [(16.7, 30)]))
+    assert level == "high"
+    assert at < 4
+    assert more == []
+
+
+def test_a_crawling_machine_goes_to_low_at_once(verdicts):
+    (at, level), *more = changes(verdicts("high", [(220, 60)]))
+    assert level == "low"
+    assert at < 4
+    assert more == []
+
+
+def test_a_slow_machine_goes_down_by_one(verdicts):
+    levels = changes(verdicts("high", [(55, 2)]))
+    assert [level for _, level in levels] == ["medium"]
+
+
+@pytest.mark.parametrize("ms", [25, 33.4, 40])
+def test_between_the_bounds_nothing_changes(verdicts, ms):
+    assert changes(verdicts("medium", [(ms, 120)])) == []
+
+
+def test_single_hiccups_do_not_count(verdicts):
+    pattern = [16.7] * 9 + [300]
+    assert "low" not in {level for _, level in verdicts("medium", [(pattern, 60)])}
+
+
+def test_what_proved_too_much_is_left_alone_longer_each_time(verdicts):
+    """Medium runs at 17 ms, high at 60 ms: within ten minutes at most five tries."""
+    levels = verdicts("medium", [({"low": 10, "medium": 17, "high": 60}, 600)])
+    assert len([1 for _, level in changes(levels) if level == "high"]) <= 5
+    assert "low" not in {level for _, level in levels}
+
+
+def test_a_remembered_level_is_tried_before_the_next(verdicts):
+    assert all(s > 60 for s, _ in changes(verdicts("medium", [(16.7, 70)], cautious=True)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "wanted"), [(1, (0.66, 1, 1)), (2, (1, 1.5, 2)), (3, (1, 1.5, 2))])
+def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
+    context = chromium.new_context(viewport={"width": 360, "height": 640}, device_scale_factor=ratio)
+    page = context.new_page()
+    enter(page, f"{plain_hall.url}/?lang=en")
+    got = []
+    for level in ("low", "medium", "high"):
+        page.click("[data-testid=settings]")
+        page.click(f"[data-testid=quality-{level}]")
+        page.keyboard.press("Escape")
+        page.wait_for_timeout(500)
+        got.append(page.evaluate("() => window.__viserMutable.canvas.width / innerWidth"))
+    assert got == pytest.approx(wanted, abs=0.01)
+    context.close()
+
+
+@pytest.mark.slow
+def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
+    context = chromium.new_context(viewport={"width": 480, "height": 270})
+    page = context.new_page()
+    enter(page, f"{plain_hall.url}/?lang=en")
+    assert page.evaluate("() => hall.quality()") == {"choice": "auto", "level": "low"}  # a software renderer
+    page.focus("[data-testid=settings]")
+    page.keyboard.press("Enter")
+    page.focus("[data-testid=quality-auto]")
+    for _ in range(3):
+        page.keyboard.press("ArrowDown")
+    assert page.evaluate("() => hall.quality()") == {"choice": "high", "level": "high"}
+    page.keyboard.press("Escape")
+    page.close()
+    page = context.new_page()
+    enter(page, f"{plain_hall.url}/?lang=zh")
+    assert page.evaluate("() => hall.quality()") == {"choice": "high", "level": "high"}
+    page.click("[data-testid=settings]")
+    assert page.is_checked("[data-testid=quality-high]")
+    page.click("[data-testid=quality-auto]")
+    assert "现为" in page.inner_text("[data-testid=settings-dialog]")
+    context.close()
+
+
+@pytest.mark.slow
+def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
+    page = chromium.new_page(viewport={"width": 480, "height": 270})
+    enter(page, f"{plain_hall.url}/?lang=en")
+    page.wait_for_timeout(5000)  # the first look at the machine's speed
+    before = page.evaluate("() => hall.framesDrawn()")
+    page.wait_for_timeout(6000)
+    assert page.evaluate("() => hall.framesDrawn()") - before <= 1
+    page.keyboard.down("KeyW")
+    page.wait_for_timeout(600)
+    page.keyboard.up("KeyW")
+    assert page.evaluate("() => hall.framesDrawn()") - before > 5
+    page.close()
