@@ -120,8 +120,6 @@ class House:
         moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
         grid = await self._bake_grid(floor) if moved else self.grid
         self.content = content
-        if not still_right(self.room, content, self.data):
-            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
         if moved:
             self.floor, self.grid = floor, grid
             for visitor in self.visitors:
@@ -133,6 +131,8 @@ class House:
             if visitor.opened is not None and visitor.opened not in self._models:
                 self.stage.close(visitor)
             visitor.say(news)
+        if not still_right(self.room, content, self.data):  # a second or two: the last to change
+            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
 
     def _show_room(self, room: ShownRoom) -> None:
         self.room = room

@@ -12,6 +12,7 @@ from .plan_file import PlanFile
 from .problems import Problem
 from .values import Point
 
+STANDING = ("booth", "dais", "stand")  # kinds an exhibit can stand on
 TOUCHING = 1e-4  # [m2], overlap of footprints that only touch
 
 
@@ -87,7 +88,7 @@ def place_faults(plan: PlanFile, identity: str, file: ExhibitFile) -> list[tuple
 
     on = file.place.on
     if on is not None and on not in {solid.id for solid in plan.solid}:
-        known = ", ".join(s.id for s in plan.solid if s.kind in ("booth", "stand")) or "none"
+        known = ", ".join(s.id for s in plan.solid if s.kind in STANDING) or "none"
         return [("place.on", f"plan.toml has no solid {on!r}", f"use one of its booths and stands: {known}")]
     body = body_footprint(identity, file).shape()
     if not Polygon(plan.outline).covers(body):
@@ -101,7 +102,7 @@ def place_faults(plan: PlanFile, identity: str, file: ExhibitFile) -> list[tuple
             continue
         if footprint.shape().intersection(body).area > TOUCHING:
             fix = "move it with place.x, place.z"
-            if footprint.kind in ("booth", "stand"):
+            if footprint.kind in STANDING:
                 fix += f', or write place.on = "{footprint.id}" if it stands on top'
             faults.append(("place", f"stands inside {footprint.kind} {footprint.id!r}", fix))
     return faults

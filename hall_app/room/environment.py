@@ -29,11 +29,12 @@ def environment_jpeg(plan: PlanFile) -> bytes:
 
 
 def environment(plan: PlanFile) -> NDArray[np.uint8]:
-    """(256, 512, 3) uint8 sRGB seen from the middle of the hall at eye height; −z in the middle, +x to the right."""
+    """(256, 512, 3) uint8 sRGB seen from the middle of the hall at eye height; +x in the middle, +z to its right."""
     way = _directions()
     x, y, z = np.moveaxis(way, -1, 0)
     picture = _walls(x, y, z)
-    picture[y < 0] = _floor(-y[y < 0])
+    ground = y < -0.22 * np.hypot(x, z)
+    picture[ground] = _floor(-y[ground])
     up = y > 0.02
     reach = 3.6 / np.maximum(y, 0.02)
     at_x, at_z = x * reach, z * reach
@@ -63,7 +64,7 @@ def _directions() -> NDArray[np.float64]:
     turn = 2 * np.pi * ((np.arange(wide) + 0.5)[None, :] / wide - 0.5)
     flat = np.sin(polar)
     return np.stack(
-        [flat * np.sin(turn), np.broadcast_to(np.cos(polar), (high, wide)), -flat * np.cos(turn)], axis=-1
+        [flat * np.cos(turn), np.broadcast_to(np.cos(polar), (high, wide)), flat * np.sin(turn)], axis=-1
     )
 
 
@@ -75,7 +76,7 @@ def _walls(x: NDArray, y: NDArray, z: NDArray) -> NDArray[np.float64]:
     picture[np.abs(slope + 0.07) < 0.015] = 0.5 * linear(MATERIALS["lacquer"].colour)
     picture[(slope > 0.26) & (slope < 0.33)] = 0.6 * linear(MATERIALS["band"].colour)
     picture[slope >= 0.33] = 0.5 * linear(MATERIALS["lacquer"].colour)
-    turn = np.degrees(np.arctan2(x, -z)) % 90
+    turn = np.degrees(np.arctan2(z, x)) % 90
     pillar = np.abs(turn - 24) < 2.2
     picture[pillar & (slope > -0.5) & (slope < 0.33)] = 0.45 * linear(MATERIALS["lacquer"].colour)
     window = (np.abs(turn - 45) < 8) & (slope > -0.03) & (slope < 0.2)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from .regions import Regions
 
@@ -36,7 +36,7 @@ class Column:
 @dataclass(frozen=True)
 class Beam:
     """A beam from `start` to `end` [x, z]: underside and top [m], width [m]; arcade: it carries a higher wall;
-    on_wall: its end rests on a wall, not on a column."""
+    on_wall: its end goes into a wall it meets, not onto a column."""
 
     start: tuple[float, float]
     end: tuple[float, float]
@@ -115,7 +115,17 @@ def _to_wall(a: NDArray[np.float64], before: NDArray[np.float64], regions: Regio
     if not inside or inside[0].length > _LONGEST - 0.1:
         return []
     end = a + inside[0].length * along
-    return [Beam(b.start, b.end, b.low, b.high, b.width, b.arcade, True) for b in _between(a, end, regions)]
+    over = any(_runs_over(wall.start, wall.end, a, end) for wall in regions.plan.wall)
+    return [replace(beam, on_wall=not over) for beam in _between(a, end, regions)]
+
+
+def _runs_over(start: ArrayLike, finish: ArrayLike, a: ArrayLike, b: ArrayLike) -> bool:
+    """Whether the wall start → finish carries the beam a → b on most of its length."""
+    import shapely
+
+    wall = shapely.LineString([np.asarray(start), np.asarray(finish)]).buffer(0.1, cap_style="flat")
+    beam = shapely.LineString([np.asarray(a), np.asarray(b)])
+    return beam.intersection(wall).length > 0.5 * beam.length
 
 
 def _along_edge(a: NDArray[np.float64], b: NDArray[np.float64], regions: Regions) -> bool:

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["spots_of"]
 
-_WARM = "#FFE9C8"
-_POWER = {"booth": 2.2, "dais": 3.0, "stand": 1.6}
+_WARM = "#FFF0DA"
+_POWER = {"booth": 4.0, "dais": 6.0, "stand": 2.5}  # light on a white surface at 1 m, facing the lamp
+_PALE = 0.7  # of it before a pale backdrop, which would burn out
 
 
 def spots_of(plan: PlanFile, exhibits: Sequence[Exhibit] = ()) -> list[Spot]:
@@ -37,8 +38,8 @@ def spots_of(plan: PlanFile, exhibits: Sequence[Exhibit] = ()) -> list[Spot]:
                 position=lamp.at,
                 towards=frame.moved(y=aim).at,
                 colour=linear(_WARM),
-                power=_POWER[solid.kind],
-                cone=26.0,
+                power=_POWER[solid.kind] * (_PALE if solid.backdrop == "pale" else 1.0),
+                cone=22.0,
                 soft=12.0,
             )
         )

@@ -22,7 +22,7 @@ __all__ = ["MissingFontError", "Sheet", "Writing", "write"]
 WIDTH = 2048  # [pixels]
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
-_PAPER, _INK, _FADED = "#F1E9D6", "#1F1A17", "#5A4E43"
+_PAPER, _INK, _FADED = "#EAE1CC", "#1F1A17", "#5A4E43"
 _GROUND, _GOLD, _SEAL, _SILK = "#241512", "#CFA85A", "#9E2B25", "#5E7276"
 
 

@@ -45,8 +45,8 @@ MATERIALS: dict[str, Material] = {
     "pale": Material("#CDD8D8", "cloth", (0.9, 0.9)),
     "dark": Material("#36424A", "cloth", (0.9, 0.9)),
     "signs": Material("#E8E0CC", "signs"),
-    "paper": Material("#FFF8E6", "paper", (1.2, 1.2), 2.0, WINDOW, "#FFF4DC"),
-    "laylight": Material("#FFFAEC", "paper", (1.2, 1.2), 2.0, LAYLIGHT, "#FFF9EE"),
+    "paper": Material("#FFF8E6", "paper", (1.2, 1.2), 2.0, WINDOW, "#FFF7E6"),
+    "laylight": Material("#FFFAEC", "paper", (1.2, 1.2), 2.0, LAYLIGHT, "#FFFCF5"),
     "lantern": Material("#F6DFA9", "lantern", (1.0, 1.0), 2.0, LANTERN, "#FFD999"),
 }
 

@@ -29,7 +29,7 @@ def noise(rng: np.random.Generator, along: float, across: float) -> Floats:
     weight = np.exp(-2 * np.pi**2 * ((f[None, :] * along) ** 2 + (f[:, None] * across) ** 2))
     field = np.fft.ifft2(white * weight).real
     field -= field.mean()
-    return np.asarray(field / field.std(), float)
+    return field / float(field.std())
 
 
 def _plaster(rng: np.random.Generator) -> Floats:

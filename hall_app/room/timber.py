@@ -16,13 +16,12 @@ if TYPE_CHECKING:
 __all__ = ["timber"]
 
 BAND = (0.22, 0.20)  # [m] width and depth of the red band under an arcade's beam
-CLERESTORY = 0.08  # [m] the wall over an arcade stands this far out of its middle
 _FORWARD = 0.11  # [m] brackets stand this far before the arcade's middle, half out of the wall above it
 _CORBEL = (0.62, 0.20, 0.24)  # [m] reach, width and height of the arm under a beam's end at a wall
 
 
 def timber(plan: PlanFile, regions: Regions) -> list[Patch]:
-    """The frame: columns up to what they carry, beams, bands, brackets, and the walls over arcades."""
+    """The frame: columns up to what they carry, beams, bands and brackets."""
     beams = beams_of(plan, regions)
     patches: list[Patch] = []
     for column in columns_of(plan):
@@ -30,8 +29,6 @@ def timber(plan: PlanFile, regions: Regions) -> list[Patch]:
         patches += _bracketed(column, beams, regions)
     for beam in beams:
         patches += _lying(beam)
-    for start, end, low, high in regions.steps():
-        patches += _clerestory(start, end, low, high)
     return patches
 
 
@@ -185,17 +182,3 @@ def _arm(frame: Frame, long: float, wide: float, rise: float) -> list[Patch]:
         (-half + 0.04, 0.35 * rise),
     ]
     return prism(frame, outline, wide, "lacquer")
-
-
-def _clerestory(start: np.ndarray, end: np.ndarray, low: float, high: float) -> list[Patch]:
-    """Plaster above an arcade, a rail at its foot and a plate at its head."""
-    length = float(np.linalg.norm(end - start))
-    along = (end - start) / length
-    out = np.array([-along[1], along[0]])
-    facing = float(np.degrees(np.arctan2(out[0], out[1])))
-    frame = Frame.on_floor(start + CLERESTORY * out, facing)
-    corners = [(0, low, 0), (length, low, 0), (length, high, 0), (0, high, 0)]
-    patches = [quad(frame(corners), "plaster", grain=0)]
-    patches += box(frame, (0, low, 0), (length, low + 0.10, 0.09), "lacquer", skip="back bottom left right")
-    patches += box(frame, (0, high - 0.16, 0), (length, high, 0.06), "lacquer", skip="back top left right")
-    return patches

@@ -24,6 +24,7 @@ Floats = NDArray[np.float64]
 WAINSCOT, SKIRTING, RAIL = 0.90, 0.14, 0.06  # [m]
 DATUM = 0.60  # [m] below the rooms' ceiling: one line for upper rails, red bands and lattice screens
 CROWN = 0.16
+_CLERESTORY = 0.08  # [m] the wall over an arcade stands this far out of its middle
 _LOW = 1.3  # [m] a wall lower than this is bare
 
 
@@ -68,6 +69,38 @@ def walls(plan: PlanFile, regions: Regions) -> list[Patch]:
         patches += _ends(wall, plan, regions)
     for start, end in bare_outline(plan, regions):
         patches += _drawn(_face(start, end, math.inf, (), 0.1, regions), plan)
+    for start, end, low, _ in regions.steps():
+        patches += _clerestory(start, end, low, plan, regions)
+    return patches
+
+
+def _clerestory(start: Floats, end: Floats, low: float, plan: PlanFile, regions: Regions) -> list[Patch]:
+    """The wall over an arcade, from the lower ceiling up, seen from the higher room; with the openings that lie in
+    it, a rail at its foot and a plate at its head."""
+    along = (end - start) / np.linalg.norm(end - start)
+    out = _CLERESTORY * np.array([-along[1], along[0]])
+    holes = [o for o in plan.opening if o.kind == "window" and o.sill > low and _near(o, start, end, 0.2)]
+    face = _face(start + out, end + out, math.inf, holes, 0.16, regions)
+    right, up, _ = face.frame.axes
+    patches = panel(face.frame.at, right, up, face.region(low, None), "plaster")
+    patches += _rail(face, low, low + 0.10, 0.09, "lacquer")
+    return patches + _crown(face) + _filled(face)
+
+
+def _crown(face: Face) -> list[Patch]:
+    patches = []
+    for a, b, ceiling in face.spans:
+        low, high = (a, ceiling - CROWN, 0), (b, ceiling, 0.06)
+        patches += box(face.frame, low, high, "lacquer", skip="back top left right")
+    return patches
+
+
+def _filled(face: Face) -> list[Patch]:
+    """What stands in the face's openings."""
+    patches = []
+    for hole, a, b in face.holes:
+        draw = door if hole.kind == "door" else window
+        patches += draw(face.frame.moved(x=(a + b) / 2, y=hole.sill), b - a, hole.height, face.depth)
     return patches
 
 
@@ -76,7 +109,7 @@ def _faces(wall: Wall, plan: PlanFile, regions: Regions) -> list[Face]:
     along = (b - a) / np.linalg.norm(b - a)
     out = np.array([-along[1], along[0]]) * wall.thickness / 2
     top = math.inf if wall.height > plan.height - 0.05 else wall.height
-    holes = [opening for opening in plan.opening if _lies_on(opening, wall)]
+    holes = [opening for opening in plan.opening if _near(opening, a, b, wall.thickness / 2 + 0.05)]
     depth = min(0.16, 0.45 * wall.thickness) if regions.along(a, b) else 0.16
     pairs = ((a + out, b + out), (b - out, a - out))
     faces = [_face(start, end, top, holes, depth, regions) for start, end in pairs]
@@ -101,13 +134,12 @@ def _face(
     return Face(frame, length, top, tuple(spans), tuple(placed), depth)
 
 
-def _lies_on(opening: Opening, wall: Wall) -> bool:
+def _near(opening: Opening, start: Floats, end: Floats, away: float) -> bool:
+    """Whether both ends of the opening lie within `away` [m] of the line start → end."""
     import shapely
 
-    line = shapely.LineString([wall.start, wall.end])
-    return all(
-        line.distance(shapely.Point(p)) < wall.thickness / 2 + 0.05 for p in (opening.start, opening.end)
-    )
+    line = shapely.LineString([start, end])
+    return all(line.distance(shapely.Point(p)) < away for p in (opening.start, opening.end))
 
 
 def _drawn(face: Face, plan: PlanFile) -> list[Patch]:
@@ -123,14 +155,8 @@ def _drawn(face: Face, plan: PlanFile) -> list[Patch]:
     if tallest > plan.height - 0.05:
         datum = plan.height - DATUM
         patches += _rail(face, datum, datum + 0.08, 0.03, "lacquer")
-        for a, b, ceiling in face.spans:
-            patches += box(
-                face.frame, (a, ceiling - CROWN, 0), (b, ceiling, 0.06), "lacquer", skip="back top left right"
-            )
-    for hole, a, b in face.holes:
-        draw = door if hole.kind == "door" else window
-        patches += draw(face.frame.moved(x=(a + b) / 2, y=hole.sill), b - a, hole.height, face.depth)
-    return patches
+        patches += _crown(face)
+    return patches + _filled(face)
 
 
 def _rail(face: Face, low: float, high: float, proud: float, material: str) -> list[Patch]:
