@@ -76,6 +76,11 @@ def test_single_hiccups_do_not_count(verdicts):
     assert "low" not in {level for _, level in verdicts("medium", [(pattern, 60)])}
 
 
+def test_a_hidden_tab_does_not_count(verdicts):
+    runs = [[16.7, 5], [60_000, 600], [16.7, 5]]
+    assert "low" not in {level for _, level in verdicts("medium", runs)}
+
+
 def test_what_proved_too_much_is_left_alone_longer_each_time(verdicts):
     """Medium runs at 17 ms, high at 60 ms: within ten minutes at most five tries."""
     levels = verdicts("medium", [({"low": 10, "medium": 17, "high": 60}, 600)])
