@@ -1,7 +1,7 @@
 """The overlay: readable, large enough to touch, nothing over anything else, still for whoever asked for less motion."""
 
 import pytest
-from bench.browser import displayed, enter, pose
+from bench.browser import CHOOSE, displayed, enter, pose
 from bench.readable import CROWDED, TARGETS, faint_texts
 from bench.track import place
 
@@ -20,6 +20,7 @@ def page(request, plain_hall, chromium):
     size = {"width": request.param, "height": SIZES[request.param]}
     context = chromium.new_context(viewport=size, has_touch=request.param < 700)
     page = context.new_page()
+    page.add_init_script(f"({CHOOSE})('low')")
     page.goto(f"{plain_hall.url}/?lang=zh")
     page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=60_000)
     yield page
