@@ -14,7 +14,7 @@ import numpy as np
 from ..content.loading import Content
 from .charts import surfaces
 from .drawn import room_glb
-from .environment import environment_jpeg
+from .environment import environment_jpeg, seen
 from .lamps import spots_of
 from .occluders import exhibit_solids
 from .places import ENVIRONMENT, GLB, RECORD
@@ -50,7 +50,7 @@ def bake_room(
     progress(0.96, "files")
     data_glb = room_glb(room, light)
     (out / GLB).write_bytes(data_glb)
-    (out / ENVIRONMENT).write_bytes(environment_jpeg(content.plan))
+    (out / ENVIRONMENT).write_bytes(environment_jpeg(seen(content.plan, walls, light)))
     record = {
         "key": key,
         "triangles": room.triangles,

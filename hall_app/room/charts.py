@@ -60,7 +60,7 @@ def surfaces(
     faces = [patch.faces + start for patch, start in zip(patches, starts, strict=False)]
     chart_uv = [flat[patch.faces] for patch, flat in zip(patches, charts.flat, strict=True)]
     vertices = [patch.vertices for patch in patches]
-    albedo = [linear(MATERIALS[patch.material].colour) for patch in patches]
+    albedo = [_albedo(patch.material) for patch in patches]
     glow = [_glow(patch.material) for patch in patches]
     total, count = int(starts[-1]), 0
     for points, triangles in occluders:
@@ -77,6 +77,12 @@ def surfaces(
         emission=np.r_[np.repeat(glow, counts, axis=0), np.zeros((count, 3))].astype(np.float32),
         two_sided=charts.two_sided,
     )
+
+
+def _albedo(material: str) -> Floats:
+    """Mean reflectance; a lamp's paper lets most light through, whatever colour it is drawn in."""
+    look = MATERIALS[material]
+    return linear(look.colour) * (0.6 if look.glow else 1.0)
 
 
 def _glow(material: str) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim_core.garment.glb_file import GlbFile
 
-from .palette import MATERIALS
+from .palette import MATERIALS, linear
 from .patch import Patch
 from .raising import Room
 from .textures import texture
@@ -18,11 +19,10 @@ from .textures import texture
 if TYPE_CHECKING:
     from ..light.model import LightMap
 
-__all__ = ["LIGHT_SCALE", "room_glb"]
+__all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
-LIGHT_SCALE = 2.0  # the light map holds light / 2
-_TEXTURE_QUALITY, _LIGHT_QUALITY, _SHEET_QUALITY = 88, 92, 84
+_TEXTURE_QUALITY, _SHEET_QUALITY = 88, 84
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
@@ -74,13 +74,8 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
             _encoded(room.sheet.picture, "WEBP", quality=_SHEET_QUALITY, method=6), "image/webp"
         )
     elif material.texture is not None:
-        picture = texture(material.texture, material.colour)
-        look["baseColorTexture"] = glb.picture(
-            _encoded(picture, "JPEG", quality=_TEXTURE_QUALITY, subsampling=0, optimize=True), "image/jpeg"
-        )
+        look["baseColorTexture"] = glb.picture(_tile(material.texture, material.colour), "image/jpeg")
     else:
-        from .palette import linear
-
         look["baseColorFactor"] = [*linear(material.colour).tolist(), 1.0]
     return glb.material(
         {
@@ -90,6 +85,13 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
             "extensions": {_UNLIT: {}},
         }
     )
+
+
+@lru_cache(maxsize=64)
+def _tile(name: str, colour: str) -> bytes:
+    """A material's texture as JPEG; the same for every room."""
+    options = {"quality": _TEXTURE_QUALITY, "subsampling": 0, "optimize": True}
+    return _encoded(texture(name, colour), "JPEG", **options)
 
 
 def _encoded(picture: NDArray[np.uint8], kind: str, **options: Any) -> bytes:
@@ -130,10 +132,9 @@ def _corners(room: Room, light: LightMap) -> list[Floats]:
 
 def _add_light(glb: GlbFile, light: LightMap) -> None:
     """The light map, carried by a triangle of a millimetre deep under the floor."""
-    stored = np.clip(light.image * (light.gain / LIGHT_SCALE), 0, 1)
-    srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
-    picture = np.round(255 * srgb).astype(np.uint8)
-    data = _encoded(picture, "JPEG", quality=_LIGHT_QUALITY, subsampling=0, optimize=True)
+    from ..light import light_jpeg
+
+    data = light_jpeg(light)
     look = {"baseColorTexture": glb.picture(data, "image/jpeg"), "metallicFactor": 0.0}
     material = glb.material({"name": "lightmap", "pbrMetallicRoughness": look, "extensions": {_UNLIT: {}}})
     points = np.array([[0, -5, 0], [0.001, -5, 0], [0, -5, 0.001]])

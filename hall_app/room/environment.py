@@ -1,4 +1,4 @@
-"""What silk and metal reflect: a small round picture of the hall, painted from its colours."""
+"""What silk and metal reflect: a small round picture of the hall, by rays once it is lit, painted before."""
 
 from __future__ import annotations
 
@@ -12,24 +12,63 @@ from .palette import MATERIALS, linear
 
 if TYPE_CHECKING:
     from ..content.models import PlanFile
+    from ..light.model import LightMap, Surfaces
 
-__all__ = ["environment_jpeg"]
+__all__ = ["environment_jpeg", "painted", "seen"]
 
 _SIZE = (256, 512)  # [pixels] height, width
 _QUALITY = 88
 
 
-def environment_jpeg(plan: PlanFile) -> bytes:
-    """A 512 × 256 equirectangular JPEG: ceiling with laylights, walls with windows, dark timber, grey floor."""
+def environment_jpeg(picture: NDArray[np.float64]) -> bytes:
+    """A plain equirectangular JPEG of (256, 512, 3) linear light."""
     from PIL import Image
 
+    stored = np.clip(picture, 0, 1)
+    srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
     stream = BytesIO()
-    Image.fromarray(environment(plan)).save(stream, "JPEG", quality=_QUALITY, optimize=True)
+    image = Image.fromarray(np.round(255 * srgb).astype(np.uint8))
+    image.save(stream, "JPEG", quality=_QUALITY, optimize=True)
     return stream.getvalue()
 
 
-def environment(plan: PlanFile) -> NDArray[np.uint8]:
-    """(256, 512, 3) uint8 sRGB seen from the middle of the hall at eye height; +x in the middle, +z to its right."""
+def seen(plan: PlanFile, walls: Surfaces, light: LightMap) -> NDArray[np.float64]:
+    """(256, 512, 3) linear light: the lit room round the middle of its largest bay, four rays a pixel."""
+    from ..light.bvh import build_tree
+    from ..light.tracing import cast
+
+    eye = np.array([*_middle(plan)])
+    inside = walls.chart >= 0  # the room without the exhibits: none shall mirror itself
+    faces = walls.faces[inside]
+    tree = build_tree(walls.vertices, faces)
+    fine = _directions(2)
+    way = fine.reshape(-1, 3)
+    face, _, bary = cast(tree, np.broadcast_to(eye, way.shape), way)
+    met = np.maximum(face, 0)
+    corners = light.uv[inside][met]
+    u, v = bary[:, :1], bary[:, 1:]
+    place = corners[:, 0] * (1 - u - v) + corners[:, 1] * u + corners[:, 2] * v
+    high, wide = light.image.shape[:2]
+    texel = np.clip((place * [wide, high]).astype(int), 0, [wide - 1, high - 1])
+    colour = walls.albedo[inside][met] * light.image[texel[:, 1], texel[:, 0]] * light.gain
+    glow = walls.emission[inside][met]
+    lamp = glow.max(1) > 0
+    colour[lamp] = glow[lamp] / glow[lamp].max(1, keepdims=True)
+    colour[face < 0] = 0.0
+    return np.asarray(colour.reshape(*fine.shape).reshape(_SIZE[0], 2, _SIZE[1], 2, 3).mean((1, 3)), float)
+
+
+def _middle(plan: PlanFile) -> tuple[float, float, float]:
+    """The eye: in the middle of the bay with the most floor, at a breast's height [m]."""
+    import shapely
+
+    rings = [bay.polygon for bay in plan.bay] or [plan.outline]
+    spot = max((shapely.Polygon(ring) for ring in rings), key=lambda shape: shape.area).representative_point()
+    return spot.x, 1.4, spot.y
+
+
+def painted() -> NDArray[np.float64]:
+    """(256, 512, 3) linear light: a hall with laylights, windows and grey floor, for a room that is not lit yet."""
     way = _directions()
     x, y, z = np.moveaxis(way, -1, 0)
     picture = _walls(x, y, z)
@@ -52,14 +91,12 @@ def environment(plan: PlanFile) -> NDArray[np.uint8]:
         well = over & (at_x > low_x) & (at_x < high_x) & (at_z > low_z) & (at_z < high_z)
         bars = (np.abs((at_z + 0.5) % 1.0 - 0.5) < 0.05) | (np.abs((at_x + 0.4) % 0.8 - 0.4) < 0.04)
         picture[well & ~bars] = light
-    stored = np.clip(picture, 0, 1)
-    srgb = np.where(stored <= 0.0031308, 12.92 * stored, 1.055 * stored ** (1 / 2.4) - 0.055)
-    return np.round(255 * srgb).astype(np.uint8)
+    return picture
 
 
-def _directions() -> NDArray[np.float64]:
-    """(256, 512, 3) unit vectors of the picture's pixels."""
-    high, wide = _SIZE
+def _directions(finer: int = 1) -> NDArray[np.float64]:
+    """(256, 512, 3) unit vectors of the picture's pixels, +x in the middle, +z to its right, as three.js has it."""
+    high, wide = finer * _SIZE[0], finer * _SIZE[1]
     polar = np.pi * (np.arange(high) + 0.5)[:, None] / high
     turn = 2 * np.pi * ((np.arange(wide) + 0.5)[None, :] / wide - 0.5)
     flat = np.sin(polar)

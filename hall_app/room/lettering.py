@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw
     from PIL.ImageFont import FreeTypeFont
 
-__all__ = ["MissingFontError", "Sheet", "Writing", "write"]
+__all__ = ["MissingFontError", "Sheet", "Writing", "font_file", "write"]
 
 WIDTH = 2048  # [pixels]
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
-_PAPER, _INK, _FADED = "#EAE1CC", "#1F1A17", "#5A4E43"
+_PAPER, _INK, _FADED = "#E2D8C2", "#1F1A17", "#5A4E43"
 _GROUND, _GOLD, _SEAL, _SILK = "#241512", "#CFA85A", "#9E2B25", "#5E7276"
 
 
@@ -81,18 +81,23 @@ def _packed(sizes: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], in
     return spots, max(64, -(-(y + shelf + _GAP) // 64) * 64)
 
 
-@lru_cache(maxsize=32)
-def _font(size: int, bold: bool) -> FreeTypeFont:
-    from PIL import ImageFont
-
+def font_file(bold: bool = False) -> Path:
+    """The font's file on this machine. Raises MissingFontError naming the package to install."""
     wanted = "NotoSerifCJK-Bold.ttc" if bold else "NotoSerifCJK-Regular.ttc"
     for folder in font_folders():
         for path in sorted(folder.rglob(wanted)) if folder.is_dir() else ():
-            return ImageFont.truetype(str(path), size, index=_SC)
+            return path
     raise MissingFontError(
         f"font {wanted} not found – install Noto Serif CJK (Debian, Ubuntu: apt-get install fonts-noto-cjk;"
         " elsewhere: put the file into ~/.fonts) and run hall build --room again"
     )
+
+
+@lru_cache(maxsize=64)
+def _font(size: int, bold: bool) -> FreeTypeFont:
+    from PIL import ImageFont
+
+    return ImageFont.truetype(str(font_file(bold)), size, index=_SC)
 
 
 def font_folders() -> list[Path]:

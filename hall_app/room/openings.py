@@ -14,7 +14,7 @@ _FRAME = 0.09  # [m] width of the frame round an opening
 
 def window(frame: Frame, width: float, height: float, depth: float) -> list[Patch]:
     """A window whose sill lies in the frame's origin: frame, reveal, real bars, and paper `depth` behind them."""
-    patches = _reveal(frame, width, height, depth, "plaster") + _surround(frame, width, height, sill=True)
+    patches = _reveal(frame, width, height, depth, "wood") + _surround(frame, width, height, sill=True)
     rim = 0.045
     for x0, x1 in ((-width / 2, -width / 2 + rim), (width / 2 - rim, width / 2)):
         patches += box(frame, (x0, 0, -0.05), (x1, height, 0.005), "lacquer", skip="back top bottom")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..content.loading import Content
 from .drawn import room_glb
-from .environment import environment_jpeg
+from .environment import environment_jpeg, painted
 from .key import room_key
 from .lettering import MissingFontError
 from .places import ENVIRONMENT, GLB, room_folder
@@ -44,4 +44,4 @@ def shown_room(content: Content, data: Path) -> ShownRoom:
     except MissingFontError as error:
         room = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)
         lacking = str(error)
-    return ShownRoom(key, room_glb(room), environment_jpeg(content.plan), False, lacking)
+    return ShownRoom(key, room_glb(room), environment_jpeg(painted()), False, lacking)

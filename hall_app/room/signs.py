@@ -79,7 +79,7 @@ def _label(exhibit: Exhibit, plan: PlanFile) -> Board:
         else:
             reach = (body.radius or 0.3) - 0.04
             frame = frame.moved(x=0.57 * reach, z=0.82 * reach)
-    return Board(_writing("label", title.zh, title.en, _LABEL), frame, _LABEL, 48.0, _POST)
+    return Board(_writing("label", title.zh, title.en, _LABEL), frame, _LABEL, 42.0, _POST)
 
 
 def _over_the_door(bay: Bay, plan: PlanFile, regions: Regions) -> Board | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 __all__ = ["TEXTURES", "texture"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[Any]
 SIZE = 512  # [pixels]
 
 
@@ -29,7 +30,7 @@ def noise(rng: np.random.Generator, along: float, across: float) -> Floats:
     weight = np.exp(-2 * np.pi**2 * ((f[None, :] * along) ** 2 + (f[:, None] * across) ** 2))
     field = np.fft.ifft2(white * weight).real
     field -= field.mean()
-    return field / float(field.std())
+    return field / field.std()
 
 
 def _plaster(rng: np.random.Generator) -> Floats:

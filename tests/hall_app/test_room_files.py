@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from content_house import make_house
 from PIL import Image
+from room_font import BLANK, needs_font
 
 from hall_app.cli import main
 from hall_app.content.check import check
@@ -17,7 +18,7 @@ from hall_app.content.colours import difference, hex_of, main_colour
 from hall_app.content.glb import open_glb, read_glb
 from hall_app.content.loading import load
 from hall_app.room import lettering, raise_room, room_glb
-from hall_app.room.environment import environment_jpeg
+from hall_app.room.environment import environment_jpeg, painted
 from hall_app.room.key import room_key
 from hall_app.room.lettering import MissingFontError, Writing, write
 from hall_app.room.palette import BACKDROPS, MATERIALS, linear
@@ -37,7 +38,7 @@ def content():
 
 @pytest.fixture(scope="module")
 def room(content):
-    return raise_room(content.plan, content.hall.title, content.exhibits)
+    return raise_room(content.plan, content.hall.title, content.exhibits, blank=BLANK)
 
 
 @pytest.fixture(scope="module")
@@ -139,6 +140,7 @@ def test_another_reader_draws_the_room(flat):
     assert len(scene.geometry) >= 12
 
 
+@needs_font
 def test_writings_do_not_touch_and_fit():
     sheet = write(
         [Writing("label", "展品", "Exhibit", (520, 170))] * 9
@@ -152,6 +154,7 @@ def test_writings_do_not_touch_and_fit():
             assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
 
 
+@needs_font
 def test_labels_say_what_the_exhibits_are_called(room, content):
     blank = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)
     assert blank.sheet.picture.shape == room.sheet.picture.shape
@@ -247,8 +250,8 @@ def test_half_a_bake_is_none(tmp_path):
     assert any("not whole" in problem.what for problem in check(house))
 
 
-def test_environment_is_warm_above_and_grey_below(content):
-    picture = np.asarray(Image.open(io.BytesIO(environment_jpeg(content.plan)))).astype(float)
+def test_environment_is_warm_above_and_grey_below():
+    picture = np.asarray(Image.open(io.BytesIO(environment_jpeg(painted())))).astype(float)
     assert picture.shape == (256, 512, 3)
     above, below = picture[:60].mean((0, 1)), picture[-60:].mean((0, 1))
     assert above.mean() > below.mean()

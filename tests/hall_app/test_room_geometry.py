@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from room_font import BLANK
 
 from hall_app.content.floor import solids_of
 from hall_app.content.loading import load
@@ -59,7 +60,7 @@ def content():
 
 @pytest.fixture(scope="module")
 def shipped(content):
-    return raise_room(content.plan, content.hall.title, content.exhibits)
+    return raise_room(content.plan, content.hall.title, content.exhibits, blank=BLANK)
 
 
 def plan_of(**changes) -> PlanFile:
@@ -70,7 +71,7 @@ def plan_of(**changes) -> PlanFile:
 def room(request, shipped, content):
     if request.param == "shipped":
         return shipped
-    return raise_room(plan_of(**OLD_PLANS[request.param]), content.hall.title, ())
+    return raise_room(plan_of(**OLD_PLANS[request.param]), content.hall.title, (), blank=BLANK)
 
 
 def corners_of(patch) -> np.ndarray:
@@ -222,10 +223,10 @@ def test_beams_follow_the_columns(content):
 
 def test_a_changed_plan_gives_a_changed_room(content):
     title = content.hall.title
-    few = raise_room(plan_of(), title, ())
-    lantern = raise_room(plan_of(lantern=[{"at": [0, 0]}]), title, ())
-    light = raise_room(plan_of(laylight=[{"at": [0, 0], "size": [2, 2]}]), title, ())
-    high = raise_room(plan_of(height=6.0), title, ())
+    few = raise_room(plan_of(), title, (), blank=BLANK)
+    lantern = raise_room(plan_of(lantern=[{"at": [0, 0]}]), title, (), blank=BLANK)
+    light = raise_room(plan_of(laylight=[{"at": [0, 0], "size": [2, 2]}]), title, (), blank=BLANK)
+    high = raise_room(plan_of(height=6.0), title, (), blank=BLANK)
     assert {p.material for p in lantern.patches} - {p.material for p in few.patches} >= {"lantern"}
     assert {p.material for p in light.patches} - {p.material for p in few.patches} >= {"laylight"}
     tops = [max(float(p.vertices[:, 1].max()) for p in room.patches) for room in (few, high)]

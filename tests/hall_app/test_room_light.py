@@ -1,0 +1,79 @@
+"""What the room hands to the light: surfaces with charts, spots, exhibits in the way."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from room_font import BLANK
+
+from hall_app.content.loading import load
+from hall_app.room import raise_room
+from hall_app.room.charts import surfaces
+from hall_app.room.lamps import spots_of
+from hall_app.room.occluders import exhibit_solids
+from hall_app.room.regions import Regions
+
+ASSETS = Path(__file__).parents[2] / "assets"
+
+
+@pytest.fixture(scope="module")
+def content():
+    return load(ASSETS)
+
+
+@pytest.fixture(scope="module")
+def room(content):
+    return raise_room(content.plan, content.hall.title, content.exhibits, blank=BLANK)
+
+
+def test_every_face_of_the_room_has_a_chart_and_exhibits_have_none(room, content, tmp_path):
+    solids = exhibit_solids(content, tmp_path)
+    found = surfaces(room.patches, solids)
+    assert len(solids) == len(content.exhibits)
+    assert (found.chart[: room.triangles] >= 0).all()
+    assert (found.chart[room.triangles :] == -1).all()
+    assert len(found.faces) == room.triangles + sum(len(faces) for _, faces in solids)
+    assert set(found.chart[: room.triangles]) == set(range(len(found.density)))
+    assert found.faces.max() < len(found.vertices)
+
+
+def test_charts_keep_lengths(room):
+    found = surfaces(room.patches)
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        solid = np.linalg.norm(found.vertices[found.faces[:, a]] - found.vertices[found.faces[:, b]], axis=1)
+        flat = np.linalg.norm(found.chart_uv[:, a] - found.chart_uv[:, b], axis=1)
+        assert np.abs(solid - flat).max() < 2e-6
+
+
+def test_only_lamps_glow_and_nothing_reflects_more_than_it_gets(room):
+    found = surfaces(room.patches)
+    materials = np.repeat([p.material for p in room.patches], [len(p.faces) for p in room.patches])
+    glowing = found.emission.max(1) > 0
+    assert set(materials[glowing]) == {"laylight", "paper", "lantern"}
+    assert found.albedo.max() < 1
+    assert found.albedo.min() >= 0
+
+
+def test_exhibits_stand_where_they_stand(content, tmp_path):
+    for exhibit, (points, _) in zip(content.exhibits, exhibit_solids(content, tmp_path), strict=True):
+        place = exhibit.file.place
+        middle = (points.min(0) + points.max(0)) / 2
+        assert np.hypot(middle[0] - place.x, middle[2] - place.z) < 0.5
+        solid = next(s for s in content.plan.solid if s.id == place.on)
+        assert points[:, 1].min() == pytest.approx(solid.height, abs=0.05)
+
+
+def test_spots_hang_in_the_hall_and_shine_down_on_their_place(content):
+    spots, regions = spots_of(content.plan), Regions(content.plan)
+    places = [s for s in content.plan.solid if s.kind in ("booth", "dais", "stand")]
+    assert len(spots) == len(places)
+    for spot in spots:
+        x, y, z = spot.position
+        ceiling = regions.height_at(x, z)
+        assert ceiling is not None
+        assert 2.5 < y < ceiling
+        assert spot.towards[1] < y - 1
+        footprints = [shapely.Point(s.round.x, s.round.z) if s.round else shapely.Point(s.at) for s in places]
+        aimed = shapely.Point(spot.towards[0], spot.towards[2])
+        assert min(f.distance(aimed) for f in footprints) < 0.1
