@@ -4,11 +4,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .baking import bake_light, irradiance
+    from .encode import light_jpeg
     from .model import LightError, LightMap, Spot, Surfaces
 
-__all__ = ["LightError", "LightMap", "Spot", "Surfaces"]
+__all__ = ["LightError", "LightMap", "Spot", "Surfaces", "bake_light", "irradiance", "light_jpeg"]
 
-_WHERE = {name: "model" for name in ("LightError", "LightMap", "Spot", "Surfaces")}
+_WHERE = {
+    "LightError": "model",
+    "LightMap": "model",
+    "Spot": "model",
+    "Surfaces": "model",
+    "bake_light": "baking",
+    "irradiance": "baking",
+    "light_jpeg": "encode",
+}
 
 
 def __getattr__(name: str) -> object:

@@ -1,0 +1,310 @@
+"""From surfaces to the light map: passes of gathering, each looking up what the last one found."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+import zipfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .bvh import build_tree
+from .encode import gain_of
+from .filters import fill, frame_charts, smooth
+from .gather import Scene, gather, gather_spots
+from .lamps import lamps_of, spot_rows
+from .model import LightError, LightMap, Spot, Surfaces
+from .packing import Atlas, atlas_of
+from .texels import Places, places_of
+
+__all__ = ["bake_light", "irradiance", "scene_of"]
+
+VERSION = 1  # of checkpoints: raise it when what is computed changes
+_INSIDE = 0.4  # points more of whose rays than this meet backs of faces lie inside a body
+_LAMP_SHARE = 1 / 3  # points on lamps for every ray
+_LATER_BARE = 16  # rays of faces without a chart
+
+Singles = NDArray[np.float32]
+Progress = Callable[[float, str], None]
+
+
+@dataclass
+class _State:
+    """What a pass leaves: its number, light by slot (S, 3), error (H, W, 3), points found inside (M,), tally."""
+
+    done: int
+    light: Singles
+    error: Singles
+    inside: NDArray[np.bool_]
+    tally: NDArray[np.int64]
+    seconds: float
+    cpu: float
+
+
+def scene_of(surfaces: Surfaces, atlas: Atlas) -> Scene:
+    """What rays meet, with the slots the light of each face is kept in."""
+    bare = np.full(len(surfaces.faces), -1, np.int32)
+    open_faces = np.flatnonzero(surfaces.chart < 0)
+    bare[open_faces] = atlas.width * atlas.height + 2 * np.arange(len(open_faces))
+    charted = np.maximum(surfaces.chart, 0)
+    shape = (len(surfaces.faces), 2)
+    empty = len(surfaces.density) == 0
+    low = np.zeros(shape, np.int32) if empty else atlas.corner[charted]
+    high = low if empty else low + atlas.size[charted] - 1
+    return Scene(
+        tree=build_tree(surfaces.vertices, surfaces.faces),
+        albedo=np.ascontiguousarray(surfaces.albedo, np.float32),
+        emission=np.ascontiguousarray(surfaces.emission, np.float32),
+        place=atlas.place.astype(np.float32),
+        low=np.ascontiguousarray(low, np.int32),
+        high=np.ascontiguousarray(high, np.int32),
+        bare=bare,
+        sheet=(surfaces.chart < 0) if empty else (surfaces.chart < 0) | surfaces.two_sided[charted],
+        width=atlas.width,
+    )
+
+
+def bake_light(
+    surfaces: Surfaces,
+    spots: Sequence[Spot] = (),
+    *,
+    rays: Sequence[int] = (36, 49, 324),
+    seed: int = 0,
+    fill_light: float = 0.05,
+    lamp_share: float = _LAMP_SHARE,
+    filtered: bool = True,
+    progress: Progress | None = None,
+    checkpoint: Path | None = None,
+) -> LightMap:
+    """The light on every chart, the same bits for the same input and seed, whatever the number of cores.
+
+    rays: per texel and pass; the first pass finds direct light, each further one adds a bounce; fill_light: added
+    everywhere, for the bounces left out; lamp_share: points drawn on lamps per ray (0: none); filtered: smooth noise;
+    progress: called with the share done and a word; checkpoint: file the state is kept in after every pass and gone on
+    from when surfaces, spots and settings are the same. Raises LightError.
+    """
+    if not len(rays) or min(rays) < 1 or len(surfaces.density) == 0:
+        raise LightError("light: rays, charts: none – give at least one ray a pass and one chart")
+    began, cpu = time.perf_counter(), time.process_time()
+    told = progress or (lambda share, label: None)
+    told(0.0, "charts")
+    atlas = atlas_of(surfaces)
+    chart = atlas.chart_image()
+    places = places_of(surfaces, atlas)
+    scene, lamps, rows = scene_of(surfaces, atlas), lamps_of(surfaces), spot_rows(spots)
+    corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
+    key = _key(surfaces, rows, rays, seed, (fill_light, lamp_share, float(filtered)))
+    state = _load(checkpoint, key) or _State(
+        0, _dark(atlas, surfaces), np.zeros((*chart.shape, 3), np.float32), np.zeros(len(places.point), bool),
+        np.zeros(4, np.int64), 0.0, 0.0,
+    )  # fmt: skip
+    direct = gather_spots(scene, rows, places, seed=seed)
+    total = float(sum(rays))
+    for step in range(state.done, len(rays)):
+        label, before = f"pass {step + 1} of {len(rays)}", float(sum(rays[:step]))
+        seen = places.without(state.inside)
+        if step == len(rays) - 1:
+            seen = _charted(seen, atlas)
+        halves, backs, tally = gather(
+            scene, lamps, corners, seen, state.light, rays=rays[step],
+            drawn=round(lamp_share * rays[step]), seed=seed, step=step,
+            told=lambda share, before=before, step=step, label=label: told(
+                0.03 + 0.92 * (before + share * rays[step]) / total, label
+            ),
+        )  # fmt: skip
+        if step == 0:
+            state.inside = _inside(places, backs, rays[0])
+        found = halves.mean(1) + direct[: len(halves)]
+        state.light, state.error = _settle(
+            found,
+            (halves[:, 0] - halves[:, 1]) / 2,
+            places,
+            state.inside,
+            atlas,
+            chart,
+            state.light,
+            filtered,
+        )
+        state.done, state.tally = step + 1, state.tally + tally
+        state.seconds += time.perf_counter() - began
+        state.cpu += time.process_time() - cpu
+        began, cpu = time.perf_counter(), time.process_time()
+        _save(checkpoint, key, state)
+    told(0.96, "light map")
+    result = _light_map(surfaces, atlas, chart, places, state, fill_light)
+    result.record["seconds"] = round(state.seconds + time.perf_counter() - began, 2)
+    result.record["cpu_seconds"] = round(state.cpu + time.process_time() - cpu, 2)
+    told(1.0, "light map")
+    return result
+
+
+def _dark(atlas: Atlas, surfaces: Surfaces) -> Singles:
+    return np.zeros((atlas.width * atlas.height + 2 * int((surfaces.chart < 0).sum()), 3), np.float32)
+
+
+def _charted(places: Places, atlas: Atlas) -> Places:
+    """Without the faces that have no chart: nobody looks up what the last pass finds there."""
+    count = int((places.slot < atlas.width * atlas.height).sum())
+    last = places.first[count]
+    return Places(
+        places.slot[:count], places.first[: count + 1], places.both[:count],
+        places.point[:last], places.normal[:last], places.plane[:last],
+    )  # fmt: skip
+
+
+def _inside(places: Places, backs: NDArray[np.int32], rays: int) -> NDArray[np.bool_]:
+    """(M,) points inside bodies: too many of their share of the rays met backs."""
+    count = np.diff(places.first)
+    thing = np.repeat(np.arange(len(count)), count)
+    rank = np.arange(len(backs)) - places.first[:-1][thing]
+    cast = (rays - rank + count[thing] - 1) // count[thing]
+    return backs > _INSIDE * np.maximum(cast, 1)
+
+
+def _settle(
+    found: Singles, error: Singles, places: Places, inside: NDArray[np.bool_], atlas: Atlas,
+    chart: NDArray[np.int32], last: Singles, filtered: bool,
+) -> tuple[Singles, Singles]:  # fmt: skip
+    """Gathered light (N, 3) as light by slot and error (H, W, 3): gaps filled, noise smoothed."""
+    size = atlas.width * atlas.height
+    outside = np.add.reduceat(~inside, places.first[:-1])[: len(found)] > 0
+    light = last.copy()
+    light[places.slot[: len(found)]] = found
+    known = np.zeros(len(light), bool)
+    known[places.slot[: len(found)]] = outside
+    noise = np.zeros((len(light), 3), np.float32)
+    noise[places.slot[: len(found)]] = error
+    shape = (atlas.height, atlas.width, 3)
+    both = np.concatenate([light[:size].reshape(shape), noise[:size].reshape(shape)], axis=2)
+    fill(both, known[:size].reshape(shape[:2]), chart)
+    picture, error = np.ascontiguousarray(both[..., :3]), np.ascontiguousarray(both[..., 3:])
+    if filtered:
+        picture, error = smooth(picture, error, atlas, chart)
+    light[:size] = picture.reshape(-1, 3)
+    return light, error
+
+
+def _light_map(
+    surfaces: Surfaces, atlas: Atlas, chart: NDArray[np.int32], places: Places, state: _State, fill_light: float
+) -> LightMap:  # fmt: skip
+    size = atlas.width * atlas.height
+    gathered = state.light[:size].reshape(atlas.height, atlas.width, 3) + np.float32(fill_light)
+    rims = frame_charts(np.dstack([gathered, state.error]), chart)
+    image = np.ascontiguousarray(rims[..., :3])
+    covered = chart >= 0
+    mean = max(float(image[covered].mean()), 1e-12)
+    uv = atlas.place / [atlas.width, atlas.height]
+    rays, missed, backs, drawn = (int(value) for value in state.tally)
+    texels = int(covered.sum())
+    record: dict[str, Any] = {
+        "texels": texels,
+        "size": [atlas.width, atlas.height],
+        "charts": len(atlas.size),
+        "triangles": len(surfaces.faces),
+        "rays": rays + drawn,
+        "missed": missed / max(rays, 1),
+        "inside": backs / max(rays, 1),
+        "noise": float(np.sqrt((state.error[covered] ** 2).mean())) / mean,
+        "mean": mean,
+    }
+    glow, gain = gain_of(surfaces, atlas, chart, image)
+    return LightMap(glow, uv.astype(np.float32), covered, gain, record | {"gain": gain})
+
+
+def irradiance(
+    surfaces: Surfaces,
+    light: LightMap,
+    points: ArrayLike,
+    normals: ArrayLike,
+    *,
+    spots: Sequence[Spot] = (),
+    rays: int = 144,
+    seed: int = 0,
+) -> Singles:
+    """Light (irradiance / π, before gain) at points (N, 3) [m] that face along normals (N, 3), e.g. of a garment.
+
+    Faces without a chart reflect nothing here (their light is not in the map); spots: those of the bake.
+    Points are lifted 2 mm off their surface. Raises LightError.
+    """
+    place, facing = np.asarray(points, np.float64), np.asarray(normals, np.float64)
+    if place.shape != facing.shape or place.ndim != 2 or place.shape[1:] != (3,) or rays < 1:
+        raise LightError(f"light: points, normals: shapes {place.shape}, {facing.shape} – give (N, 3) each")
+    if not (np.isfinite(place).all() and np.isfinite(facing).all()):
+        raise LightError("light: points, normals: not finite – mend the mesh")
+    atlas = atlas_of(surfaces)
+    if light.image.shape[:2] != (atlas.height, atlas.width):
+        raise LightError("light: the light map belongs to other surfaces – bake these")
+    facing = facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-12)
+    scene, lamps = scene_of(surfaces, atlas), lamps_of(surfaces)
+    corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
+    count = len(place)
+    unit = facing.astype(np.float32)
+    places = Places(
+        np.zeros(count, np.int32), np.arange(count + 1, dtype=np.int32), np.zeros(count, bool),
+        (place + 0.002 * facing).astype(np.float32), unit, unit,
+    )  # fmt: skip
+    kept = _dark(atlas, surfaces)
+    kept[: atlas.width * atlas.height] = light.image.reshape(-1, 3)
+    kept[: atlas.width * atlas.height][_lamp_slots(surfaces, atlas)] = 0
+    halves, _, _ = gather(
+        scene, lamps, corners, places, kept, rays=rays, drawn=round(_LAMP_SHARE * rays), seed=seed
+    )
+    return halves.mean(1) + gather_spots(scene, spot_rows(spots), places, seed=seed)
+
+
+def _lamp_slots(surfaces: Surfaces, atlas: Atlas) -> NDArray[np.bool_]:
+    """(H·W,) texels of shining charts, whose picture holds their own glow."""
+    shining = np.zeros(len(atlas.size) + 1, bool)
+    shining[surfaces.chart[surfaces.emission.max(1) > 0]] = True
+    shining[-1] = False
+    return shining[atlas.chart_image().reshape(-1)]
+
+
+def _key(surfaces: Surfaces, rows: Any, rays: Sequence[int], seed: int, options: tuple[float, ...]) -> str:
+    names = ("vertices", "faces", "chart", "chart_uv", "density", "albedo", "emission", "two_sided")
+    digest = hashlib.sha256(repr((VERSION, tuple(rays), seed, options)).encode())
+    for array in (*(getattr(surfaces, name) for name in names), *rows):
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def _load(path: Path | None, key: str) -> _State | None:
+    """The state kept in `path`, None where there is none, it is damaged or belongs to another bake."""
+    if path is None or not Path(path).is_file():
+        return None
+    try:
+        with np.load(path) as kept:
+            if str(kept["key"]) != key:
+                return None
+            done, seconds, cpu = kept["numbers"]
+            return _State(
+                int(done),
+                kept["light"],
+                kept["error"],
+                kept["inside"],
+                kept["tally"],
+                float(seconds),
+                float(cpu),
+            )
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+
+
+def _save(path: Path | None, key: str, state: _State) -> None:
+    if path is None:
+        return
+    part = Path(f"{path}.part")
+    part.parent.mkdir(parents=True, exist_ok=True)
+    with part.open("wb") as file:
+        numbers = np.array([state.done, state.seconds, state.cpu])
+        np.savez(
+            file, key=key, numbers=numbers, light=state.light, error=state.error, inside=state.inside,
+            tally=state.tally,
+        )  # fmt: skip
+    os.replace(part, path)
