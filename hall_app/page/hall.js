@@ -58,7 +58,7 @@ async function start() {
   if (hooks) await loadHall(scene, ui.progress);
   beat.rest();
   parts.visit.settle();
-  if (hooks) firstLook(beat);
+  if (parts.quality?.choice === "auto") firstLook(beat);
   ui.ready();
   publish(parts, display);
 }

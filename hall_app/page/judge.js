@@ -10,7 +10,9 @@ const CRAWLING = 100; // [ms] no half measures
 const FLUENT = 22; // [ms] 50 Hz displays included
 const LOOK = 1000; // [ms] of drawing for a verdict, and
 const FEWEST = 5; // pictures
-const LONG_LOOK = 2500; // [ms] a verdict on fewer than that
+const LONG_LOOK = 2500; // [ms] a verdict on fewer than that, but
+const LEAST = 3; // pictures
+const ABSENT = 3000; // [ms] that is no picture's time: the tab was hidden, or the machine asleep
 const SETTLE = 400; // [ms] of drawing after a change that do not count: shaders are built, buffers made
 const EVIDENCE = 2; // fluent verdicts in a row before going up
 const REST = 60e3; // [ms] a level that was too much is left alone for; doubles each time
@@ -36,13 +38,14 @@ export function newJudgement(level, { now = 0, cautious = false } = {}) {
  * Returns the given judgement changed; `level` says what to draw from now on.
  */
 export function judge(state, ms, now) {
+  if (ms > ABSENT) return state;
   if (state.skip > 0) {
     state.skip -= ms;
     return state;
   }
   state.times.push(ms);
   const total = state.times.reduce((sum, time) => sum + time, 0);
-  if (total < LOOK || (state.times.length < FEWEST && total < LONG_LOOK)) return state;
+  if (total < LOOK || state.times.length < (total < LONG_LOOK ? FEWEST : LEAST)) return state;
   const typical = median(state.times);
   state.times = [];
   const at = LEVELS.indexOf(state.level);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,15 +23,24 @@ from .raising import raise_room
 __all__ = ["bake_room"]
 
 Progress = Callable[[float, str], None]
+RAYS = (36, 49, 324)  # direct light and two bounces
 
 
 def bake_room(
-    content: Content, *, key: str, target: Path, work: Path, data: Path, progress: Progress
+    content: Content,
+    *,
+    key: str,
+    target: Path,
+    work: Path,
+    data: Path,
+    progress: Progress,
+    rays: Sequence[int] = RAYS,
 ) -> dict[str, Any]:
     """Bake the content's room into `target` and return the record kept beside it.
 
     work: where an interrupted bake left its state and where this one leaves its own; gone after success.
-    data: the data folder, where garments' own bakes may lie. Raises MissingFontError where the letters cannot be set.
+    data: the data folder, where garments' own bakes may lie; rays: per texel and pass of the
+    light. Raises MissingFontError where the letters cannot be set.
     """
     began, cpu = time.perf_counter(), time.process_time()
     out = work / "out"
@@ -44,6 +53,7 @@ def bake_room(
     light = bake_light(
         walls,
         spots_of(content.plan, content.exhibits),
+        rays=rays,
         progress=lambda share, label: progress(0.02 + 0.93 * share, label),
         checkpoint=work / "light.npz",
     )

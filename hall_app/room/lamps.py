@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["spots_of"]
 
 _WARM = "#FFF0DA"
-_POWER = {"booth": 4.6, "dais": 6.4, "stand": 2.5}  # light on a white surface at 1 m, facing the lamp
+_POWER = {"booth": 4.0, "dais": 4.6, "stand": 2.5}  # light on a white surface at 1 m, facing the lamp
 _PALE = 0.7  # of it before a pale backdrop, which would burn out
 
 

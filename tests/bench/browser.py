@@ -44,8 +44,13 @@ def open_browser() -> Iterator:
             browser.close()
 
 
-def enter(page, url: str) -> None:
-    """Open the hall at `url` and go in."""
+CHOOSE = "(level) => { localStorage['hall.quality'] ??= level; }"
+
+
+def enter(page, url: str, *, quality: str | None = "low") -> None:
+    """Open the hall at `url` and go in; `quality` of the picture if none is chosen yet, None leaves it to the page."""
+    if quality is not None:
+        page.add_init_script(f"({CHOOSE})({quality!r})")
     page.goto(url)
     page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=PATIENCE)
     page.click("[data-testid=enter]")

@@ -1,11 +1,12 @@
-"""The README's pictures: Enter screen, hall, close-up, form, phone, taken from the running hall.
+"""Pictures of the running hall: Enter screen, entry, every bay and exhibit, close-ups, panel, windows, form, phone.
 
-python tests/bench/pictures.py [--content FOLDER] [--out docs/pictures]
+python tests/bench/pictures.py [--content FOLDER] [--out docs/pictures] [--only NAME …] [--png]
 """
 
 import argparse
 import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -15,64 +16,130 @@ sys.path.insert(0, str(ROOT))
 from bench.browser import enter, open_browser  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
-DESK, PHONE = {"width": 1280, "height": 720}, {"width": 390, "height": 800}
+DESK, PHONE = {"width": 1280, "height": 720}, {"width": 390, "height": 844}
+STANDS = """
+async () => {
+  const scene = await (await fetch("/api/scene")).json();
+  const {standBefore} = await import("/static/ui/map_geometry.js");
+  const found = {};
+  for (const {id, polygon} of scene.bays) {
+    // From the bay's edge on the side of the entry, looking through it.
+    const middle = [0, 1].map((k) => polygon.reduce((sum, corner) => sum + corner[k], 0) / polygon.length);
+    const [dx, dz] = [middle[0] - scene.start.x, middle[1] - scene.start.z];
+    const away = Math.hypot(dx, dz) || 1, back = Math.min(3.2, away);
+    found[`bay-${id}`] = [middle[0] - (dx / away) * back, middle[1] - (dz / away) * back, Math.atan2(-dx, -dz), 0];
+  }
+  for (const exhibit of scene.exhibits) {
+    const {x, z, yaw, pitch} = standBefore(exhibit, scene);
+    found[`exhibit-${exhibit.id}`] = [x, z, yaw, pitch];
+  }
+  return {stands: found, exhibits: scene.exhibits.map(({id}) => id)};
+}
+"""
 
 
-def shoot(page, out: Path, name: str) -> None:
-    page.wait_for_timeout(900)
-    page.screenshot(path=out / f"{name}.jpg", type="jpeg", quality=82)
-    print(out / f"{name}.jpg", flush=True)
+@dataclass(frozen=True)
+class Album:
+    """Where pictures go, which are wanted (all when empty), and their format."""
+
+    folder: Path
+    only: tuple[str, ...]
+    png: bool
+
+    def wants(self, name: str) -> bool:
+        return not self.only or any(name.startswith(wanted) for wanted in self.only)
+
+    def shoot(self, page, name: str) -> None:
+        if not self.wants(name):
+            return
+        page.wait_for_timeout(900)
+        file = self.folder / f"{name}.{'png' if self.png else 'jpg'}"
+        page.screenshot(path=file, **({} if self.png else {"type": "jpeg", "quality": 84}))
+        print(file, flush=True)
 
 
-def stand(page, x: float, z: float, yaw: float) -> None:
-    page.evaluate("([x, z, yaw]) => hall.goTo(x, z, yaw)", [x, z, yaw])
-    page.wait_for_timeout(900)
+def new_page(browser, size: dict[str, int], *, touch: bool = False):
+    page = browser.new_context(viewport=size, has_touch=touch).new_page()
+    page.add_init_script("localStorage.setItem('hall.quality', 'high')")
+    return page
 
 
-def open_exhibit(page, exhibit: str, tab: str) -> None:
+def open_exhibit(page, exhibit: str) -> None:
     page.click("[data-testid=list]")
     page.click(f"[data-testid=list-item-{exhibit}]")
     page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=60_000)
-    page.click(f"[data-testid=tab-{tab}]")
 
 
-def desk(browser, url: str, out: Path) -> None:
-    page = browser.new_page(viewport=DESK)
-    page.goto(f"{url}/?lang=zh")
-    page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=120_000)
-    shoot(page, out, "enter")
-    page.close()
-    page = browser.new_page(viewport=DESK)
-    enter(page, f"{url}/?lang=en")
-    shoot(page, out, "hall")
-    stand(page, 0.0, -3.4, 0.0)
-    shoot(page, out, "near")
-    stand(page, 3.0, -1.0, -1.0)
-    shoot(page, out, "side")
-    open_exhibit(page, "pibo", "intro")
-    shoot(page, out, "closeup")
+def leave(page) -> None:
+    page.keyboard.press("Escape")
+    page.wait_for_timeout(500)
+
+
+def enter_screens(browser, url: str, album: Album) -> None:
+    for lang in ("zh", "en"):
+        page = new_page(browser, DESK)
+        page.goto(f"{url}/?lang={lang}")
+        page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=120_000)
+        album.shoot(page, f"enter-{lang}")
+        page.context.close()
+
+
+def hall(browser, url: str, album: Album) -> None:
+    page = new_page(browser, DESK)
+    enter(page, f"{url}/?lang=zh")
+    album.shoot(page, "hall")
+    found = page.evaluate(STANDS)
+    for name, there in found["stands"].items():
+        if album.wants(name):
+            page.evaluate("(there) => hall.goTo(...there)", there)
+            page.wait_for_timeout(1500)  # the glow of coming near
+            album.shoot(page, name)
+    for window in ("list", "settings", "help"):
+        page.click(f"[data-testid={window}]")
+        album.shoot(page, window)
+        leave(page)
+    for exhibit in found["exhibits"]:
+        if album.wants(f"closeup-{exhibit}"):
+            open_exhibit(page, exhibit)
+            closeup(page, exhibit, album)
+            leave(page)
+    page.context.close()
+
+
+def closeup(page, exhibit: str, album: Album) -> None:
+    for lang in ("zh", "en"):
+        page.click(f"[data-testid=lang-{lang}]")
+        page.click("[data-testid=tab-intro]")
+        album.shoot(page, f"closeup-{exhibit}-{lang}")
     page.mouse.move(420, 250)
     for _ in range(14):
         page.mouse.wheel(0, -120)
         page.wait_for_timeout(60)
-    shoot(page, out, "closeup-near")
-    page.keyboard.press("Escape")
-    page.wait_for_timeout(500)
-    open_exhibit(page, "mirror", "intro")
-    shoot(page, out, "mirror")
+    album.shoot(page, f"closeup-{exhibit}-near")
+
+
+def form(browser, url: str, album: Album) -> None:
+    page = new_page(browser, DESK)
     page.goto(f"{url}/questionnaires/garment?lang=en")
-    shoot(page, out, "form")
-    page.close()
+    album.shoot(page, "form")
+    page.context.close()
 
 
-def phone(browser, url: str, out: Path) -> None:
-    context = browser.new_context(viewport=PHONE, has_touch=True)
-    page = context.new_page()
-    enter(page, f"{url}/?lang=zh")
-    shoot(page, out, "phone")
-    open_exhibit(page, "pibo", "intro")
-    shoot(page, out, "phone-closeup")
-    context.close()
+def phone(browser, url: str, album: Album) -> None:
+    page = new_page(browser, PHONE, touch=True)
+    page.goto(f"{url}/?lang=zh")
+    page.locator("[data-testid=enter]:not([disabled])").wait_for(timeout=120_000)
+    album.shoot(page, "phone-enter")
+    page.click("[data-testid=enter]")
+    album.shoot(page, "phone-hall")
+    found = page.evaluate(STANDS)
+    exhibit = found["exhibits"][0]
+    page.evaluate("(there) => hall.goTo(...there)", found["stands"][f"exhibit-{exhibit}"])
+    page.wait_for_timeout(1500)
+    album.shoot(page, "phone-near")
+    open_exhibit(page, exhibit)
+    album.shoot(page, "phone-closeup")
+    page.context.close()
 
 
 def main() -> int:
@@ -81,15 +148,22 @@ def main() -> int:
     )
     parser.add_argument("--content", type=Path, default=ROOT / "assets")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "pictures")
+    parser.add_argument("--only", nargs="*", default=(), metavar="NAME", help="pictures whose names begin so")
+    parser.add_argument("--png", action="store_true", help="lossless, for comparing")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
+    album = Album(arguments.out, tuple(arguments.only), arguments.png)
     with (
         tempfile.TemporaryDirectory() as work,
-        running_hall(arguments.content, Path(work)) as hall,
+        running_hall(arguments.content, Path(work)) as served,
         open_browser() as browser,
     ):
-        desk(browser, hall.url, arguments.out)
-        phone(browser, hall.url, arguments.out)
+        parts = {"enter": enter_screens, "phone": phone, "form": form}
+        for name, part in parts.items():
+            if album.wants(name) or any(wanted.startswith(name) for wanted in album.only):
+                part(browser, served.url, album)
+        if not album.only or any(not wanted.startswith(tuple(parts)) for wanted in album.only):
+            hall(browser, served.url, album)
     return 0
 
 

@@ -76,6 +76,11 @@ def test_single_hiccups_do_not_count(verdicts):
     assert "low" not in {level for _, level in verdicts("medium", [(pattern, 60)])}
 
 
+def test_a_hidden_tab_does_not_count(verdicts):
+    runs = [[16.7, 5], [60_000, 600], [16.7, 5]]
+    assert "low" not in {level for _, level in verdicts("medium", runs)}
+
+
 def test_what_proved_too_much_is_left_alone_longer_each_time(verdicts):
     """Medium runs at 17 ms, high at 60 ms: within ten minutes at most five tries."""
     levels = verdicts("medium", [({"low": 10, "medium": 17, "high": 60}, 600)])
@@ -92,7 +97,7 @@ def test_a_remembered_level_is_tried_before_the_next(verdicts):
 def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
     context = chromium.new_context(viewport={"width": 360, "height": 640}, device_scale_factor=ratio)
     page = context.new_page()
-    enter(page, f"{plain_hall.url}/?lang=en")
+    enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     got = []
     for level in ("low", "medium", "high"):
         page.click("[data-testid=settings]")
@@ -108,7 +113,7 @@ def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
 def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
     context = chromium.new_context(viewport={"width": 480, "height": 270})
     page = context.new_page()
-    enter(page, f"{plain_hall.url}/?lang=en")
+    enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     assert page.evaluate("() => hall.quality()") == {"choice": "auto", "level": "low"}  # a software renderer
     page.focus("[data-testid=settings]")
     page.keyboard.press("Enter")
@@ -119,7 +124,7 @@ def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
     page.keyboard.press("Escape")
     page.close()
     page = context.new_page()
-    enter(page, f"{plain_hall.url}/?lang=zh")
+    enter(page, f"{plain_hall.url}/?lang=zh", quality=None)
     assert page.evaluate("() => hall.quality()") == {"choice": "high", "level": "high"}
     page.click("[data-testid=settings]")
     assert page.is_checked("[data-testid=quality-high]")
@@ -131,7 +136,7 @@ def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
 @pytest.mark.slow
 def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     page = chromium.new_page(viewport={"width": 480, "height": 270})
-    enter(page, f"{plain_hall.url}/?lang=en")
+    enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     page.wait_for_timeout(5000)  # the first look at the machine's speed
     before = page.evaluate("() => hall.framesDrawn()")
     page.wait_for_timeout(6000)

@@ -61,12 +61,28 @@ def test_hooks_of_the_pinned_client(page):
         tree: typeof window.__viserSceneTree?.getState,
         info: typeof window.__viserTestpoints?.rendererInfo?.render?.calls,
         tones: window.__viserMutable.scene.__r3f.root.getState().gl.toneMapping,
+        frames: typeof window.__viserTestpoints?.rendererInfo?.render?.frame,
+        settings: ["get", "set"].filter((name) => !window.__viserTestpoints?.devSettings?.[name]),
+        fixed: "fixedDpr" in window.__viserTestpoints.devSettings.get(),
+        pose: Object.keys(window.__viserMutable.nodePoseData["/exhibits/pibo"]).sort(),
+        outline: (() => {
+            let found = 0;
+            window.__viserMutable.nodeRefFromName["/exhibits/pibo"].traverse((o) => {
+                if (o.material?.uniforms?.thickness !== undefined && o.parent.isGroup) found += 1;
+            });
+            return found;
+        })(),
         gestures: {...window.__viserMutable.cameraControl.mouseButtons},
     })""")
     assert found["mutable"] == []
     assert found["tree"] == "function"
     assert found["info"] == "number"
     assert found["tones"] == 0
+    assert found["frames"] == "number"
+    assert found["settings"] == []
+    assert found["fixed"]
+    assert found["pose"] == ["poseUpdateState", "position", "wxyz"]
+    assert found["outline"] > 0
     assert {found["gestures"][name] for name in ("left", "middle", "right", "wheel")} == {0}
 
 

@@ -5,14 +5,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from room_font import BLANK
+from content_house import make_house
+from PIL import Image
+from room_font import BLANK, needs_font
 
+from hall_app.content.check import check
+from hall_app.content.glb import open_glb
 from hall_app.content.loading import load
 from hall_app.room import raise_room
+from hall_app.room.bake import bake_room
 from hall_app.room.charts import surfaces
+from hall_app.room.key import room_key
 from hall_app.room.lamps import spots_of
 from hall_app.room.occluders import exhibit_solids
+from hall_app.room.places import room_here
 from hall_app.room.regions import Regions
+from hall_app.room.showing import shown_room
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -77,3 +85,46 @@ def test_spots_hang_in_the_hall_and_shine_down_on_their_place(content):
         footprints = [shapely.Point(s.round.x, s.round.z) if s.round else shapely.Point(s.at) for s in places]
         aimed = shapely.Point(spot.towards[0], spot.towards[2])
         assert min(f.distance(aimed) for f in footprints) < 0.1
+
+
+LIT = """
+[[laylight]]
+at = [0, 0]
+size = [3, 3]
+[[lantern]]
+at = [-2, 2]
+"""
+
+
+@needs_font
+@pytest.mark.slow
+def test_a_baked_room_carries_its_light_and_is_shown(tmp_path):
+    house = make_house(tmp_path / "house")
+    with (house / "plan.toml").open("a", encoding="utf-8") as plan:
+        plan.write(LIT)
+    content, data, told = load(house), tmp_path / "data", []
+    target = room_here(content.folder)
+    record = bake_room(
+        content,
+        key=room_key(content),
+        target=target,
+        work=data / "work",
+        data=data,
+        progress=lambda share, label: told.append(share),
+        rays=(4, 9),
+    )
+    assert record["light"]["texels"] > 1000
+    assert not (data / "work").exists()
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    shown = shown_room(load(house), data)
+    assert shown.baked
+    assert check(house) == []
+    document, _ = open_glb(target / "room.glb")
+    assert [m["name"] for m in document["meshes"]].count("lightmap") == 1
+    environment = np.asarray(Image.open(target / "environment.jpg")).astype(float)
+    assert environment[:60].max() > 240  # the laylight above
+    assert environment.mean() > 20
+    text = (house / "plan.toml").read_text("utf-8")
+    (house / "plan.toml").write_text(text.replace("size = [3, 3]", "size = [2, 3]"), "utf-8")
+    assert not shown_room(load(house), data).baked

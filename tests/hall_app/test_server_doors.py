@@ -1,5 +1,6 @@
 """The served hall through its doors: page, API, media, sockets, survey."""
 
+import gzip
 import json
 import os
 import signal
@@ -85,6 +86,22 @@ def test_page_is_visers_with_our_head(plain_hall):
     assert "<title>Plain hall</title>" in page
     assert "'unsafe-eval'" not in policy
     assert "http:" not in policy
+
+
+@pytest.mark.parametrize("path", ["/", "/catalogue", "/api/scene", "/grid.bin", "/static/hall.js"])
+def test_head_is_answered_like_get(plain_hall, path):
+    request = urllib.request.Request(plain_hall.url + path, method="HEAD")
+    with urllib.request.urlopen(request, timeout=20) as answer:
+        assert answer.status == 200
+        assert answer.read() == b""
+
+
+def test_grid_is_packed_where_that_is_understood(plain_hall):
+    with get(f"{plain_hall.url}/grid.bin") as answer:
+        plain = answer.read()
+    with get(f"{plain_hall.url}/grid.bin", **{"Accept-Encoding": "gzip"}) as answer:
+        assert answer.headers["Content-Encoding"] == "gzip"
+        assert gzip.decompress(answer.read()) == plain
 
 
 def test_nothing_is_fetched_from_elsewhere(plain_hall):
