@@ -15,7 +15,8 @@ from sim_core.errors import SimCoreError
 __all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
 
 EXACT_CELLS = 2.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
-Box = tuple[Sequence[float], Sequence[float]]
+Corner = Sequence[float] | np.ndarray
+Box = tuple[Corner, Corner]
 
 
 @dataclass(frozen=True)
