@@ -25,7 +25,6 @@ __all__ = ["bake_light", "irradiance", "scene_of"]
 
 _INSIDE = 0.4  # points more of whose rays than this meet backs of faces lie inside a body
 _LAMP_SHARE = 1 / 3  # points on lamps for every ray
-_LATER_BARE = 16  # rays of faces without a chart
 
 Singles = NDArray[np.float32]
 Progress = Callable[[float, str], None]
@@ -93,7 +92,7 @@ def bake_light(
     for step in range(state.done, len(rays)):
         label, before = f"pass {step + 1} of {len(rays)}", float(sum(rays[:step]))
         seen = places.without(state.inside)
-        if step == len(rays) - 1:
+        if 0 < step == len(rays) - 1:
             seen = _charted(seen, atlas)
         halves, backs, tally = gather(
             scene, lamps, corners, seen, state.light, rays=rays[step],
@@ -107,7 +106,7 @@ def bake_light(
         found = halves.mean(1) + direct[: len(halves)]
         state.light, state.error = _settle(
             found,
-            (halves[:, 0] - halves[:, 1]) / 2,
+            ((halves[:, 0] - halves[:, 1]) / 2).astype(np.float32),
             places,
             state.inside,
             atlas,
