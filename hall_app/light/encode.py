@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ _WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in d
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
 SHOULDER = 0.8  # linear brightness from which highlights are rolled off
 _SCALE = 2.0  # the file holds light / 2
+_KNEE = 1.1  # light from which it is rolled off too, as the file ends at _SCALE
 
 Singles = NDArray[np.float32]
 
@@ -34,9 +36,17 @@ class Shown:
     rolled: float
 
 
+def _rolled(value: NDArray[Any], knee: float, limit: float) -> NDArray[Any]:
+    """Factors that leave values up to `knee` alone and bring larger ones ever more slowly towards `limit`."""
+    room = limit - knee
+    over = np.maximum(value - knee, 0.0)
+    return np.where(over > 0, (knee - room * np.expm1(-over / room)) / np.maximum(value, 1e-9), 1.0)
+
+
 def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
     """The light (H, W, 3) as it is drawn: well-lit parts of pale, upright charts (of all, where there are none)
-    come to WALL of the picture; above SHOULDER brightness rises ever more slowly and stays below 1, hue kept.
+    come to WALL of the picture; above SHOULDER brightness, and above _KNEE light itself,
+    rise ever more slowly and stay below 1 and 2, hue kept.
     """
     count = len(atlas.size)
     albedo, glow, upright = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
@@ -55,16 +65,16 @@ def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
     plain = ~lamp[on] & inside
     chosen = pale if pale.any() else plain if plain.any() else inside
     gain = WALL / max(float(np.quantile(picture[chosen].mean(1), _WELL_LIT)), 1e-6)
-    bright = gain * picture.max(1)
-    over = np.maximum(bright - SHOULDER, 0.0) / (1.0 - SHOULDER)
-    factor = np.where(
-        over > 0, (SHOULDER + (1 - SHOULDER) * -np.expm1(-over)) / np.maximum(bright, 1e-9), 1.0
-    )
+    strong = gain * image.reshape(-1, 3).max(1)
+    stored = _rolled(strong, _KNEE, _SCALE)
+    bright = gain * picture.max(1) * stored
+    factor = stored * _rolled(bright, SHOULDER, 1.0)
+    over = factor < 1.0
     factor[lamp[on]] = 1.0
     added = (glow / np.maximum(albedo, 0.05))[on].reshape(image.shape).astype(np.float32)
     lit = image + added
     shown = (gain * lit * factor.reshape(*image.shape[:2], 1)).astype(np.float32)
-    return Shown(lit, shown, gain, float((over[plain] > 0).mean()) if plain.any() else 0.0)
+    return Shown(lit, shown, gain, float(over[plain].mean()) if plain.any() else 0.0)
 
 
 def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:
