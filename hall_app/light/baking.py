@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-import os
 import time
-import zipfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,36 +11,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .bvh import build_tree
-from .encode import gain_of
+from .checkpoint import State, key_of, load, save
+from .encode import show
 from .filters import fill, frame_charts, smooth
-from .gather import Scene, gather, gather_spots
+from .gather import Scene, gather
 from .lamps import lamps_of, spot_rows
 from .model import LightError, LightMap, Spot, Surfaces
 from .packing import Atlas, atlas_of
+from .spots import gather_spots
 from .texels import Places, places_of
 
 __all__ = ["bake_light", "irradiance", "scene_of"]
 
-VERSION = 1  # of checkpoints: raise it when what is computed changes
 _INSIDE = 0.4  # points more of whose rays than this meet backs of faces lie inside a body
 _LAMP_SHARE = 1 / 3  # points on lamps for every ray
-_LATER_BARE = 16  # rays of faces without a chart
 
 Singles = NDArray[np.float32]
 Progress = Callable[[float, str], None]
-
-
-@dataclass
-class _State:
-    """What a pass leaves: its number, light by slot (S, 3), error (H, W, 3), points found inside (M,), tally."""
-
-    done: int
-    light: Singles
-    error: Singles
-    inside: NDArray[np.bool_]
-    tally: NDArray[np.int64]
-    seconds: float
-    cpu: float
 
 
 def scene_of(surfaces: Surfaces, atlas: Atlas) -> Scene:
@@ -99,17 +82,17 @@ def bake_light(
     places = places_of(surfaces, atlas)
     scene, lamps, rows = scene_of(surfaces, atlas), lamps_of(surfaces), spot_rows(spots)
     corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
-    key = _key(surfaces, rows, rays, seed, (fill_light, lamp_share, float(filtered)))
-    state = _load(checkpoint, key) or _State(
+    key = key_of(surfaces, rows, rays, seed, (fill_light, lamp_share, float(filtered)))
+    state = load(checkpoint, key) or State(
         0, _dark(atlas, surfaces), np.zeros((*chart.shape, 3), np.float32), np.zeros(len(places.point), bool),
         np.zeros(4, np.int64), 0.0, 0.0,
     )  # fmt: skip
-    direct = gather_spots(scene, rows, places, seed=seed)
+    direct = gather_spots(scene.tree, rows, places, seed=seed)
     total = float(sum(rays))
     for step in range(state.done, len(rays)):
         label, before = f"pass {step + 1} of {len(rays)}", float(sum(rays[:step]))
         seen = places.without(state.inside)
-        if step == len(rays) - 1:
+        if 0 < step == len(rays) - 1:
             seen = _charted(seen, atlas)
         halves, backs, tally = gather(
             scene, lamps, corners, seen, state.light, rays=rays[step],
@@ -123,7 +106,7 @@ def bake_light(
         found = halves.mean(1) + direct[: len(halves)]
         state.light, state.error = _settle(
             found,
-            (halves[:, 0] - halves[:, 1]) / 2,
+            ((halves[:, 0] - halves[:, 1]) / 2).astype(np.float32),
             places,
             state.inside,
             atlas,
@@ -135,7 +118,7 @@ def bake_light(
         state.seconds += time.perf_counter() - began
         state.cpu += time.process_time() - cpu
         began, cpu = time.perf_counter(), time.process_time()
-        _save(checkpoint, key, state)
+        save(checkpoint, key, state)
     told(0.96, "light map")
     result = _light_map(surfaces, atlas, chart, places, state, fill_light)
     result.record["seconds"] = round(state.seconds + time.perf_counter() - began, 2)
@@ -191,7 +174,7 @@ def _settle(
 
 
 def _light_map(
-    surfaces: Surfaces, atlas: Atlas, chart: NDArray[np.int32], places: Places, state: _State, fill_light: float
+    surfaces: Surfaces, atlas: Atlas, chart: NDArray[np.int32], places: Places, state: State, fill_light: float
 ) -> LightMap:  # fmt: skip
     size = atlas.width * atlas.height
     gathered = state.light[:size].reshape(atlas.height, atlas.width, 3) + np.float32(fill_light)
@@ -213,8 +196,9 @@ def _light_map(
         "noise": float(np.sqrt((state.error[covered] ** 2).mean())) / mean,
         "mean": mean,
     }
-    glow, gain = gain_of(surfaces, atlas, chart, image)
-    return LightMap(glow, uv.astype(np.float32), covered, gain, record | {"gain": gain})
+    drawn_as = show(surfaces, atlas, image)
+    record |= {"gain": drawn_as.gain, "rolled_off": drawn_as.rolled}
+    return LightMap(drawn_as.glow, drawn_as.shown, uv.astype(np.float32), covered, drawn_as.gain, record)
 
 
 def irradiance(
@@ -255,7 +239,7 @@ def irradiance(
     halves, _, _ = gather(
         scene, lamps, corners, places, kept, rays=rays, drawn=round(_LAMP_SHARE * rays), seed=seed
     )
-    return halves.mean(1) + gather_spots(scene, spot_rows(spots), places, seed=seed)
+    return halves.mean(1) + gather_spots(scene.tree, spot_rows(spots), places, seed=seed)
 
 
 def _lamp_slots(surfaces: Surfaces, atlas: Atlas) -> NDArray[np.bool_]:
@@ -264,47 +248,3 @@ def _lamp_slots(surfaces: Surfaces, atlas: Atlas) -> NDArray[np.bool_]:
     shining[surfaces.chart[surfaces.emission.max(1) > 0]] = True
     shining[-1] = False
     return shining[atlas.chart_image().reshape(-1)]
-
-
-def _key(surfaces: Surfaces, rows: Any, rays: Sequence[int], seed: int, options: tuple[float, ...]) -> str:
-    names = ("vertices", "faces", "chart", "chart_uv", "density", "albedo", "emission", "two_sided")
-    digest = hashlib.sha256(repr((VERSION, tuple(rays), seed, options)).encode())
-    for array in (*(getattr(surfaces, name) for name in names), *rows):
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()
-
-
-def _load(path: Path | None, key: str) -> _State | None:
-    """The state kept in `path`, None where there is none, it is damaged or belongs to another bake."""
-    if path is None or not Path(path).is_file():
-        return None
-    try:
-        with np.load(path) as kept:
-            if str(kept["key"]) != key:
-                return None
-            done, seconds, cpu = kept["numbers"]
-            return _State(
-                int(done),
-                kept["light"],
-                kept["error"],
-                kept["inside"],
-                kept["tally"],
-                float(seconds),
-                float(cpu),
-            )
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None
-
-
-def _save(path: Path | None, key: str, state: _State) -> None:
-    if path is None:
-        return
-    part = Path(f"{path}.part")
-    part.parent.mkdir(parents=True, exist_ok=True)
-    with part.open("wb") as file:
-        numbers = np.array([state.done, state.seconds, state.cpu])
-        np.savez(
-            file, key=key, numbers=numbers, light=state.light, error=state.error, inside=state.inside,
-            tally=state.tally,
-        )  # fmt: skip
-    os.replace(part, path)

@@ -3,31 +3,50 @@
 from __future__ import annotations
 
 import io
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .filters import frame_numbers
 from .model import LightMap, Surfaces
 from .packing import Atlas
 from .texels import face_normals
 
-__all__ = ["gain_of", "light_jpeg"]
+__all__ = ["Shown", "light_jpeg", "show"]
 
 WALL = 0.75  # linear brightness pale walls come to
+_WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in deep shade or never seen
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
-_CLIPPED = 0.999  # share of texels that stay below 1 in the picture
+SHOULDER = 0.8  # linear brightness from which highlights are rolled off
 _SCALE = 2.0  # the file holds light / 2
+_KNEE = 1.1  # light from which it is rolled off too, as the file ends at _SCALE
 
 Singles = NDArray[np.float32]
 
 
-def gain_of(
-    surfaces: Surfaces, atlas: Atlas, chart: NDArray[np.int32], image: Singles
-) -> tuple[Singles, float]:
-    """The image with the lamps' own glow in it, and the gain.
+@dataclass(frozen=True)
+class Shown:
+    """glow: image with the lamps' own light; shown: what a picture shows; gain; rolled: share of texels rolled off."""
 
-    The gain brings the median of pale, upright charts (all charts where there are none) to WALL of the picture, but
-    never lifts more than a thousandth of the unlit texels above 1 in the picture.
+    glow: Singles
+    shown: Singles
+    gain: float
+    rolled: float
+
+
+def _rolled(value: NDArray[Any], knee: float, limit: float) -> NDArray[Any]:
+    """Factors that leave values up to `knee` alone and bring larger ones ever more slowly towards `limit`."""
+    room = limit - knee
+    over = np.maximum(value - knee, 0.0)
+    return np.where(over > 0, (knee - room * np.expm1(-over / room)) / np.maximum(value, 1e-9), 1.0)
+
+
+def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
+    """The light (H, W, 3) as it is drawn: well-lit parts of pale, upright charts (of all, where there are none)
+    come to WALL of the picture; above SHOULDER brightness, and above _KNEE light itself,
+    rise ever more slowly and stay below 1 and 2, hue kept.
     """
     count = len(atlas.size)
     albedo, glow, upright = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
@@ -37,18 +56,25 @@ def gain_of(
     np.add.at(albedo, number, surfaces.albedo[charted] / faces[number])
     np.add.at(glow, number, surfaces.emission[charted] / faces[number])
     np.add.at(upright, number, np.abs(face_normals(surfaces)[charted, 1]) / faces[number, 0])
-    inside = chart >= 0
-    on = chart[inside]
-    dark = glow.max(1) <= 0
-    picture = image[inside] * albedo[on]
-    pale = dark & (upright < 0.3) & (albedo.mean(1) > _PALE)
-    chosen = pale[on] if pale[on].any() else dark[on] if dark[on].any() else np.ones(len(on), bool)
-    gain = WALL / max(float(np.median(picture[chosen].mean(1))), 1e-6)
-    if dark[on].any():
-        gain = min(gain, 1.0 / max(float(np.quantile(picture[dark[on]].max(1), _CLIPPED)), 1e-6))
-    out = image.copy()
-    out[inside] += (glow / np.maximum(albedo, 0.05))[on].astype(np.float32)
-    return out, gain
+    chart = frame_numbers(atlas)
+    on = chart.reshape(-1)
+    lamp = glow.max(1) > 0
+    inside = atlas.chart_image().reshape(-1) >= 0
+    picture = (image.reshape(-1, 3) * albedo[on]).astype(np.float32)
+    pale = (~lamp & (upright < 0.3) & (albedo.mean(1) > _PALE))[on] & inside
+    plain = ~lamp[on] & inside
+    chosen = pale if pale.any() else plain if plain.any() else inside
+    gain = WALL / max(float(np.quantile(picture[chosen].mean(1), _WELL_LIT)), 1e-6)
+    strong = gain * image.reshape(-1, 3).max(1)
+    stored = _rolled(strong, _KNEE, _SCALE)
+    bright = gain * picture.max(1) * stored
+    factor = stored * _rolled(bright, SHOULDER, 1.0)
+    over = factor < 1.0
+    factor[lamp[on]] = 1.0
+    added = (glow / np.maximum(albedo, 0.05))[on].reshape(image.shape).astype(np.float32)
+    lit = image + added
+    shown = (gain * lit * factor.reshape(*image.shape[:2], 1)).astype(np.float32)
+    return Shown(lit, shown, gain, float(over[plain].mean()) if plain.any() else 0.0)
 
 
 def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:
@@ -58,7 +84,7 @@ def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:
     """
     from PIL import Image
 
-    stored = np.clip(light.image * light.gain / _SCALE, 0.0, 1.0)
+    stored = np.clip(light.shown / _SCALE, 0.0, 1.0)
     srgb = np.where(
         stored <= 0.0031308, 12.92 * stored, 1.055 * np.maximum(stored, 1e-9) ** (1 / 2.4) - 0.055
     )

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from .packing import Atlas
 
-__all__ = ["fill", "frame_charts", "smooth"]
+__all__ = ["fill", "frame_charts", "frame_numbers", "smooth"]
 
 Singles = NDArray[np.float32]
 _REACH = 3  # [texel]
@@ -111,11 +113,16 @@ def smooth(image: Singles, error: Singles, atlas: Atlas, chart: NDArray[np.int32
     return np.ascontiguousarray(out[..., :3]), np.ascontiguousarray(out[..., 3:])
 
 
-def frame_charts(image: Singles, chart: NDArray[np.int32]) -> Singles:
+def frame_numbers(atlas: Atlas) -> NDArray[np.int32]:
+    """(H, W) the nearest chart of every texel, borders and free room included."""
+    return frame_charts(atlas.chart_image(), atlas.chart_image())
+
+
+def frame_charts(image: NDArray[Any], chart: NDArray[np.int32]) -> NDArray[Any]:
     """The picture with everything outside charts copied from the nearest chart texel: borders, and free room."""
     from scipy.ndimage import distance_transform_edt
 
     if not (chart >= 0).any():
         return image
-    nearest = distance_transform_edt(chart < 0, return_distances=False, return_indices=True)
+    nearest = np.asarray(distance_transform_edt(chart < 0, return_distances=False, return_indices=True))
     return np.ascontiguousarray(image[nearest[0], nearest[1]])

@@ -1,4 +1,4 @@
-"""Light gathered at places: cosine-distributed rays and points on lamps, weighed against each other; spots.
+"""Light gathered at places: cosine-distributed rays and points on lamps, weighed against each other.
 
 A place's rays are a stretch of one low-discrepancy lattice (Kronecker sequence with the generalised golden ratio,
 after M. Roberts 2018), and places follow each other along a Z-curve through each chart (A. Ahmed, P. Wonka 2020), so
@@ -8,9 +8,7 @@ the balance heuristic (E. Veach, L. Guibas 1995).
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -18,20 +16,12 @@ from numba import njit
 from numpy.typing import NDArray
 
 from .bvh import Tree
-from .lamps import Lamps, SpotRows
+from .lamps import Lamps
+from .sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
 from .texels import Places
 from .tracing import FAR, lanes, nearest, occluded, stack
 
-__all__ = ["Scene", "gather", "gather_spots"]
-
-_CHUNK = 2048  # places a thread takes at a time
-_PI = np.float32(np.pi)
-# Steps of the lattices in 2 and 3 dimensions as fractions of 2^64.
-_A1, _A2 = (np.uint64(int(step * 2.0**64)) for step in (0.7548776662466927, 0.5698402909980532))
-_B1, _B2, _B3 = (
-    np.uint64(int(step * 2.0**64)) for step in (0.8191725133961645, 0.6710436067037893, 0.5497004779019703)
-)
-_SHIFT, _SCALE = np.uint64(40), np.float32(2.0**-24)
+__all__ = ["Scene", "gather"]
 
 
 class Scene(NamedTuple):
@@ -50,18 +40,6 @@ class Scene(NamedTuple):
     bare: NDArray[np.int32]
     sheet: NDArray[np.bool_]
     width: int
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _frame(n):
-    """Two unit vectors across a unit vector (T. Duff et al. 2017)."""
-    sign = np.float32(1.0) if n[2] >= 0 else np.float32(-1.0)
-    a = np.float32(-1.0) / (sign + n[2])
-    b = n[0] * n[1] * a
-    return (
-        np.float32(1.0) + sign * n[0] * n[0] * a, sign * b, -sign * n[0],
-        b, sign + n[1] * n[1] * a, -n[1],
-    )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -143,7 +121,7 @@ def _shine(tree, lamps, scene, corners, p, n, g, both, chance, r, count, drawn, 
             return
     if here <= 0:
         return
-    toward = here / _PI
+    toward = here / PI
     if occluded(
         tree, p[0] + lift * g[0], p[1] + lift * g[1], p[2] + lift * g[2], x, y, z,
         far - max(np.float32(1e-3), np.float32(1e-4) * far), opened, room,
@@ -180,15 +158,15 @@ def _gather(
             s = first[i] + ((k // 2) % points if sheet else k % points)
             p, n, g = point[s], normal[s], plane[s]
             index = np.uint64(i) * np.uint64(count) + np.uint64(k)
-            u1 = np.float32((seed[0] + index * _A1) >> _SHIFT) * _SCALE
-            u2 = np.float32((seed[1] + index * _A2) >> _SHIFT) * _SCALE
-            radius, angle = np.sqrt(u1), np.float32(2.0) * _PI * u2
+            u1 = np.float32((seed[0] + index * A1) >> SHIFT) * SCALE
+            u2 = np.float32((seed[1] + index * A2) >> SHIFT) * SCALE
+            radius, angle = np.sqrt(u1), np.float32(2.0) * PI * u2
             x, y = radius * np.cos(angle), radius * np.sin(angle)
             z = np.sqrt(max(np.float32(0.0), np.float32(1.0) - u1))
             lift = np.float32(0.0)
             if sheet and k % 2 == 1:
                 z, lift = -z, np.float32(-4e-4)
-            ax, ay, az, bx, by, bz = _frame(n)
+            ax, ay, az, bx, by, bz = frame(n)
             dx, dy, dz = x * ax + y * bx + z * n[0], x * ay + y * by + z * n[1], x * az + y * bz + z * n[2]
             true = dx * g[0] + dy * g[1] + dz * g[2]
             if (true <= 0) != (lift < 0):
@@ -214,7 +192,7 @@ def _gather(
             if lamp >= 0 and cosine > 0:
                 weight = np.float32(1.0) / count
                 if many:
-                    toward = abs(z) / _PI * (np.float32(0.5) if sheet else np.float32(1.0))
+                    toward = abs(z) / PI * (np.float32(0.5) if sheet else np.float32(1.0))
                     chosen = chance[lamp] / lamps.area[lamp] * hit[0] * hit[0] / max(cosine, np.float32(1e-5))
                     weight = toward / (count * toward + many * chosen)
                 for c in range(3):
@@ -223,9 +201,9 @@ def _gather(
             half = 0 if 2 * k < many else 1
             s = first[i] + k % points
             index = np.uint64(i) * np.uint64(drawn) + np.uint64(k)
-            r[0] = np.float32((seed[2] + index * _B1) >> _SHIFT) * _SCALE
-            r[1] = np.float32((seed[3] + index * _B2) >> _SHIFT) * _SCALE
-            r[2] = np.float32((seed[4] + index * _B3) >> _SHIFT) * _SCALE
+            r[0] = np.float32((seed[2] + index * B1) >> SHIFT) * SCALE
+            r[1] = np.float32((seed[3] + index * B2) >> SHIFT) * SCALE
+            r[2] = np.float32((seed[4] + index * B3) >> SHIFT) * SCALE
             _shine(
                 tree, lamps, scene, corners, point[s], normal[s], plane[s], sheet, chance, r, count, many,
                 opened, room, lamp_light[half],
@@ -239,72 +217,6 @@ def _gather(
             full = 0 if valid[0] > 0 else 1
             for c in range(3):
                 out[i, 1 - full, c] = out[i, full, c]
-
-
-@njit(cache=True, error_model="numpy", nogil=True)
-def _gather_spots(tree, spots, first, both, point, normal, plane, start, stop, seed, opened, room, out):
-    """Places start … stop; see `gather_spots`."""
-    for i in range(start, stop):
-        points = first[i + 1] - first[i]
-        for k in range(len(spots.inner)):
-            drawn = max(points, 4) if points else 0
-            for j in range(drawn):
-                s = first[i] + j % points
-                index = (np.uint64(i) * np.uint64(16) + np.uint64(j)) * np.uint64(64) + np.uint64(k)
-                u1 = np.float32((seed[0] + index * _A1) >> _SHIFT) * _SCALE
-                u2 = np.float32((seed[1] + index * _A2) >> _SHIFT) * _SCALE
-                radius, angle = spots.radius[k] * np.sqrt(u1), np.float32(2.0) * _PI * u2
-                e, f = radius * np.cos(angle), radius * np.sin(angle)
-                ax, ay, az, bx, by, bz = _frame(spots.axis[k])
-                x = spots.place[k, 0] + e * ax + f * bx - point[s, 0]
-                y = spots.place[k, 1] + e * ay + f * by - point[s, 1]
-                z = spots.place[k, 2] + e * az + f * bz - point[s, 2]
-                square = max(x * x + y * y + z * z, np.float32(1e-8))
-                far = np.sqrt(square)
-                x, y, z = x / far, y / far, z / far
-                cosine = -(x * spots.axis[k, 0] + y * spots.axis[k, 1] + z * spots.axis[k, 2])
-                if cosine <= spots.outer[k]:
-                    continue
-                fade = min(np.float32(1.0), (cosine - spots.outer[k]) / (spots.inner[k] - spots.outer[k]))
-                fade = fade * fade * (np.float32(3.0) - np.float32(2.0) * fade)
-                here = normal[s, 0] * x + normal[s, 1] * y + normal[s, 2] * z
-                true = plane[s, 0] * x + plane[s, 1] * y + plane[s, 2] * z
-                lift = np.float32(0.0)
-                if both[i]:
-                    lift = np.float32(0.0) if true > 0 else np.float32(-4e-4)
-                    here = abs(here) * np.float32(0.5)
-                elif true <= 0:
-                    continue
-                if here <= 0 or occluded(
-                    tree, point[s, 0] + lift * plane[s, 0], point[s, 1] + lift * plane[s, 1],
-                    point[s, 2] + lift * plane[s, 2], x, y, z, far, opened, room,
-                ):  # fmt: skip
-                    continue
-                for c in range(3):
-                    out[i, c] += spots.light[k, c] * fade * here / (square * drawn)
-
-
-def _threads() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def _shared(count: int, work: Callable[[int, int], object], told: Callable[[float], None] | None) -> None:
-    """work(start, stop) over all places, in threads (the kernels let go of the interpreter); told: share done."""
-    starts = range(0, count, _CHUNK)
-    with ThreadPoolExecutor(_threads()) as pool:
-        jobs = [pool.submit(work, start, min(start + _CHUNK, count)) for start in starts]
-        try:
-            for done, job in enumerate(jobs):
-                job.result()
-                if told is not None:
-                    told((done + 1) / len(jobs))
-        finally:
-            for job in jobs:
-                job.cancel()
-
-
-def _seeds(seed: int, step: int) -> NDArray[np.uint64]:
-    return np.random.default_rng([seed, step]).integers(0, 2**63, 5).astype(np.uint64) * np.uint64(2)
 
 
 def gather(
@@ -329,7 +241,7 @@ def gather(
     out = np.zeros((count, 2, 3), np.float32)
     backs = np.zeros(len(places.point), np.int32)
     tallies: list[NDArray[np.int64]] = []
-    seeds = _seeds(seed, step)
+    seeds = seeds_of(seed, step)
 
     def work(start: int, stop: int) -> None:
         tally = np.zeros(4, np.int64)
@@ -341,21 +253,5 @@ def gather(
         )  # fmt: skip
         tallies.append(tally)
 
-    _shared(count, work, told)
+    in_threads(count, work, told)
     return out, backs, np.sum(tallies, axis=0) if tallies else np.zeros(4, np.int64)
-
-
-def gather_spots(scene: Scene, spots: SpotRows, places: Places, *, seed: int) -> NDArray[np.float32]:
-    """Direct light of the spots (N, 3): one ray for every point of a place, four at least."""
-    out = np.zeros((len(places.slot), 3), np.float32)
-    seeds = _seeds(seed, 1_000_003)
-
-    def work(start: int, stop: int) -> None:
-        _gather_spots(
-            scene.tree, spots, places.first, places.both, places.point, places.normal, places.plane, start, stop,
-            seeds, stack(scene.tree), lanes(), out,
-        )  # fmt: skip
-
-    if len(spots.inner):
-        _shared(len(places.slot), work, None)
-    return out

@@ -123,13 +123,16 @@ class LightMap:
     """Light on every chart.
 
     image: (H, W, 3) float32, linear irradiance / π: albedo × image is the picture before `gain`
-    (on lamps their own glow is in it); uv: (F, 3, 2) float32 in 0..1, v down as glTF has it (TEXCOORD_1),
+    (on lamps their own glow is in it); shown: (H, W, 3) float32, image × gain with its highlights rolled off so that
+    albedo × shown ≤ 1 except on lamps, which is what light_jpeg encodes;
+    uv: (F, 3, 2) float32 in 0..1, v down as glTF has it (TEXCOORD_1),
     zeros where a face has no chart; covered: (H, W) bool, texels that some chart shows;
-    gain: factor on the image that brings pale walls to their brightness and albedo × light ≤ 1;
+    gain: factor on the image that brings pale walls to their brightness;
     record: seconds, cpu_seconds, rays, texels, noise (root mean square, relative), misses, inside …
     """
 
     image: Singles
+    shown: Singles
     uv: Singles
     covered: NDArray[np.bool_]
     gain: float

@@ -165,11 +165,11 @@ def places_of(surfaces: Surfaces, atlas: Atlas) -> Places:
     values = np.concatenate([surfaces.vertices[surfaces.faces], shaded], axis=2)
     base, slopes = _flat_map(atlas.place, values)
     found = base[face] + spot[:, :1] * slopes[face, 0] + spot[:, 1:] * slopes[face, 1]
-    new = np.r_[True, slot[1:] != slot[:-1]]
+    new = np.diff(slot, prepend=-1) != 0
     first = np.flatnonzero(new)
     bare = _bare(surfaces, normals)
     normal = found[:, 3:] / np.maximum(np.linalg.norm(found[:, 3:], axis=1, keepdims=True), 1e-12)
-    start = np.r_[first, len(face) + np.arange(0, len(bare[0]) + 1, FINE * FINE)]
+    start = np.r_[first, len(face) + np.arange(0, len(bare[0]) + 1, FINE * FINE)].astype(np.int64)
     count = (len(start) - 1) - len(first)
     single = np.float32
     return Places(
