@@ -22,7 +22,7 @@ __all__ = ["MissingFontError", "Sheet", "Writing", "font_file", "write"]
 WIDTH = 2048  # [pixels]
 _GAP = 8  # [pixels] each picture's rim is drawn on round it: no neighbour shows at a distance
 _SC = 2  # index of the simplified Chinese face in Noto's collections
-_PAPER, _INK, _FADED = "#CFC5AF", "#15110F", "#3A312A"  # labels lie in the light of the spots
+_PAPER, _INK, _FADED = "#CFC5AF", "#15110F", "#241D18"  # labels lie in the light of the spots
 _GROUND, _GOLD, _SEAL, _SILK = "#241512", "#CFA85A", "#9E2B25", "#5E7276"
 
 
