@@ -34,10 +34,13 @@ SHARES = (
     0.05,
 )  # of the triangles, tried in turn
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
+_TRYING = 0.016  # [m] the same while levels are tried; a seventh of the samples
 
 
-def detail(garment: Garment, edge: float, *, solid: Solid | None = None) -> Garment:
-    """The garment on a mesh of step `edge` [m], its distance from the original measured in the provenance.
+def detail(
+    garment: Garment, edge: float, *, solid: Solid | None = None, spacing: float = _SPACING
+) -> Garment:
+    """The garment on a mesh of step `edge` [m]; its distance from the original, measured every `spacing` [m], is noted.
 
     Texture coordinates and outlines stay exact, and twins on a welded seam stay in one place. Where a chord of the
     coarser mesh would cut into the stand, or into `solid`, the mesh is moved out. Raises SimCoreError where the
@@ -50,8 +53,7 @@ def detail(garment: Garment, edge: float, *, solid: Solid | None = None) -> Garm
         solid = Stand(**garment.provenance["stand"]).collider()
     if solid is not None:
         coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
-    errors = _apart(garment, coarse)
-    return coarse.noted(detail={"edge": edge, "triangles": len(coarse.faces), "hausdorff": errors})
+    return _measured(garment, coarse, spacing, edge=edge)
 
 
 def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
@@ -82,8 +84,10 @@ def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
     return replace(garment, pattern=vertices, pattern_faces=faces, weld=weld, panel=panel, positions=mean)
 
 
-def thinned(garment: Garment, counts: Sequence[int], *, solid: Solid | None = None) -> Iterator[Garment]:
-    """The garment with about each of `counts` triangles, the largest first, its distance measured.
+def thinned(
+    garment: Garment, counts: Sequence[int], *, solid: Solid | None = None, spacing: float = _SPACING
+) -> Iterator[Garment]:
+    """The garment with about each of `counts` triangles, the largest first, its distance measured every `spacing` [m].
 
     Triangles go where the drape is flat (see `thinning`); what stays keeps place and texture coordinates. Of a
     mirrored garment one half is thinned and mirrored. The last one may come again when nothing more can go.
@@ -103,7 +107,8 @@ def thinned(garment: Garment, counts: Sequence[int], *, solid: Solid | None = No
         if twice == 2:
             left = np.concatenate([left, left[:, [0, 2, 1]] + vertices])
             index = np.concatenate([index, index + faces])
-        yield _kept(garment, left.astype(np.int32), garment.panel[index], solid)
+        coarse = _kept(garment, left.astype(np.int32), garment.panel[index], solid)
+        yield _measured(garment, coarse, spacing)
 
 
 def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid | None) -> Garment:
@@ -120,15 +125,16 @@ def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid |
     )
     if solid is not None:
         coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
-    errors = _apart(garment, coarse)
-    return coarse.noted(detail={"triangles": len(coarse.faces), "hausdorff": errors})
+    return coarse
 
 
-def _apart(garment: Garment, coarse: Garment) -> dict[str, float]:
+def _measured(garment: Garment, coarse: Garment, spacing: float, **facts: float) -> Garment:
+    """The coarse level with its size and its distance from the garment noted."""
     apart = metrics.hausdorff(
-        garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=_SPACING
+        garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=spacing
     )
-    return {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
+    errors = {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
+    return coarse.noted(detail={**facts, "triangles": len(coarse.faces), "hausdorff": errors})
 
 
 def choose_detail(
@@ -141,23 +147,32 @@ def choose_detail(
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
     The garment is thinned by steps until it fails; with `edges`, mesh steps [m], it is meshed again instead, finest
-    first. The garment itself is returned when none will do. The choice and all that was tried go into the provenance.
+    first. Levels are tried on few samples and the chosen one is measured again on many; where it fails then, the
+    level before it is taken. The garment itself is returned when none will do. The choice and all that was tried go
+    into the provenance.
     """
-    best, chosen = garment, {"triangles": len(garment.faces)}
-    tried: list[dict[str, float]] = []
     if edges is None:
         counts = [round(len(garment.faces) * share) for share in SHARES]
-        levels = thinned(garment, counts, solid=solid)
+        levels = thinned(garment, counts, solid=solid, spacing=_TRYING)
     else:
-        levels = (detail(garment, float(edge), solid=solid) for edge in sorted(edges))
+        levels = (detail(garment, float(edge), solid=solid, spacing=_TRYING) for edge in sorted(edges))
+    tried: list[dict[str, float]] = []
+    fitting: list[Garment] = []
     for coarse in levels:
         facts = coarse.provenance["detail"]
         p99 = facts["hausdorff"]["p99_m"]
         tried.append({**{k: v for k, v in facts.items() if k != "hausdorff"}, "p99_m": p99})
         if p99 > budget:
             break
-        best, chosen = coarse, facts
-    return best.noted(detail={**chosen, "budget_m": budget, "tried": tried})
+        fitting.append(coarse)
+    for coarse in reversed(fitting):
+        facts = dict(coarse.provenance["detail"])
+        edge = {"edge": facts["edge"]} if "edge" in facts else {}
+        best = _measured(garment, coarse, _SPACING, **edge)
+        if best.provenance["detail"]["hausdorff"]["p99_m"] <= budget:
+            chosen = best.provenance["detail"]
+            return best.noted(detail={**chosen, "budget_m": budget, "tried": tried})
+    return garment.noted(detail={"triangles": len(garment.faces), "budget_m": budget, "tried": tried})
 
 
 def locate(points: np.ndarray, rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
