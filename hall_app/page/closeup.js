@@ -28,7 +28,7 @@ export function createCloseup(ui) {
   function fitting(radius) {
     const { panel, bottom, top } = ui.visible;
     const free = Math.min(innerWidth - panel, innerHeight - bottom - top) / innerHeight;
-    return (1.15 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
+    return (1.02 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
   }
 
   function place() {

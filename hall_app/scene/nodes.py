@@ -20,7 +20,7 @@ __all__ = ["STUDIO", "Figure", "HallScene"]
 
 # The studio lies far outside the hall: one WebGL context, no second page, and the walker's pose is untouched.
 STUDIO = (500.0, 0.0, 0.0)
-ENVIRONMENT = 0.6  # strength of the room's reflection beside the lights
+ENVIRONMENT = 0.4  # strength of the room's reflection beside the lights
 FIELD_OF_VIEW = math.radians(58)  # 75 degrees, the client's own, stretches dress at the rim
 
 
@@ -81,11 +81,11 @@ class HallScene:
             "/light/sky",
             sky_color=(255, 246, 230),
             ground_color=(120, 96, 78),
-            intensity=1.2,
+            intensity=0.8,
             position=(0.0, 10.0, 0.0),
         )
         scene.add_light_directional(
-            "/light/key", color=(255, 244, 226), intensity=1.8, position=(7.0, 5.0, 3.5)
+            "/light/key", color=(255, 244, 226), intensity=2.3, position=(7.0, 5.0, 3.5)
         )
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False)
         self.server.initial_camera.fov = FIELD_OF_VIEW
