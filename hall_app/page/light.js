@@ -8,6 +8,7 @@ import { renderer, requestRender, viser } from "./hooks.js";
 
 const MAP = "lightmap";
 const ROOM = "hall_";
+const LINEAR = 1006; // three.js' LinearFilter
 const STRENGTH = 2 * Math.PI; // the map holds light / 2, and three.js divides a light map by pi
 
 const listOf = (material) => [material ?? []].flat();
@@ -34,6 +35,7 @@ export function layLight(meshes) {
   const map = bearer.material.map;
   bearer.visible = false;
   map.channel = 1;
+  plainly(map);
   let lit = 0, changed = false;
   for (const mesh of meshes) {
     const { material, geometry } = mesh;
@@ -49,14 +51,24 @@ export function layLight(meshes) {
   return lit;
 }
 
-/** Filter textures seen at a slant with `wanted` samples, as far as the machine can. */
+/** Light is smooth: one bilinear look-up a pixel is enough, and a software renderer pays for every further one. */
+function plainly(map) {
+  if (map.minFilter === LINEAR) return;
+  map.minFilter = LINEAR;
+  map.generateMipmaps = false;
+  map.anisotropy = 1;
+  map.needsUpdate = true;
+}
+
+/** Filter textures seen at a slant with `wanted` samples, as far as the machine can. Light maps stay as they are. */
 export function sharpen(meshes, wanted) {
   const anisotropy = Math.min(wanted, renderer()?.capabilities.getMaxAnisotropy() ?? 1);
   let changed = false;
   for (const mesh of meshes) {
     for (const material of listOf(mesh.material)) {
       for (const texture of Object.values(material)) {
-        if (!texture?.isTexture || texture.anisotropy === anisotropy) continue;
+        if (!texture?.isTexture || texture === material.lightMap || texture.anisotropy === anisotropy) continue;
+        if (material.name === MAP) continue;
         texture.anisotropy = anisotropy;
         texture.needsUpdate = true;
         changed = true;

@@ -21,6 +21,8 @@ from sim_core.picture import normals
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
+SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
+PORE = 0.35  # of the mean colour
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 
 
@@ -130,6 +132,19 @@ def _mean_colour(maps: MapsLike) -> np.ndarray:
     return (_linear(maps.albedo / 255.0) * weight[..., None]).sum((0, 1)) / weight.sum()
 
 
+def _coverage(maps: MapsLike) -> float:
+    return float(maps.opacity.mean()) / 255
+
+
+def _filled(maps: MapsLike, mean: np.ndarray) -> np.ndarray:
+    """Albedo (n, m, 3) uint8 of a dense cloth: its pores take the shade of the yarns round them."""
+    shade = 255 * np.where(
+        mean * PORE <= 0.0031308, 12.92 * mean * PORE, 1.055 * (mean * PORE) ** (1 / 2.4) - 0.055
+    )
+    cover = maps.opacity[..., None] / 255.0
+    return np.round(maps.albedo * cover + shade * (1 - cover)).astype(np.uint8)
+
+
 def _dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
     return mean if dye is None else _linear(np.asarray(dye))
 
@@ -188,8 +203,8 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
     # The map is dyed by a factor, so that its mean becomes the dye and its variation stays the yarns'.
     factor = _dyed(dye, mean) / np.maximum(mean, 1e-3)
     material = _silk(factor, 1.0, "silk_close")
-    sheer = float(maps.opacity.mean()) < 250
-    picture = np.dstack([maps.albedo, maps.opacity]) if sheer else maps.albedo
+    sheer = _coverage(maps) < SHEER
+    picture = np.dstack([maps.albedo, maps.opacity]) if sheer else _filled(maps, mean)
     tile = [1e-3 / float(maps.size[0]), 1e-3 / float(maps.size[1])]
     material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
         textures, "colour", lambda: glb.texture(picture, tile)
@@ -206,11 +221,11 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
 
 
 def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
-    cover = float(maps.opacity.mean()) / 255
-    material = _silk(_dyed(dye, _mean_colour(maps)), round(cover, 4) if cover < 0.98 else 1.0, "silk_hall")
+    cover = _coverage(maps)
+    material = _silk(_dyed(dye, _mean_colour(maps)), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
     normal = _once(textures, "normal", lambda: glb.texture(slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
-    if cover < 0.98:
+    if cover < SHEER:
         material["alphaMode"] = "BLEND"
     return glb.material(material)

@@ -261,6 +261,25 @@ def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
         assert cloth["pbrMetallicRoughness"]["baseColorFactor"][3] == pytest.approx(120 / 255, abs=1e-3)
 
 
+@pytest.mark.parametrize("precision", ["close", "hall"])
+def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision) -> None:
+    dense = maps()
+    dense.opacity[:] = 255
+    dense.opacity[:8, :8] = 0
+    write_glb(tmp_path / "g.glb", arched(0.04), dense, precision=precision)
+    document, blob = chunks(tmp_path / "g.glb")
+    cloth = document["materials"][0]
+    assert "alphaMode" not in cloth
+    assert cloth["pbrMetallicRoughness"]["baseColorFactor"][3] == 1.0
+    if precision == "close":
+        source = document["textures"][cloth["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]
+        view = document["bufferViews"][document["images"][source]["bufferView"]]
+        start = view.get("byteOffset", 0)
+        picture = np.asarray(Image.open(BytesIO(blob[start : start + view["byteLength"]])))
+        assert picture.shape[2] == 3
+        assert picture[:8, :8].mean() < 0.75 * picture[8:, 8:].mean()
+
+
 def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
     garment = arched(0.04)
     write_glb(tmp_path / "g.glb", garment, maps(), precision="close")
