@@ -38,9 +38,12 @@ def data_bake(data: Path, exhibit: str, key: str) -> Path:
 
 def bake_folder(content: Content, exhibit: Exhibit, data: Path, *, stale: bool = True) -> Path | None:
     """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one."""
-    key = bake_key(content, exhibit)
     here = baked_here(exhibit)
     record = read_record(here)
+    try:
+        key = bake_key(content, exhibit)
+    except OSError:  # an input went away after the content was read: its last bake stays on show
+        return here if stale and record is not None else None
     if record is not None and record.get("key") == key:
         return here
     fresh = data_bake(data, exhibit.id, key)
