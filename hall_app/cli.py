@@ -47,21 +47,27 @@ def _parser() -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for module in _COMMANDS.values():
         import_module(module).add_parser(subparsers)
+    for command in subparsers.choices.values():
+        # Behind the command as well; without it, what stands before the command holds.
+        command.add_argument(
+            "--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback of an error"
+        )
     return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status. Errors are one line on standard error."""
-    arguments = _parser().parse_args(argv)
     try:
-        return arguments.run(arguments)
+        arguments = _parser().parse_args(argv)
+        try:
+            return arguments.run(arguments)
+        except Exception as error:
+            if arguments.debug:
+                raise
+            print(f"hall {arguments.command}: {_one_line(error)}", file=sys.stderr)
+            return 1
     except KeyboardInterrupt:
         return 130
-    except Exception as error:
-        if arguments.debug:
-            raise
-        print(f"hall {arguments.command}: {_one_line(error)}", file=sys.stderr)
-        return 1
 
 
 def _one_line(error: Exception) -> str:

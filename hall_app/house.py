@@ -13,7 +13,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Literal
 
-from .bake.key import bake_key
+from .bake.places import key_now
+from .beside import beside
 from .content.floor import foot_height
 from .content.glb import GlbError, read_glb
 from .content.loading import Content, Exhibit
@@ -86,15 +87,16 @@ class House:
 
     def baked(self, exhibit: Exhibit, failure: str | None) -> None:
         """A bake of the exhibit's garment ended; `failure` says why it did not succeed."""
-        if failure is not None:
+        key = key_now(self.content, exhibit)
+        if failure is not None and key is not None:
             problem = Problem(
                 exhibit.toml, "garment", f"baking failed: {failure}", "correct pattern or weave"
             )
-            self._failed[bake_key(self.content, exhibit)] = problem
+            self._failed[key] = problem
 
     def given_up(self, exhibit: Exhibit) -> bool:
         """True when baking these very inputs has failed before."""
-        return bake_key(self.content, exhibit) in self._failed
+        return key_now(self.content, exhibit) in self._failed
 
     @property
     def start(self) -> Pose:
@@ -132,7 +134,7 @@ class House:
                 self.stage.close(visitor)
             visitor.say(news)
         if not still_right(self.room, content, self.data):  # a second or two: the last to change
-            self._show_room(await asyncio.to_thread(shown_room, content, self.data))
+            self._show_room(await beside(shown_room, content, self.data))
 
     def _show_room(self, room: ShownRoom) -> None:
         self.room = room
@@ -170,7 +172,7 @@ class House:
         self._models = {name: models for name, models in found.items() if models is not None}
         figures, unreadable = self._figures_now()
         self.unbaked = unreadable + tuple(
-            self._failed.get(bake_key(self.content, e))
+            self._failed.get(key_now(self.content, e) or "")
             or Problem(e.toml, "garment", "has not been baked", "run hall build")
             for e in self.content.exhibits
             if e.file.garment is not None and (e.id not in self._models or self.given_up(e))

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
+import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
-from .bake.places import bake_folder
+from .bake.places import bake_folder, key_now
 from .content.loading import Content, Exhibit
 
 __all__ = ["Preparation", "stale_garments"]
@@ -21,8 +24,30 @@ def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
     return tuple(
         exhibit
         for exhibit in content.exhibits
-        if exhibit.file.garment is not None and bake_folder(content, exhibit, data, stale=False) is None
+        if exhibit.file.garment is not None
+        and key_now(content, exhibit) is not None  # an input is missing: nothing can be baked from it
+        and bake_folder(content, exhibit, data, stale=False) is None
     )
+
+
+@contextlib.contextmanager
+def undisturbed() -> Iterator[None]:
+    """Put signals off that end the program, while something is begun that has to be ended again."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = {
+        sign: signal.signal(sign, lambda number, frame: came.append(number))
+        for sign in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    }
+    try:
+        yield
+    finally:
+        for sign, act in before.items():
+            signal.signal(sign, act)
+        for number in came:
+            signal.raise_signal(number)
 
 
 class Preparation:
@@ -31,23 +56,28 @@ class Preparation:
     def __init__(self, content: Path, data: Path, *what: str) -> None:
         """what: options of `hall build`, such as "--exhibit", "pibo" or "--room"."""
         command = [sys.executable, "-m", "hall_app", "build", "--content", str(content), "--data", str(data)]
-        self._process = subprocess.Popen(
-            [*command, *what, "--into-data", "--json"],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            start_new_session=True,  # Ctrl-C reaches us alone; we end the child ourselves
-        )
         self._line = "starting …"
         self._errors: list[str] = []
-        self._readers = (
-            threading.Thread(target=self._read_progress, daemon=True),
-            threading.Thread(target=self._read_errors, daemon=True),
-        )
-        for reader in self._readers:
-            reader.start()
+        try:
+            with undisturbed():
+                self._process = subprocess.Popen(
+                    [*command, *what, "--into-data", "--json"],
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    text=True,
+                    encoding="utf-8",
+                    start_new_session=True,  # Ctrl-C reaches us alone; we end the child ourselves
+                )
+                self._readers = (
+                    threading.Thread(target=self._read_progress, daemon=True),
+                    threading.Thread(target=self._read_errors, daemon=True),
+                )
+                for reader in self._readers:
+                    reader.start()
+        except KeyboardInterrupt:  # came meanwhile
+            self._end()
+            raise
 
     def _read_progress(self) -> None:
         assert self._process.stdout is not None
@@ -69,13 +99,13 @@ class Preparation:
         return self._process.poll()
 
     def line(self) -> str:
-        """What it is doing, padded to overwrite an earlier line."""
-        return f"{self._line:<60.60}"
+        """What it is doing."""
+        return self._line
 
     def outcome(self) -> str:
         """How it ended, in one line."""
         if self.returncode == 0:
-            return f"{'done':<70}"
+            return "done"
         return self._errors[-1] if self._errors else f"ended with status {self.returncode}"
 
     def __enter__(self) -> Preparation:
@@ -84,15 +114,18 @@ class Preparation:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        """End the build with all it started: its film is drawn by processes that hold the same pipes.
+
+        What it has done is kept by its own files, whole ones or none, so it needs no time to say good-bye.
+        """
         if self._process.poll() is None:
-            self._process.terminate()
-            try:
-                self._process.wait(5)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
-        for reader in self._readers:
-            reader.join(2)
-        for pipe in (self._process.stdout, self._process.stderr):
-            if pipe is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+        for reader, pipe in zip(self._readers, (self._process.stdout, self._process.stderr), strict=True):
+            reader.join(1)
+            if pipe is not None and not reader.is_alive():  # closing waits for who reads
                 pipe.close()

@@ -13,10 +13,12 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .beside import beside
 from .content.loading import Content, Exhibit, load
 from .content.lookup import content_folder
 from .content.problems import ContentError
 from .preparing import Preparation, stale_garments
+from .progress_line import ProgressLine
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -71,8 +73,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve until interrupted."""
-    import uvicorn
-
     try:
         content = load(content_folder(arguments.content))
     except ContentError as error:
@@ -91,8 +91,15 @@ def run(arguments: argparse.Namespace) -> int:
     _say(f"Content  {content.folder}")
     for problem in content.problems:
         _say(f"  left out: {problem}")
-    _bake_missing(content, arguments.data)
-    app = _open(content, arguments)
+    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the hall at any time, and is no failure
+        _bake_missing(content, arguments.data)
+        _serve(_open(content, arguments), arguments)
+    return 0
+
+
+def _serve(app: FastAPI, arguments: argparse.Namespace) -> None:
+    import uvicorn
+
     config = uvicorn.Config(
         app,
         host=arguments.host,
@@ -103,10 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
         ws_max_size=1 << 26,
         timeout_graceful_shutdown=2,
     )
-    server = uvicorn.Server(config)
-    with contextlib.suppress(KeyboardInterrupt):
-        server.run()
-    return 0
+    uvicorn.Server(config).run()
 
 
 def _end(number: int, frame: object) -> None:
@@ -139,7 +143,12 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
     from .server.app import create_app
 
     _say("Opening the hall …")
-    house = House(content, arguments.data, walk_mode=arguments.walk, progress=_show_progress)
+    progress = ProgressLine()
+
+    def show(fraction: float, label: str) -> None:
+        progress.tell(f"Preparing {label} {fraction:4.0%}", done=fraction >= 1)
+
+    house = House(content, arguments.data, walk_mode=arguments.walk, progress=show)
 
     @contextlib.asynccontextmanager
     async def living(app: FastAPI) -> AsyncIterator[None]:
@@ -177,12 +186,16 @@ def _greet(house: House, arguments: argparse.Namespace) -> None:
 
 def _bake_missing(content: Content, data: Path) -> None:
     """Bake garments that have no bake yet, in a process of their own, before the doors open."""
+    progress = ProgressLine()
     for exhibit in stale_garments(content, data):
-        with Preparation(content.folder, data, "--exhibit", exhibit.id) as preparation:
-            while preparation.poll() is None:
-                _say(f"\rPreparing {exhibit.id}: {preparation.line()}", end="")
-                time.sleep(0.3)
-        _say(f"\rPreparing {exhibit.id}: {preparation.outcome()}")
+        try:
+            with Preparation(content.folder, data, "--exhibit", exhibit.id) as preparation:
+                while preparation.poll() is None:
+                    progress.tell(f"Preparing {exhibit.id}: {preparation.line()}")
+                    time.sleep(0.3)
+            progress.tell(f"Preparing {exhibit.id}: {preparation.outcome()}", done=True)
+        finally:
+            progress.end()
 
 
 async def _follow_edits(house: House, light: bool) -> None:
@@ -192,7 +205,7 @@ async def _follow_edits(house: House, light: bool) -> None:
     watcher = Watcher(house.content.folder, house.content)
 
     async def look() -> None:
-        content = await asyncio.to_thread(watcher.poll)
+        content = await beside(watcher.poll)
         if content is not None:
             before = set(house.problems)
             await house.replace(content)
@@ -239,14 +252,10 @@ async def _built(house: House, name: str, *what: str) -> str | None:
         _say(f"Preparing {name} …")
         while preparation.poll() is None:
             await asyncio.sleep(0.5)
-    outcome = preparation.outcome().strip()
+    outcome = preparation.outcome()
     _say(f"Preparing {name}: {outcome}")
     return None if preparation.returncode == 0 else outcome
 
 
-def _show_progress(fraction: float, label: str) -> None:
-    _say(f"\rPreparing {label} {fraction:4.0%}", end="\n" if fraction >= 1 else "")
-
-
-def _say(text: str, end: str = "\n") -> None:
-    print(text, end=end, flush=True)
+def _say(text: str) -> None:
+    print(text, flush=True)

@@ -9,7 +9,7 @@ from typing import Any
 from ..content.loading import Content, Exhibit
 from .key import bake_key
 
-__all__ = ["bake_folder", "baked_here", "data_bake", "read_record", "RECORD"]
+__all__ = ["bake_folder", "baked_here", "data_bake", "key_now", "read_record", "RECORD"]
 
 RECORD = "bake.json"
 NEEDED = ("garment.npz", "hall.glb", "close.glb")
@@ -36,11 +36,21 @@ def data_bake(data: Path, exhibit: str, key: str) -> Path:
     return data / "bakes" / f"{exhibit}-{key}"
 
 
+def key_now(content: Content, exhibit: Exhibit) -> str | None:
+    """The key of a bake of the exhibit's inputs as they are now, None while one of them cannot be read."""
+    try:
+        return bake_key(content, exhibit)
+    except OSError:  # it went away after the content was read
+        return None
+
+
 def bake_folder(content: Content, exhibit: Exhibit, data: Path, *, stale: bool = True) -> Path | None:
     """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one."""
-    key = bake_key(content, exhibit)
     here = baked_here(exhibit)
     record = read_record(here)
+    key = key_now(content, exhibit)
+    if key is None:
+        return here if stale and record is not None else None
     if record is not None and record.get("key") == key:
         return here
     fresh = data_bake(data, exhibit.id, key)

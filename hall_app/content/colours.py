@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .glb import open_glb
+from .pictures import LARGEST, PictureError, picture_size
 
 __all__ = ["difference", "hex_of", "main_colour"]
 
@@ -42,7 +43,7 @@ def hex_of(colour: Floats) -> str:
 def main_colour(path: Path) -> Floats | None:
     """(3,) linear light: the mean colour of the material that covers most of the model at `path`, stands left out.
 
-    None where no material covers anything. Raises GlbError as read_glb does.
+    None where no material covers anything. Raises what reading a broken GLB raises, PictureError for a huge texture.
     """
     document, binary = open_glb(path)
     area: dict[int, float] = {}
@@ -109,6 +110,8 @@ def _colour_of(document: dict[str, Any], binary: bytes, number: int) -> Floats:
 def _mean(data: bytes) -> Floats:
     from PIL import Image
 
+    if max(picture_size(data)) > LARGEST:
+        raise PictureError("the texture is too large")  # as numbers it would fill the memory
     with Image.open(io.BytesIO(data)) as picture:
         pixels = np.asarray(picture.convert("RGBA"), float) / 255
     weight = pixels[..., 3:] + 1e-6

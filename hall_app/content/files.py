@@ -13,6 +13,7 @@ from .problems import Problem
 
 BAKED = "baked/"  # written by hall build, absent before it
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}
+LEAVES = ("is a link that leaves the content folder", "copy the file itself into the folder")
 PASSING = ("~", ".swp", ".tmp", ".part", ".bak")  # editors' and copiers' temporary files
 
 
@@ -43,8 +44,10 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
 def recipe_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
     """(key, path) of the files a garment is made from, relative to the content folder."""
     if file.garment:
-        yield "garment.pattern", file.garment.pattern
-        yield "garment.weave", file.garment.weave
+        for name in ("pattern", "weave", "mannequin", "robe_pattern", "robe_weave"):
+            path = getattr(file.garment, name)
+            if path is not None:
+                yield f"garment.{name}", path
 
 
 def made_by_build(file: ExhibitFile, path: str) -> bool:
@@ -55,14 +58,38 @@ def made_by_build(file: ExhibitFile, path: str) -> bool:
 def file_problem(toml: str, key: str, base: Path, path: str, *, root: Path) -> Problem | None:
     """Why the file `path` under `base` cannot be used, or None. `root` is the content folder."""
     full = base / path
-    if not full.is_file():
-        return Problem(toml, key, f"missing file {path}", f"add {_shown(full, root)} or correct the path")
-    if not full.resolve().is_relative_to(root.resolve()):
-        fix = "copy the file itself into the folder"
-        return Problem(toml, key, f"{path} is a link that leaves the content folder", fix)
-    if full.stat().st_size == 0:
-        return Problem(toml, key, f"{path} is empty (0 bytes)", "replace it by the whole file")
+    try:
+        if not full.is_file():
+            return Problem(
+                toml, key, f"missing file {shortened(path)}", f"add {_shown(full, root)} or correct the path"
+            )
+        if leaves(full, root):
+            return Problem(toml, key, f"{path} {LEAVES[0]}", LEAVES[1])
+        if full.stat().st_size == 0:
+            return Problem(toml, key, f"{path} is empty (0 bytes)", "replace it by the whole file")
+    except OSError as error:
+        return Problem(
+            toml, key, f"{shortened(path)} cannot be read ({error.strerror})", "shorten or correct the path"
+        )
     return None
+
+
+def shortened(path: str) -> str:
+    """A path as it stands in a message: the middle of a very long one is left out."""
+    return path if len(path) < 80 else f"{path[:50]}…{path[-20:]}"
+
+
+def leaves(path: Path, root: Path) -> bool:
+    """Whether `path`, links followed, lies outside the folder `root`."""
+    return not path.resolve().is_relative_to(root.resolve())
+
+
+def is_there(path: Path) -> bool:
+    """Whether there is such a file; no for a name that no file system takes."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _shown(full: Path, root: Path) -> str:
@@ -105,5 +132,9 @@ def revision(folder: Path) -> str:
     """A name for this state of the folder: 12 hex digits over all paths and digests."""
     total = hashlib.sha256()
     for path in walk_files(folder):
-        total.update(f"{path.relative_to(folder).as_posix()}\0{digest(path)}\n".encode())
+        try:
+            state = digest(path)
+        except OSError:
+            state = "unread"  # gone since it was listed, or not ours to read: who needs it says so
+        total.update(f"{path.relative_to(folder).as_posix()}\0{state}\n".encode())
     return total.hexdigest()[:12]

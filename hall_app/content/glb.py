@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import struct
 from dataclasses import dataclass
@@ -11,10 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from .pictures import PictureError, picture_size
+
 # The page has no decoder for these: it would look for one on the network, and the hall works without.
 REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
 MAGIC, JSON_CHUNK = 0x46546C67, 0x4E4F534A
 TRIANGLES, STRIP, FAN = 4, 5, 6
+MOST = 2**32  # values one accessor can hold: their indices have 32 bits
 Corner = tuple[float, float, float]
 
 
@@ -46,22 +48,35 @@ def read_glb(path: Path) -> GlbInfo:
     """Read header and JSON of the GLB at `path`. Raises GlbError naming the fault, OSError if unreadable."""
     data = path.read_bytes()
     document, binary = _chunks(data)
-    extensions = tuple(document.get("extensionsUsed", ()))
+    try:
+        extensions = _plain_extensions(document)
+        _no_outside_files(document)
+        triangles = _triangles(document)
+        with np.errstate(all="ignore"):  # what is not finite is refused by name
+            low, high = _bounds(document)
+        return GlbInfo(len(data), triangles, _textures(document, binary), extensions, low, high)
+    except GlbError:
+        raise
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
+        raise GlbError(
+            f"its glTF part is inconsistent ({_short(error)})", "export the model again"
+        ) from error
+
+
+def _short(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"[:120]
+
+
+def _plain_extensions(document: dict[str, Any]) -> tuple[str, ...]:
+    """All extensions named; refuses those the page cannot draw."""
+    extensions = (*document.get("extensionsUsed", ()), *document.get("extensionsRequired", ()))
     refused = sorted(set(extensions) & set(REFUSED))
     if refused:
         raise GlbError(
             f"uses {', '.join(refused)}, which the hall cannot draw offline",
             "export it again without compression",
         )
-    try:
-        _no_outside_files(document)
-        triangles = _triangles(document)
-        low, high = _bounds(document)
-        return GlbInfo(len(data), triangles, _textures(document, binary), extensions, low, high)
-    except GlbError:
-        raise
-    except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
-        raise GlbError(f"its glTF part is inconsistent ({error!r})", "export the model again") from error
+    return tuple(dict.fromkeys(extensions))
 
 
 def open_glb(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -108,6 +123,8 @@ def _triangles(document: dict[str, Any]) -> int:
 def _drawn(document: dict[str, Any], primitive: dict[str, Any]) -> int:
     index = primitive.get("indices", primitive["attributes"]["POSITION"])
     count = document["accessors"][index]["count"]
+    if not 0 <= count <= MOST:
+        raise ValueError("an accessor's count is out of range")
     mode = primitive.get("mode", TRIANGLES)
     return count // 3 if mode == TRIANGLES else max(0, count - 2) if mode in (STRIP, FAN) else 0
 
@@ -119,19 +136,23 @@ def _bounds(document: dict[str, Any]) -> tuple[Corner, Corner]:
     children = {child for node in nodes for child in node.get("children", ())}
     roots = scene.get("nodes", [index for index in range(len(nodes)) if index not in children])
     corners: list[np.ndarray] = []
-    todo = [(index, np.eye(4)) for index in roots]
-    for _ in range(len(nodes)):  # a node has one parent: more turns would be a loop in the file
-        if not todo:
-            break
+    todo, met = [(index, np.eye(4)) for index in roots], set()
+    while todo:
         index, above = todo.pop()
+        if index in met:
+            raise GlbError(f"node {index} has two parents or is in a loop", "export the model again")
+        met.add(index)
         matrix = above @ _matrix(nodes[index])
         todo += [(child, matrix) for child in nodes[index].get("children", ())]
         if "mesh" in nodes[index]:
             for primitive in document["meshes"][nodes[index]["mesh"]]["primitives"]:
                 accessor = document["accessors"][primitive["attributes"]["POSITION"]]
-                box = np.array(np.meshgrid(*zip(accessor["min"], accessor["max"], strict=True)))
+                (x0, y0, z0), (x1, y1, z1) = accessor["min"], accessor["max"]
+                box = np.array(np.meshgrid((x0, x1), (y0, y1), (z0, z1)), dtype=float)
                 corners.append(box.reshape(3, -1).T @ matrix[:3, :3].T + matrix[:3, 3])
     points = np.concatenate(corners)
+    if not np.isfinite(points).all():
+        raise GlbError("has no finite size", "export the model again")
     low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
@@ -153,8 +174,6 @@ def _matrix(node: dict[str, Any]) -> np.ndarray:
 
 
 def _textures(document: dict[str, Any], binary: bytes) -> tuple[tuple[int, int], ...]:
-    from PIL import Image
-
     sizes = []
     for image in document.get("images", ()):
         if "bufferView" not in image:
@@ -162,8 +181,9 @@ def _textures(document: dict[str, Any], binary: bytes) -> tuple[tuple[int, int],
         view = document["bufferViews"][image["bufferView"]]
         start = view.get("byteOffset", 0)
         try:
-            with Image.open(io.BytesIO(binary[start : start + view["byteLength"]])) as picture:
-                sizes.append(picture.size)
-        except OSError as error:
-            raise GlbError("one of its textures cannot be read", "embed textures as PNG or JPEG") from error
+            sizes.append(picture_size(binary[start : start + view["byteLength"]]))
+        except PictureError as error:
+            raise GlbError(
+                f"one of its textures cannot be read: {error}", "embed textures as PNG or JPEG"
+            ) from error
     return tuple(sizes)

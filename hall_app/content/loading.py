@@ -11,7 +11,18 @@ from pydantic import ValidationError
 
 from .complaints import schema_problems, toml_problem
 from .exhibit_file import ExhibitFile
-from .files import TEXTS, exhibit_files, file_problem, hall_files, made_by_build, recipe_files, revision
+from .files import (
+    LEAVES,
+    TEXTS,
+    exhibit_files,
+    file_problem,
+    hall_files,
+    is_there,
+    leaves,
+    made_by_build,
+    recipe_files,
+    revision,
+)
 from .floor import body_footprint
 from .glb import GlbError, read_glb
 from .hall_file import HallFile
@@ -48,7 +59,7 @@ class Exhibit:
         else:
             fine = self.file.models.close if precision == "close" else None
             path = self.folder / (fine or self.file.models.hall)
-        return path if path.is_file() else None
+        return path if is_there(path) else None
 
     def own_models(self) -> dict[str, tuple[str, Path]]:
         """Precision -> (key in its file, path) of the models that are there; a close-up without a file of its own
@@ -91,7 +102,7 @@ def load(folder: Path, *, last_good: Content | None = None) -> Content:
         hall, plan = last_good.hall, last_good.plan
     exhibits: list[Exhibit] = []
     for home in _exhibit_folders(folder):
-        exhibit, found = load_exhibit(folder, home.name, (hall, plan))
+        exhibit, found = _whatever_it_holds(folder, home.name, (hall, plan))
         problems += found
         if exhibit is None and last_good is not None:
             exhibit = last_good.exhibit(home.name)
@@ -104,8 +115,24 @@ def load_exhibit_problems(folder: Path) -> list[Problem]:
     """Problems of the exhibits' own files, where there is no hall to put them in."""
     found: list[Problem] = []
     for home in _exhibit_folders(folder):
-        found += load_exhibit(folder, home.name, None)[1]
+        found += _whatever_it_holds(folder, home.name, None)[1]
     return found
+
+
+def _whatever_it_holds(
+    root: Path, identity: str, house: tuple[HallFile, PlanFile] | None
+) -> tuple[Exhibit | None, list[Problem]]:
+    """load_exhibit, with every fault nobody foresaw as a problem: one exhibit never takes the hall with it."""
+    try:
+        return load_exhibit(root, identity, house)
+    except Exception as error:
+        return None, [_unforeseen(f"exhibits/{identity}/exhibit.toml", error)]
+
+
+def _unforeseen(file: str, error: Exception) -> Problem:
+    reason = " ".join(str(error).split())[:200] or type(error).__name__
+    fix = "undo the last change there, and report it with the file"
+    return Problem(file, "", f"cannot be read ({reason})", fix)
 
 
 def _exhibit_folders(folder: Path) -> list[Path]:
@@ -121,7 +148,10 @@ def _load_house(folder: Path) -> tuple[HallFile | None, PlanFile | None, list[Pr
     plan, problems = read_table(folder, "plan.toml", PlanFile)
     problems = hall_problems + problems
     if plan is not None:
-        problems += plan_problems(plan)
+        try:
+            problems += plan_problems(plan)
+        except Exception as error:  # geometry of whatever was written
+            problems.append(_unforeseen("plan.toml", error))
     if hall is not None:
         named = [file_problem("hall.toml", key, folder, path, root=folder) for key, path in hall_files(hall)]
         problems += [problem for problem in named if problem]
@@ -134,10 +164,13 @@ def read_table(root: Path, name: str, model: type[T]) -> tuple[T | None, list[Pr
     """Read the TOML file `name` under `root` as `model`: the value, or None and its problems."""
     path = root / name
     try:
+        if leaves(path, root):
+            return None, [Problem(name, "", f"it {LEAVES[0]}", LEAVES[1])]
         data = path.read_bytes()
         if not data.strip():
             return None, [Problem(name, "", "the file is empty", "write it anew (its form: README.md)")]
-        return model.model_validate(tomllib.loads(data.decode())), []
+        # Notepad writes a byte order mark.
+        return model.model_validate(tomllib.loads(data.decode("utf-8-sig"))), []
     except FileNotFoundError:
         return None, [Problem(name, "", "missing file", "add it (its form: README.md)")]
     except OSError as error:
@@ -146,6 +179,10 @@ def read_table(root: Path, name: str, model: type[T]) -> tuple[T | None, list[Pr
         return None, [toml_problem(name, error)]
     except ValidationError as error:
         return None, schema_problems(name, model, error)
+    except (ValueError, RecursionError, ArithmeticError) as error:
+        # A number of thousands of digits, thousands of brackets: tomllib gives up in its own ways.
+        what = f"cannot be read ({type(error).__name__})"
+        return None, [Problem(name, "", what, "shorten its numbers and lists")]
 
 
 def load_exhibit(
@@ -187,6 +224,9 @@ def _text(root: Path, identity: str, name: str, problems: list[Problem]) -> str:
     """The Markdown text, its faults added to `problems`."""
     path = f"exhibits/{identity}/{name}"
     try:
+        if leaves(root / path, root):
+            problems.append(Problem(path, "", f"it {LEAVES[0]}", LEAVES[1]))
+            return ""
         text = (root / path).read_text("utf-8-sig")
     except FileNotFoundError:
         problems.append(Problem(path, "", "missing text", "write it: every exhibit has both languages"))

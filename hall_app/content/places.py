@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from .exhibit_file import ExhibitFile
 from .floor import Footprint, body_footprint, plan_footprints, solid_footprint
@@ -13,6 +13,7 @@ from .problems import Problem
 from .values import Point
 
 STANDING = ("booth", "dais", "stand")  # kinds an exhibit can stand on
+FARTHEST = 200.0  # [m] from the hall's middle; the studio of close-ups stands at 500 m
 TOUCHING = 1e-4  # [m2], overlap of footprints that only touch
 
 
@@ -31,8 +32,37 @@ def ring_fault(ring: Iterable[Point]) -> str | None:
     return "the outline encloses no floor" if polygon.area < TOUCHING else None
 
 
+def _points(plan: PlanFile) -> Iterator[tuple[str, Point]]:
+    """(key, [x, z]) of every place the plan names."""
+    for number, point in enumerate(plan.outline, 1):
+        yield f"outline[{number}]", point
+    for table in ("wall", "opening", "solid", "bay", "laylight", "lantern", "curtain", "sign"):
+        for number, entry in enumerate(getattr(plan, table), 1):
+            key = f"{table}[{number}]"
+            for name, alias in (("start", "from"), ("end", "to"), ("at", "at")):
+                if (point := getattr(entry, name, None)) is not None:
+                    yield f"{key}.{alias}", point
+            for index, point in enumerate(getattr(entry, "polygon", None) or (), 1):
+                yield f"{key}.polygon[{index}]", point
+            if (disc := getattr(entry, "round", None)) is not None:
+                yield f"{key}.round", (disc.x, disc.z)
+
+
+def _far_away(plan: PlanFile) -> list[Problem]:
+    """Places no hall reaches; most often a drawing in millimetres, so the first is named and the rest counted."""
+    far = [(key, max(point, key=abs)) for key, point in _points(plan) if max(map(abs, point)) > FARTHEST]
+    if not far:
+        return []
+    key, worst = far[0]
+    what = f"{worst:g} m is no place in a hall, which reaches {FARTHEST:g} m from its middle at most"
+    others = f"; {len(far) - 1} more are as far" if len(far) > 1 else ""
+    return [Problem("plan.toml", key, what + others, "write metres")]
+
+
 def plan_problems(plan: PlanFile) -> list[Problem]:
-    """Outlines that cross themselves, ids given twice, solids and walls off the floor."""
+    """Places beyond any hall, outlines that cross themselves, ids given twice, solids and walls off the floor."""
+    if far := _far_away(plan):
+        return far
     rings = [("outline", plan.outline)]
     rings += [(f"solid[{n}].polygon", s.polygon) for n, s in enumerate(plan.solid, 1) if s.polygon]
     rings += [(f"bay[{n}].polygon", bay.polygon) for n, bay in enumerate(plan.bay, 1)]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from .files import snapshot
 from .loading import Content, load
+from .problems import Problem
 
 
 class Watcher:
@@ -17,6 +19,7 @@ class Watcher:
         # The look at the files comes first: an edit while loading is then seen by the next poll.
         self._seen = snapshot(folder)
         self._content = content or load(folder)
+        self._failed: object = None
 
     @property
     def content(self) -> Content:
@@ -30,7 +33,12 @@ class Watcher:
             return None
         try:
             self._content = load(self._folder, last_good=self._content)
-        except OSError:
-            return None  # a file went away while it was read: the next poll sees what became of it
+        except Exception as error:
+            if self._failed != now:
+                self._failed = now
+                return None  # a file went away while it was read: the next poll sees what became of it
+            reason = " ".join(str(error).split()) or type(error).__name__
+            problem = Problem(".", "", f"the folder cannot be read ({reason})", "undo the last change")
+            self._content = replace(self._content, problems=(problem,))
         self._seen = now
         return self._content

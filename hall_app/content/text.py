@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from html import escape
 from typing import Any
+from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
@@ -36,7 +37,7 @@ def _parser() -> MarkdownIt:
 def _image(_self: RendererHTML, tokens: Sequence[Token], index: int, _options: Any, env: Any) -> str:
     token = tokens[index]
     words = escape("".join(child.content for child in token.children or ()))
-    address = env["picture"](str(token.attrGet("src") or ""))
+    address = env["picture"](_path_of(token))
     if address is None:
         return words  # only the exhibit's own pictures are shown: the hall asks no other server
     return f'<img src="{escape(address)}" alt="{words}" loading="lazy">'
@@ -49,17 +50,22 @@ def _link_open(self: RendererHTML, tokens: Sequence[Token], index: int, options:
     return self.renderToken(tokens, index, options, env)
 
 
+def _path_of(token: Token) -> str:
+    """The picture's path as the curator wrote it: the parser escapes spaces and Chinese letters with %."""
+    return unquote(str(token.attrGet("src") or "").partition("?")[0])
+
+
 def html_of(markdown: str, picture: Address) -> str:
-    """HTML of a curator's text. `picture(src)` gives a picture's address, or None to show its words only."""
+    """HTML of a curator's text. `picture(path)` gives a picture's address, or None to show its words only."""
     return _parser().render(markdown, {"picture": picture})
 
 
 def pictures_in(markdown: str) -> Iterator[str]:
-    """The `src` of every picture in the text."""
+    """The path of every picture in the text, as written there."""
     for block in _parser().parse(markdown):
         for token in block.children or ():
             if token.type == "image":
-                yield str(token.attrGet("src") or "")
+                yield _path_of(token)
 
 
 def raw_html_in(markdown: str) -> str | None:

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from .exhibit_file import Media, Record
-from .files import BAKED, digest
+from .files import BAKED, digest, is_there
 from .floor import plan_footprints
 from .loading import Content, Exhibit
 from .measured import measured_lines
@@ -49,7 +49,7 @@ def media_file(exhibit: Exhibit, path: str, baked: Path | None = None) -> Path:
 
 def media_url(owner: str, path: str, file: Path) -> str | None:
     """Address of `path` of exhibit `owner` (or "hall"), None while there is no such file."""
-    if not file.is_file():
+    if not is_there(file):
         return None
     return f"/media/{quote(owner)}/{quote(path)}?v={digest(file)}"
 
@@ -136,8 +136,8 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
         "title": file.title.as_json(),
         "caption": file.caption.as_json() if file.caption else None,
         "text": {
-            "zh": html_of(exhibit.text_zh, lambda src: own_picture(exhibit, src)),
-            "en": html_of(exhibit.text_en, lambda src: own_picture(exhibit, src)),
+            "zh": html_of(exhibit.text_zh, lambda path: own_picture(exhibit, path)),
+            "en": html_of(exhibit.text_en, lambda path: own_picture(exhibit, path)),
         },
         "media": [shown for medium in file.media if (shown := _medium(exhibit, medium, baked))],
         "record": _record(file.record),
@@ -154,14 +154,22 @@ def _has_close(exhibit: Exhibit, baked: Path | None) -> bool:
     return exhibit.model_path("close") is not None
 
 
-def own_picture(exhibit: Exhibit, src: str) -> str | None:
+def own_picture(exhibit: Exhibit, path: str) -> str | None:
     """Address of a picture in a text: only one of the exhibit's own folder, else None."""
-    path = src.partition("?")[0]
-    if not media_type(path).startswith("image/"):
+    full = own_file(exhibit, path)
+    if full is None or not media_type(path).startswith("image/"):
         return None
+    return media_url(exhibit.id, full.relative_to(exhibit.folder.resolve()).as_posix(), full)
+
+
+def own_file(exhibit: Exhibit, path: str) -> Path | None:
+    """Where `path` of a text lies, None outside the exhibit's folder and for a name no file system takes."""
     own = exhibit.folder.resolve()
-    full = (own / path).resolve()
-    return media_url(exhibit.id, full.relative_to(own).as_posix(), full) if full.is_relative_to(own) else None
+    try:
+        full = (own / path).resolve()
+    except (OSError, ValueError):
+        return None
+    return full if full.is_relative_to(own) else None
 
 
 def _medium(exhibit: Exhibit, medium: Media, baked: Path | None) -> dict[str, Any] | None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import math
 import socket
 from collections.abc import Callable
@@ -58,11 +56,13 @@ class HallScene:
     """viser's server on a port of its own behind 127.0.0.1, with the hall in it."""
 
     def __init__(self) -> None:
+        import rich
         import viser
 
-        # viser announces itself on standard output, whatever `verbose` says.
-        with contextlib.redirect_stdout(io.StringIO()):
-            self.server: viser.ViserServer = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
+        # viser announces its beginning and, from a thread of its own, its end, whatever `verbose` says.
+        # Nobody else in a serving process prints through rich's own console.
+        rich.get_console().quiet = True
+        self.server: viser.ViserServer = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
         self.port: int = self.server.get_port()
         self.marks = Marks()
         self._handles: dict[str, viser.GlbHandle] = {}
@@ -207,5 +207,4 @@ class HallScene:
             client.camera.look_at = (x - math.sin(yaw), y, z - math.cos(yaw))
 
     def stop(self) -> None:
-        with contextlib.redirect_stdout(io.StringIO()):
-            self.server.stop()
+        self.server.stop()

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import struct
+import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import trimesh
@@ -91,3 +95,42 @@ def edit(path: Path, old: str, new: str) -> None:
     text = path.read_text("utf-8")
     assert old in text, f"{old!r} is not in {path.name}"
     path.write_text(text.replace(old, new), "utf-8")
+
+
+def rewritten(house: Path, change: Callable[[dict], object], more: bytes = b"") -> Path:
+    """Rewrite the chest's GLB with a changed JSON part, `more` behind its binary part; returns its path."""
+    path = house / "exhibits/chest/media/chest.glb"
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    document = json.loads(data[20 : 20 + size])
+    change(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    binary = data[28 + size :] + more
+    binary += bytes(-len(binary) % 4)
+    rest = struct.pack("<II", len(binary), 0x004E4942) + binary
+    head = struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    path.write_bytes(head + text + rest)
+    return path
+
+
+def with_texture(house: Path, picture: bytes) -> Path:
+    """Give the chest's GLB an image that no material shows."""
+
+    def add(document: dict) -> None:
+        views = document["bufferViews"]
+        start = max(view.get("byteOffset", 0) + view["byteLength"] for view in views)
+        views.append({"buffer": 0, "byteOffset": start, "byteLength": len(picture)})
+        document["images"] = [{"bufferView": len(views) - 1, "mimeType": "image/png"}]
+
+    return rewritten(house, add, picture)
+
+
+def png_of(width: int, height: int, rows: int = 0) -> bytes:
+    """A black and white PNG that says it has so many pixels, and holds the first `rows` of them."""
+    head = b"IHDR" + struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
+    body = b"IDAT" + zlib.compress(bytes(rows * (1 + -(-width // 8))))
+    chunks = [
+        struct.pack(">I", len(c) - 4) + c + struct.pack(">I", zlib.crc32(c)) for c in (head, body, b"IEND")
+    ]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunks)

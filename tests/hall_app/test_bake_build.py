@@ -74,7 +74,8 @@ def test_build_is_whole_up_to_date_and_equal_to_the_bit(folder):
     assert [first["errors"][f"inside_{what}"] for what in ("vertices", "midpoints", "centroids")] == [0, 0, 0]
     low, high = read_glb(baked / "close.glb").low, read_glb(baked / "close.glb").high
     assert 1.2 < high[1] - low[1] < 2.0
-    missing = [problem.what for problem in check(folder) if problem.key == "garment"]
+    toml = "exhibits/pibo/exhibit.toml"  # the other garments of the folder are not built here
+    missing = [problem.what for problem in check(folder) if problem.file == toml and problem.key == "garment"]
     assert all(what.startswith("baked/drape.") for what in missing), (
         missing
     )  # the film, which was not asked for

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import struct
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from content_house import EXHIBIT, add_exhibit, edit, make_house, write_box
+from content_house import EXHIBIT, add_exhibit, edit, make_house, rewritten, write_box
 
 from hall_app.content import load
 from hall_app.content.check import check
@@ -36,18 +35,11 @@ def toml(house: Path) -> Path:
     return house / "exhibits/chest/exhibit.toml"
 
 
-def rewritten(house: Path, change: Callable[[dict], None]) -> None:
-    """Rewrite the chest's GLB with a changed JSON part."""
-    path = house / "exhibits/chest/media/chest.glb"
-    data = path.read_bytes()
-    size = struct.unpack_from("<I", data, 12)[0]
-    document = json.loads(data[20 : 20 + size])
-    change(document)
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    rest = data[20 + size :]
-    head = struct.pack("<IIIII", 0x46546C67, 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
-    path.write_bytes(head + text + rest)
+def replaced(house: Path, kind: str, name: str, data: bytes) -> None:
+    """Put another medium in place of the chest's picture."""
+    edit(toml(house), 'kind = "picture"\nfile = "media/front.jpg"', f'kind = "{kind}"\nfile = "media/{name}"')
+    (house / "exhibits/chest/media/front.jpg").unlink()
+    (house / "exhibits/chest/media" / name).write_bytes(data)
 
 
 def close_the_back(house: Path) -> None:
@@ -76,16 +68,15 @@ CASES: dict[str, tuple[Callable[[Path], object], str, str, str]] = {
         "add alt =",
     ),
     "audio without transcript": (
-        lambda house: edit(toml(house), 'kind = "picture"', 'kind = "audio"'),
+        lambda house: replaced(house, "audio", "front.wav", b"RIFF\0\0\0\0WAVEfmt "),
         "exhibits/chest/exhibit.toml: media[1].transcript: ",
         "no transcript",
         "add transcript =",
     ),
     "video without words": (
-        lambda house: edit(
-            toml(house),
-            'kind = "picture"\nfile = "media/front.jpg"\nalt',
-            'kind = "video"\nfile = "media/front.jpg"\ncaption',
+        lambda house: (
+            replaced(house, "video", "front.mp4", b"\0\0\0\x20ftypisom"),
+            edit(toml(house), "alt =", "caption ="),
         ),
         "exhibits/chest/exhibit.toml: media[1].alt: ",
         "neither description nor transcript",
@@ -107,6 +98,12 @@ CASES: dict[str, tuple[Callable[[Path], object], str, str, str]] = {
         lambda house: write_box(house / "exhibits/chest/media/chest.glb", foot=0.5),
         "exhibits/chest/exhibit.toml: models.hall: ",
         "lowest point is at y = 0.50 m",
+        "foot at y = 0",
+    ),
+    "sunken": (
+        lambda house: write_box(house / "exhibits/chest/media/chest.glb", foot=-0.5),
+        "exhibits/chest/exhibit.toml: models.hall: ",
+        "lowest point is at y = -0.50 m",
         "foot at y = 0",
     ),
     "unused file": (
@@ -202,6 +199,31 @@ def test_bounds_follow_the_nodes(house: Path):
     assert info.triangles == 12
     assert info.low == pytest.approx((0.75, 0, -0.5))
     assert info.high == pytest.approx((1.25, 0.8, 0.5))
+
+
+def test_bounds_follow_a_matrix_in_columns(house: Path):
+    """A quarter turn about y (x to -z, z to x), twice as high, moved by (1, 2, 3): glTF writes columns."""
+
+    def move(document: dict) -> None:
+        shown = next(node for node in document["nodes"] if "mesh" in node)
+        for name in ("rotation", "translation", "scale"):
+            shown.pop(name, None)
+        shown["matrix"] = [0, 0, -1, 0, 0, 2, 0, 0, 1, 0, 0, 0, 1, 2, 3, 1]
+
+    before = read_glb(house / "exhibits/chest/media/chest.glb")
+    info = read_glb(rewritten(house, move))
+    assert before.high == pytest.approx((0.25, 0.8, 0.25))
+    assert info.low == pytest.approx((0.75, 2.0, 2.75))
+    assert info.high == pytest.approx((1.25, 3.6, 3.25))
+
+
+def test_a_model_whose_last_bytes_are_missing(house: Path):
+    """Its JSON part is whole, so only the length in its head tells."""
+    path = house / "exhibits/chest/media/chest.glb"
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-4])
+    with pytest.raises(GlbError, match=f"broken or cut off: {len(whole) - 4} bytes of {len(whole)}"):
+        read_glb(path)
 
 
 def test_bodies_that_overlap(house: Path):

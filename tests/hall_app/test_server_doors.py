@@ -3,6 +3,7 @@
 import gzip
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -262,6 +263,41 @@ def test_an_unreadable_model_keeps_the_last_good_one(own_hall):
     assert [e["id"] for e in scene(own_hall)["exhibits"]] == ["box"]
     model.write_bytes(good)
     until(lambda: not problems(), 15)
+
+
+def test_an_odd_file_keeps_no_other_edit_from_showing(own_hall):
+    """A second exhibit is spoiled in every way; the first one's edits go on, and the fault is named."""
+    home = own_hall.content / "exhibits"
+    shutil.copytree(home / "box", home / "odd")
+    toml = (home / "odd/exhibit.toml").read_text("utf-8").replace("x = 2.5", "x = -2.5")
+    (home / "odd/exhibit.toml").write_text(toml, "utf-8")
+    until(lambda: len(scene(own_hall)["exhibits"]) == 2, 20)
+
+    def problems() -> list[dict]:
+        with get(f"{own_hall.url}/api/problems") as answer:
+            return json.load(answer)
+
+    faults = {
+        "digits": "digits = " + "9" * 5000,
+        "deep": "deep = " + "[" * 5000,
+        "name": toml.replace("box.png", "x" * 300 + ".png"),
+        "place": toml.replace("x = -2.5", "x = 1e300"),
+    }
+    for word, text in faults.items():
+        (home / "odd/exhibit.toml").write_text(text, "utf-8")
+        (home / "box/text.en.md").write_text(f"Told of {word}.", "utf-8")
+
+        def shown(word: str = word) -> bool:
+            with get(f"{own_hall.url}/api/exhibits/box") as answer:
+                return word in json.load(answer)["text"]["en"]
+
+        until(shown, 15)
+        assert {problem["file"] for problem in problems()} == {"exhibits/odd/exhibit.toml"}
+    (home / "odd/text.en.md").write_text(f"![words](media/{'x' * 300}.png)", "utf-8")
+    (home / "odd/exhibit.toml").write_text(toml, "utf-8")
+    until(lambda: not problems(), 15)
+    assert status(f"{own_hall.url}/api/exhibits/odd") == 200
+    assert status(f"{own_hall.url}/catalogue") == 200
 
 
 def test_only_this_machine_is_served(plain_hall):

@@ -7,6 +7,8 @@ from ..problems import Problem
 from .backdrops import backdrop_problems
 from .bakes import bake_problems
 from .budget import budget_problems
+from .media import media_problems
+from .questionnaires import questionnaire_problems
 from .reach import reach_problems
 from .rooms import room_problems
 from .scale import scale_problems
@@ -17,11 +19,13 @@ __all__ = ["CHECKS"]
 
 CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     word_problems,
+    media_problems,
     scale_problems,
     budget_problems,
     reach_problems,
     backdrop_problems,
     bake_problems,
+    questionnaire_problems,
     room_problems,
     unused_problems,
 )

@@ -1,42 +1,75 @@
-"""Bakes: do the simulated garments lie ready, made from the inputs as they are now?"""
+"""Bakes: can what they are made from be read, and do they lie ready, made from it as it is now?"""
 
 from __future__ import annotations
 
 import json
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from ...bake.key import bake_key
-from ..exhibit_file import GarmentRecipe
-from ..files import BAKED, exhibit_files
+from ..files import BAKED, exhibit_files, is_there, recipe_files, walk_files
 from ..loading import Content, Exhibit
 from ..problems import Problem
 
+FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}
+KINDS = {"pattern": "patterns", "weave": "weaves", "mannequin": "mannequins"}
 NEEDED = ("garment.npz", "hall.glb", "close.glb")
 
 
 def bake_problems(content: Content) -> list[Problem]:
     """Garments not baked, baked from older inputs, or whose baked files are missing."""
-    found = []
+    faults = _inputs(content)
+    found = list(faults.values())
     for exhibit in content.exhibits:
-        if exhibit.file.garment:
-            found += _inputs(content, exhibit.file.garment) or _bake(content, exhibit)
+        if exhibit.file.garment and not faults.keys() & {path for _, path in recipe_files(exhibit.file)}:
+            found += _bake(content, exhibit)
     return found
 
 
-def _inputs(content: Content, recipe: GarmentRecipe) -> list[Problem]:
-    """Pattern and weave as the engine reads them: its own message says what is wrong and how to mend it."""
-    from sim_core.errors import SimCoreError
+def _inputs(content: Content) -> dict[str, Problem]:
+    """Path -> what is wrong with it, of every pattern, weave and figure, whether an exhibit names it or not."""
+    readers = _readers()
+    named = {
+        path: KINDS[key.rpartition("_")[2].rpartition(".")[2]]
+        for exhibit in content.exhibits
+        for key, path in recipe_files(exhibit.file)
+    }
+    for kind, ending in FOLDERS.items():
+        for file in walk_files(content.folder / kind):
+            if file.suffix == ending:
+                named.setdefault(file.relative_to(content.folder).as_posix(), kind)
+    faults = {path: _fault(content.folder, path, readers[kind]) for path, kind in sorted(named.items())}
+    return {path: fault for path, fault in faults.items() if fault is not None}
+
+
+def _readers() -> dict[str, Callable[[Path], Any]]:
     from sim_core.garment import Pattern
+    from sim_core.garment.mannequin import Mannequin
     from sim_core.weave import Weave
 
-    found = []
-    for path, reader in ((recipe.pattern, Pattern.load), (recipe.weave, Weave.load)):
-        try:
-            reader(content.folder / path)
-        except (SimCoreError, OSError) as error:
-            message = str(error).removeprefix(str(content.folder / path)).lstrip(": ")
-            what, _, fix = message.partition(" – ")
-            found.append(Problem(path, "", what, fix or "correct the file"))
-    return found
+    return {"patterns": Pattern.load, "weaves": Weave.load, "mannequins": Mannequin.load}
+
+
+def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | None:
+    """The file as the engine reads it: its own message says what is wrong and how to mend it."""
+    from sim_core.errors import SimCoreError
+
+    if not is_there(folder / path):
+        return Problem(path, "", "missing file", "add it, or correct the path in exhibit.toml")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # numpy's, about numbers that are refused a line later
+            reader(folder / path)
+    except (SimCoreError, OSError) as error:
+        message = str(error).removeprefix(str(folder / path)).lstrip(": ")
+        what, _, fix = message.partition(" – ")
+        return Problem(path, "", what, fix or "correct the file")
+    except Exception as error:  # whatever else an odd file brings about
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        return Problem(path, "", f"cannot be read ({reason})", "correct the file")
+    return None
 
 
 def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
@@ -57,5 +90,5 @@ def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
     return [
         Problem(exhibit.toml, "garment", f"{name} is missing from the bake", fix)
         for name in wanted
-        if not (exhibit.folder / name).is_file()
+        if not is_there(exhibit.folder / name)
     ]

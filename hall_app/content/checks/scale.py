@@ -40,10 +40,10 @@ def _drawing_fault(path: Path) -> str | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # numpy's, about degenerate faces of foreign models
-            scene = trimesh.load_scene(path)
-        return None if scene.triangles.size else "no triangles"
+            drawn = trimesh.load_scene(path).triangles.size
+        return None if drawn else "no triangles"
     except Exception as error:  # a reader of foreign files may fail in any way
-        return f"{type(error).__name__}: {error}"
+        return f"{type(error).__name__}: {error}"[:200]
 
 
 def _height(exhibit: Exhibit, key: str, info: GlbInfo) -> list[Problem]:

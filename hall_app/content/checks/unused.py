@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import posixpath
+
 from ..files import BAKED, TEXTS, exhibit_files, walk_files
 from ..loading import Content, Exhibit
 from ..problems import Problem
@@ -32,7 +34,8 @@ def unused_problems(content: Content) -> list[Problem]:
 def _used(exhibit: Exhibit) -> set[str]:
     used = {"exhibit.toml", "LICENCE.txt", *TEXTS.values()}
     used.update(path for _, path in exhibit_files(exhibit.file))
-    used.update(src for text in (exhibit.text_zh, exhibit.text_en) for src in pictures_in(text))
+    texts = (exhibit.text_zh, exhibit.text_en)
+    used.update(posixpath.normpath(path) for text in texts for path in pictures_in(text))
     return used
 
 

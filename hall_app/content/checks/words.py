@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..exhibit_file import ExhibitFile
-from ..files import TEXTS
+from ..files import TEXTS, shortened
 from ..loading import Content, Exhibit
 from ..problems import Problem
 from ..text import pictures_in, raw_html_in
@@ -42,8 +42,8 @@ def _text_words(exhibit: Exhibit) -> list[Problem]:
         if tag := raw_html_in(text):
             what = f"HTML is not read, {tag} is shown as letters"
             found.append(Problem(name, "", what, "remove the tag and use Markdown"))
-        for src in pictures_in(text):
-            if own_picture(exhibit, src) is None:
-                what = f"the picture {src} is not in the exhibit's folder and is left out"
+        for path in pictures_in(text):
+            if own_picture(exhibit, path) is None:
+                what = f"the picture {shortened(path)} is not in the exhibit's folder and is left out"
                 found.append(Problem(name, "", what, "copy it to media/ and write media/…"))
     return found

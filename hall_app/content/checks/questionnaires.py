@@ -1,0 +1,24 @@
+"""Questionnaires: can each be asked, and is there one of every name that hall and exhibits give?"""
+
+from __future__ import annotations
+
+from survey.content import FOLDER, QuestionnaireFolder
+
+from ..loading import Content
+from ..problems import Problem
+
+
+def questionnaire_problems(content: Content) -> list[Problem]:
+    """Faulty questionnaire files, and names of questionnaires that are not there."""
+    asked = QuestionnaireFolder(content.folder)
+    found = [Problem(fault.file, fault.key, fault.what, fault.fix) for fault in asked.problems]
+    there = {path.stem for path in (content.folder / FOLDER).glob("*.toml")}  # a faulty one has its own line
+    named = [("hall.toml", content.hall.questionnaire)]
+    named += [(exhibit.toml, exhibit.file.questionnaire) for exhibit in content.exhibits]
+    for toml, name in named:
+        if name is None or name in there:
+            continue
+        known = ", ".join(sorted(there)) or "none"
+        what, fix = f"there is no questionnaire {name[:60]!r}", f"write one of {FOLDER}/: {known}"
+        found.append(Problem(toml, "questionnaire", what, fix))
+    return found

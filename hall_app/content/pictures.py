@@ -1,0 +1,61 @@
+"""Pictures as files: how large, and whether a browser can show them. Pillow reads them; a fault is one line."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from pathlib import Path
+
+__all__ = ["LARGEST", "PictureError", "picture_fault", "picture_size"]
+
+LARGEST = 8192  # [pixels] a side; beyond it graphics cards and Pillow's own guard refuse
+FORMATS = {".jpg": "JPEG", ".jpeg": "JPEG", ".png": "PNG", ".webp": "WEBP"}
+
+
+class PictureError(ValueError):
+    """The bytes are no picture, or one too large to be opened."""
+
+
+def picture_size(data: bytes) -> tuple[int, int]:
+    """(width, height) [pixels] as the picture's head states it. Raises PictureError."""
+    return _head(data)[1]
+
+
+def _head(data: bytes) -> tuple[str, tuple[int, int]]:
+    from PIL import Image
+
+    try:
+        with warnings.catch_warnings():
+            # Only the head is read here; who decodes looks at the size first.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            with Image.open(io.BytesIO(data)) as picture:
+                return picture.format or "", picture.size
+    except Image.DecompressionBombError as error:
+        raise PictureError("it has more pixels than can be opened") from error
+    except Exception as error:  # a reader of foreign files may fail in any way
+        raise PictureError("it is no picture, or broken") from error
+
+
+def picture_fault(path: Path) -> tuple[str, str] | None:
+    """(what, fix) of a picture file no browser shows as it should, or None. Decodes the whole picture."""
+    from PIL import Image
+
+    try:
+        data = path.read_bytes()
+        kind, size = _head(data)
+    except OSError as error:
+        return f"cannot be read ({error.strerror})", "check the file"
+    except PictureError as error:
+        return str(error), "export it again as JPEG, PNG or WebP"
+    if max(size) > LARGEST:
+        what = f"it has {size[0]} x {size[1]} pixels, at most {LARGEST} x {LARGEST}"
+        return what, "scale it down"
+    wanted = FORMATS.get(path.suffix.lower())
+    if kind != wanted:
+        return f"its name says {wanted}, but it is {kind}", "rename it by what it is, or export it again"
+    try:
+        with Image.open(io.BytesIO(data)) as picture:
+            picture.load()
+    except Exception as error:  # a decoder of foreign files may fail in any way
+        return f"it is broken or cut off ({error})", "copy or export it again"
+    return None

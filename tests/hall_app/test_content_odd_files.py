@@ -1,0 +1,265 @@
+"""Odd files: each is one line that names it, and the rest of the hall stays as it is."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from content_house import EXHIBIT, add_exhibit, edit, make_house, png_of, rewritten, with_texture
+
+from hall_app.content import ContentError, Watcher, exhibit_json, load
+from hall_app.content.check import check
+
+LONG = "x" * 300
+DEEP = "deep = " + "[" * 5000 + "]" * 5000
+DIGITS = "digits = " + "9" * 5000
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """A hall of two exhibits: what befalls one must leave the other."""
+    folder = make_house(tmp_path / "assets")
+    home = add_exhibit(folder, "other")
+    edit(home / "exhibit.toml", "x = 0.0", "x = 2.0")
+    return folder
+
+
+def toml(house: Path) -> Path:
+    return house / "exhibits/chest/exhibit.toml"
+
+
+def only(folder: Path) -> str:
+    """The one line of `hall check`."""
+    found = [str(problem) for problem in check(folder)]
+    assert len(found) == 1, found
+    assert "\n" not in found[0]
+    assert len(found[0]) < 500
+    assert " – " in found[0], "names the remedy"
+    return found[0]
+
+
+def left_out(folder: Path) -> str:
+    """The one line about the chest, which is left out; the other exhibit stays."""
+    assert [exhibit.id for exhibit in load(folder).exhibits] == ["other"]
+    line = only(folder)
+    assert line.startswith("exhibits/chest/")
+    return line
+
+
+def first_accessor(document: dict) -> dict:
+    return document["accessors"][document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+
+
+def loop(document: dict) -> None:
+    document["nodes"] = [{"children": [1]}, {"children": [0], "mesh": 0}]
+    document["scenes"] = [{"nodes": [0]}]
+
+
+MODELS: dict[str, tuple[Callable[[dict], object], str]] = {
+    "extensions null": (lambda d: d.update(extensionsUsed=None), "inconsistent"),
+    "extensions a number": (lambda d: d.update(extensionsUsed=5), "inconsistent"),
+    "extensions nested": (lambda d: d.update(extensionsUsed=[[1]]), "inconsistent"),
+    "required extensions a number": (lambda d: d.update(extensionsRequired=7), "inconsistent"),
+    "only required": (
+        lambda d: d.update(extensionsRequired=["KHR_draco_mesh_compression"]),
+        "uses KHR_draco",
+    ),
+    "huge count": (lambda d: [a.update(count=10**400) for a in d["accessors"]], "inconsistent"),
+    "huge corner": (lambda d: first_accessor(d).update(min=[10**400, 0, 0]), "inconsistent"),
+    "endless corner": (lambda d: first_accessor(d).update(max=[float("inf"), 1, 1]), "no finite size"),
+    "corner of thirty numbers": (
+        lambda d: first_accessor(d).update(min=[0] * 30, max=[1] * 30),
+        "inconsistent",
+    ),
+    "a node its own ancestor": (loop, "in a loop"),
+    "nodes null": (lambda d: d.update(nodes=None), "inconsistent"),
+    "huge scale": (lambda d: d["nodes"][-1].update(scale=[1e300, 1e300, 1e300]), "m high"),
+}
+
+
+@pytest.mark.parametrize("case", MODELS)
+def test_odd_models(house: Path, case: str):
+    change, what = MODELS[case]
+    rewritten(house, change)
+    line = only(house)
+    assert line.startswith("exhibits/chest/exhibit.toml: models.hall: ")
+    assert what in line
+    assert "other" in [exhibit.id for exhibit in load(house).exhibits]
+
+
+def test_a_texture_that_would_fill_the_memory(house: Path):
+    with_texture(house, png_of(30_000, 30_000))
+    assert "one of its textures cannot be read" in left_out(house)
+
+
+def test_a_large_texture_is_named_without_a_warning(house: Path):
+    with_texture(house, png_of(12_000, 9_000, rows=9_000))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "a texture has 12000 x 9000 pixels, at most 2048 x 2048" in only(house)
+
+
+@pytest.mark.parametrize("text", [DEEP, DIGITS])
+def test_odd_toml_of_an_exhibit(house: Path, text: str):
+    toml(house).write_text(text, "utf-8")
+    assert left_out(house).startswith("exhibits/chest/exhibit.toml: cannot be read")
+
+
+@pytest.mark.parametrize("name", ["hall.toml", "plan.toml"])
+@pytest.mark.parametrize("text", [DEEP, DIGITS])
+def test_odd_toml_of_the_house(house: Path, name: str, text: str):
+    (house / name).write_text(text, "utf-8")
+    with pytest.raises(ContentError, match=f"^{name}: cannot be read"):
+        load(house)
+    assert only(house).startswith(f"{name}: cannot be read")
+
+
+def test_a_byte_order_mark_is_no_fault(house: Path):
+    for path in house.rglob("*.toml"):
+        path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert check(house) == []
+
+
+@pytest.mark.parametrize("name", [LONG + ".jpg", "media/" + "y/" * 3000 + "z.jpg"])
+def test_a_path_longer_than_the_file_system_takes(house: Path, name: str):
+    edit(toml(house), "media/front.jpg", name)
+    (house / "exhibits/chest/media/front.jpg").unlink()
+    assert "media[1].file: " in left_out(house)
+
+
+@pytest.mark.parametrize("src", [f"media/{LONG}.jpg", "media/%00.jpg", "media/" + "y/" * 3000 + "z.jpg"])
+def test_a_picture_of_a_text_with_an_impossible_name(house: Path, src: str):
+    (house / "exhibits/chest/text.en.md").write_text(f"![words]({src})", "utf-8")
+    shown = exhibit_json(load(house), "chest")
+    assert shown is not None
+    assert "words" in shown["text"]["en"]
+    assert "<img" not in shown["text"]["en"]
+    assert only(house).startswith("exhibits/chest/text.en.md: the picture media/")
+
+
+def garment(house: Path, more: str = "") -> Path:
+    """Make the chest a garment that is not baked; returns the content folder."""
+    recipe = (
+        f'[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "scarf_on_stand"\n{more}'
+    )
+    toml(house).write_text(EXHIBIT.replace('[models]\nhall = "media/chest.glb"', recipe), "utf-8")
+    (house / "exhibits/chest/media/chest.glb").unlink()
+    shipped = Path(__file__).parents[2] / "assets"
+    for name, source in (("patterns/p.toml", "patterns/pibo.toml"), ("weaves/w.toml", "weaves/gauze.toml")):
+        (house / name).parent.mkdir()
+        (house / name).write_bytes((shipped / source).read_bytes())
+    return house
+
+
+@pytest.mark.parametrize("name", ["patterns/p.toml", "weaves/w.toml"])
+@pytest.mark.parametrize("text", [DEEP, DIGITS, "x = 1", "\ufeffx = 1"])
+def test_odd_inputs_of_a_bake(house: Path, name: str, text: str):
+    (garment(house) / name).write_text(text, "utf-8")
+    assert only(house).startswith(f"{name}: ")
+
+
+def test_an_input_that_fails_in_an_unforeseen_way(house: Path, monkeypatch: pytest.MonkeyPatch):
+    def fail(path: Path) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("sim_core.weave.Weave.load", fail)
+    assert only(garment(house)) == "weaves/w.toml: cannot be read (MemoryError) – correct the file"
+
+
+def test_huge_numbers_of_a_pattern_warn_of_nothing(house: Path):
+    text = (garment(house) / "patterns/p.toml").read_text("utf-8").replace("[0.4, 2.4]", "[1e300, 1e300]")
+    (house / "patterns/p.toml").write_text(text, "utf-8")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check(house)
+
+
+@pytest.mark.parametrize("key", ["mannequin", "robe_pattern", "robe_weave"])
+def test_every_input_of_a_garment_has_to_be_there(house: Path, key: str):
+    garment(house, f'{key} = "patterns/none.toml"')
+    assert f"garment.{key}: missing file patterns/none.toml" in left_out(house)
+
+
+def test_an_exhibit_that_fails_in_an_unforeseen_way(house: Path, monkeypatch: pytest.MonkeyPatch):
+    from hall_app.content import loading
+
+    def fail(path: Path, *, whole=loading.read_glb) -> object:
+        return whole(path) if "other" in str(path) else 1 / 0
+
+    monkeypatch.setattr("hall_app.content.loading.read_glb", fail)
+    content = load(house)
+    assert [exhibit.id for exhibit in content.exhibits] == ["other"]
+    (problem,) = content.problems
+    assert str(problem).startswith("exhibits/chest/exhibit.toml: cannot be read (division by zero) – ")
+
+
+@pytest.mark.parametrize("name", ["text.en.md", "exhibit.toml"])
+def test_texts_and_tables_are_no_links_out_of_the_folder(house: Path, tmp_path: Path, name: str):
+    path, secret = house / "exhibits/chest" / name, tmp_path / "secret"
+    path.rename(secret)
+    os.symlink(secret, path)
+    line = left_out(house)
+    assert line.startswith(f"exhibits/chest/{name}: ")
+    assert "link that leaves the content folder – copy the file itself" in line
+
+
+def test_hall_and_plan_are_no_links_out_of_the_folder(house: Path, tmp_path: Path):
+    (house / "hall.toml").rename(tmp_path / "hall.toml")
+    os.symlink(tmp_path / "hall.toml", house / "hall.toml")
+    assert only(house).startswith("hall.toml: it is a link that leaves the content folder – ")
+
+
+PLACES = {
+    "millimetres": ("[-5, 5]]\n[[wall]]", "[-20000, 20000]]\n[[wall]]", "outline[4]: -20000 m"),
+    "a far wall": ("from = [-5, -3]", "from = [1e7, -3]", "wall[1].from: 1e+07 m"),
+    "a far solid": ("at = [-3, 0]", "at = [-3, -3000]", "solid[1].at: -3000 m"),
+    "a far round": ("x = 3, z = 0", "x = 3, z = 1e300", "solid[2].round: 1e+300 m"),
+    "a far bay": ("polygon = [[-5, -5]", "polygon = [[-5, -5e9]", "bay[1].polygon[1]: -5e+09 m"),
+}
+
+
+@pytest.mark.parametrize("case", PLACES)
+def test_places_are_in_metres(house: Path, case: str):
+    old, new, what = PLACES[case]
+    edit(house / "plan.toml", old, new)
+    line = only(house)
+    assert line.startswith(f"plan.toml: {what} is no place in a hall")
+    assert "write metres" in line
+
+
+@pytest.mark.parametrize("x", ["1e300", "-1e300", "4000"])
+def test_an_exhibit_or_a_start_far_away(house: Path, x: str):
+    edit(toml(house), "x = 0.0", f"x = {x}")
+    assert "place: outside the hall's outline" in left_out(house)
+    edit(house / "hall.toml", "x = 0.0", f"x = {x}")
+    with pytest.raises(ContentError, match=r"^hall\.toml: start: a visitor would begin outside"):
+        load(house)
+
+
+def test_a_lasting_fault_of_the_folder_is_told_in_the_running_hall(
+    house: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """A file that goes away while it is read is looked at again; what stays as it is is told."""
+    watcher = Watcher(house)
+    edit(toml(house), 'en = "Chest"', 'en = "Coffer"')
+
+    def fail(*args: object, **options: object) -> None:
+        raise PermissionError(13, "Permission denied", "hall.toml")
+
+    with monkeypatch.context() as failing:
+        failing.setattr("hall_app.content.reload.load", fail)
+        assert watcher.poll() is None
+        told = watcher.poll()
+        assert told is not None
+        assert [exhibit.file.title.en for exhibit in told.exhibits] == ["Chest", "Chest"]
+        assert "cannot be read" in str(told.problems[-1])
+        assert "Permission denied" in str(told.problems[-1])
+        assert watcher.poll() is None, "told once"
+    edit(toml(house), 'en = "Coffer"', 'en = "Trunk"')
+    mended = watcher.poll()
+    assert mended is not None
+    assert mended.problems == ()
+    assert mended.exhibits[0].file.title.en == "Trunk"

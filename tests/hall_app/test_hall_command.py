@@ -1,0 +1,117 @@
+"""`hall` itself: --debug on either side, Ctrl-C at any time, progress in words, work beside the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import threading
+
+import pytest
+
+from hall_app import cli
+from hall_app.beside import beside
+from hall_app.progress_line import ProgressLine
+
+ORDERS = (["--debug", "check", "x"], ["check", "--debug", "x"], ["check", "x", "--debug"])
+
+
+def broken(*arguments: object) -> None:
+    raise ZeroDivisionError("of the test")
+
+
+@pytest.mark.parametrize("words", ORDERS)
+def test_debug_stands_before_or_behind_the_command(words: list[str], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("hall_app.content.command.content_folder", broken)
+    with pytest.raises(ZeroDivisionError):
+        cli.main(words)
+
+
+def test_without_debug_an_error_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr("hall_app.content.command.content_folder", broken)
+    assert cli.main(["check", "x"]) == 1
+    assert capsys.readouterr().err == "hall check: of the test\n"
+
+
+@pytest.mark.parametrize("command", ["serve", "build", "check", "bench"])
+def test_every_command_takes_debug(command: str):
+    assert cli._parser().parse_args([command, "--debug"]).debug is True
+    assert cli._parser().parse_args([command]).debug is False
+
+
+def test_ctrl_c_while_the_program_is_loaded(monkeypatch: pytest.MonkeyPatch):
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "_parser", interrupted)
+    assert cli.main(["check"]) == 130
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_in_a_log_is_a_line_now_and_then():
+    log, now = io.StringIO(), [0.0]
+    line = ProgressLine(log, clock=lambda: now[0])
+    for tick in range(100):
+        now[0] = 0.3 * tick
+        line.tell(f"Preparing {tick} %  ")
+    line.tell("Preparing: done", done=True)
+    line.end()
+    said = log.getvalue().splitlines()
+    assert said[0] == "Preparing 0 %"
+    assert said[-1] == "Preparing: done"
+    assert len(said) == 1 + 5 + 1  # 30 s
+    assert "\r" not in log.getvalue()
+
+
+def test_the_next_step_is_told_at_once():
+    log = io.StringIO()
+    line = ProgressLine(log, clock=lambda: 0.0)
+    for text, done in (("one 1 %", False), ("one 9 %", False), ("one: done", True), ("two 1 %", False)):
+        line.tell(text, done=done)
+    assert log.getvalue().splitlines() == ["one 1 %", "one: done", "two 1 %"]
+
+
+def test_progress_on_a_terminal_is_written_over():
+    screen = Terminal()
+    line = ProgressLine(screen)
+    line.tell("a long word " * 30)
+    line.tell("short")
+    line.end()
+    first, second = screen.getvalue().split("\r")[1:]
+    assert len(first) == len(second.rstrip("\n"))
+    assert second.rstrip() == "short"
+    assert second.endswith("\n")
+    line.tell("done", done=True)
+    line.end()
+    assert screen.getvalue().count("\n") == 2
+
+
+def test_work_beside_the_loop_gives_and_raises():
+    async def both() -> int:
+        with pytest.raises(ZeroDivisionError):
+            await beside(broken)
+        return await beside(divmod, 7, 2)
+
+    assert asyncio.run(both()) == (3, 1)
+
+
+def test_work_beside_the_loop_does_not_keep_it_from_ending():
+    go, ended = threading.Event(), threading.Event()
+
+    def slow() -> None:
+        go.wait(30)
+        ended.set()
+
+    async def impatient() -> None:
+        with pytest.raises(asyncio.TimeoutError):
+            await asyncio.wait_for(beside(slow), 0.05)
+
+    asyncio.run(impatient())
+    assert not ended.is_set()
+    go.set()
+    assert ended.wait(30)
