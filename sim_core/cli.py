@@ -1,12 +1,14 @@
 """The `simcore` command: builds the parser, finds the room of a command and reports its errors in one line."""
 
 import argparse
+import io
+import os
 import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
 
-from sim_core.errors import SimCoreError
+from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
@@ -27,6 +29,8 @@ The simulation core, one stage at a time: files in, files out.
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed
 (one line on stderr says what, where and the remedy), 2 wrong arguments.
 """
+
+DEBUG = "show the traceback of an error"
 
 BENCH_DESCRIPTION = """\
 Run the benchmark programs of tests/bench, each of which measures time AND error in one run and writes
@@ -59,7 +63,7 @@ def _parser(arguments: list[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="simcore", description=DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
+    parser.add_argument("--debug", action="store_true", help=DEBUG)
     subparsers = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for room in _wanted_rooms(arguments):
         module = _room_command(room)
@@ -75,6 +79,9 @@ def _parser(arguments: list[str]) -> argparse.ArgumentParser:
     bench.add_argument("engine", nargs="?", choices=BENCHES, help="one engine; all of them when left out")
     bench.add_argument("rest", nargs=argparse.REMAINDER, metavar="-- ARGUMENTS", help="for the program")
     bench.set_defaults(run=_bench)
+    for command in subparsers.choices.values():
+        # SUPPRESS: a `--debug` before the command is not undone by its absence behind it.
+        command.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help=DEBUG)
     return parser
 
 
@@ -87,7 +94,7 @@ def _bench(args: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return 2
-    rest = [word for word in args.rest if word != "--"]
+    rest = [word for word in args.rest if word not in ("--", "--debug")]
     engines = [args.engine] if args.engine else [name for name in BENCHES if _program(folder, name).is_file()]
     for engine in engines:
         done = subprocess.run([sys.executable, str(_program(folder, engine)), *rest], check=False)
@@ -104,16 +111,30 @@ def main(arguments: list[str] | None = None) -> int:
     """Run one `simcore` command and return its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     args = _parser(words).parse_args(words)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names a terminal's encoding may lack
     try:
-        return args.run(args)
-    except (SimCoreError, OSError) as error:
-        if args.debug:
-            raise
-        print(f"simcore {args.command}: {' '.join(str(error).split())}", file=sys.stderr)
+        status = args.run(args)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # whoever read the output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except KeyboardInterrupt:
-        print(f"simcore {args.command}: interrupted", file=sys.stderr)
-        return 1
+        return _told(args.command, "interrupted", 1)
+    except Exception as error:
+        if args.debug:
+            raise
+        if isinstance(error, (SimCoreError, OSError)):
+            return _told(args.command, str(error), 2 if isinstance(error, WrongArgument) else 1)
+        # A fault of ours: still one line, and the way to see more.
+        kind = type(error).__name__
+        return _told(args.command, f"unexpected {kind}: {error} – add --debug and report what it shows", 1)
+
+
+def _told(command: str, message: str, status: int) -> int:
+    sys.stderr.write(f"simcore {command}: {' '.join(message.split())}\n")
+    return status
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The errors of the simulation core: each message is one line that names what, where and the remedy."""
 
-__all__ = ["FileProblem", "OutlineError", "SimCoreError", "WeaveError"]
+__all__ = ["FileProblem", "OutlineError", "SimCoreError", "WeaveError", "WrongArgument"]
 
 
 class SimCoreError(ValueError):
@@ -17,3 +17,7 @@ class OutlineError(SimCoreError):
 
 class FileProblem(SimCoreError):
     """A file that cannot be read or written; the message begins with its path."""
+
+
+class WrongArgument(SimCoreError):  # noqa: N818 - an argument of a command, told with its name
+    """An argument of a command that its other arguments forbid; the command line exits with 2."""

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import os
-import zipfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+
+from sim_core.errors import FileProblem
+from sim_core.reading import read_npz
+
+_ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film")
 
 
 @dataclass
@@ -59,21 +63,20 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
 def load_checkpoint(path: Path, key: str) -> RunState | None:
     """The state saved at `path`, or None if there is none, it is damaged, or belongs to other inputs."""
     try:
-        # Opened here, since numpy leaves a damaged file open.
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
-            if str(data["key"]) != key:
-                return None
-            frame, last, safety, rollbacks, substeps = data["numbers"]
-            return RunState(
-                positions=data["positions"],
-                velocities=data["velocities"],
-                frame=int(frame),
-                last_step=float(last),
-                safety=float(safety),
-                rollbacks=int(rollbacks),
-                substeps=int(substeps),
-                trace=[(float(p), float(m)) for p, m in data["trace"]],
-                film=list(data["film"]),
-            )
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError):
+        data = read_npz(path, _ARRAYS, "a checkpoint", "the run begins anew")
+        if str(data["key"]) != key:
+            return None
+        frame, last, safety, rollbacks, substeps = data["numbers"]
+        return RunState(
+            positions=data["positions"],
+            velocities=data["velocities"],
+            frame=int(frame),
+            last_step=float(last),
+            safety=float(safety),
+            rollbacks=int(rollbacks),
+            substeps=int(substeps),
+            trace=[(float(p), float(m)) for p, m in data["trace"]],
+            film=list(data["film"]),
+        )
+    except (FileProblem, ValueError, TypeError, OverflowError):
         return None

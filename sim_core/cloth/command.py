@@ -7,9 +7,14 @@ import json
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from sim_core.arguments import number
+
+if TYPE_CHECKING:
+    from sim_core.cloth.scenes import Scene
 
 DESCRIPTION = """\
 Simulates small named scenes with the explicit edge-tension solver.
@@ -30,8 +35,12 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("scenes", nargs="+", choices=("hang", "bar"), metavar="SCENE", help="hang or bar")
-    parser.add_argument("--edge", type=float, help="mesh step in metres (default: the scene's own)")
-    parser.add_argument("--seconds", type=float, help="simulated time (default: the scene's own)")
+    parser.add_argument(
+        "--edge", type=number(0.001, 0.25, " m"), help="mesh step in metres (default: the scene's own)"
+    )
+    parser.add_argument(
+        "--seconds", type=number(0.04, 600, " s"), help="simulated time (default: the scene's own)"
+    )
     parser.add_argument("--out", type=Path, default=Path("."), help="folder for the results (default: here)")
     parser.add_argument("--picture", action="store_true", help="also draw the end state")
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
@@ -39,7 +48,12 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Runs the named scenes; returns the exit status."""
-    summaries = [_run_scene(name, args) for name in args.scenes]
+    from sim_core.cloth.scenes import SCENES
+
+    step = () if args.edge is None else (args.edge,)
+    scenes = {name: SCENES[name](*step) for name in args.scenes}
+    args.out.mkdir(parents=True, exist_ok=True)  # refused before the work, not after it
+    summaries = [_run_scene(name, scene, args) for name, scene in scenes.items()]
     if args.json:
         sys.stdout.write(json.dumps(summaries, indent=2) + "\n")
     else:
@@ -51,22 +65,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _run_scene(name: str, args: argparse.Namespace) -> dict[str, Any]:
+def _run_scene(name: str, scene: Scene, args: argparse.Namespace) -> dict[str, Any]:
     from sim_core import metrics
     from sim_core.cloth.draping import drape
-    from sim_core.cloth.scenes import SCENES
-    from sim_core.errors import SimCoreError
 
-    for option in ("edge", "seconds"):
-        value = getattr(args, option)
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise SimCoreError(f"--{option}: {value} – must be a number above 0")
-    scene = SCENES[name](args.edge) if args.edge else SCENES[name]()
     phases = scene.phases if args.seconds is None else (replace(scene.phases[0], seconds=args.seconds),)
     result = drape(
         scene.sheet, scene.positions, phases, collider=scene.collider, contact=scene.contact, pins=scene.pins
     )
-    args.out.mkdir(parents=True, exist_ok=True)
     target = args.out / f"{name}.npz"
     np.savez_compressed(target, rest=scene.sheet.rest, faces=scene.sheet.faces, positions=result.positions)
     if args.picture:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -10,6 +11,9 @@ from sim_core.cloth.collider import Capsule, Solid
 from sim_core.cloth.draping import Contact, Phase
 from sim_core.cloth.material import Material
 from sim_core.cloth.sheet import Sheet
+from sim_core.errors import WrongArgument
+
+MOST_VERTICES = 100_000
 
 GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` of the published scenes
 
@@ -28,7 +32,15 @@ class Scene:
 
 
 def equilateral_sheet(width: float, height: float, edge: float) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of equilateral triangles, half-width at the side borders: rest (V, 2) [m], faces (F, 3)."""
+    """Rows of equilateral triangles, half-width at the side borders: rest (V, 2) [m], faces (F, 3).
+
+    Raises WrongArgument for an edge that leaves less than two triangles across, or makes more than 100 000 vertices.
+    """
+    least, most = sqrt(width * height * 2 / sqrt(3) / MOST_VERTICES), min(width, height) / 2
+    if not least <= edge <= most:
+        raise WrongArgument(
+            f"edge {edge} m – a sheet of {width} x {height} m takes {least:.2g} to {most:.2g} m"
+        )
     columns, rows = max(1, round(width / edge)), max(1, round(height / (edge * np.sqrt(0.75))))
     points, first = [], []
     for row in range(rows + 1):

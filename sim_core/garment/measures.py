@@ -5,9 +5,14 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import warnings
 from collections.abc import Callable, Mapping
 
+from sim_core.reading import shown
+
 __all__ = ["measured"]
+
+LONGEST = 400  # characters of an expression
 
 _TWO: dict[type, Callable[[float, float], float]] = {
     ast.Add: operator.add,
@@ -26,20 +31,28 @@ def measured(
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ValueError(f"{value!r} – give a number in millimetres or an expression in quotes")
-    if not isinstance(value, str):
-        number = float(value)
-    else:
-        try:
-            number = _reckoned(ast.parse(value, mode="eval").body, known, along)
-        except SyntaxError as error:
-            raise ValueError(
-                f"{value!r} is no expression – use names, numbers, + - * / and brackets"
-            ) from error
-        except ZeroDivisionError as error:
-            raise ValueError(f"{value!r} divides by zero") from error
+    if isinstance(value, str) and len(value) > LONGEST:
+        raise ValueError(f"an expression of {len(value)} characters – at most {LONGEST}; name its parts")
+    try:
+        number = float(value) if not isinstance(value, str) else _reckoned(_parsed(value), known, along)
+    except ZeroDivisionError as error:
+        raise ValueError(f"{shown(value)} divides by zero – change a measure") from error
+    except (OverflowError, RecursionError, MemoryError) as error:
+        raise ValueError(f"{shown(value)} is too large – use smaller numbers and fewer brackets") from error
     if not math.isfinite(number):
-        raise ValueError(f"{value!r} is not finite")
+        raise ValueError(f"{shown(value)} is not finite – use smaller numbers")
     return number
+
+
+def _parsed(text: str) -> ast.expr:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of odd literals, which are refused or harmless
+            return ast.parse(text.strip(), mode="eval").body
+    except (SyntaxError, ValueError) as error:  # ValueError: a null byte
+        raise ValueError(
+            f"{shown(text)} is no expression – use names, numbers, + - * / and brackets"
+        ) from error
 
 
 def _reckoned(node: ast.expr, known: Mapping[str, float], along: Callable[[str], float] | None) -> float:

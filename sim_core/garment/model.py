@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import zipfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
+from sim_core.reading import read_npz, shown
 
 FORMAT = 2
 _ARRAYS: dict[str, tuple[type, int]] = {
@@ -125,32 +125,26 @@ class Garment:
     def load(path: Path) -> Garment:
         """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
         path = Path(path)
+        data = read_npz(path, ("header", *_ARRAYS), "a garment file", "bake the garment again")
         try:
-            # Opened here, since numpy leaves a damaged file open.
-            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
-                header = json.loads(data["header"].tobytes().decode())
-                if not isinstance(header, dict) or header.get("format") != FORMAT:
-                    raise FileProblem(f"{path}: written in another format – bake the garment again")
-                arrays = {name: np.ascontiguousarray(data[name]) for name in _ARRAYS}
-        except FileNotFoundError as error:
-            raise FileProblem(f"{path}: no such file – bake the garment first") from error
-        except FileProblem:
-            raise
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile, EOFError, TypeError) as error:
+            header = json.loads(data.pop("header").tobytes().decode())
+        except (ValueError, RecursionError) as error:
             raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
+        if not isinstance(header, dict) or header.get("format") != FORMAT:
+            raise FileProblem(f"{path}: written in another format – bake the garment again")
         try:
             return Garment(
-                name=header["name"],
-                panels=tuple(header["panels"]),
+                name=str(header["name"]),
+                panels=tuple(str(name) for name in header["panels"]),
                 dyes=tuple(_colour(dye) for dye in header["dyes"]),
-                cut=header["cut"],
-                weave=header["weave"],
-                material=header["material"],
-                provenance=header["provenance"],
+                cut=_facts(header, "cut"),
+                weave=_facts(header, "weave"),
+                material=_facts(header, "material"),
+                provenance=_facts(header, "provenance"),
                 dye=_colour(header.get("dye")),
-                **arrays,
+                **{name: np.ascontiguousarray(data[name]) for name in _ARRAYS},
             )
-        except (SimCoreError, KeyError, TypeError) as error:
+        except (SimCoreError, KeyError, TypeError, ValueError, OverflowError) as error:
             raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
 
     def digest(self) -> str:
@@ -167,4 +161,15 @@ class Garment:
 
 
 def _colour(dye: Any) -> Colour | None:
-    return (dye[0], dye[1], dye[2]) if dye else None
+    if not dye:
+        return None
+    r, g, b = (float(share) for share in dye)
+    if not all(0 <= share <= 1 for share in (r, g, b)):
+        raise ValueError(f"dye {dye}: sRGB goes from 0 to 1")
+    return r, g, b
+
+
+def _facts(header: dict[str, Any], name: str) -> dict[str, Any]:
+    if not isinstance(header[name], dict):
+        raise TypeError(f"{name} is {shown(header[name])}, no table")
+    return header[name]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,15 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
-from sim_core.garment.cut_file import CutProblem, PanelTable, SeamTable, read_cut, read_dye
-from sim_core.garment.cutting import Panel, Seam
+from sim_core.garment.cut_file import CutProblem, Measure, Number, PanelTable, SeamTable, read_cut, read_dye
+from sim_core.garment.cutting import Panel, Seam, check_extent
 from sim_core.garment.cutting import Path as Path_
-from sim_core.garment.sewing import Cloth, cut_cloth
+from sim_core.garment.sewing import MOST_VERTICES, Cloth, cut_cloth
 from sim_core.mesh import PanelMesh, panel_mesh
+from sim_core.mesh.outline import check_count
+from sim_core.reading import read_toml, shown
+
+MOST_POINTS = 5000  # of an outline
 
 
 @dataclass(frozen=True)
@@ -39,32 +42,40 @@ class Pattern:
     def load(path: Path) -> Pattern:
         """Reads a pattern file; raises FileProblem naming file, key, value and remedy."""
         path = Path(path)
+        values = read_toml(
+            path, "a pattern file (TOML); it needs name, edge, and size, outline or [[panel]] tables"
+        )
         try:
-            text = path.read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise FileProblem(f"{path}: cannot be read ({error}) – give a pattern in TOML, UTF-8") from error
-        if not text.strip():
-            raise FileProblem(f"{path}: the file is empty – a pattern needs name, edge, and size or outline")
-        try:
-            read = _PatternFile.model_validate(tomllib.loads(text))
-        except tomllib.TOMLDecodeError as error:
-            raise FileProblem(f"{path}: not valid TOML – {error}") from error
+            read = _PatternFile.model_validate(values)
         except ValidationError as error:
             raise FileProblem(f"{path}: {_first(error)}") from error
         pattern = _made(path, read)
         try:
             pattern.check()
         except OutlineError as error:
-            raise FileProblem(f"{path}: outline: {error}") from error
+            raise FileProblem(f"{path}: {error}") from error
         return pattern
 
     def check(self) -> None:
         """Raises OutlineError where the outline cannot be cut: it crosses itself, has no area, …"""
+        outlines = [panel.outline() for panel in self.panels] or [self.outline]
+        names = [f"panel.{panel.name}: " for panel in self.panels] or [""]
+        for name, outline in zip(names, outlines, strict=True):
+            try:
+                check_extent(outline)
+                check_count(self.edge, [outline], MOST_VERTICES)
+            except OutlineError as error:
+                raise OutlineError(f"{name}{error}") from error
         if self.panels:
-            self.cloth(max(0.04, self.edge))
+            smallest = min(float(np.ptp(outline, axis=0).max()) for outline in outlines)
+            self.cloth(max(min(0.04, smallest), self.edge))
             return
-        low, high = self.outline.min(0), self.outline.max(0)
-        panel_mesh(self.outline, edge=float((high - low).min()) / 4 or self.edge)
+        try:
+            panel_mesh(self.outline, edge=float(np.ptp(self.outline, axis=0).min()) / 4)
+        except OutlineError as error:
+            raise OutlineError(
+                str(error) if str(error).startswith("outline") else f"outline: {error}"
+            ) from error
 
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold: what is needed to mesh the pattern again."""
@@ -80,20 +91,13 @@ class Pattern:
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Pattern:
-        """The pattern `to_dict` described."""
-        seams = [
-            Seam(s["kind"], Path_.read(s["a"]), Path_.read(s["b"]) if s["b"] else None) for s in data["seams"]
-        ]
-        return Pattern(
-            data["name"],
-            np.asarray(data["outline"], float),
-            data["edge"],
-            {},
-            tuple(data["dye"]) if data["dye"] else None,  # type: ignore[arg-type]
-            tuple(Panel.from_dict(panel) for panel in data["panels"]),
-            tuple(seams),
-            data["mirror"],
-        )
+        """The pattern `to_dict` described; raises SimCoreError for any other dictionary."""
+        try:
+            return _restored(data)
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            raise SimCoreError(
+                f"pattern: {error} – the dictionary must be one that Pattern.to_dict wrote"
+            ) from error
 
     def panel(self, name: str) -> Panel:
         """The panel of that name; raises SimCoreError where there is none."""
@@ -103,27 +107,52 @@ class Pattern:
         known = ", ".join(panel.name for panel in self.panels) or "none"
         raise SimCoreError(f"pattern {self.name}: no panel {name!r} – panels: {known}")
 
+    def step(self, edge: float | None = None) -> float:
+        """`edge` [m], or the pattern's own where it is None; raises SimCoreError unless it is above 0 and finite."""
+        step = self.edge if edge is None else float(edge)
+        if not (np.isfinite(step) and step > 0):
+            raise SimCoreError(f"pattern {self.name}: edge {step} m – give a positive length in metres")
+        return step
+
     def cloth(self, edge: float | None = None) -> Cloth:
         """All panels meshed at `edge` [m] (its own when left out), one half of a mirrored pattern."""
-        return cut_cloth(self.panels, self.seams, edge or self.edge)
+        return cut_cloth(self.panels, self.seams, self.step(edge))
 
     def mesh(self, edge: float | None = None) -> PanelMesh:
         """The panel's mesh at `edge` [m] (its own when left out)."""
-        return panel_mesh(self.outline, edge=edge or self.edge)
+        step = self.step(edge)
+        check_count(step, [self.outline], MOST_VERTICES)
+        return panel_mesh(self.outline, edge=step)
+
+
+def _restored(data: dict[str, Any]) -> Pattern:
+    seams = [
+        Seam(s["kind"], Path_.read(s["a"]), Path_.read(s["b"]) if s["b"] else None) for s in data["seams"]
+    ]
+    return Pattern(
+        data["name"],
+        np.asarray(data["outline"], float),
+        data["edge"],
+        {},
+        tuple(data["dye"]) if data["dye"] else None,  # type: ignore[arg-type]
+        tuple(Panel.from_dict(panel) for panel in data["panels"]),
+        tuple(seams),
+        data["mirror"],
+    )
 
 
 class _PatternFile(BaseModel):
     model_config = ConfigDict(extra="forbid")
     name: str = Field(min_length=1)
     title: dict[str, str] = {}
-    edge: float = Field(gt=0, le=0.2, allow_inf_nan=False)
-    size: tuple[float, float] | None = None
-    outline: list[tuple[float, float]] | None = None
+    edge: Number = Field(gt=0, le=0.2, allow_inf_nan=False)
+    size: tuple[Number, Number] | None = None
+    outline: list[tuple[Number, Number]] | None = Field(None, max_length=MOST_POINTS)
     dye: str | None = Field(default=None, pattern=r"^#[0-9a-fA-F]{6}$")
     mirror: bool = False
-    measures: dict[str, float | str] = {}
-    panel: list[PanelTable] = []
-    seam: list[SeamTable] = []
+    measures: dict[str, Measure] = {}
+    panel: list[PanelTable] = Field([], max_length=100)
+    seam: list[SeamTable] = Field([], max_length=400)
 
     @model_validator(mode="after")
     def _one_shape(self) -> _PatternFile:
@@ -135,7 +164,7 @@ class _PatternFile(BaseModel):
             raise ValueError("mirror, measures and seam belong to [[panel]] tables – add them")
         if self.size and not all(np.isfinite(s) and 0 < s <= 20 for s in self.size):
             raise ValueError(f"size: {list(self.size)} – both above 0 and at most 20 m")
-        if self.outline is not None and not np.isfinite(np.asarray(self.outline, float)).all():
+        if self.outline is not None and not all(np.isfinite(c) for point in self.outline for c in point):
             raise ValueError("outline: all coordinates must be finite")
         if self.outline is not None and len(self.outline) < 3:
             raise ValueError(f"outline: {len(self.outline)} points – a panel needs at least 3")
@@ -166,7 +195,8 @@ def _first(error: ValidationError) -> str:
     first = error.errors()[0]
     key = ".".join(str(part) for part in first["loc"])
     if first["type"] == "extra_forbidden":
-        return f"{key}: unknown key – remove it or correct its name (known: {', '.join(_PatternFile.model_fields)})"
+        known = ", ".join(_PatternFile.model_fields)
+        return f"{key[:80]}: unknown key – remove it or correct its name (known: {known})"
     text = first["msg"].removeprefix("Value error, ")
-    value = f" (found {first['input']!r})" if key and first["type"] != "missing" else ""
+    value = f" (found {shown(first['input'])})" if key and first["type"] != "missing" else ""
     return f"{key}: {text}{value}" if key else text

@@ -95,7 +95,7 @@ def pibo_on_figure(
     """
     if not pattern.panels or not pattern.mirror:
         raise SimCoreError(f"pattern {pattern.name}: pibo_on_figure needs one [[panel]] and mirror = true")
-    s, step, clock = settings or PiboSettings(), edge or pattern.edge, Clock()
+    s, step, clock = settings or PiboSettings(), pattern.step(edge), Clock()
     cloth = pattern.cloth(step)
     solids = solids_under(figure, pose, beneath)
     field = field_under(solids, s)

@@ -44,7 +44,7 @@ def robe_on_figure(
     """
     if not pattern.panels or not pattern.mirror:
         raise SimCoreError(f"pattern {pattern.name}: robe_on_figure needs [[panel]] tables and mirror = true")
-    schedule, step, clock = schedule or Schedule(), edge or pattern.edge, Clock()
+    schedule, step, clock = schedule or Schedule(), pattern.step(edge), Clock()
     busy = time.process_time()
 
     def heard(index: int, half: np.ndarray, pose: Pose) -> None:

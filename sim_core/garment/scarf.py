@@ -53,7 +53,8 @@ def scarf_on_stand(
     edge: mesh step [m], None: the pattern's own; on_frame(index, positions (V, 3) float32) hears 25 frames a second;
     checkpoint: file to go on from. Raises SimCoreError where the strip does not fit the stand.
     """
-    stand, width, step = stand or Stand(), float(np.ptp(pattern.outline[:, 0])), edge or pattern.edge
+    stand, step = stand or Stand(), pattern.step(edge)
+    width = float(np.ptp(pattern.outline[:, 0]))
     gathering = gathering or Gathering().resolved(width, step)
     _check_fits(pattern, stand, gathering)
     clock = Clock()

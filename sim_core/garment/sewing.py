@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 
+from sim_core.errors import OutlineError
 from sim_core.garment.cutting import Panel, Path, Seam, arc_length, at_length
 from sim_core.mesh import panel_mesh
-from sim_core.mesh.outline import signed_area
+from sim_core.mesh.outline import check_edge, signed_area
 
-__all__ = ["Cloth", "cut_cloth"]
+__all__ = ["MOST_VERTICES", "Cloth", "cut_cloth"]
+
+MOST_VERTICES = 200_000  # of a panel that is to be draped: a night's work
 
 
 @dataclass(frozen=True)
@@ -74,12 +78,16 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
     Raises OutlineError naming the panel where one cannot be meshed.
     """
     by_name = {panel.name: panel for panel in panels}
+    for panel in panels:
+        with _named(panel):
+            check_edge(edge, [panel.outline()], MOST_VERTICES)
     marks = _marks(by_name, seams, edge)
     vertices, faces, panel_of, owner, paths = [], [], [], [], {}
     start = 0
     for number, panel in enumerate(panels):
         samples, index = _samples(panel, marks)
-        mesh = panel_mesh(samples, edge=edge, sampled=True)
+        with _named(panel):
+            mesh = panel_mesh(samples, edge=edge, sampled=True)
         for leg, where in enumerate(index):
             paths[f"{panel.name}/{leg}"] = where + start
         vertices.append(mesh.vertices)
@@ -101,6 +109,14 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
         paths=paths,
     )
     return _stitched(cloth, by_name, seams)
+
+
+@contextmanager
+def _named(panel: Panel) -> Iterator[None]:
+    try:
+        yield
+    except OutlineError as error:
+        raise OutlineError(f"panel.{panel.name}: {error}") from error
 
 
 def _stitched(cloth: Cloth, panels: dict[str, Panel], seams: Sequence[Seam]) -> Cloth:

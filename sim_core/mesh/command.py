@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
+from sim_core.arguments import ending, number
+
 __all__ = ["add_parser", "run"]
 
 DESCRIPTION = """\
@@ -38,16 +40,20 @@ def add_parser(subparsers) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("file", type=Path, metavar="OUTLINE.json", help="outline and holes")
-    parser.add_argument("--edge", type=float, required=True, metavar="M", help="length of a mesh edge [m]")
+    parser.add_argument(
+        "--edge", type=number(1e-9, 1e6, " m"), required=True, metavar="M", help="length of a mesh edge [m]"
+    )
     parser.add_argument(
         "--threshold",
-        type=float,
+        type=number(0.5, 0.9),
         default=0.7,
         help="points nearer to the outline than this x edge are dropped (0.7)",
     )
-    parser.add_argument("--out", type=Path, metavar="FILE", help="mesh file: .npz, .ply or .obj")
     parser.add_argument(
-        "--picture", type=Path, metavar="FILE.png", help="picture of the mesh, coloured by quality"
+        "--out", type=ending(".npz", ".ply", ".obj"), metavar="FILE", help="mesh file: .npz, .ply or .obj"
+    )
+    parser.add_argument(
+        "--picture", type=ending(".png"), metavar="FILE.png", help="picture of the mesh, coloured by quality"
     )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 

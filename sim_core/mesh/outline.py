@@ -1,6 +1,6 @@
 """Outlines: what may be meshed, and sampling at equal steps that keeps the corners."""
 
-from math import isfinite
+from math import isfinite, sqrt
 
 import numpy as np
 from numba import njit
@@ -9,6 +9,7 @@ from sim_core.errors import OutlineError
 from sim_core.mesh.exact import orient, snap_frame
 
 __all__ = [
+    "check_count",
     "check_edge",
     "clean_contour",
     "clean_contours",
@@ -18,6 +19,8 @@ __all__ = [
 ]
 
 CORNER_DEGREES = 20.0
+MOST_POINTS = 2_000_000  # vertices of one mesh: about a minute, 3 GB
+LARGEST, LEAST = 1e6, 1e-6  # [m] coordinates and extent that arithmetic bears without overflow
 FLAT = 1e-9  # of the squared extent: less area than this is none
 
 
@@ -28,13 +31,28 @@ def signed_area(contour: np.ndarray) -> float:
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
-def check_edge(edge: float, contours: list[np.ndarray]) -> None:
-    """Raise OutlineError unless edge [m] is a positive length no longer than the panel."""
+def check_edge(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS) -> None:
+    """Raise OutlineError unless edge [m] is a positive length no longer than the panel, and not absurdly short."""
     if not (isfinite(edge) and edge > 0):
         raise OutlineError(f"edge {edge} m – give a positive length in metres")
     extent = float(np.ptp(contours[0], axis=0).max())
     if edge > extent:
         raise OutlineError(f"edge {edge} m is longer than the panel ({extent:.4g} m) – give a smaller edge")
+    check_count(edge, contours, most)
+
+
+def check_count(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS) -> None:
+    """Raise OutlineError where a mesh of the contours at `edge` [m] would have far more than `most` vertices.
+
+    Counted before anything is made: the lattice over the outline's rectangle and the steps along all contours.
+    """
+    wide, high = (float(side) for side in np.ptp(contours[0], axis=0))
+    along = sum(float(np.hypot(*(c - np.roll(c, 1, axis=0)).T).sum()) for c in contours)
+    # area / edge^2 + along / edge = most, solved for the edge
+    area = wide * high * 2 / sqrt(3)
+    least = (along + sqrt(along * along + 4 * most * area)) / (2 * most)
+    if edge < least:
+        raise OutlineError(f"edge {edge} m makes more than {most} vertices – give at least {least:.2g} m")
 
 
 def clean_contour(points, name: str) -> np.ndarray:
@@ -44,7 +62,7 @@ def clean_contour(points, name: str) -> np.ndarray:
     """
     try:
         contour = np.array(points, dtype=float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError, RecursionError) as error:
         raise OutlineError(f"{name}: not a list of [x, y] pairs of numbers") from error
     if contour.size == 0:
         raise OutlineError(f"{name}: 0 points – give at least three [x, y] pairs in metres")
@@ -55,7 +73,14 @@ def clean_contour(points, name: str) -> np.ndarray:
         raise OutlineError(
             f"{name}: point {bad[0]} is {contour[bad[0]].tolist()} – coordinates must be finite"
         )
+    far = int(np.abs(contour).max(axis=1).argmax())
+    if np.abs(contour[far]).max() > LARGEST:
+        raise OutlineError(
+            f"{name}: point {far} is {contour[far].tolist()} – give metres, at most {LARGEST:g}"
+        )
     extent = float(np.ptp(contour, axis=0).max())
+    if 0 < extent < LEAST:
+        raise OutlineError(f"{name}: {extent:.2g} m across – give metres, at least {LEAST:g} across")
     gaps = np.hypot(*(contour - np.roll(contour, 1, axis=0)).T)
     contour = contour[gaps > 1e-7 * extent] if extent > 0 else contour[:1]
     if len(contour) < 3:

@@ -1,12 +1,12 @@
 """Readers and writers of the mesh room: outline JSON in; npz, PLY, OBJ out."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.model import PanelMesh
+from sim_core.reading import read_json, shown
 
 __all__ = ["read_outline", "write_mesh"]
 
@@ -17,26 +17,15 @@ def read_outline(path: Path) -> tuple[list, list]:
     Raises FileProblem (path: what – remedy) for a file that is missing, empty, no JSON or of another shape.
     """
     shape = 'it must hold {"outline": [[x, y], ...], "holes": [...]} in metres'
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise FileProblem(
-            f"{path}: {error.strerror or error} – give the path of an outline file (JSON)"
-        ) from error
-    if not text.strip():
-        raise FileProblem(f"{path}: the file is empty – {shape}")
-    try:
-        values = json.loads(text)
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise FileProblem(f"{path}: not valid JSON ({error}) – {shape}") from error
+    values = read_json(path, f"an outline file (JSON): {shape}")
     if not isinstance(values, dict) or "outline" not in values:
         raise FileProblem(f"{path}: outline: missing – {shape}")
     unknown = sorted(set(values) - {"outline", "holes"})
     if unknown:
-        raise FileProblem(f"{path}: {unknown[0]}: unknown key – {shape}")
+        raise FileProblem(f"{path}: {unknown[0][:80]}: unknown key – {shape}")
     holes = values.get("holes", [])
     if not isinstance(holes, list):
-        raise FileProblem(f"{path}: holes: {holes!r} – give a list of contours")
+        raise FileProblem(f"{path}: holes: {shown(holes)} – give a list of contours")
     return values["outline"], holes
 
 

@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
+from sim_core.arguments import whole
+
 __all__ = ["add_parser", "run"]
 
 DESCRIPTION = """\
@@ -48,8 +50,12 @@ def add_parser(subparsers) -> None:
     )
     parser.add_argument("file", type=Path, metavar="FILE.toml", help="weave file")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the maps and parameters.json")
-    parser.add_argument("--pixels", type=int, default=512, help="width and height of the maps (default 512)")
-    parser.add_argument("--seed", type=int, default=0, help="of the yarns' irregularity (default 0)")
+    parser.add_argument(
+        "--pixels", type=whole(32, 4096), default=512, help="width and height of the maps (default 512)"
+    )
+    parser.add_argument(
+        "--seed", type=whole(0, 2**32 - 1), default=0, help="of the yarns' irregularity (default 0)"
+    )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 
@@ -58,6 +64,8 @@ def run(args: argparse.Namespace) -> int:
     from sim_core.weave import Weave, cloth_parameters, relax, texture_maps
 
     weave = Weave.load(args.file)
+    if args.out:
+        args.out.mkdir(parents=True, exist_ok=True)  # refused before the work, not after it
     begin = perf_counter()
     geometry = relax(weave)
     seconds = {"relax": perf_counter() - begin}
@@ -106,7 +114,6 @@ def _write(folder: Path, maps, summary: dict) -> None:
 
     from sim_core.weave.drawing import lit_picture
 
-    folder.mkdir(parents=True, exist_ok=True)
     pictures = {name: getattr(maps, name) for name in ("albedo", "normal", "height", "opacity")}
     pictures["lit"] = lit_picture(maps, tiles=2)
     for name, picture in pictures.items():

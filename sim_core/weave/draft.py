@@ -9,6 +9,8 @@ from sim_core.errors import WeaveError
 
 __all__ = ["Draft", "plain", "satin", "twill"]
 
+MOST = 256  # ends or picks of one repeat; to relax that many takes up to a minute
+
 
 @dataclass(frozen=True, eq=False)
 class Draft:
@@ -25,6 +27,7 @@ class Draft:
         lift = np.array(self.lift)
         if lift.ndim != 2 or lift.size == 0:
             raise WeaveError(f"draft {self.name}: lift has shape {lift.shape} – give rows of picks by ends")
+        _check_size(self.name, *lift.shape)
         if not np.isin(lift, (0, 1)).all():
             raise WeaveError(f"draft {self.name}: lift holds values other than 0 and 1")
         lift = lift.astype(bool)
@@ -73,6 +76,13 @@ class Draft:
         return Draft(f"{self.name} (back)", ~self.lift[:, ::-1])
 
 
+def _check_size(name: str, *counts: int) -> None:
+    if max(counts) > MOST:
+        raise WeaveError(
+            f"draft {name}: a repeat of {max(counts)} yarns – give at most {MOST} ends and picks"
+        )
+
+
 def _runs(cycle: np.ndarray) -> list[int]:
     """Lengths of the runs of True in a cyclic sequence."""
     if cycle.all():
@@ -103,6 +113,7 @@ def twill(up: int, down: int, step: int = 1) -> Draft:
     size = up + down
     if up < 1 or down < 1 or size < 3:
         raise WeaveError(f"twill {up}/{down}: floats must be at least 1 and their sum at least 3")
+    _check_size(f"twill {up}/{down}", size)
     if gcd(abs(step), size) != 1:
         raise WeaveError(f"twill {up}/{down}: step {step} shares a factor with {size} – choose one without")
     picks, ends = np.indices((size, size))
@@ -116,6 +127,7 @@ def satin(ends: int, step: int) -> Draft:
     """
     if ends < 5:
         raise WeaveError(f"satin of {ends}: a regular satin needs 5 ends, or 7 and more")
+    _check_size(f"satin of {ends}", ends)
     if not 1 < step < ends - 1:
         raise WeaveError(f"satin {ends}: step {step} makes a twill – choose 1 < step < {ends - 1}")
     if gcd(ends, step) != 1:

@@ -1,7 +1,6 @@
 """The `Weave` value: a draft, its two yarns and the sett."""
 
 from dataclasses import asdict, dataclass
-from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,8 @@ from sim_core.weave.draft import Draft
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["Weave"]
+
+MOST_PER_METRE = 1e6
 
 
 @dataclass(frozen=True)
@@ -32,8 +33,10 @@ class Weave:
     def __post_init__(self) -> None:
         for key in ("ends_per_m", "picks_per_m"):
             value = getattr(self, key)
-            if not (isfinite(value) and value > 0):
-                raise WeaveError(f"weave {self.name}: {key} is {value} – give a positive number per metre")
+            if not 1 <= value <= MOST_PER_METRE:
+                raise WeaveError(
+                    f"weave {self.name}: {key} is {value} – give 1 to {MOST_PER_METRE:g} yarns per metre"
+                )
         if not 0 <= self.friction <= 2:
             raise WeaveError(f"weave {self.name}: friction is {self.friction} – between 0 and 2")
 

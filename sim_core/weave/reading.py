@@ -1,14 +1,14 @@
 """Weave files: TOML in, `Weave` out, every mistake named by file, key, value and remedy."""
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sim_core.errors import FileProblem, SimCoreError, WeaveError
-from sim_core.weave.draft import Draft, plain, satin, twill
+from sim_core.errors import SimCoreError, WeaveError
+from sim_core.reading import read_toml, shown
+from sim_core.weave.draft import MOST, Draft, plain, satin, twill
 from sim_core.weave.model import Weave
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 
@@ -16,7 +16,7 @@ __all__ = ["read_weave"]
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
 class _Plain(_Part):
@@ -28,9 +28,9 @@ class _Plain(_Part):
 
 class _Twill(_Part):
     kind: Literal["twill"]
-    up: int
-    down: int
-    step: int = 1
+    up: int = Field(ge=1, le=MOST)
+    down: int = Field(ge=1, le=MOST)
+    step: int = Field(1, ge=-MOST, le=MOST)
 
     def draft(self) -> Draft:
         return twill(self.up, self.down, self.step)
@@ -38,8 +38,8 @@ class _Twill(_Part):
 
 class _Satin(_Part):
     kind: Literal["satin"]
-    ends: int
-    step: int
+    ends: int = Field(ge=1, le=MOST)
+    step: int = Field(ge=-MOST, le=MOST)
     face: Literal["warp", "weft"] = "warp"
 
     def draft(self) -> Draft:
@@ -51,7 +51,9 @@ class _Lift(_Part):
     """A draft written out: one string of 0 and 1 a pick, 1 = warp on top."""
 
     kind: Literal["lift"]
-    lift: list[Annotated[str, Field(pattern="^[01]+$")]] = Field(min_length=1)
+    lift: list[Annotated[str, Field(pattern="^[01]+$", max_length=MOST)]] = Field(
+        min_length=1, max_length=MOST
+    )
 
     def draft(self) -> Draft:
         if len({len(row) for row in self.lift}) != 1:
@@ -95,20 +97,9 @@ class _WeaveFile(_Part):
 
 def read_weave(path: Path) -> Weave:
     """Read a weave file; raises FileProblem (cannot be read) or WeaveError (file: key: what – remedy)."""
+    values = read_toml(path, "a weave file (TOML), such as those in assets/weaves")
     try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise FileProblem(
-            f"{path}: {error.strerror or error} – give the path of a weave file (TOML)"
-        ) from error
-    if not text.strip():
-        raise FileProblem(f"{path}: the file is empty – copy one of assets/weaves and change it")
-    try:
-        values = tomllib.loads(text.decode())
-        file = _WeaveFile.model_validate(values)
-        return _weave(file)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise FileProblem(f"{path}: not valid TOML: {error}") from error
+        return _weave(_WeaveFile.model_validate(values))
     except ValidationError as error:
         raise WeaveError(f"{path}: {_first(error)}") from error
     except SimCoreError as error:
@@ -142,5 +133,5 @@ def _first(error: ValidationError) -> str:
     elif first["type"] == "extra_forbidden":
         text = f"{key}: unknown key – check the spelling or remove it"
     else:
-        text = f"{key}: {first['input']!r}: {first['msg']}"
+        text = f"{key}: {shown(first['input'])}: {first['msg']}"
     return text if len(found) == 1 else f"{text} (and {len(found) - 1} more)"

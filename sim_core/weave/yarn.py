@@ -1,7 +1,7 @@
 """Yarns: size, weight and stiffness, with the bounds between which a bundle of fibres can bend."""
 
 from dataclasses import dataclass
-from math import isfinite, pi, sqrt
+from math import pi, sqrt
 
 from sim_core.errors import WeaveError
 
@@ -10,6 +10,17 @@ __all__ = ["SILK_DENSITY", "SILK_FILAMENT", "SILK_MODULUS", "Yarn"]
 SILK_DENSITY = 1340.0  # [kg/m3] degummed silk, textbook value 1.34 g/cm3
 SILK_MODULUS = 10e9  # [Pa] initial modulus of degummed Bombyx silk, 8-13 GPa in textbooks
 SILK_FILAMENT = 11e-6  # [m] diameter of one fibroin filament (brin) of about 1.3 dtex, assumption 10-13 um
+
+# From a single filament to a rope: what lies outside is a slip of units, and would overflow further on.
+LIMITS = {
+    "diameter": (1e-6, 0.05, "m"),
+    "tex": (1e-9, 1.0, "kg/m"),
+    "modulus": (1e4, 1e13, "Pa"),
+    "density": (1.0, 1e5, "kg/m3"),
+    "filament": (1e-8, 0.05, "m"),
+}
+MOST_TENSION = 1e4  # [N]
+STIFFNESS = 1e-20, 1.0  # EI [N m2]
 
 
 @dataclass(frozen=True)
@@ -37,14 +48,18 @@ class Yarn:
     unevenness: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("diameter", "tex", "modulus", "density", "filament"):
+        for name, (least, most, unit) in LIMITS.items():
             value = getattr(self, name)
-            if not (isfinite(value) and value > 0):
-                raise WeaveError(f"yarn: {name} is {value} – give a positive number in SI units")
+            if not least <= value <= most:
+                raise WeaveError(
+                    f"yarn: {name} is {value} – give a number in SI units, {least:g} to {most:g} {unit}"
+                )
         if not 1 <= self.flattening <= 12:
             raise WeaveError(f"yarn: flattening is {self.flattening} – width / height lies between 1 and 12")
-        if not (isfinite(self.tension) and self.tension >= 0):
-            raise WeaveError(f"yarn: tension is {self.tension} – give newtons per yarn, 0 or more")
+        if not 0 <= self.tension <= MOST_TENSION:
+            raise WeaveError(
+                f"yarn: tension is {self.tension} – give newtons per yarn, 0 to {MOST_TENSION:g}"
+            )
         if not 0 <= self.unevenness <= 0.5:
             raise WeaveError(f"yarn: unevenness is {self.unevenness} – a fraction between 0 and 0.5")
         if len(self.colour) != 3 or not all(0 <= c <= 1 for c in self.colour):
@@ -56,7 +71,7 @@ class Yarn:
             )
         if self.stiffness == 0:
             object.__setattr__(self, "stiffness", sqrt(self.stiffness_free * self.stiffness_stuck))
-        if not (isfinite(self.stiffness) and self.stiffness > 0):
+        if not STIFFNESS[0] <= self.stiffness <= STIFFNESS[1]:
             raise WeaveError(
                 f"yarn: stiffness is {self.stiffness} – EI in N m2, or 0 to derive it from the fibre"
             )

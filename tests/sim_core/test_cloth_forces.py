@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Material, Phase, Sheet, drape
-from sim_core.cloth.forces import edge_tensions, energies, stable_step, vertex_forces
+from sim_core.cloth.forces import edge_tensions, energies, kick, stable_step, vertex_forces
 from sim_core.cloth.scenes import equilateral_sheet
 from sim_core.errors import SimCoreError
 from sim_core.mesh import panel_mesh
@@ -85,6 +85,36 @@ def test_momentum_and_energy_are_conserved_without_damping(rng: np.random.Genera
     spin_after = (sheet.mass[:, None] * np.cross(end.positions, end.velocities)).sum(0)
     assert spin_after == pytest.approx(spin, abs=2e-3 * np.abs(spin).max())  # v lies half a step behind x
     assert sum(energies(sheet.stencil, end.positions, end.velocities)) == pytest.approx(before, rel=0.02)
+
+
+def test_stiffness_damping_is_the_rate_of_the_tension(rng: np.random.Generator) -> None:
+    """T(x, v, beta) = T(x) + beta dT/dt; tensions are quadratic in x, so that central differences are exact."""
+    sheet, beta = small(), 0.03
+    x = flat(sheet) + rng.normal(0, 0.004, (len(sheet.rest), 3))
+    v = rng.normal(0, 1.0, x.shape)
+
+    def tensions(x: np.ndarray, v: np.ndarray, beta: float) -> np.ndarray:
+        strain, tension = np.zeros(len(sheet.edges)), np.zeros(len(sheet.edges))
+        edge_tensions(sheet.stencil, x, v, beta, strain, tension)
+        return tension
+
+    rate = (tensions(x + 0.5 * v, v, 0.0) - tensions(x - 0.5 * v, v, 0.0)) / 1.0
+    damped = tensions(x, v, beta) - tensions(x, v, 0.0)
+    assert damped == pytest.approx(beta * rate, rel=1e-9, abs=1e-9 * np.abs(damped).max())
+
+
+@pytest.mark.parametrize("damping", [0.0, 2.0, 30.0])
+def test_mass_damping_bounds_the_speed_of_a_fall(damping: float) -> None:
+    """v = g/d (1 - exp(-d t)), g t without damping; every vertex alike."""
+    sheet = small(Material(0.05, 50.0, 0.3, 5e-5, mass_damping=0.0, stiffness_damping=0.0))
+    v, x = np.zeros((len(sheet.rest), 3)), flat(sheet)
+    tension, force, step, count = np.zeros(len(sheet.edges)), np.zeros_like(v), 1e-3, 200
+    for _ in range(count):
+        kick(sheet.stencil, x, v, tension, force, step, damping, np.array([0.0, -9.81, 0.0]))
+    passed = count * step
+    wanted = 9.81 * passed if damping == 0 else 9.81 / damping * (1 - np.exp(-damping * passed))
+    assert v[:, 1] == pytest.approx(-wanted, rel=1e-4)
+    assert np.abs(v[:, [0, 2]]).max() < 1e-9
 
 
 @pytest.mark.parametrize("direction", [0.0, 0.5, 1.2])

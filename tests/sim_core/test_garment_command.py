@@ -34,13 +34,13 @@ def test_cloth_scene_writes_positions_and_picture(tmp_path: Path, capsys: pytest
 
 
 def test_bad_words_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["cloth", "bar", "--edge", "-1", "--out", str(tmp_path)]) == 1
+    assert main(["cloth", "bar", "--edge", "0.2", "--out", str(tmp_path)]) == 2
     empty = tmp_path / "empty.toml"
     empty.touch()
     assert main(["garment", str(empty), "--weave", str(WEAVE), "--out", str(tmp_path / "out")]) == 1
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 2
-    assert "--edge" in lines[0]
+    assert "edge 0.2 m" in lines[0]
     assert "empty.toml" in lines[1]
     assert not (tmp_path / "out").exists()
     with pytest.raises(SystemExit) as caught:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.errors import FileProblem, SimCoreError
+from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Pattern
 from sim_core.garment.measures import measured
 
@@ -126,6 +126,13 @@ def _area(points: np.ndarray) -> float:
         ('"strap: b > c"', '"strap: a > b"', ["seam.2.joined", "mm"]),
         ('"strap: b > c"', '"belt: b > c"', ["seam.2.joined", "'belt'", "no panel"]),
         ('"sack: back < waist"', '"sack: low > corner"', ["seam.3", "mm"]),
+        ('"strap: b > c"', '"strap: b > b"', ["seam.2.joined", "no length", "two corners"]),
+        ('middle = "sack: top > low"', 'middle = "sack: top > top"', ["seam.1.middle", "no length"]),
+        ("along('sack: low > corner')", "along('sack: low > low')", ["strap.outline.c.at", "no length"]),
+        ('"sack: back < waist"', '"sack: waist < corner"', ["seam.3", "sewn already"]),
+        ("wide = 200", "wide = 200000", ["panel.sack.outline", "m wide", "20 m"]),
+        ("wide = 200", "wide = true", ["measures.wide"]),
+        ("edge = 0.05", "edge = true", ["edge", "True"]),
         ("mirror = true", "mirror = false", ["seam.1.middle", "mirror"]),
         ("doubled = true", "folded = true", ["panel.1.folded", "unknown key"]),
         ("at = [30, 0]", 'at = [30, "x"]', ["panel.strap.outline.b.at", "'x'"]),
@@ -158,3 +165,26 @@ def test_measures_are_reckoned_and_nothing_else() -> None:
     for bad in ("a.b", "a if b else 1", "[a]", "open('x')", "lambda: 1", "a ** 9"):
         with pytest.raises(ValueError, match=r"not allowed|not known"):
             measured(bad, known)
+
+
+def test_a_panel_smaller_than_the_trial_mesh_is_a_panel(tmp_path: Path) -> None:
+    small = (
+        BAG.replace("wide = 200", "wide = 30")
+        .replace('"2 * wide - 50"', "15")
+        .replace("at = [30, ", "at = [8, ")
+    )
+    small = small.replace('["wide", 200], ["wide", 100]', '["wide", 10], ["wide", 5]')
+    small = small.replace('["wide", -100], ["wide", -200]', '["wide", -5], ["wide", -10]')
+    pattern = read(tmp_path, small.replace("edge = 0.05", "edge = 0.005"))
+    assert len(pattern.cloth().faces) > 50
+
+
+def test_meshes_that_fail_name_their_panel(tmp_path: Path) -> None:
+    pattern = read(tmp_path, BAG)
+    with pytest.raises(OutlineError, match=r"^panel\.sack: edge 0\.0001 m makes more than 200000 vertices"):
+        pattern.cloth(0.0001)
+    with pytest.raises(OutlineError, match=r"^panel\.strap: edge 0\.5 m is longer than the panel"):
+        pattern.cloth(0.5)
+    for edge in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(SimCoreError, match="positive length"):
+            pattern.cloth(edge)

@@ -84,7 +84,9 @@ def test_bad_patterns_name_file_key_and_remedy(tmp_path: Path, text: str, words:
 
 
 def test_missing_pattern_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileProblem, match="cannot be read"):
+    with pytest.raises(
+        FileProblem, match=r"none\.toml: No such file or directory – give the path of a pattern"
+    ):
         Pattern.load(tmp_path / "none.toml")
 
 

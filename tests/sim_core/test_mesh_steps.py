@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.mesh import inside, keep_points, outline_samples, quality, staggered_points
+from sim_core.mesh.sampling import sampled_contours
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 CIRCLE = np.column_stack([np.cos(t := np.arange(200) * np.pi / 100), np.sin(t)])
@@ -84,3 +85,42 @@ def test_quality_of_known_triangles():
     np.testing.assert_allclose(angle, [60, 45, 0], atol=1e-9)
     np.testing.assert_allclose(shape, [1, np.sqrt(3) / 2, 0], atol=1e-12)
     np.testing.assert_allclose(ratio[:2], [1, 1 / np.sqrt(2)])
+
+
+def foreign_in_circles(samples: list[np.ndarray]) -> np.ndarray:
+    """Lengths of the steps whose diametral circle holds a sample other than their own ends and the next ones."""
+    points, lengths = np.concatenate(samples), []
+    for loop in samples:
+        for k, point in enumerate(loop):
+            ahead = loop[(k + 1) % len(loop)]
+            own = [loop[k - 1], point, ahead, loop[(k + 2) % len(loop)]]
+            near = points[
+                np.hypot(*(points - (point + ahead) / 2).T) < np.hypot(*(ahead - point)) / 2 * (1 - 1e-9)
+            ]
+            if any(not any(np.array_equal(p, q) for q in own) for p in near):
+                lengths.append(np.hypot(*(ahead - point)))
+    return np.array(lengths)
+
+
+@pytest.mark.parametrize("gap", [0.09, 0.06, 0.03])
+def test_steps_are_halved_where_contours_run_close(gap):
+    """A panel with a slot of width `gap`, and a hole as near to its border."""
+    x = 0.43
+    outline = np.array([[0, 0], [1, 0], [1, 1], [x + gap, 1], [x + gap, 0.2], [x, 0.25], [x, 1], [0, 1.0]])
+    hole = np.array([[gap, 0.31], [gap, 0.84], [0.3, 0.66]])
+    contours, edge = [outline, hole], 0.2
+    before = [outline_samples(contour, edge) for contour in contours]
+    assert len(foreign_in_circles(before)) > 0
+    samples = sampled_contours(contours, edge)
+    assert len(foreign_in_circles(samples)) == 0
+    assert sum(map(len, samples)) < 12 * sum(map(len, before))
+    for early, late in zip(before, samples, strict=True):
+        assert {tuple(p) for p in early} <= {tuple(p) for p in late}  # halving moves nothing
+
+
+def test_spikes_do_not_halve_for_ever():
+    spike = np.array([[0, 0], [1, 0], [1, 1], [0.5, 1], [0.5005, 0.01], [0.4995, 0.93], [0, 1.0]])
+    samples = sampled_contours([spike], 0.2)
+    steps = np.hypot(*(np.roll(samples[0], -1, axis=0) - samples[0]).T)
+    assert foreign_in_circles(samples).size  # it would halve on
+    assert 0.2 / 64 <= steps.min() < 0.2 / 16

@@ -101,7 +101,9 @@ def test_bad_outline_files_give_one_line_and_exit_with_1(tmp_path, capsys, text,
 def test_missing_file_and_unknown_kind_of_file(outline, tmp_path, capsys):
     assert cli.main(["mesh", str(tmp_path / "none.json"), "--edge", "0.1"]) == 1
     assert "none.json" in capsys.readouterr().err
-    assert cli.main(["mesh", str(outline), "--edge", "0.1", "--out", str(tmp_path / "mesh.stl")]) == 1
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["mesh", str(outline), "--edge", "0.1", "--out", str(tmp_path / "mesh.stl")])
+    assert caught.value.code == 2
     assert ".ply" in capsys.readouterr().err
 
 

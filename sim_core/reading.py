@@ -1,0 +1,108 @@
+"""Files from outside: TOML, JSON and npz, every way they fail told as one FileProblem that names the file."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+import zipfile
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sim_core.errors import FileProblem
+
+if TYPE_CHECKING:
+    import numpy as np
+
+__all__ = ["read_json", "read_npz", "read_toml", "shown"]
+
+LARGEST_TEXT = 16_000_000  # bytes of a TOML or JSON file; an outline of half a million points
+LARGEST_ARRAYS = 2_000_000_000  # bytes of all arrays of an npz once unpacked
+NOT_AN_NPZ = (
+    OSError,
+    ValueError,  # pickled arrays and foreign files among them
+    KeyError,
+    TypeError,
+    EOFError,
+    RuntimeError,  # an encrypted archive; NotImplementedError: an unknown compression
+    RecursionError,
+    MemoryError,
+    OverflowError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+
+
+def shown(value: object, most: int = 60) -> str:
+    """repr of a value from a file, cut where it is longer than a line bears."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):
+        return f"a {type(value).__name__} too large to show"
+    return text if len(text) <= most else text[:most] + "…"
+
+
+def read_toml(path: Path, what: str) -> dict[str, Any]:
+    """The tables of a TOML file, with or without a byte order mark; `what`: such as "a weave file (TOML)".
+
+    Raises FileProblem where it is missing, empty, too large, not UTF-8 or not TOML.
+    """
+    text = _text(path, what)
+    try:
+        return tomllib.loads(text.decode("utf-8-sig"))
+    except RecursionError as error:
+        raise FileProblem(f"{path}: brackets nested too deep – give {what}") from error
+    except ValueError as error:  # a bad statement, bytes that are no UTF-8, a number of thousands of digits
+        raise FileProblem(f"{path}: not valid TOML: {error}") from error
+
+
+def read_json(path: Path, what: str) -> Any:
+    """The value of a JSON file; raises FileProblem as `read_toml` does."""
+    text = _text(path, what)
+    try:
+        return json.loads(text.decode("utf-8-sig"))
+    except RecursionError as error:
+        raise FileProblem(f"{path}: brackets nested too deep – give {what}") from error
+    except ValueError as error:
+        raise FileProblem(f"{path}: not valid JSON ({error}) – give {what}") from error
+
+
+def _text(path: Path, what: str) -> bytes:
+    try:
+        with path.open("rb") as stream:
+            text = stream.read(LARGEST_TEXT + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FileProblem(f"{path}: {reason} – give the path of {what}") from error
+    if len(text) > LARGEST_TEXT:
+        raise FileProblem(f"{path}: larger than {LARGEST_TEXT // 1_000_000} MB – give {what}")
+    if not text.removeprefix(b"\xef\xbb\xbf").strip():
+        raise FileProblem(f"{path}: the file is empty – give {what}")
+    return text
+
+
+def read_npz(path: Path, names: Iterable[str], what: str, remedy: str) -> dict[str, np.ndarray]:
+    """The named arrays of an npz file; `what`: such as "a garment file", `remedy`: how to get one.
+
+    Raises FileProblem where it is missing, truncated, of another kind, holds pickles, lacks a name, or would unpack
+    to more than 2 GB.
+    """
+    import numpy as np
+
+    try:
+        # Opened here, since numpy leaves a damaged file open.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as data:
+            if sum(part.file_size for part in data.zip.infolist()) > LARGEST_ARRAYS:
+                raise FileProblem(f"{path}: holds more than {LARGEST_ARRAYS // 1_000_000_000} GB – {remedy}")
+            missing = [name for name in names if name not in data.files]
+            if missing:
+                raise FileProblem(f"{path}: not {what} (no array {missing[0]!r}) – {remedy}")
+            return {name: data[name] for name in names}
+    except FileProblem:
+        raise
+    except FileNotFoundError as error:
+        raise FileProblem(f"{path}: no such file – {remedy}") from error
+    except NOT_AN_NPZ as error:
+        reason = getattr(error, "strerror", None) or " ".join(str(error).split())
+        raise FileProblem(f"{path}: not {what} ({reason or type(error).__name__}) – {remedy}") from error

@@ -1,0 +1,178 @@
+"""Odd arguments of `simcore`: refused with exit status 2 before any work, or told in one line; never a traceback."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core import cli
+
+REPO = Path(__file__).parents[2]
+WEAVE = str(REPO / "assets" / "weaves" / "gauze.toml")
+PATTERN = str(REPO / "assets" / "patterns" / "robe.toml")
+
+WRONG = {
+    "weave": [
+        *(["--seed", word] for word in ("-1", "1.5", "x", "9" * 5000)),
+        *(["--pixels", word] for word in ("-3", "0", "31", "4097", "1e3")),
+    ],
+    "mesh": [
+        *(["--edge", word] for word in ("0", "-1", "nan", "inf", "1e-300", "1e300", "x")),
+        *(["--edge", "0.1", "--threshold", word] for word in ("nan", "0.4", "1")),
+        *(["--edge", "0.1", "--picture", word] for word in ("p.xyz", "p", ".png")),
+        *(["--edge", "0.1", "--out", word] for word in ("mesh.stl", "mesh")),
+    ],
+    "cloth": [
+        *(["--edge", word] for word in ("5", "0", "-1", "nan", "0.0001", "0.002")),
+        *(["--seconds", word] for word in ("0", "-1", "nan", "inf", "1e9")),
+    ],
+    "garment": [
+        *(["--edge", word] for word in ("0", "-1", "nan", "1e-9", "5")),
+        *(["--budget", word] for word in ("0", "-1", "nan", "inf", "5")),
+        *(["--pixels", word] for word in ("-3", "0", "1e9")),
+        *(["--seed", word] for word in ("-1", "0.5")),
+        *(["--recipe", "robe_on_figure", "--arm", word] for word in ("90", "nan", "-11")),
+        *(["--recipe", "robe_on_figure", "--elbow", word] for word in ("-1", "111", "inf")),
+        ["--recipe", "robe_on_figure"],
+    ],
+    "mannequin": [["--picture", "figure.jpeg"], ["--picture", "figure"]],
+}
+CASES = [(room, words) for room, cases in WRONG.items() for words in cases]
+
+
+@pytest.mark.parametrize(("room", "words"), CASES, ids=[f"{r} {' '.join(w)[:40]}" for r, w in CASES])
+def test_wrong_arguments_end_with_2_and_leave_nothing(
+    room: str, words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    first = {
+        "weave": [WEAVE],
+        "mesh": ["none.json"],
+        "cloth": ["hang"],
+        "garment": [PATTERN, "--weave", WEAVE, "--out", "out"],
+        "mannequin": ["figure.npz"],
+    }[room]
+    try:
+        status = cli.main([room, *first, *words])
+    except SystemExit as caught:
+        status = caught.code
+    assert status == 2
+    last = capsys.readouterr().err.strip().splitlines()[-1]
+    assert last.startswith(f"simcore {room}: ")
+    option = "edge" if room == "cloth" and words == ["--edge", "0.002"] else words[-2]
+    assert option in last or "--mannequin" in last
+    assert len(last) < 300
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scene_is_as_fine_as_its_sheet_bears(tmp_path: Path, capsys) -> None:
+    assert cli.main(["cloth", "bar", "--edge", "0.2", "--out", str(tmp_path / "out")]) == 2
+    assert "0.3 x 0.8 m takes" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_debug_stands_before_or_behind_the_command(tmp_path: Path, capsys) -> None:
+    words = ["mesh", str(tmp_path / "none.json"), "--edge", "0.1"]
+    for debug in (["--debug", *words], [*words, "--debug"], ["--debug", *words, "--debug"]):
+        with pytest.raises(ValueError, match=r"none\.json"):
+            cli.main(debug)
+    assert cli.main(words) == 1
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_bench_keeps_debug_to_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran: list[list[str]] = []
+
+    def heard(words: list[str], **_: object) -> subprocess.CompletedProcess:
+        ran.append(words[2:])
+        return subprocess.CompletedProcess(words, 0)
+
+    monkeypatch.setattr(subprocess, "run", heard)
+    for words in (["bench", "--debug", "mesh"], ["bench", "mesh", "--debug"], ["--debug", "bench", "mesh"]):
+        assert cli.main([*words, "--", "--quick"]) == 0
+    assert ran == [["--quick"]] * 3
+
+
+def test_what_nobody_foresaw_is_one_line_too(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    from sim_core.weave import Weave
+
+    def broken(path: Path) -> Weave:
+        raise ZeroDivisionError("division\nby zero")
+
+    monkeypatch.setattr(Weave, "load", broken)
+    assert cli.main(["weave", WEAVE]) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "unexpected ZeroDivisionError: division by zero" in told
+    assert "--debug" in told
+    with pytest.raises(ZeroDivisionError):
+        cli.main(["weave", WEAVE, "--debug"])
+
+
+def simcore(*words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    import os
+
+    return subprocess.run(
+        [sys.executable, "-m", "sim_core.cli", *words],
+        capture_output=True,
+        text=True,
+        cwd=REPO,
+        env={**os.environ, **environment},
+        check=False,
+    )
+
+
+def test_a_terminal_without_the_letters_gets_escapes(tmp_path: Path) -> None:
+    path = tmp_path / "sha.toml"
+    text = Path(WEAVE).read_text("utf-8").replace('name = "gauze"', 'name = "纱"')
+    path.write_text(text, "utf-8")
+    done = simcore("weave", str(path), PYTHONIOENCODING="ascii")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("\\u7eb1: ")
+    assert done.stderr == ""
+
+
+def test_a_reader_who_has_seen_enough_is_no_error(tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "sim_core.cli", "weave", WEAVE]
+    with subprocess.Popen(words, cwd=REPO, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as started:
+        assert started.stdout is not None
+        assert started.stderr is not None
+        started.stdout.close()
+        assert started.stderr.read() == b""
+
+
+def test_places_that_cannot_be_written_are_told_before_the_work(tmp_path: Path, capsys) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("here", "utf-8")
+    outline = tmp_path / "panel.json"
+    outline.write_text(json.dumps({"outline": [[0, 0], [1, 0], [1, 1]]}), "utf-8")
+    assert cli.main(["weave", WEAVE, "--out", str(taken)]) == 1
+    assert cli.main(["cloth", "hang", "--out", str(taken)]) == 1
+    assert cli.main(["garment", PATTERN, "--weave", WEAVE, "--out", str(taken)]) == 1
+    assert cli.main(["mesh", str(outline), "--edge", "0.2", "--out", str(taken / "mesh.obj")]) == 1
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 4
+    assert all("taken" in line for line in lines)
+
+
+def test_a_figure_that_is_none_is_told_with_its_file(tmp_path: Path, capsys) -> None:
+    path = tmp_path / "figure.npz"
+    np.savez(path, vertices=np.zeros((3, 3)))
+    words = [
+        "garment",
+        PATTERN,
+        "--weave",
+        WEAVE,
+        "--out",
+        str(tmp_path / "out"),
+        "--recipe",
+        "robe_on_figure",
+    ]
+    assert cli.main([*words, "--mannequin", str(path)]) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "figure.npz: not a mannequin" in told
+    assert not (tmp_path / "out").exists()
