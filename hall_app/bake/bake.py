@@ -53,12 +53,14 @@ def bake_garment(
     assert recipe is not None
     inputs = read_inputs(content.folder, recipe)
     draping = RECIPES[recipe.recipe](inputs)
-    garment, seconds = _drape(draping, work, out, progress, film=film and film_possible())
-    garment.save(out / "garment.npz")
-    progress(0.86, "models")
-    clock = time.perf_counter()
-    light = _models(inputs, draping, garment, out)
-    seconds["models"] = round(time.perf_counter() - clock, 2)
+    levels: list[Garment] = []
+
+    def models(garment: Garment) -> None:
+        garment.save(out / "garment.npz")
+        levels.append(_models(inputs, draping, garment, out))
+
+    garment, seconds = _drape(draping, work, out, progress, models, film=film and film_possible())
+    (light,) = levels
     progress(0.95, "pictures")
     stills(draping.still(garment), garment.positions, out)
     seconds["all"] = round(time.perf_counter() - began, 2)
@@ -93,20 +95,36 @@ def budget(nearest: float, pixels: float) -> float:
 
 
 def _drape(
-    draping: Recipe, work: Path, out: Path, progress: Progress, *, film: bool
+    draping: Recipe,
+    work: Path,
+    out: Path,
+    progress: Progress,
+    models: Callable[[Garment], None],
+    *,
+    film: bool,
 ) -> tuple[Garment, dict[str, float]]:
-    """Simulate, and film it meanwhile."""
-    seconds: dict[str, float] = {}
-    clock = time.perf_counter()
+    """Simulate, and film it meanwhile; `models` writes what is to be written while the last pictures are drawn."""
+    clock, seconds = time.perf_counter(), {}
+
+    def lap(name: str) -> None:
+        nonlocal clock
+        now = time.perf_counter()
+        seconds[name], clock = round(now - clock, 2), now
 
     def told(share: float, label: str) -> None:
         progress(0.6 * share, label)
 
+    def modelled(garment: Garment) -> None:
+        progress(0.6, "models")
+        models(garment)
+        lap("models")
+
     draping.prepare(lambda share, label: progress(0.0, f"{label}, {share:.0%}"), work / "beneath.npz")
-    seconds["beneath"], clock = round(time.perf_counter() - clock, 2), time.perf_counter()
+    lap("beneath")
     if not film:
         garment = draping.drape(told, work / "drape.npz", None)
-        seconds["drape"] = round(time.perf_counter() - clock, 2)
+        lap("drape")
+        modelled(garment)
         return garment, seconds
     last: list[np.ndarray | None] = [None]
     with filming(draping.look(), work / "film") as taken:
@@ -116,12 +134,13 @@ def _drape(
             taken.shoot(x, moved)
 
         garment = draping.drape(told, work / "drape.npz", shoot)
-        seconds["drape"] = round(time.perf_counter() - clock, 2)
+        lap("drape")
         taken.walk_round(garment.worn(), last[0])
-        progress(0.6, "film")
+        modelled(garment)
+        progress(0.7, "film")
         paths = (out / "drape.webm", out / "drape.mp4")
-        taken.write(paths, _sound(), lambda share: progress(0.6 + 0.25 * share, "film"))
-        seconds["film"] = round(time.perf_counter() - clock - seconds["drape"], 2)
+        taken.write(paths, _sound(), lambda share: progress(0.7 + 0.25 * share, "film"))
+        lap("film")
     return garment, seconds
 
 
