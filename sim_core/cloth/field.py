@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from sim_core.cloth.collider import GridSdf
 from sim_core.cloth.field_loops import crossings, interpolate, splat, spread, sweep
@@ -94,8 +94,16 @@ def united(first: DistanceField, second: DistanceField, *, thicker: float = 0.0)
 
 
 def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Convex hull of points (N, 3): its corners and its faces, counter-clockwise from outside."""
-    hull = ConvexHull(points)
+    """Convex hull of points (N, 3): its corners and its faces, counter-clockwise from outside.
+
+    Raises SimCoreError where they are too few or lie in one plane.
+    """
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError) as error:
+        raise SimCoreError(
+            f"field: {len(points)} points have no hull – give four that span a solid"
+        ) from error
     corner = points[hull.simplices]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     inward = (normal * hull.equations[:, :3]).sum(1) < 0

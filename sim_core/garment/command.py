@@ -112,7 +112,7 @@ def _pose(args: argparse.Namespace) -> Pose:
 
 def _figure(args: argparse.Namespace) -> Figure | None:
     """Who wears it, None for a recipe without a figure."""
-    from sim_core.errors import WrongArgument
+    from sim_core.errors import FileProblem, SimCoreError, WrongArgument
     from sim_core.garment.figure import Figure
     from sim_core.garment.mannequin import Mannequin
 
@@ -122,7 +122,12 @@ def _figure(args: argparse.Namespace) -> Figure | None:
         raise WrongArgument(
             "--mannequin: robe_on_figure needs a figure – give mannequins/woman.npz or another"
         )
-    return Figure(Mannequin.load(args.mannequin))
+    figure = Figure(Mannequin.load(args.mannequin))
+    try:
+        figure.field(_pose(args))
+    except SimCoreError as error:  # an open mesh, hands without points: told before the drape, with the file
+        raise FileProblem(f"{args.mannequin}: {error}") from error
+    return figure
 
 
 def _draped(args: argparse.Namespace, pattern: Pattern, weave: Weave, figure: Figure | None) -> Garment:

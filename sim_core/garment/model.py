@@ -125,13 +125,16 @@ class Garment:
     def load(path: Path) -> Garment:
         """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
         path = Path(path)
-        data = read_npz(path, ("header", *_ARRAYS), "a garment file", "bake the garment again")
+        what, remedy = "a garment file", "bake the garment again"
         try:
-            header = json.loads(data.pop("header").tobytes().decode())
+            header = json.loads(read_npz(path, ("header",), what, remedy)["header"].tobytes().decode())
+        except FileProblem:
+            raise
         except (ValueError, RecursionError) as error:
             raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
         if not isinstance(header, dict) or header.get("format") != FORMAT:
             raise FileProblem(f"{path}: written in another format – bake the garment again")
+        data = read_npz(path, tuple(_ARRAYS), what, remedy)
         try:
             return Garment(
                 name=str(header["name"]),

@@ -111,6 +111,18 @@ def test_hulls_are_united() -> None:
     assert winding(np.zeros((1, 3)), vertices, faces)[0] == pytest.approx(1.0)
 
 
+def test_points_without_a_hull_are_told() -> None:
+    for points in (
+        np.zeros((0, 3)),
+        np.eye(3),
+        np.zeros((9, 3)),
+        np.random.default_rng(0).random((9, 3)) * [1, 1, 0],
+    ):
+        with pytest.raises(SimCoreError, match="have no hull") as caught:
+            hull_mesh(points)
+        assert "\n" not in str(caught.value)
+
+
 def test_union_with_a_thickened_field() -> None:
     first = field_of(*ball(), cell=0.01, band=0.05, box=((-0.3, -0.2, -0.2), (0.5, 0.2, 0.2)))
     other = field_of(*ball(at=(0.25, 0.0, 0.0)), cell=0.008, band=0.05)

@@ -47,7 +47,7 @@ def test_folds_are_kept_where_they_are() -> None:
         seen.append(apart.p99)
         assert area_in_pattern(flat, left).sum() == pytest.approx(1.0, abs=1e-9)
     assert seen == sorted(seen)
-    assert seen[-1] < 0.004
+    assert seen[-1] < 0.0015  # a vertex takes over the planes of those that slid onto it
 
 
 def test_twins_of_a_seam_stay_together() -> None:
@@ -85,3 +85,19 @@ def test_fixed_vertices_stay() -> None:
     mesh = Thinning(draped(flat, np.zeros(len(flat))), faces, np.arange(len(flat)), flat, fixed)
     mesh.to(2)
     assert np.isin(np.flatnonzero(fixed), mesh.faces()).all()
+
+
+@pytest.mark.parametrize("triangles", [400, 60, 12])
+@pytest.mark.parametrize("in_pattern", [True, False])
+def test_no_face_becomes_a_needle_or_turns_over(triangles: int, in_pattern: bool) -> None:
+    """Also where no pattern tells which side is up, as on a figure."""
+    flat, faces = square()
+    x = draped(flat, np.zeros(len(flat)))
+    mesh = Thinning(x, faces, np.arange(len(flat)), flat if in_pattern else None)
+    mesh.to(triangles)
+    a, b, c = (x[mesh.faces()[:, k]] for k in range(3))
+    twice = np.cross(b - a, c - a)[:, 2]
+    longest = np.max([((p - q) ** 2).sum(1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    assert (0.5 * twice / longest).min() >= 0.05
+    assert twice.sum() / 2 == pytest.approx(1.0, abs=1e-12)
+    assert mesh.count <= triangles

@@ -385,3 +385,10 @@ def test_a_checkpoint_comes_back_whole(tmp_path: Path) -> None:
     assert again.trace == state.trace
     assert np.array_equal(again.film[0], state.film[0])
     assert np.array_equal(again.velocities, -x)
+
+
+def test_an_older_garment_is_told_as_such(tmp_path: Path) -> None:
+    header = np.frombuffer(json.dumps({"format": 1, "name": "old"}).encode(), np.uint8)
+    np.savez(tmp_path / "old.npz", header=header, rest=np.zeros((3, 2)))
+    with pytest.raises(FileProblem, match="another format – bake"):
+        Garment.load(tmp_path / "old.npz")

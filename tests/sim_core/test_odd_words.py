@@ -176,3 +176,35 @@ def test_a_figure_that_is_none_is_told_with_its_file(tmp_path: Path, capsys) -> 
     assert told.count("\n") == 1
     assert "figure.npz: not a mannequin" in told
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "word"),
+    [
+        ("faces", lambda a: a[1:], "open or ill-wound at 3 edges"),
+        ("weights", lambda a: np.eye(7)[np.zeros(len(a), int)], "no hull"),
+    ],
+)
+def test_a_figure_no_field_fits_is_told_before_the_drape(
+    tmp_path: Path, capsys, name: str, change, word: str
+) -> None:
+    with np.load(REPO / "assets" / "mannequins" / "woman.npz") as data:
+        arrays = dict(data)
+    path = tmp_path / "figure.npz"
+    np.savez(path, **{**arrays, name: change(arrays[name])})
+    words = [
+        "garment",
+        PATTERN,
+        "--weave",
+        WEAVE,
+        "--out",
+        str(tmp_path / "out"),
+        "--recipe",
+        "robe_on_figure",
+    ]
+    assert cli.main([*words, "--mannequin", str(path)]) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "figure.npz: field: " in told
+    assert word in told
+    assert not (tmp_path / "out").exists()
