@@ -14,8 +14,9 @@ __all__ = ["add_parser", "run"]
 
 DESCRIPTION = """\
 Look through a content folder: form of the TOML files, files named and present, both languages, descriptions
-of media, models (readable, in metres, within budget), exhibits inside the hall and reachable on foot,
-licences, bakes, unused files. One line a problem: file, key, what is wrong, how to put it right.
+of media, media and models (readable, in metres, within budget), exhibits inside the hall and reachable on
+foot, licences, questionnaires, weaves, patterns, bakes, unused files. One line a problem: file, key, what is
+wrong, how to put it right.
 
 With --garments instead: what every baked garment was measured to be, marked ! where it breaks a limit.
 

@@ -194,6 +194,16 @@ def test_crafts_no_exhibit_names_are_read_too(house: Path, name: str):
     assert " – " in line
 
 
+def test_crafts_are_no_links_out_of_the_folder(house: Path, tmp_path: Path):
+    (tmp_path / "secret").write_text("root:x:0:0")
+    (house / "weaves").mkdir()
+    (house / "weaves/w.toml").symlink_to(tmp_path / "secret")
+    (line,) = lines(house)
+    assert line.startswith(
+        "weaves/w.toml: it is a link that leaves the content folder – copy the file itself"
+    )
+
+
 def spoil_pattern(house: Path) -> None:
     (house / "patterns").mkdir()
     (house / "patterns/p.toml").write_bytes(b"")

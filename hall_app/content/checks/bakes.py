@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...bake.key import bake_key
-from ..files import BAKED, exhibit_files, is_there, recipe_files, walk_files
+from ..files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
 from ..loading import Content, Exhibit
 from ..problems import Problem
 
@@ -58,6 +58,8 @@ def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | 
 
     if not is_there(folder / path):
         return Problem(path, "", "missing file", "add it, or correct the path in exhibit.toml")
+    if leaves(folder / path, folder):
+        return Problem(path, "", f"it {LEAVES[0]}", LEAVES[1])
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # numpy's, about numbers that are refused a line later
