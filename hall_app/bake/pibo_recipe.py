@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PiboOnFigure"]
 
-HALL_ROBE = 0.003  # [m] by how much the robe under a scarf may deviate in the hall, p99
+HALL_ROBE = 0.004  # [m] by how much the robe under a scarf may deviate in the hall, p99
 
 
 class PiboOnFigure:

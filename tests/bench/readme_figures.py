@@ -2,6 +2,7 @@
 
 hall bench walking -- --json docs/figures/walking.json
 hall bench page -- --json docs/figures/page.json
+hall bench look -- --json docs/figures/look.json
 simcore bench mesh -- --json docs/figures/mesh.json          (and weave, cloth)
 python tests/bench/readme_figures.py
 """
@@ -58,33 +59,72 @@ def page() -> list[tuple[str, str, str]]:
     return rows
 
 
-def scarf() -> list[tuple[str, str, str]]:
-    record = json.loads((ROOT / "assets/exhibits/pibo/baked/bake.json").read_text("utf-8"))
-    errors, seconds, command = record["errors"], record["seconds"], "`hall build -f`"
-    inside = " / ".join(str(errors[f"inside_{what}"]) for what in ("vertices", "midpoints", "centroids"))
+def look() -> list[tuple[str, str, str]]:
+    found, command = read("look")["summary"], "`hall bench look`"
+    cost = found["cpu_ms"]
+    views = ", ".join(
+        f"{view} {cost['shipped'][view]:.0f} / {cost['ambient'][view]:.0f} / {cost['default'][view]:.0f} ms"
+        for view in cost["shipped"]
+    )
+    share = found["share"]
     return [
-        ("scarf: vertices / edge midpoints / centroids inside the stand", inside, command),
+        ("CPU a picture, 960×540: as shipped / one ambient light / viser's environment", views, command),
         (
-            f"scarf of {errors['vertices']:,} vertices: area strain p95 / max",
-            f"{errors['area_strain_p95']:.2%} / {errors['area_strain_max']:.1%}",
-            command,
-        ),
-        ("scarf: edge–triangle self-intersections", str(errors["self_intersections"]), command),
-        (
-            "scarf: simulated / with models, film and pictures",
-            f"{seconds['drape']:.0f} s / {seconds['all']:.0f} s",
-            command,
-        ),
-        (
-            "hall model against the simulated one: mean / p99",
-            f"{1000 * errors['hall_hausdorff_mean']:.2f} / {1000 * errors['hall_hausdorff_p99']:.1f} mm",
+            "the shipped look's share of either, the worse view",
+            f"{share['ambient']:.2f} / {share['default']:.2f}",
             command,
         ),
     ]
 
 
+def room() -> list[tuple[str, str, str]]:
+    record = json.loads((ROOT / "assets/room/room.json").read_text("utf-8"))
+    light, command = record["light"], "`hall build --room -f`"
+    text = f"{light['texels']:,} texels, {light['rays'] / 1e6:.0f} M rays in {light['seconds']:.0f} s"
+    return [
+        (f"light of the room, {record['triangles']:,} triangles", text, command),
+        ("its noise, standard deviation over mean", f"{light['noise']:.1%}", command),
+    ]
+
+
+def garment(exhibit: str, name: str) -> list[tuple[str, str, str]]:
+    record = json.loads((ROOT / f"assets/exhibits/{exhibit}/baked/bake.json").read_text("utf-8"))
+    errors, seconds, command = record["errors"], record["seconds"], "`hall build -f`"
+    inside = " / ".join(str(errors[f"inside_{what}"]) for what in ("vertices", "midpoints", "centroids"))
+    rows = [
+        (f"{name}: vertices / edge midpoints / centroids inside", inside, command),
+        (
+            f"{name}, {errors['vertices']:,} vertices: area strain p95 / max",
+            f"{errors['area_strain_p95']:.2%} / {errors['area_strain_max']:.1%}",
+            command,
+        ),
+        (f"{name}: edge–triangle self-intersections", str(errors["self_intersections"]), command),
+    ]
+    if "asymmetry_m" in errors:
+        rows.append((f"{name}: left against right half", f"{1000 * errors['asymmetry_m']:.1f} mm", command))
+    rows += [
+        (
+            f"{name}: displacement at rest, p99, in 1/25 s",
+            f"{1000 * errors['rest_p99_m']:.3f} mm",
+            command,
+        ),
+        (
+            f"{name}: simulated / with models, film and pictures",
+            f"{seconds['beneath'] + seconds['drape']:.0f} s / {seconds['all']:.0f} s",
+            command,
+        ),
+        (
+            f"{name}: hall model against the simulated one, mean / p99",
+            f"{1000 * errors['hall_hausdorff_mean']:.2f} / {1000 * errors['hall_hausdorff_p99']:.1f} mm",
+            command,
+        ),
+    ]
+    return rows
+
+
 def main() -> int:
-    rows = walking() + page() + scarf()
+    rows = walking() + page() + look() + room()
+    rows += garment("beizi", "beizi") + garment("pibo-figure", "robe and pibo") + garment("pibo", "scarf")
     lines = ["| What | Measured | Command |", "|---|---|---|"]
     lines += [f"| {what} | {value} | {command} |" for what, value, command in rows]
     path = ROOT / "README.md"
