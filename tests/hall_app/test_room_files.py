@@ -3,7 +3,6 @@
 import io
 import json
 import shutil
-import types
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from hall_app.content.check import check
 from hall_app.content.colours import difference, hex_of, main_colour
 from hall_app.content.glb import open_glb, read_glb
 from hall_app.content.loading import load
+from hall_app.light.model import LightMap
 from hall_app.room import lettering, raise_room, room_glb
 from hall_app.room.environment import environment_jpeg, painted
 from hall_app.room.key import room_key
@@ -59,9 +59,10 @@ def lit(room, tmp_path_factory):
     ):  # one place per vertex, as a packed chart has
         place = np.full((len(patch.vertices), 2), 0.5)
         uv[start : start + len(patch.faces)] = place[patch.faces]
-    light = types.SimpleNamespace(image=np.full((8, 8, 3), 0.25, np.float32), uv=uv, gain=2.0, record={})
+    quarter = np.full((8, 8, 3), 0.25, np.float32)
+    light = LightMap(quarter, 2 * quarter, uv, np.ones((8, 8), bool), 2.0, {})
     path = tmp_path_factory.mktemp("room") / "lit.glb"
-    path.write_bytes(room_glb(room, light))  # pyright: ignore[reportArgumentType]
+    path.write_bytes(room_glb(room, light))
     return path
 
 
