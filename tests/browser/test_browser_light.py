@@ -168,7 +168,9 @@ def test_textures_are_sharpened(page):
         most = page.evaluate(
             "() => window.__viserMutable.scene.__r3f.root.getState().gl.capabilities.getMaxAnisotropy()"
         )
-        assert {mesh["anisotropy"] for mesh in page.evaluate(ROOM).values()} == {min(wanted, most)}
+        found = page.evaluate(ROOM)
+        assert found.pop("lightmap")["anisotropy"] == 1  # light is smooth: one look-up will do
+        assert {mesh["anisotropy"] for mesh in found.values()} == {min(wanted, most)}
 
 
 def test_without_hooks_the_hall_is_flat_but_whole(line, chromium):
