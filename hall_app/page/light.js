@@ -8,6 +8,7 @@ import { renderer, requestRender, viser } from "./hooks.js";
 
 const MAP = "lightmap";
 const ROOM = "hall_";
+const SKY_ALONE = 2.4; // times: garments are as bright without reflections as with them
 const LINEAR = 1006; // three.js' LinearFilter
 const STRENGTH = 2 * Math.PI; // the map holds light / 2, and three.js divides a light map by pi
 
@@ -79,11 +80,16 @@ export function sharpen(meshes, wanted) {
 }
 
 let kept = null; // the environment map while it is taken off
+let skies = [];
 
-/** Reflections of the room on the exhibits, on or off. viser's client puts its environment map on again at times. */
+/**
+ * Reflections of the room on the exhibits, on or off; without them the sky's light makes up for their brightness.
+ * viser's client puts its environment map on again at times.
+ */
 export function reflect(on) {
   const scene = viser()?.scene;
   if (!scene) return;
+  let changed = true;
   if (!on && scene.environment) {
     kept = scene.environment;
     kept.addEventListener("dispose", (event) => { if (kept === event.target) kept = null; });
@@ -91,6 +97,16 @@ export function reflect(on) {
   } else if (on && !scene.environment && kept) {
     scene.environment = kept;
     kept = null;
-  } else return;
-  requestRender();
+  } else changed = false;
+  if (!skies.length || skies.some((light) => !light.parent)) {
+    skies = [];
+    scene.traverse((object) => { if (object.isHemisphereLight) skies.push(object); });
+  }
+  for (const light of skies) {
+    light.userData.shipped ??= light.intensity;
+    const wanted = light.userData.shipped * (scene.environment ? 1 : SKY_ALONE);
+    changed ||= light.intensity !== wanted;
+    light.intensity = wanted;
+  }
+  if (changed) requestRender();
 }

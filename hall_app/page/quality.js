@@ -13,7 +13,7 @@ const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 const SETTINGS = {
   low: { anisotropy: 1, reflections: false },
-  medium: { anisotropy: 4, reflections: true },
+  medium: { anisotropy: 4, reflections: false },
   high: { anisotropy: 8, reflections: true },
 };
 

@@ -267,7 +267,9 @@ def test_questionnaire_is_answered_and_exported(page, shipped_hall):
         form.locator(f"input[type=radio][name='{name}'][value='4']").check(force=True)
     form.locator("input[type=checkbox]").first.check(force=True)
     form.locator("#send").click()
-    page.locator("[data-testid=survey]", has_text="Answered").wait_for(timeout=20_000)  # stays, unlike the toast
+    page.locator("[data-testid=survey]", has_text="Answered").wait_for(
+        timeout=20_000
+    )  # stays, unlike the toast
     command = [
         sys.executable,
         "-m",
