@@ -147,7 +147,7 @@ def test_survives_a_lost_connection(page, line):
 
 
 def test_garments_reflect_the_room_where_the_machine_is_strong(page):
-    """viser's own message carries our picture; the page takes it off below 'high', and the sky's light makes up for it."""
+    """viser carries our picture; the page takes it off below "high", and the sky makes up for it."""
     reflects = "() => Boolean(window.__viserMutable.scene.environment)"
     sky = """() => { let found = 0;
         window.__viserMutable.scene.traverse((o) => { if (o.isHemisphereLight) found = o.intensity; });
