@@ -6,7 +6,8 @@ import hashlib
 import json
 import uuid
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, get_args
 
 from survey.errors import AnswerError
@@ -38,10 +39,10 @@ class Answer:
     suggestions: tuple[tuple[str, str], ...] = ()
     exhibit: str | None = None
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """SHA-256 of the whole content, hexadecimal: a replay has the same, another body has not."""
-        text = json.dumps(asdict(self), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
+        text = json.dumps(vars(self), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @classmethod

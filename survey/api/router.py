@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
@@ -96,7 +97,7 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
         questionnaire = await run_in_threadpool(find_questionnaire, questionnaires, key)
         answer = Answer.of(questionnaire, await read_json(request))
-        receipt = await run_in_threadpool(store.submit, questionnaire, answer)
+        receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
         return JSONResponse(body, 200 if receipt.replayed else 201)
 

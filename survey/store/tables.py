@@ -7,6 +7,7 @@ from pathlib import Path
 from sqlalchemy import (
     JSON,
     Column,
+    Connection,
     DateTime,
     Engine,
     ForeignKey,
@@ -24,7 +25,18 @@ from sqlalchemy.exc import ArgumentError, NoSuchModuleError
 
 from survey.errors import StoreError
 
-__all__ = ["SQLITE_FILE", "answer", "metadata", "open_engine", "submission", "suggestion", "token", "version"]
+__all__ = [
+    "SQLITE_FILE",
+    "answer",
+    "audit",
+    "begin_writing",
+    "metadata",
+    "open_engine",
+    "submission",
+    "suggestion",
+    "token",
+    "version",
+]
 
 SQLITE_FILE = "survey.sqlite"
 BUSY_SECONDS = 15.0
@@ -54,6 +66,7 @@ submission = Table(
     Column("digest", String(64), nullable=False),
     Column("received", DateTime(timezone=True), nullable=False),
     Column("withdrawn", DateTime(timezone=True)),
+    Column("frozen", DateTime(timezone=True)),  # fixed for evaluation: cannot be withdrawn any more
 )
 Index("submission_by_questionnaire", submission.c.questionnaire, submission.c.version)
 
@@ -81,6 +94,26 @@ token = Table(
     Column("digest", String(64), nullable=False, unique=True),
     Column("made", DateTime(timezone=True), nullable=False),
 )
+
+# What was done to the store, by which no visitor can be known: freezing, purging, tokens.
+audit = Table(
+    "audit",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("at", DateTime(timezone=True), nullable=False),
+    Column("action", String(32), nullable=False),
+    Column("subject", String(200), nullable=False),
+)
+
+
+def begin_writing(connection: Connection) -> None:
+    """Open the transaction as a writing one.
+
+    SQLite: a transaction that reads first and writes then is refused at once when another wrote between,
+    instead of waiting for its turn; sqlite3 itself opens none before the first change.
+    """
+    if connection.dialect.name == "sqlite":
+        connection.exec_driver_sql("BEGIN IMMEDIATE")
 
 
 def open_engine(where: Path | str) -> Engine:
