@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
-from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from survey.answer import Answer, submission_id
@@ -95,7 +94,7 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
     @routes.post(path, status_code=201, summary="Submit an answer", openapi_extra=_TAKES_SUBMISSION)
     async def submit(key: str, request: Request) -> JSONResponse:
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
-        questionnaire = await run_in_threadpool(find_questionnaire, questionnaires, key)
+        questionnaire = find_questionnaire(questionnaires, key)
         answer = Answer.of(questionnaire, await read_json(request))
         receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
