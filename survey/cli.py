@@ -35,13 +35,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args = _parser().parse_args(arguments)
     try:
         return args.run(args)
-    except SurveyError as error:
-        if args.debug:
-            raise
-        print(f"survey: {error}", file=sys.stderr)
-        return 1
     except KeyboardInterrupt:
         return 130
+    except Exception as error:
+        if args.debug:
+            raise
+        known = str(error) if isinstance(error, SurveyError) else f"{type(error).__name__}: {error}"
+        print(f"survey: {' '.join(known.split())}", file=sys.stderr)
+        return 1
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -51,11 +52,33 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for add in (_add_serve, _add_export, _add_analyse, _add_token):
         command = add(commands)
-        command.add_argument("--debug", action="store_true", help="show the traceback of an error")
+        # Taken before and after the command; SUPPRESS, so that its default does not undo the one before.
+        command.add_argument(
+            "--debug", action="store_true", default=argparse.SUPPRESS, help=argparse.SUPPRESS
+        )
     return parser
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port – give a number from 1 to 65535")
+    return int(text)
+
+
+def _number(text: str) -> int:
+    if not text.isdecimal() or not 0 < int(text[:10]) < 2**31 or len(text) > 10:
+        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no number from 1 on")
+    return int(text)
+
+
+def _label(text: str) -> str:
+    if len(text) > 200 or not text.isprintable():
+        raise argparse.ArgumentTypeError("give at most 200 printable characters")
+    return text
 
 
 def _command(commands, name: str, run, about: str, more: str = "") -> argparse.ArgumentParser:
@@ -90,7 +113,7 @@ def _add_serve(commands) -> argparse.ArgumentParser:
     more = "Without the hall: forms at /questionnaires, the API at /api/v1, its description at /api/v1/openapi.json."
     command = _command(commands, "serve", _serve, "serve the questionnaires", more)
     command.add_argument("--host", default="127.0.0.1", help="address to listen on (default: 127.0.0.1)")
-    command.add_argument("--port", type=int, default=8001, help="port to listen on (default: 8001)")
+    command.add_argument("--port", type=_port, default=8001, help="port to listen on (default: 8001)")
     _add_places(command)
     return command
 
@@ -102,6 +125,9 @@ def _add_export(commands) -> argparse.ArgumentParser:
     )
     command = _command(commands, "export", _export, "export all answers to one questionnaire", more)
     command.add_argument("--questionnaire", required=True, metavar="ID", help="which one, such as garment")
+    command.add_argument(
+        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
+    )
     command.add_argument("--format", choices=["csv"], default="csv", help="format (default: csv)")
     command.add_argument("--out", type=Path, metavar="FILE", help="where to (default: standard output)")
     _add_places(command)
@@ -120,6 +146,9 @@ def _add_analyse(commands) -> argparse.ArgumentParser:
     )
     command.add_argument(
         "--questionnaire", metavar="ID", help="whose items to analyse (needed without FILE.csv)"
+    )
+    command.add_argument(
+        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
     )
     command.add_argument(
         "--drop",
@@ -141,10 +170,12 @@ def _add_token(commands) -> argparse.ArgumentParser:
     command = _command(
         commands, "token", _token, "make a token for rows, suggestions and export over HTTP", more
     )
-    command.add_argument("--label", default="", help="whose it is, for --list")
+    command.add_argument("--label", type=_label, default="", help="whose it is, for --list")
     which = command.add_mutually_exclusive_group()
     which.add_argument("--list", action="store_true", help="list the tokens instead")
-    which.add_argument("--revoke", type=int, metavar="NUMBER", help="revoke the token of this number instead")
+    which.add_argument(
+        "--revoke", type=_number, metavar="NUMBER", help="revoke the token of this number instead"
+    )
     _add_places(command, content=False)
     return command
 
@@ -169,13 +200,16 @@ def _serve(args: argparse.Namespace) -> int:
 
 def _export(args: argparse.Namespace) -> int:
     from survey.export import write_csv
-    from survey.working import open_stored
+    from survey.working import open_stored, other_versions
 
-    with open_stored(_where(args), args.content, args.questionnaire) as (questionnaire, store):
-        rows = store.rows(questionnaire)
+    with open_stored(_where(args), args.content, args.questionnaire, args.version) as (questionnaire, store):
+        rows, others = store.rows(questionnaire), other_versions(store, questionnaire)
     text = write_csv(questionnaire, rows)
+    if others:
+        print(f"survey: {args.questionnaire}: {others}", file=sys.stderr)
     if args.out is None:
         sys.stdout.buffer.write(text.encode())
+        sys.stdout.flush()
         return 0
     try:
         args.out.write_text(text, "utf-8", newline="")
@@ -193,9 +227,11 @@ def _analyse(args: argparse.Namespace) -> int:
 
     if args.file is None and args.questionnaire is None:
         args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers")
-    if args.factors != "kaiser" and not (args.factors.isdecimal() and int(args.factors) > 0):
+    if args.factors != "kaiser" and not (args.factors.isdecimal() and 0 < int(args.factors[:6]) < 10**5):
         args.parser.error(f"--factors: {args.factors!r} is neither a number nor kaiser")
-    scores, items, questionnaire = load_scores(args.file, _where(args), args.content, args.questionnaire)
+    scores, items, questionnaire = load_scores(
+        args.file, _where(args), args.content, args.questionnaire, args.version
+    )
     keep = None if args.factors == "kaiser" else int(args.factors)
     found = summary(analyse(scores, items, drop=dropped(args.drop, questionnaire), keep=keep))
     print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1) if args.json else printed(found))

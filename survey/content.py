@@ -42,7 +42,7 @@ def read_questionnaire(path: Path) -> Questionnaire:
     """Read one file. Raises QuestionnaireError with every problem, each naming file, key and remedy."""
     file = f"{path.parent.name}/{path.name}"
     try:
-        data = tomllib.loads(path.read_text("utf-8"))
+        data = tomllib.loads(path.read_text("utf-8-sig"))
     except OSError as error:
         raise QuestionnaireError(
             (Problem(file, "", f"cannot be read ({error.strerror})", "check it"),)
@@ -51,6 +51,10 @@ def read_questionnaire(path: Path) -> Questionnaire:
         raise QuestionnaireError((Problem(file, "", "is not UTF-8 text", "save it as UTF-8"),)) from None
     except tomllib.TOMLDecodeError as error:
         raise QuestionnaireError((Problem(file, "", f"is not TOML: {error}", "mend that line"),)) from None
+    except (ValueError, RecursionError) as error:
+        # A number of thousands of digits, thousands of brackets: nothing a questionnaire needs.
+        what = f"cannot be read ({type(error).__name__})"
+        raise QuestionnaireError((Problem(file, "", what, "shorten its numbers and lists"),)) from None
     try:
         questionnaire = Questionnaire.model_validate(data)
     except ValidationError as error:
@@ -119,12 +123,12 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
         for path, mark in paths.items():
             if self._seen.get(path) == mark:
                 continue
-            self._seen[path] = mark
             try:
                 self._good[path] = read_questionnaire(path)
                 self._bad.pop(path, None)
             except QuestionnaireError as error:
                 self._bad[path] = error.problems
+            self._seen[path] = mark
 
     def __getitem__(self, key: str) -> Questionnaire:
         self.refresh()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from survey.content import QuestionnaireFolder
 from survey.errors import Problem, QuestionnaireError
+from survey.published import Published
 from survey.store import Store
 
 if TYPE_CHECKING:
@@ -58,8 +59,9 @@ def mount(
     elif found:
         mounted.close()
         raise QuestionnaireError(found)
-    app.include_router(router(mounted.store, questionnaires))
-    app.include_router(form_router(questionnaires))
+    asked = Published(questionnaires, mounted.store)
+    app.include_router(router(mounted.store, asked))
+    app.include_router(form_router(asked))
     return mounted
 
 

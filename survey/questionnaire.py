@@ -29,9 +29,12 @@ LANGUAGES: tuple[Language, ...] = ("zh", "en")
 META_COLUMNS = ("submission", "version", "language", "exhibit", "received")
 
 
+SUGGESTION = "suggestion_"
+
+
 def suggestion_column(module: str) -> str:
     """Name of the export column that holds a module's suggestions."""
-    return f"suggestion_{module}"
+    return SUGGESTION + module
 
 
 Words = Annotated[

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from survey.answer import Answer
 from survey.errors import SurveyError
-from survey.questionnaire import META_COLUMNS
+from survey.questionnaire import META_COLUMNS, SUGGESTION
 
 __all__ = ["read_scores", "scores_of"]
 
@@ -27,7 +27,8 @@ def read_scores(
     """
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            lines = [line for line in csv.reader(file) if any(cell.strip() for cell in line)]
+            table = csv.reader(file)
+            lines = [(table.line_num, line) for line in table if any(cell.strip() for cell in line)]
     except OSError as error:
         raise SurveyError(f"{path}: cannot be read ({error.strerror}) – check the file") from None
     except (UnicodeDecodeError, csv.Error) as error:
@@ -36,16 +37,14 @@ def read_scores(
         raise SurveyError(
             f"{path}: no rows – the first line names the columns, each further line is an answer"
         )
-    header, body = [cell.strip() for cell in lines[0]], lines[1:]
-    for number, line in enumerate(body, start=2):
+    header, body = [cell.strip() for cell in lines[0][1]], lines[1:]
+    for number, line in body:
         if len(line) != len(header):
             raise SurveyError(
                 f"{path}: line {number} has {len(line)} cells, the header {len(header)} – mend it"
             )
     columns = _columns(path, header, body, items)
-    cells = [
-        [_number(path, line[at], name, row) for name, at in columns] for row, line in enumerate(body, start=2)
-    ]
+    cells = [[_number(path, line[at], name, row) for name, at in columns] for row, line in body]
     return np.array(cells, dtype=np.float64), tuple(name for name, _ in columns)
 
 
@@ -59,7 +58,7 @@ def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.flo
 
 
 def _columns(
-    path: Path, header: list[str], body: list[list[str]], items: Sequence[str] | None
+    path: Path, header: list[str], body: list[tuple[int, list[str]]], items: Sequence[str] | None
 ) -> list[tuple[str, int]]:
     twice = sorted({name for name in header if name and header.count(name) > 1})
     if twice:
@@ -74,19 +73,25 @@ def _columns(
     found = [
         (name, at)
         for at, name in enumerate(header)
-        if name and name not in META_COLUMNS and _numeric([line[at] for line in body])
+        if name and name not in META_COLUMNS and not name.startswith(SUGGESTION) and _meant(body, at)
     ]
     if not found:
         raise SurveyError(f"{path}: no column of numbers – name the items in the first line")
     return found
 
 
-def _numeric(cells: list[str]) -> bool:
-    filled = [cell for cell in cells if cell.strip()]
+def _meant(body: list[tuple[int, list[str]]], at: int) -> bool:
+    """Whether a column is meant as numbers: most of what it holds are some. A slip among them is then named."""
+    filled = [line[at] for _, line in body if line[at].strip()]
+    return 2 * sum(map(_is_number, filled)) > len(filled)
+
+
+def _is_number(cell: str) -> bool:
     try:
-        return bool(filled) and all(isinstance(float(cell), float) for cell in filled)
+        float(cell)
     except ValueError:
         return False
+    return True
 
 
 def _number(path: Path, cell: str, name: str, line: int) -> float:

@@ -13,37 +13,67 @@ from survey.content import content_folder, read_questionnaire
 from survey.errors import SurveyError
 from survey.questionnaire import Questionnaire
 from survey.reading import read_scores, scores_of
-from survey.store import Store
+from survey.slug import is_slug
+from survey.store import Store, tables
 
-__all__ = ["dropped", "find_questionnaire_file", "load_scores", "open_stored"]
+__all__ = ["dropped", "find_questionnaire_file", "load_scores", "open_stored", "other_versions"]
 
 
 def find_questionnaire_file(content: Path | None, key: str) -> Questionnaire:
     """The questionnaire of that id. Raises SurveyError naming those there are."""
     folder = content_folder(content) / "questionnaires"
     path = folder / f"{key}.toml"
-    if not path.is_file():
+    if not is_slug(key) or not path.is_file():
         known = ", ".join(found.stem for found in sorted(folder.glob("*.toml"))) or "none"
-        raise SurveyError(f"{key}: no such questionnaire in {folder} – choose one of: {known}")
+        raise SurveyError(f"{key[:60]}: no such questionnaire in {folder} – choose one of: {known}")
     return read_questionnaire(path)
 
 
 @contextmanager
-def open_stored(where: Path | str, content: Path | None, key: str) -> Iterator[tuple[Questionnaire, Store]]:
-    """A questionnaire and the store with its answers. Raises SurveyError where there is no data folder yet."""
+def open_stored(
+    where: Path | str, content: Path | None, key: str, version: int | None = None
+) -> Iterator[tuple[Questionnaire, Store]]:
+    """A questionnaire as it was asked and the store with its answers.
+
+    version: an earlier one; None: the file's. Raises SurveyError where there is no store yet, or no such version.
+    """
     questionnaire = find_questionnaire_file(content, key)
-    if isinstance(where, Path) and not where.is_dir():
-        # Reading must not make an empty store: a mistyped folder would look like a survey without answers.
-        raise SurveyError(f"{where}: no such data folder – give --data the one that was served")
+    # Reading must not make an empty store: a mistyped folder would look like a survey without answers.
+    file = tables.sqlite_file(where)
+    if file is not None and not file.is_file():
+        raise SurveyError(f"{file}: no such store – give --data (or --db) the one that was served")
     store = Store(where)
     try:
-        yield questionnaire, store
+        yield _as_asked(questionnaire, version, store), store
     finally:
         store.close()
 
 
+def _as_asked(questionnaire: Questionnaire, version: int | None, store: Store) -> Questionnaire:
+    if version is None or version == questionnaire.version:
+        return store.frozen(questionnaire.id, questionnaire.version) or questionnaire
+    found = store.frozen(questionnaire.id, version)
+    if found is None:
+        known = ", ".join(str(number) for number in store.versions(questionnaire.id)) or "none"
+        raise SurveyError(
+            f"{questionnaire.id}: version {version} has no answers – those with answers: {known}"
+        )
+    return found
+
+
+def other_versions(store: Store, questionnaire: Questionnaire) -> str:
+    """A sentence on answers to other versions of the same questionnaire, empty where there are none."""
+    counts = {
+        version: store.count(questionnaire.id, version)
+        for version in store.versions(questionnaire.id)
+        if version != questionnaire.version
+    }
+    told = ", ".join(f"{count} to version {version}" for version, count in counts.items() if count)
+    return f"version {questionnaire.version}; there are also {told} (--version)" if told else ""
+
+
 def load_scores(
-    file: Path | None, where: Path | str, content: Path | None, key: str | None
+    file: Path | None, where: Path | str, content: Path | None, key: str | None, version: int | None = None
 ) -> tuple[NDArray[np.float64], Sequence[str], Questionnaire | None]:
     """Scores (n, p), items and questionnaire, from a CSV file or else from the store."""
     if file is not None:
@@ -52,7 +82,7 @@ def load_scores(
         return scores, items, questionnaire
     if key is None:
         raise SurveyError("no questionnaire named – give --questionnaire ID")
-    with open_stored(where, content, key) as (questionnaire, store):
+    with open_stored(where, content, key, version) as (questionnaire, store):
         answers = [row.answer for row in store.rows(questionnaire)]
     return scores_of(answers, questionnaire.item_ids), questionnaire.item_ids, questionnaire
 

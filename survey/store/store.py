@@ -124,7 +124,7 @@ class Store:
             connection.execute(tables.audit.insert().values(at=now(), action="purge", subject=subject))
             return done
 
-    def versions(self) -> tuple[Questionnaire, ...]:
+    def all_frozen(self) -> tuple[Questionnaire, ...]:
         """Every frozen version, by questionnaire and version."""
         table = tables.version
         query = select(table.c.document).order_by(table.c.questionnaire, table.c.version)
@@ -142,6 +142,15 @@ class Store:
         query = select(func.count()).select_from(table).where(*_standing(questionnaire, version))
         with self._read() as connection:
             return connection.execute(query).scalar_one()
+
+    def versions(self, questionnaire: str) -> tuple[int, ...]:
+        """The versions that were answered, the earliest first."""
+        table = tables.version
+        query = (
+            select(table.c.version).where(table.c.questionnaire == questionnaire).order_by(table.c.version)
+        )
+        with self._read() as connection:
+            return tuple(connection.execute(query).scalars())
 
     def rows(self, questionnaire: Questionnaire) -> tuple[Stored, ...]:
         """All answers to this version that stand, in the order in which they were received."""

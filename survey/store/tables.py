@@ -20,7 +20,7 @@ from sqlalchemy import (
     create_engine,
     event,
 )
-from sqlalchemy.engine import make_url
+from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError
 
 from survey.errors import StoreError
@@ -32,6 +32,7 @@ __all__ = [
     "begin_writing",
     "metadata",
     "open_engine",
+    "sqlite_file",
     "submission",
     "suggestion",
     "token",
@@ -116,6 +117,29 @@ def begin_writing(connection: Connection) -> None:
         connection.exec_driver_sql("BEGIN IMMEDIATE")
 
 
+def sqlite_file(where: Path | str) -> Path | None:
+    """The file of an SQLite store in a data folder or of its URL; None for other databases and for one in memory."""
+    if isinstance(where, Path):
+        return where / SQLITE_FILE
+    url = _url(where)
+    return Path(url.database) if url.get_backend_name() == "sqlite" and url.database else None
+
+
+def _url(where: str) -> URL:
+    """Raises StoreError where the text is no URL of a database."""
+    try:
+        url = make_url(where)
+    except (ArgumentError, ValueError):
+        raise StoreError(
+            "the database URL is none – write sqlite:///FILE or postgresql+psycopg://…"
+        ) from None
+    if url.get_backend_name() == "sqlite" and (
+        url.query or url.drivername not in ("sqlite", "sqlite+pysqlite")
+    ):
+        raise StoreError(f"{url.drivername}: no such way to a file – write sqlite:///FILE without more")
+    return url
+
+
 def open_engine(where: Path | str) -> Engine:
     """Open the database: a data folder (SQLite file inside it, made when absent) or a database URL.
 
@@ -128,12 +152,7 @@ def open_engine(where: Path | str) -> Engine:
             raise StoreError(f"{where}: no data folder ({error.strerror}) – give a writable one") from None
         url = make_url("sqlite://").set(database=str(where / SQLITE_FILE))
     else:
-        try:
-            url = make_url(where)
-        except ArgumentError:
-            raise StoreError(
-                "the database URL is none – write sqlite:///FILE or postgresql+psycopg://…"
-            ) from None
+        url = _url(where)
     if url.get_backend_name() != "sqlite":
         try:
             return create_engine(url, pool_size=8, max_overflow=40, pool_pre_ping=True)

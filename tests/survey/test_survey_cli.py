@@ -32,6 +32,43 @@ def paper_csv(tmp_path):
     return path
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["serve", "--port", "99999"],
+        ["serve", "--port", "-1"],
+        ["token", "--revoke", "99999999999999999999999"],
+        ["token", "--label", "a\x1b[2J"],
+        ["export", "--questionnaire", "garment", "--version", "0"],
+        ["analyse", "a.csv", "--factors", "9" * 5000],
+    ],
+)
+def test_wrong_arguments_end_with_2_and_a_line(arguments, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "url", ["postgresql://h:abc/x", "sqlite:///a?timeout=abc", "sqlite+aiosqlite:///a", "x"]
+)
+def test_a_wrong_database_url_is_one_line(url, capsys):
+    failing(capsys, "export", "--questionnaire", "garment", "--db", url, *HERE)
+
+
+def test_reading_makes_no_store(tmp_path, capsys):
+    failing(capsys, "export", "--questionnaire", "garment", "--data", tmp_path, *HERE)
+    failing(capsys, "analyse", "--questionnaire", "garment", "--db", f"sqlite:///{tmp_path}/typo.db", *HERE)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_slip_in_a_column_of_numbers_is_named(tmp_path, capsys):
+    path = tmp_path / "a.csv"
+    path.write_text("a,b,name\n1,2,Lin\n\n2,x,Wu\n3,4,He\n", "utf-8")
+    assert "line 4, b: 'x'" in failing(capsys, "analyse", path)
+
+
 def failing(capsys, *arguments) -> str:
     assert main(list(map(str, arguments))) == 1
     out, err = capsys.readouterr()
@@ -152,16 +189,14 @@ def test_a_score_that_is_no_number_is_named_by_line_and_item(tmp_path, capsys, p
 def test_what_is_not_there_is_named(tmp_path, capsys):
     assert "cannot be read" in failing(capsys, "analyse", tmp_path / "absent.csv")
     absent = ["--data", tmp_path / "absent"]
-    assert "no such data folder" in failing(capsys, "export", "--questionnaire", "garment", *absent, *HERE)
+    assert "no such store" in failing(capsys, "export", "--questionnaire", "garment", *absent, *HERE)
     assert not (tmp_path / "absent").exists()
     assert "choose one of: garment" in failing(capsys, "export", "--questionnaire", "shoes", *absent, *HERE)
     assert "no such content folder" in failing(capsys, "serve", "--content", tmp_path / "absent")
     wrong = ["--questionnaire", "garment", *HERE, "--db"]
     assert "database URL" in failing(capsys, "analyse", *wrong, "nonsense")
     assert "no driver" in failing(capsys, "analyse", *wrong, "cobol://x")
-    assert "the database refuses" in failing(
-        capsys, "analyse", *wrong, f"sqlite:///{tmp_path}/no/where.sqlite"
-    )
+    assert "no such store" in failing(capsys, "analyse", *wrong, f"sqlite:///{tmp_path}/no/where.sqlite")
     (tmp_path / "file").write_text("")
     assert "no data folder" in failing(capsys, "token", "--data", tmp_path / "file")
 

@@ -11,7 +11,9 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS, submission
 
 import survey
+import survey.content
 from survey import QuestionnaireError, content_folder, read_questionnaire
+from survey.cli import main
 
 SMALL = """
 id = "small"
@@ -157,16 +159,46 @@ def test_a_version_is_frozen_with_its_first_answer(content, tmp_path):
         assert client.post(url, json=body).status_code == 201
         write(content, SMALL.replace('"One"', '"Too late"'))
         assert "was changed after its first answer" in mounted.problems[0].what
-        refused = client.post(url, json=submission(mounted.questionnaires["small"], score=3))
-        assert refused.status_code == 409
-        assert refused.json()["field"] == "version"
+        asked = client.get("/api/v1/questionnaires/small").json()
+        assert asked["modules"][0]["items"][0]["label"]["en"] == "Still free"
+        assert "Still free" in client.get("/questionnaires/small?lang=en").text
+        assert client.post(url, json=submission(mounted.store.frozen("small", 1), score=3)).status_code == 201
         write(content, SMALL.replace('"One"', '"Too late"').replace("version = 1", "version = 2"))
         assert not mounted.problems
         assert client.post(url, json=submission(mounted.questionnaires["small"], score=3)).status_code == 201
         assert mounted.store.frozen("small", 1).items[0].label.en == "Still free"
         assert mounted.store.frozen("small", 2).items[0].label.en == "Too late"
-        assert mounted.store.count("small", 1) == 1
+        assert mounted.store.count("small", 1) == 2
     mounted.close()
+
+
+def test_an_edited_version_stays_readable_as_it_was_asked(content, tmp_path):
+    app = FastAPI()
+    write(content, SMALL)
+    mounted = survey.mount(app, content=content, data=tmp_path / "data")
+    token = {"Authorization": f"Bearer {mounted.store.tokens.make('')}"}
+    with TestClient(app) as client:
+        base = "/api/v1/questionnaires/small"
+        for _ in range(5):
+            body = submission(mounted.questionnaires["small"], score=3)
+            assert client.post(f"{base}/submissions", json=body).status_code == 201
+        write(content, SMALL.replace('id = "one"', 'id = "other"'))
+        assert client.get(f"{base}/results").json()["items"][0]["id"] == "one"
+        assert client.get(f"{base}/rows", headers=token).json()[0]["scores"] == {"one": 3}
+        assert ",one" in client.get(f"{base}/export.csv", headers=token).text
+    mounted.close()
+    places = ["--content", str(content), "--data", str(tmp_path / "data")]
+    assert main(["export", "--questionnaire", "small", "--out", str(tmp_path / "a.csv"), *places]) == 0
+    assert ",one" in (tmp_path / "a.csv").read_text("utf-8")
+
+
+@pytest.mark.parametrize("text", [f"a = {'9' * 5000}", "a = " + "[" * 5000 + "]" * 5000])
+def test_what_the_reader_cannot_hold_is_named_and_stays_named(content, text):
+    write(content, text)
+    folder = survey.content.QuestionnaireFolder(content)
+    for _ in range(2):
+        assert "small.toml" in str(folder.problems[0])
+    assert "garment" in folder
 
 
 def test_the_content_folder_is_given_or_here_or_the_packaged_one(tmp_path, monkeypatch):
