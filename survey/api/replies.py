@@ -53,6 +53,8 @@ def refused(error: AnswerError) -> JSONResponse:
     headers = {"Connection": "close"} if error.status in (413, 415) else {}
     if error.status == 401:
         headers["WWW-Authenticate"] = "Bearer"
+    if error.wait:
+        headers["Retry-After"] = str(error.wait)
     body = {"field": error.field, "problem": error.problem, "remedy": error.remedy}
     return JSONResponse(body, error.status, headers)
 
@@ -75,7 +77,7 @@ class ExplainingRoute(APIRoute):
             except StoreError as error:
                 body = {
                     "field": "",
-                    "problem": str(error),
+                    "problem": error.problem,
                     "remedy": "nothing was stored; send the same again later",
                 }
                 return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})

@@ -7,10 +7,12 @@ from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from survey.answer import Answer, submission_id
 from survey.api.body import read_json
+from survey.api.limit import Limit
 from survey.api.replies import ExplainingRoute, Refusal, Submission
 from survey.errors import AnswerError
 from survey.export import write_csv
@@ -33,14 +35,15 @@ Questionnaires = Mapping[str, Questionnaire]
 Version = Annotated[int | None, Query(ge=1, le=10_000, description="the current one when left out")]
 
 
-def router(store: Store, questionnaires: Questionnaires) -> APIRouter:
+def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = None) -> APIRouter:
     """All routes below /api/v1, to be included in any FastAPI app, with a prefix or without.
 
     questionnaires: looked up anew at each request, so a mapping that reloads its files is served as it is then.
+    limit: of new answers per address, the usual one when None.
     """
     routes = APIRouter(prefix=BASE, route_class=ExplainingRoute, tags=["survey"], responses=_REFUSALS)
     _add_reading(routes, store, questionnaires)
-    _add_submitting(routes, store, questionnaires)
+    _add_submitting(routes, store, questionnaires, limit or Limit())
     _add_research(routes, store, questionnaires)
     return routes
 
@@ -88,14 +91,26 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
         return public_results(questionnaire, [row.answer for row in store.rows(questionnaire)])
 
 
-def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
+def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires, limit: Limit) -> None:
     path = "/questionnaires/{key}/submissions"
 
     @routes.post(path, status_code=201, summary="Submit an answer", openapi_extra=_TAKES_SUBMISSION)
     async def submit(key: str, request: Request) -> JSONResponse:
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
-        questionnaire = find_questionnaire(questionnaires, key)
-        answer = Answer.of(questionnaire, await read_json(request))
+        data, unreadable = await _body(request)
+        try:
+            questionnaire = find_questionnaire(questionnaires, key)
+            if unreadable is not None:
+                raise unreadable
+            answer = Answer.of(questionnaire, data)
+        except AnswerError as refusal:
+            # A browser that never heard of its receipt repeats an answer to a version that may be gone by now.
+            questionnaire = await run_in_threadpool(_answered, store, key, data)
+            if questionnaire is None:
+                raise
+            answer = _as_then(questionnaire, data, refusal)
+        else:
+            await _within(limit, request, store, answer)
         receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
         return JSONResponse(body, 200 if receipt.replayed else 201)
@@ -109,6 +124,37 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
                 "id", "no such answer", "check the code that was shown after sending", status=404
             )
         return Response(status_code=204)
+
+
+async def _body(request: Request) -> tuple[object, AnswerError | None]:
+    """The body, or why it is none: whether the questionnaire exists is told first."""
+    try:
+        return await read_json(request), None
+    except AnswerError as error:
+        return None, error
+
+
+def _answered(store: Store, key: str, data: object) -> Questionnaire | None:
+    """The version that the answer with the body's id was given to, or None where there is no such answer."""
+    try:
+        return store.version_of(key, submission_id(data.get("id"))) if isinstance(data, dict) else None
+    except AnswerError:
+        return None
+
+
+def _as_then(questionnaire: Questionnaire, data: object, refusal: AnswerError) -> Answer:
+    try:
+        return Answer.of(questionnaire, data)
+    except AnswerError:
+        raise refusal from None
+
+
+async def _within(limit: Limit, request: Request, store: Store, answer: Answer) -> None:
+    """Raises AnswerError 429 where the address gave too many new answers; repeating one is free."""
+    wait = limit.take(request.client.host if request.client else "")
+    if wait and not await run_in_threadpool(store.known, answer.id):
+        problem, remedy = "too many answers from one address", f"send the same again in {wait} s"
+        raise AnswerError("", problem, remedy, status=429, wait=wait)
 
 
 def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, inspect, text
 from survey.errors import StoreError
 from survey.store import tables
 
-__all__ = ["HEAD", "bring_up_to_date"]
+__all__ = ["HEAD", "bring_up_to_date", "has_tables"]
 
 HEAD = "0002"  # the newest file in migrations/versions; a test holds it
 _LOCK = 0x5375_7276  # PostgreSQL's advisory lock: two services that start at once upgrade one after the other
@@ -28,11 +28,19 @@ def bring_up_to_date(engine: Engine) -> None:
         found = _revision(connection)
         if found == "":
             tables.metadata.create_all(connection)
-            connection.execute(text("CREATE TABLE alembic_version (version_num VARCHAR(32) PRIMARY KEY)"))
+            connection.execute(
+                text("CREATE TABLE alembic_version (version_num VARCHAR(32) NOT NULL PRIMARY KEY)")
+            )
             connection.execute(text("INSERT INTO alembic_version VALUES (:head)"), {"head": HEAD})
         elif found != HEAD:
             _upgrade(connection, found)
         connection.commit()
+
+
+def has_tables(engine: Engine) -> bool:
+    """Whether a store was ever made in this database."""
+    with engine.connect() as connection:
+        return _revision(connection) != ""
 
 
 def _revision(connection: Connection) -> str:

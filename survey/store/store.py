@@ -19,7 +19,7 @@ from survey.questionnaire import Language, Questionnaire
 from survey.store import tables
 from survey.store.backup import write_copy
 from survey.store.committing import Entry, Receipt, commit_batch, freeze_version, now
-from survey.store.schema import bring_up_to_date
+from survey.store.place import Place
 from survey.store.tokens import Tokens
 from survey.store.writer import Writer
 
@@ -43,8 +43,9 @@ class Store:
     def __init__(self, where: Path | str) -> None:
         self._engine: Engine = tables.open_engine(where)
         self._writing = threading.Lock()
-        with explained():
-            bring_up_to_date(self._engine)
+        self._place = Place(self._engine)
+        with explained(self._place.name):
+            self._place.open()
         self._writer = Writer(self._commit)
         self.tokens = Tokens(self._write, self._read)
 
@@ -52,6 +53,7 @@ class Store:
         """Write what waits and give the connections back."""
         self._writer.close()
         self._engine.dispose()
+        self._place.close()
 
     def alive(self) -> None:
         """Ask the database for anything. Raises StoreError."""
@@ -89,6 +91,14 @@ class Store:
         table = tables.submission
         with self._read() as connection:
             return connection.execute(select(table.c.id).where(table.c.id == submission)).first() is not None
+
+    def version_of(self, questionnaire: str, submission: str) -> Questionnaire | None:
+        """The version to which the answer with this id was given, also of a tombstone; None: no such answer."""
+        table = tables.submission
+        mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
+        with self._read() as connection:
+            found = connection.execute(select(table.c.version).where(*mine)).scalar_one_or_none()
+        return None if found is None else self.frozen(questionnaire, found)
 
     def withdraw(self, questionnaire: str, submission: str) -> bool:
         """Take an answer back: its scores and suggestions are deleted. False when there is no such answer.
@@ -176,8 +186,10 @@ class Store:
 
     @contextmanager
     def _read(self) -> Iterator[Connection]:
-        with explained(), self._engine.connect() as connection:
-            yield connection
+        with explained(self._place.name):
+            self._place.check()
+            with self._engine.connect() as connection:
+                yield connection
 
     @contextmanager
     def _snapshot(self) -> Iterator[Connection]:
@@ -192,15 +204,19 @@ class Store:
     @contextmanager
     def _write(self) -> Iterator[Connection]:
         # Waiting here is fair and cheap; waiting for SQLite's own lock is a busy loop.
-        with self._writing, explained(), self._engine.connect() as connection:
-            tables.begin_writing(connection)
-            yield connection
-            connection.commit()
+        with self._writing, explained(self._place.name):
+            self._place.check()
+            with self._engine.connect() as connection:
+                tables.begin_writing(connection)
+                yield connection
+                connection.commit()
+            # What was written into a file that went away meanwhile must not be acknowledged.
+            self._place.check()
 
 
 @contextmanager
-def explained() -> Iterator[None]:
-    """Turn the database's errors into a StoreError of one line."""
+def explained(place: str) -> Iterator[None]:
+    """Turn the database's errors into a StoreError of one line that names the place."""
     try:
         yield
     except (DataError, IntegrityError):
@@ -208,7 +224,8 @@ def explained() -> Iterator[None]:
     except SQLAlchemyError as error:
         cause = error.orig if isinstance(error, DBAPIError) else error
         first = str(cause).strip().splitlines()[0] if str(cause).strip() else type(error).__name__
-        raise StoreError(f"the database refuses: {first} – see that it is there, free and not full") from None
+        problem = f"the database refuses: {first} – see that it is there, free and not full"
+        raise StoreError(problem, place) from None
 
 
 _OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))

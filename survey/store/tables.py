@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sqlite3
 from pathlib import Path
 
 from sqlalchemy import (
@@ -158,15 +160,28 @@ def open_engine(where: Path | str) -> Engine:
             return create_engine(url, pool_size=8, max_overflow=40, pool_pre_ping=True)
         except (NoSuchModuleError, ModuleNotFoundError) as error:
             raise StoreError(f"{url.get_backend_name()}: no driver ({error}) – pip install it") from None
-    # Threads of the web server share the pool, so a connection may move from one to another.
-    engine = create_engine(
-        url,
-        pool_size=8,
-        max_overflow=40,
-        connect_args={"timeout": BUSY_SECONDS, "check_same_thread": False},
-    )
+    if not url.database or url.database == ":memory:":
+        raise StoreError("a database in memory keeps nothing – write sqlite:///FILE")
+    engine = _open_file(url, Path(url.database).absolute())
     event.listen(engine, "connect", _prepare_sqlite)
     return engine
+
+
+def _open_file(url: URL, file: Path) -> Engine:
+    try:
+        if not file.exists():
+            os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o644))
+    except OSError as error:
+        raise StoreError(f"no database file ({error.strerror}) – give a writable place", str(file)) from None
+
+    def connect() -> sqlite3.Connection:
+        # mode=rw: a file that went away must be missed, not made anew and empty.
+        # Threads of the web server share the pool, so a connection may move from one to another.
+        return sqlite3.connect(
+            f"{file.as_uri()}?mode=rw", uri=True, timeout=BUSY_SECONDS, check_same_thread=False
+        )
+
+    return create_engine(url, creator=connect, pool_size=8, max_overflow=40)
 
 
 def _prepare_sqlite(connection, _record) -> None:

@@ -77,7 +77,7 @@ class Writer:
             outcomes = self._commit([entry for entry, _ in batch])
         except StoreError as error:
             for _, future in batch:
-                future.set_exception(StoreError(str(error)))
+                future.set_exception(StoreError(error.problem, error.place))
             return
         except Exception as error:  # nothing may end this thread: everybody after would wait for ever
             if len(batch) == 1:
