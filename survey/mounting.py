@@ -14,6 +14,8 @@ from survey.store import Store
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
+    from survey.form.clip import ClipOf
+
 __all__ = ["Mounted", "mount"]
 
 
@@ -40,6 +42,7 @@ def mount(
     data: Path | str,
     problems: list[Problem] | None = None,
     per_minute: int | None = None,
+    clip_of: ClipOf | None = None,
 ) -> Mounted:
     """Add the API (/api/v1/…) and the form page (/questionnaires/…) to an app.
 
@@ -47,6 +50,7 @@ def mount(
     problems: where to report what is wrong; the good questionnaires are served then. Without it, the first
     problem raises QuestionnaireError naming file and key. Raises StoreError when the store cannot be opened.
     per_minute: new answers that one address may give in a minute; 0: any number; None: the usual.
+    clip_of: the film of an exhibit, shown beside items on motion.
     """
     from survey.api import Limit, router
     from survey.form import form_router
@@ -64,7 +68,7 @@ def mount(
     asked = Published(questionnaires, mounted.store)
     limit = Limit() if per_minute is None else Limit(per_minute)
     app.include_router(router(mounted.store, asked, limit))
-    app.include_router(form_router(asked))
+    app.include_router(form_router(asked, clip_of))
     return mounted
 
 

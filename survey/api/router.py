@@ -6,14 +6,16 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response, Security
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
+from fastapi.security import HTTPBearer
 
 from survey.answer import Answer, submission_id
 from survey.api.body import read_json
 from survey.api.limit import Limit
-from survey.api.replies import ExplainingRoute, Refusal, Submission
+from survey.api.replies import ExplainingRoute, Receipt, Refusal, Submission
+from survey.api.schema import UUID_PATTERN, submission_schema
 from survey.errors import AnswerError
 from survey.export import write_csv
 from survey.questionnaire import Questionnaire
@@ -31,7 +33,16 @@ _TAKES_SUBMISSION = {
     }
 }
 
+_BEARER = HTTPBearer(auto_error=False, description="`survey token` makes one")  # documents; the guard decides
+
 Questionnaires = Mapping[str, Questionnaire]
+Code = Annotated[
+    str,
+    Path(
+        description="the id it was sent with",
+        json_schema_extra={"format": "uuid", "pattern": UUID_PATTERN},
+    ),
+]
 Version = Annotated[int | None, Query(ge=1, le=10_000, description="the current one when left out")]
 
 
@@ -85,6 +96,10 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
     def one(key: str) -> dict[str, Any]:
         return described(find_questionnaire(questionnaires, key))
 
+    @routes.get("/questionnaires/{key}/submission.schema.json", summary="What a submission must look like")
+    def schema(key: str) -> dict[str, Any]:
+        return submission_schema(find_questionnaire(questionnaires, key))
+
     @routes.get("/questionnaires/{key}/results", summary="Means, from five answers on")
     def results(key: str) -> dict[str, Any]:
         questionnaire = find_questionnaire(questionnaires, key)
@@ -94,7 +109,16 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
 def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires, limit: Limit) -> None:
     path = "/questionnaires/{key}/submissions"
 
-    @routes.post(path, status_code=201, summary="Submit an answer", openapi_extra=_TAKES_SUBMISSION)
+    @routes.post(
+        path,
+        status_code=201,
+        summary="Submit an answer",
+        openapi_extra=_TAKES_SUBMISSION,
+        responses={
+            201: {"model": Receipt, "description": "Committed"},
+            200: {"model": Receipt, "description": "It had been committed before"},
+        },
+    )
     async def submit(key: str, request: Request) -> JSONResponse:
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
         data, unreadable = await _body(request)
@@ -116,7 +140,7 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
         return JSONResponse(body, 200 if receipt.replayed else 201)
 
     @routes.delete(path + "/{submission}", status_code=204, summary="Take an answer back by its code")
-    def withdraw(key: str, submission: str) -> Response:
+    def withdraw(key: str, submission: Code) -> Response:
         known = submission_id(submission)
         # Answers to a questionnaire that has left the hall can still be taken back.
         if not store.withdraw(key, known):
@@ -159,7 +183,9 @@ async def _within(limit: Limit, request: Request, store: Store, answer: Answer) 
 
 def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
     # Declared beside the store, so that a route of this group cannot be written without its guard.
-    research = APIRouter(route_class=ExplainingRoute, dependencies=[Depends(_token_guard(store))])
+    research = APIRouter(
+        route_class=ExplainingRoute, dependencies=[Security(_BEARER), Depends(_token_guard(store))]
+    )
 
     def asked(key: str, version: int | None) -> tuple[Questionnaire, tuple[Stored, ...]]:
         current = questionnaires.get(key)
@@ -200,8 +226,8 @@ def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaire
 
 
 def _token_guard(store: Store) -> Callable[..., None]:
-    def guard(authorization: Annotated[str | None, Header()] = None) -> None:
-        kind, _, secret = (authorization or "").partition(" ")
+    def guard(request: Request) -> None:
+        kind, _, secret = request.headers.get("authorization", "").partition(" ")
         if kind.lower() != "bearer" or not store.tokens.admits(secret.strip()):
             remedy = "send Authorization: Bearer TOKEN; `survey token` makes one"
             raise AnswerError("authorization", "no valid token", remedy, status=401)

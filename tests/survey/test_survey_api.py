@@ -65,10 +65,12 @@ def test_the_same_id_with_another_body_is_refused_and_changes_nothing(hall):
 WRONG = {
     "unknown field": ({"colour": "red"}, "colour", "unknown field"),
     "no uuid": ({"id": "42"}, "id", "not a UUID"),
+    "empty id": ({"id": ""}, "id", "not a UUID"),
     "uuid in braces": ({"id": "{0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e}"}, "id", "not a UUID"),
     "number as uuid": ({"id": 42}, "id", "not a UUID"),
     "old version": ({"version": 7}, "version", "not the current one"),
     "version true": ({"version": True}, "version", "not the current one"),
+    "version 1.5": ({"version": 1.5}, "version", "not the current one"),
     "version text": ({"version": "1"}, "version", "not the current one"),
     "language": ({"language": "fr"}, "language", "not offered"),
     "language list": ({"language": ["zh"]}, "language", "not offered"),
