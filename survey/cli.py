@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from survey.commands import backup, bench, freeze
+from survey.commands import backup, bench, freeze, purge
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -57,7 +57,16 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for add in (_add_serve, _add_export, _add_analyse, _add_token, freeze.add, backup.add, bench.add):
+    for add in (
+        _add_serve,
+        _add_export,
+        _add_analyse,
+        _add_token,
+        freeze.add,
+        purge.add,
+        backup.add,
+        bench.add,
+    ):
         command = add(commands)
         # Taken before and after the command; SUPPRESS, so that its default does not undo the one before.
         command.add_argument(

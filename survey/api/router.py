@@ -71,7 +71,7 @@ def find_questionnaire(questionnaires: Questionnaires, key: str) -> Questionnair
 def described(questionnaire: Questionnaire) -> dict[str, Any]:
     """A questionnaire as the API and the form page hand it out: items spelled out, nothing left to expand."""
     head = questionnaire.model_dump(
-        mode="json", include={"id", "version", "title", "intro", "consent", "scale"}
+        mode="json", include={"id", "version", "title", "intro", "consent", "retain_until", "scale"}
     )
     modules = [
         module.model_dump(mode="json", include={"id", "title", "intro", "suggestion"})

@@ -184,10 +184,11 @@ def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) 
 
 
 def _consent(questionnaire: Questionnaire, language: Language) -> str:
-    say = words(language)
+    say, until = words(language), questionnaire.retain_until
+    kept = f'<p class="small">{escape(say["kept"].format(date=until.isoformat()))}</p>' if until else ""
     return f"""<section class="module consent" id="consent-box"><h2>{escape(say["consent_title"])}</h2>
 <label class="check"><input type="checkbox" id="consent" aria-describedby="wrong-consent">
-<span>{escape(questionnaire.consent.in_language(language))}</span></label>
+<span>{escape(questionnaire.consent.in_language(language))}</span></label>{kept}
 <p class="wrong" id="wrong-consent" hidden>{escape(say["consent_missing"])}</p></section>
 """
 
