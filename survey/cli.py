@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from survey.commands import backup, bench, freeze, purge
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -26,6 +27,8 @@ examples:
   survey analyse a.csv                               every numeric column is an item
   survey analyse --questionnaire garment --json      straight from the data folder
   survey token --label "Dr Lin"                      access to rows and suggestions over HTTP
+  survey freeze garment                              from now on these answers cannot be withdrawn
+  survey backup 2026-05-01.sqlite                    a copy while the service runs
 
 exit status: 0 done, 1 the work failed, 2 wrong arguments"""
 
@@ -54,7 +57,16 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for add in (_add_serve, _add_export, _add_analyse, _add_token):
+    for add in (
+        _add_serve,
+        _add_export,
+        _add_analyse,
+        _add_token,
+        freeze.add,
+        purge.add,
+        backup.add,
+        bench.add,
+    ):
         command = add(commands)
         # Taken before and after the command; SUPPRESS, so that its default does not undo the one before.
         command.add_argument(
@@ -72,6 +84,14 @@ def _port(text: str) -> int:
 def _number(text: str) -> int:
     if not text.isdecimal() or not 0 < int(text[:10]) < 2**31 or len(text) > 10:
         raise argparse.ArgumentTypeError(f"{text[:20]!r} is no number from 1 on")
+    return int(text)
+
+
+def _rate(text: str) -> int:
+    if not text.isdecimal() or len(text) > 6:
+        raise argparse.ArgumentTypeError(
+            f"{text[:20]!r} is no number of answers a minute – 0 lifts the limit"
+        )
     return int(text)
 
 
@@ -114,6 +134,12 @@ def _add_serve(commands) -> argparse.ArgumentParser:
     command = _command(commands, "serve", _serve, "serve the questionnaires", more)
     command.add_argument("--host", default="127.0.0.1", help="address to listen on (default: 127.0.0.1)")
     command.add_argument("--port", type=_port, default=8001, help="port to listen on (default: 8001)")
+    command.add_argument(
+        "--rate",
+        type=_rate,
+        metavar="N",
+        help="new answers a minute from one address; 0: any number (default: 300)",
+    )
     _add_places(command)
     return command
 
@@ -189,7 +215,7 @@ def _serve(args: argparse.Namespace) -> int:
     from survey.serving import serve, survey_app
 
     content = content_folder(args.content)
-    app, mounted, problems = survey_app(content, _where(args))
+    app, mounted, problems = survey_app(content, _where(args), args.rate)
     for problem in problems:
         print(f"survey: {problem}", file=sys.stderr)
     print(f"content {content}: {len(mounted.questionnaires)} questionnaires, {len(problems)} problems")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -79,6 +80,16 @@ def _problem(file: str, entry: Mapping) -> Problem:
     return Problem(file, key, f"{message[0].lower()}{message[1:]}", f"change {value}")
 
 
+def _marks(folder: Path) -> dict[str, tuple[int, int]]:
+    """Time and size of each questionnaire file, by its name."""
+    try:
+        with os.scandir(folder) as entries:
+            found = [entry for entry in entries if entry.name.endswith(".toml") and entry.is_file()]
+            return {entry.name: ((stat := entry.stat()).st_mtime_ns, stat.st_size) for entry in found}
+    except FileNotFoundError:  # no folder yet, or a file that went between the two looks
+        return {}
+
+
 class QuestionnaireFolder(Mapping[str, Questionnaire]):
     """The questionnaires of a content folder by id, sorted; a changed file shows on the next look.
 
@@ -87,6 +98,7 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
 
     def __init__(self, content: Path) -> None:
         self.folder = content / FOLDER
+        self._marks: dict[str, tuple[int, int]] | None = None
         self._seen: dict[Path, tuple[int, int]] = {}
         self._good: dict[Path, Questionnaire] = {}
         self._bad: dict[Path, tuple[Problem, ...]] = {}
@@ -100,12 +112,15 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
 
     def refresh(self) -> None:
         """Read the files that are new or changed; forget those that are gone."""
-        paths = {path: path.stat() for path in sorted(self.folder.glob("*.toml")) if path.is_file()}
+        marks = _marks(self.folder)
+        if marks == self._marks:  # asked at every request, so the usual case is a single look at the folder
+            return
+        self._marks = marks
+        paths = {self.folder / name: mark for name, mark in sorted(marks.items())}
         for path in set(self._seen) - set(paths):
             for table in (self._seen, self._good, self._bad):
                 table.pop(path, None)
-        for path, stat in paths.items():
-            mark = (stat.st_mtime_ns, stat.st_size)
+        for path, mark in paths.items():
             if self._seen.get(path) == mark:
                 continue
             try:

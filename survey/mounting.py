@@ -14,6 +14,8 @@ from survey.store import Store
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
+    from survey.form.clip import ClipOf
+
 __all__ = ["Mounted", "mount"]
 
 
@@ -39,14 +41,18 @@ def mount(
     content: Path,
     data: Path | str,
     problems: list[Problem] | None = None,
+    per_minute: int | None = None,
+    clip_of: ClipOf | None = None,
 ) -> Mounted:
     """Add the API (/api/v1/…) and the form page (/questionnaires/…) to an app.
 
     content: folder that holds questionnaires/*.toml. data: data folder, or a database URL.
     problems: where to report what is wrong; the good questionnaires are served then. Without it, the first
     problem raises QuestionnaireError naming file and key. Raises StoreError when the store cannot be opened.
+    per_minute: new answers that one address may give in a minute; 0: any number; None: the usual.
+    clip_of: the film of an exhibit, shown beside items on motion.
     """
-    from survey.api import router
+    from survey.api import Limit, router
     from survey.form import form_router
 
     questionnaires = QuestionnaireFolder(content)
@@ -60,8 +66,9 @@ def mount(
         mounted.close()
         raise QuestionnaireError(found)
     asked = Published(questionnaires, mounted.store)
-    app.include_router(router(mounted.store, asked))
-    app.include_router(form_router(asked))
+    limit = Limit() if per_minute is None else Limit(per_minute)
+    app.include_router(router(mounted.store, asked, limit))
+    app.include_router(form_router(asked, clip_of))
     return mounted
 
 

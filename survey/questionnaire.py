@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from datetime import date
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
@@ -101,6 +102,8 @@ class Questionnaire(_Part):
     title: Text
     intro: Text
     consent: Text
+    # Until when answers are kept; not strict, because a frozen version comes back from JSON.
+    retain_until: Annotated[date | None, Field(strict=False)] = None
     scale: Scale
     dimensions: list[Dimension] = Field(default=[], alias="dimension")
     modules: Annotated[list[Module], Field(min_length=1, alias="module")]
@@ -156,7 +159,10 @@ class Questionnaire(_Part):
 
     def document(self) -> dict[str, object]:
         """The version as plain data with the keys of its file, as the store freezes it."""
-        return self.model_dump(mode="json", by_alias=True)
+        document = self.model_dump(mode="json", by_alias=True)
+        if self.retain_until is None:  # versions frozen before this key existed keep their digest
+            del document["retain_until"]
+        return document
 
     @cached_property
     def digest(self) -> str:

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["serve", "survey_app"]
 
 
-def survey_app(content: Path, data: Path | str) -> tuple[FastAPI, Mounted, list[Problem]]:
+def survey_app(
+    content: Path, data: Path | str, per_minute: int | None = None
+) -> tuple[FastAPI, Mounted, list[Problem]]:
     """An app with the API, the form pages and nothing else; the problems of left-out questionnaires."""
     from fastapi import FastAPI
     from fastapi.responses import RedirectResponse
@@ -32,7 +34,7 @@ def survey_app(content: Path, data: Path | str) -> tuple[FastAPI, Mounted, list[
         title="Survey", lifespan=life, docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json"
     )
     problems: list[Problem] = []
-    mounted = mount(app, content=content, data=data, problems=problems)
+    mounted = mount(app, content=content, data=data, problems=problems, per_minute=per_minute)
 
     @app.get("/", include_in_schema=False)
     def home() -> RedirectResponse:

@@ -12,10 +12,11 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.answer import TEXT_LIMIT
+from survey.api.schema import UUID_PATTERN
 from survey.errors import AnswerError, StoreError
 from survey.slug import SLUG
 
-__all__ = ["ExplainingRoute", "Refusal", "Submission", "refused"]
+__all__ = ["ExplainingRoute", "Receipt", "Refusal", "Submission", "refused"]
 
 RETRY_SECONDS = 5
 
@@ -28,13 +29,23 @@ class Refusal(BaseModel):
     remedy: str
 
 
+class Receipt(BaseModel):
+    """The answer is stored."""
+
+    id: str
+    questionnaire: str
+    version: int
+
+
 class Submission(BaseModel):
     """What to send. This model documents; the questionnaire itself decides which items and points exist."""
 
     model_config = ConfigDict(extra="forbid")
 
     id: str = Field(
-        json_schema_extra={"format": "uuid"}, description="made by the sender; repeat it to retry"
+        pattern=UUID_PATTERN,
+        json_schema_extra={"format": "uuid"},
+        description="made by the sender; repeat it to retry",
     )
     version: int = Field(ge=1)
     language: Literal["zh", "en"]
@@ -53,6 +64,8 @@ def refused(error: AnswerError) -> JSONResponse:
     headers = {"Connection": "close"} if error.status in (413, 415) else {}
     if error.status == 401:
         headers["WWW-Authenticate"] = "Bearer"
+    if error.wait:
+        headers["Retry-After"] = str(error.wait)
     body = {"field": error.field, "problem": error.problem, "remedy": error.remedy}
     return JSONResponse(body, error.status, headers)
 
@@ -75,7 +88,7 @@ class ExplainingRoute(APIRoute):
             except StoreError as error:
                 body = {
                     "field": "",
-                    "problem": str(error),
+                    "problem": error.problem,
                     "remedy": "nothing was stored; send the same again later",
                 }
                 return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi import APIRouter, Depends, Path, Query, Request, Response, Security
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
+from fastapi.security import HTTPBearer
 
 from survey.answer import Answer, submission_id
 from survey.api.body import read_json
-from survey.api.replies import ExplainingRoute, Refusal, Submission
+from survey.api.limit import Limit
+from survey.api.replies import ExplainingRoute, Receipt, Refusal, Submission
+from survey.api.schema import UUID_PATTERN, submission_schema
 from survey.errors import AnswerError
 from survey.export import write_csv
 from survey.questionnaire import Questionnaire
@@ -29,18 +33,28 @@ _TAKES_SUBMISSION = {
     }
 }
 
+_BEARER = HTTPBearer(auto_error=False, description="`survey token` makes one")  # documents; the guard decides
+
 Questionnaires = Mapping[str, Questionnaire]
+Code = Annotated[
+    str,
+    Path(
+        description="the id it was sent with",
+        json_schema_extra={"format": "uuid", "pattern": UUID_PATTERN},
+    ),
+]
 Version = Annotated[int | None, Query(ge=1, le=10_000, description="the current one when left out")]
 
 
-def router(store: Store, questionnaires: Questionnaires) -> APIRouter:
+def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = None) -> APIRouter:
     """All routes below /api/v1, to be included in any FastAPI app, with a prefix or without.
 
     questionnaires: looked up anew at each request, so a mapping that reloads its files is served as it is then.
+    limit: of new answers per address, the usual one when None.
     """
     routes = APIRouter(prefix=BASE, route_class=ExplainingRoute, tags=["survey"], responses=_REFUSALS)
     _add_reading(routes, store, questionnaires)
-    _add_submitting(routes, store, questionnaires)
+    _add_submitting(routes, store, questionnaires, limit or Limit())
     _add_research(routes, store, questionnaires)
     return routes
 
@@ -57,7 +71,7 @@ def find_questionnaire(questionnaires: Questionnaires, key: str) -> Questionnair
 def described(questionnaire: Questionnaire) -> dict[str, Any]:
     """A questionnaire as the API and the form page hand it out: items spelled out, nothing left to expand."""
     head = questionnaire.model_dump(
-        mode="json", include={"id", "version", "title", "intro", "consent", "scale"}
+        mode="json", include={"id", "version", "title", "intro", "consent", "retain_until", "scale"}
     )
     modules = [
         module.model_dump(mode="json", include={"id", "title", "intro", "suggestion"})
@@ -82,26 +96,51 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
     def one(key: str) -> dict[str, Any]:
         return described(find_questionnaire(questionnaires, key))
 
+    @routes.get("/questionnaires/{key}/submission.schema.json", summary="What a submission must look like")
+    def schema(key: str) -> dict[str, Any]:
+        return submission_schema(find_questionnaire(questionnaires, key))
+
     @routes.get("/questionnaires/{key}/results", summary="Means, from five answers on")
     def results(key: str) -> dict[str, Any]:
         questionnaire = find_questionnaire(questionnaires, key)
         return public_results(questionnaire, [row.answer for row in store.rows(questionnaire)])
 
 
-def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
+def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires, limit: Limit) -> None:
     path = "/questionnaires/{key}/submissions"
 
-    @routes.post(path, status_code=201, summary="Submit an answer", openapi_extra=_TAKES_SUBMISSION)
+    @routes.post(
+        path,
+        status_code=201,
+        summary="Submit an answer",
+        openapi_extra=_TAKES_SUBMISSION,
+        responses={
+            201: {"model": Receipt, "description": "Committed"},
+            200: {"model": Receipt, "description": "It had been committed before"},
+        },
+    )
     async def submit(key: str, request: Request) -> JSONResponse:
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
-        questionnaire = await run_in_threadpool(find_questionnaire, questionnaires, key)
-        answer = Answer.of(questionnaire, await read_json(request))
-        receipt = await run_in_threadpool(store.submit, questionnaire, answer)
+        data, unreadable = await _body(request)
+        try:
+            questionnaire = find_questionnaire(questionnaires, key)
+            if unreadable is not None:
+                raise unreadable
+            answer = Answer.of(questionnaire, data)
+        except AnswerError as refusal:
+            # A browser that never heard of its receipt repeats an answer to a version that may be gone by now.
+            questionnaire = await run_in_threadpool(_answered, store, key, data)
+            if questionnaire is None:
+                raise
+            answer = _as_then(questionnaire, data, refusal)
+        else:
+            await _within(limit, request, store, answer)
+        receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
         return JSONResponse(body, 200 if receipt.replayed else 201)
 
     @routes.delete(path + "/{submission}", status_code=204, summary="Take an answer back by its code")
-    def withdraw(key: str, submission: str) -> Response:
+    def withdraw(key: str, submission: Code) -> Response:
         known = submission_id(submission)
         # Answers to a questionnaire that has left the hall can still be taken back.
         if not store.withdraw(key, known):
@@ -111,9 +150,42 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
         return Response(status_code=204)
 
 
+async def _body(request: Request) -> tuple[object, AnswerError | None]:
+    """The body, or why it is none: whether the questionnaire exists is told first."""
+    try:
+        return await read_json(request), None
+    except AnswerError as error:
+        return None, error
+
+
+def _answered(store: Store, key: str, data: object) -> Questionnaire | None:
+    """The version that the answer with the body's id was given to, or None where there is no such answer."""
+    try:
+        return store.version_of(key, submission_id(data.get("id"))) if isinstance(data, dict) else None
+    except AnswerError:
+        return None
+
+
+def _as_then(questionnaire: Questionnaire, data: object, refusal: AnswerError) -> Answer:
+    try:
+        return Answer.of(questionnaire, data)
+    except AnswerError:
+        raise refusal from None
+
+
+async def _within(limit: Limit, request: Request, store: Store, answer: Answer) -> None:
+    """Raises AnswerError 429 where the address gave too many new answers; repeating one is free."""
+    wait = limit.take(request.client.host if request.client else "")
+    if wait and not await run_in_threadpool(store.known, answer.id):
+        problem, remedy = "too many answers from one address", f"send the same again in {wait} s"
+        raise AnswerError("", problem, remedy, status=429, wait=wait)
+
+
 def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
     # Declared beside the store, so that a route of this group cannot be written without its guard.
-    research = APIRouter(route_class=ExplainingRoute, dependencies=[Depends(_token_guard(store))])
+    research = APIRouter(
+        route_class=ExplainingRoute, dependencies=[Security(_BEARER), Depends(_token_guard(store))]
+    )
 
     def asked(key: str, version: int | None) -> tuple[Questionnaire, tuple[Stored, ...]]:
         current = questionnaires.get(key)
@@ -154,8 +226,8 @@ def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaire
 
 
 def _token_guard(store: Store) -> Callable[..., None]:
-    def guard(authorization: Annotated[str | None, Header()] = None) -> None:
-        kind, _, secret = (authorization or "").partition(" ")
+    def guard(request: Request) -> None:
+        kind, _, secret = request.headers.get("authorization", "").partition(" ")
         if kind.lower() != "bearer" or not store.tokens.admits(secret.strip()):
             remedy = "send Authorization: Bearer TOKEN; `survey token` makes one"
             raise AnswerError("authorization", "no valid token", remedy, status=401)

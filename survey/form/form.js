@@ -35,6 +35,7 @@ function uuid() {
 function fresh() { return { id: uuid(), saved: 0, scores: {}, suggestions: {}, pending: null }; }
 
 function restored() {
+  if (settings.preview) return null;
   try {
     const found = JSON.parse(localStorage.getItem(KEY));
     if (!found || Date.now() - found.saved > KEPT_DAYS * 86400e3) return null;
@@ -43,13 +44,14 @@ function restored() {
 }
 
 function keep() {
+  if (settings.preview) return;
   draft.saved = Date.now();
   // Storage may be full or forbidden; the page then works without it.
   try { localStorage.setItem(KEY, JSON.stringify(draft)); } catch { /* nothing to keep it in */ }
 }
 
 function forget() {
-  try { localStorage.removeItem(KEY); } catch { /* there was nothing */ }
+  if (!settings.preview) try { localStorage.removeItem(KEY); } catch { /* there was nothing */ }
   draft = fresh();
 }
 
@@ -147,6 +149,7 @@ form.addEventListener("submit", (event) => {
   remark(missing);
   if (missing.length) return showMissing(missing);
   byId("errors").hidden = true;
+  if (settings.preview) return showState(words.preview_done, []);
   draft.pending = {
     id: draft.id, version: settings.version, language: settings.language, consent: true,
     scores: Object.fromEntries(items.filter((item) => item in draft.scores).map((item) => [item, draft.scores[item]])),

@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import HTMLResponse, Response
 
+from survey.form.clip import ClipOf
 from survey.form.page import ASSETS, FOLDER, form_page, list_page, missing_page
 from survey.questionnaire import LANGUAGES, Language, Questionnaire
 from survey.slug import is_slug
@@ -15,7 +16,8 @@ from survey.slug import is_slug
 __all__ = ["form_router"]
 
 _POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' data:; media-src 'self'; "
     "form-action 'self'; base-uri 'none'; frame-ancestors 'self'"
 )
 _HEADERS = {
@@ -29,8 +31,11 @@ Wanted = Annotated[str | None, Query(alias="lang", description="zh or en; else w
 Preferred = Annotated[str, Header(alias="accept-language")]
 
 
-def form_router(questionnaires: Mapping[str, Questionnaire]) -> APIRouter:
-    """GET /questionnaires, /questionnaires/{id} and the script and style they use."""
+def form_router(questionnaires: Mapping[str, Questionnaire], clip_of: ClipOf | None = None) -> APIRouter:
+    """GET /questionnaires, /questionnaires/{id} and the script and style they use.
+
+    clip_of: the host's film of an exhibit, shown beside items on motion. `?preview` sends and keeps nothing.
+    """
     routes = APIRouter(include_in_schema=False)
 
     @routes.get("/questionnaires")
@@ -47,7 +52,10 @@ def form_router(questionnaires: Mapping[str, Questionnaire]) -> APIRouter:
         exhibit = request.query_params.get("exhibit")
         # A mistyped exhibit must not keep a visitor from answering; the answer then stands without it.
         known = exhibit if exhibit is not None and is_slug(exhibit) else None
-        return HTMLResponse(form_page(questionnaire, language, known), headers=_HEADERS)
+        clip = clip_of(known) if clip_of is not None and known is not None else None
+        preview = "preview" in request.query_params
+        page = form_page(questionnaire, language, known, clip=clip, preview=preview)
+        return HTMLResponse(page, headers=_HEADERS)
 
     @routes.get("/survey-static/{name}")
     def static(name: str) -> Response:

@@ -8,13 +8,14 @@ import time
 import pytest
 import uvicorn
 from fastapi import FastAPI
-from fastapi.responses import HTMLResponse
+from fastapi.responses import FileResponse, HTMLResponse
 from survey_samples import ASSETS
 
 import survey
 
 pytestmark = pytest.mark.browser
 
+FILM = ASSETS / "exhibits" / "pibo" / "baked" / "drape.webm"
 FRAME = """<!doctype html><title>hall</title><script>
 window.heard = []; addEventListener("message", (event) => heard.push(event.data));
 </script><iframe src="/questionnaires/garment?lang=zh&exhibit=pibo" width="900" height="700"></iframe>"""
@@ -24,7 +25,11 @@ window.heard = []; addEventListener("message", (event) => heard.push(event.data)
 def site(tmp_path):
     """A running server with the survey and a page that embeds it; yields (address, mounted)."""
     app = FastAPI()
-    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data")
+    clips = {
+        "pibo": survey.Clip((("/drape.webm", "video/webm"),), {"zh": "披帛垂落", "en": "The scarf falls"})
+    }
+    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data", clip_of=clips.get)
+    app.get("/drape.webm")(lambda: FileResponse(FILM))
     app.get("/hall", response_class=HTMLResponse)(lambda: FRAME)
     server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", access_log=False))
     thread = threading.Thread(target=server.run)
@@ -199,6 +204,52 @@ def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     (answer,) = stored(site)
     assert answer.exhibit == "pibo"
     assert {score for _, score in answer.scores} == {None}
+
+
+def test_a_network_that_drops_in_the_middle_costs_nothing(visit, site):
+    page = visit("/questionnaires/garment?lang=en", width=390, height=844, has_touch=True)
+    items = page.locator(".item").all()
+    for item in items[:6]:
+        item.locator("label.point").nth(2).tap()
+    page.context.set_offline(True)
+    for item in items[6:]:
+        item.locator("label.point").nth(2).tap()
+    page.locator("#consent").tap()
+    tries = []
+    page.on(
+        "request", lambda request: request.method == "POST" and tries.append(request.post_data_json["id"])
+    )
+    page.locator("#send").tap()
+    page.get_by_text("There is no connection.").wait_for()
+    assert stored(site) == []
+    page.context.set_offline(False)  # the page hears of it and sends at once
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site)
+    assert page.locator("#code").inner_text() == answer.id
+    assert set(tries) == {answer.id}
+    assert len(tries) >= 2
+
+
+def test_items_on_motion_stand_beside_the_film_of_the_exhibit(visit):
+    page = visit("/questionnaires/garment?lang=en&exhibit=pibo")
+    film = page.locator("section:has(#item-dynamic_swing) video")
+    assert page.locator("video").count() == film.count() == 1
+    assert film.get_attribute("aria-label") == "The scarf falls"
+    page.wait_for_function("document.querySelector('video').readyState >= 1")
+    assert page.evaluate("document.querySelector('video').error") is None
+    assert visit("/questionnaires/garment?lang=en&exhibit=mirror").locator("video").count() == 0
+
+
+def test_a_preview_keeps_and_sends_nothing(visit, site):
+    page = visit("/questionnaires/garment?lang=en&preview")
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.get_by_text("Nothing was sent.").wait_for()
+    page.locator("#switch").click()
+    page.locator("#preview").wait_for()
+    assert page.evaluate("localStorage.length") == 0
+    assert stored(site) == []
 
 
 @pytest.mark.parametrize("language", ["zh", "en"])
