@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from survey.commands.analyse import (
+    ABOUT,
+    GRIM_ABOUT,
+    add_analyse_arguments,
+    add_grim_arguments,
+    run_analyse,
+    run_grim,
+)
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -54,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for add in (_add_serve, _add_export, _add_analyse, _add_token):
+    for add in (_add_serve, _add_export, _add_analyse, _add_grim, _add_token):
         command = add(commands)
         # Taken before and after the command; SUPPRESS, so that its default does not undo the one before.
         command.add_argument(
@@ -135,33 +142,15 @@ def _add_export(commands) -> argparse.ArgumentParser:
 
 
 def _add_analyse(commands) -> argparse.ArgumentParser:
-    more = (
-        "The procedure of the paper: means, Pearson correlations, KMO, Bartlett's test, components with an\n"
-        "eigenvalue above 1, Kaiser-normalised varimax, Cronbach's alpha. What cannot be computed is left out\n"
-        "and explained; answers with gaps are left out whole (listwise)."
-    )
-    command = _command(commands, "analyse", _analyse, "analyse the answers to one questionnaire", more)
-    command.add_argument(
-        "file", nargs="?", type=Path, metavar="FILE.csv", help="a table; default: the stored answers"
-    )
-    command.add_argument(
-        "--questionnaire", metavar="ID", help="whose items to analyse (needed without FILE.csv)"
-    )
-    command.add_argument(
-        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
-    )
-    command.add_argument(
-        "--drop",
-        default="none",
-        metavar="WHAT",
-        help='items to leave out: "none", a tag ("static"), or ITEM,ITEM …',
-    )
-    command.add_argument(
-        "--factors", default="kaiser", metavar="N", help="number of components (default: kaiser)"
-    )
-    command.add_argument("--json", action="store_true", help="everything, machine-readable")
+    command = _command(commands, "analyse", run_analyse, "analyse the answers to one questionnaire", ABOUT)
+    add_analyse_arguments(command)
     _add_places(command)
-    command.set_defaults(parser=command)
+    return command
+
+
+def _add_grim(commands) -> argparse.ArgumentParser:
+    command = _command(commands, "grim", run_grim, "check whether printed means are possible", GRIM_ABOUT)
+    add_grim_arguments(command)
     return command
 
 
@@ -216,25 +205,6 @@ def _export(args: argparse.Namespace) -> int:
     except OSError as error:
         raise SurveyError(f"{args.out}: cannot be written ({error.strerror}) – give another --out") from None
     print(f"{args.out}: {len(rows)} answers")
-    return 0
-
-
-def _analyse(args: argparse.Namespace) -> int:
-    from survey.analysis import analyse
-    from survey.analysis.printed import printed
-    from survey.analysis.summary import summary
-    from survey.working import dropped, load_scores
-
-    if args.file is None and args.questionnaire is None:
-        args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers")
-    if args.factors != "kaiser" and not (args.factors.isdecimal() and 0 < int(args.factors[:6]) < 10**5):
-        args.parser.error(f"--factors: {args.factors!r} is neither a number nor kaiser")
-    scores, items, questionnaire = load_scores(
-        args.file, _where(args), args.content, args.questionnaire, args.version
-    )
-    keep = None if args.factors == "kaiser" else int(args.factors)
-    found = summary(analyse(scores, items, drop=dropped(args.drop, questionnaire), keep=keep))
-    print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1) if args.json else printed(found))
     return 0
 
 

@@ -134,7 +134,9 @@ def test_answers_go_from_the_form_s_door_through_export_into_the_analysis(tmp_pa
         assert main(["analyse", *source, "--questionnaire", "garment", "--json", *HERE]) == 0
         results.append(json.loads(capsys.readouterr().out))
     assert results[0] == results[1] == results[2]
-    assert results[0]["mean"]["pleat"] == pytest.approx(scores[:, garment.item_ids.index("pleat")].mean())
+    pleat = results[0]["bootstrap"]["means"]["pleat"]
+    assert pleat["mean"] == pytest.approx(scores[:, garment.item_ids.index("pleat")].mean())
+    assert pleat["low"] < pleat["mean"] < pleat["high"]
 
 
 def test_a_token_opens_the_rows_until_it_is_revoked(tmp_path, capsys):
@@ -222,7 +224,7 @@ def test_wrong_arguments_exit_2(arguments, capsys):
     assert caught.value.code == 2
 
 
-@pytest.mark.parametrize("command", [[], ["serve"], ["export"], ["analyse"], ["token"]])
+@pytest.mark.parametrize("command", [[], ["serve"], ["export"], ["analyse"], ["grim"], ["token"]])
 def test_help_teaches(command, capsys):
     with pytest.raises(SystemExit) as caught:
         main([*command, "--help"])

@@ -1,0 +1,1 @@
+"""What the subcommands of `survey` do; survey/cli.py puts them together."""
