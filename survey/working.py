@@ -18,6 +18,7 @@ __all__ = [
     "find_questionnaire_file",
     "load_scores",
     "open_stored",
+    "other_roles",
     "other_versions",
     "stored_scores",
 ]
@@ -98,6 +99,20 @@ def stored_scores(questionnaire: Questionnaire, store: Store) -> ScoreTable:
         questionnaire=questionnaire,
         source=f"{questionnaire.id}, version {questionnaire.version}",
     )
+
+
+def other_roles(where: Path | str, content: Path | None, asked: Questionnaire) -> list[ScoreTable]:
+    """Stored answers to the other questionnaires with the same dimensions: the platform's other role."""
+    folder, found = content_folder(content) / "questionnaires", []
+    sides = [side.id for side in asked.dimensions]
+    for path in sorted(folder.glob("*.toml")):
+        other = read_questionnaire(path)
+        if other.id != asked.id and [side.id for side in other.dimensions] == sides:
+            with open_stored(where, content, other.id) as (questionnaire, store):
+                table = stored_scores(questionnaire, store)
+            if len(table.scores):
+                found.append(table)
+    return found
 
 
 def dropped(what: str, questionnaire: Questionnaire | None) -> tuple[str, ...]:

@@ -81,6 +81,7 @@ def add_analyse_arguments(command: argparse.ArgumentParser) -> None:
     text = "random samples of the parallel analysis, 0: none (default: 1000)"
     add("--parallel", type=_count, default=1000, metavar="N", help=text)
     add("--seed", type=_count, default=0, metavar="N", help="of everything random (default: 0)")
+    add("--report", type=Path, metavar="DIR", help="write report.html, tables and figures into this folder")
     add("--json", action="store_true", help="everything, machine-readable")
     command.set_defaults(parser=command)
 
@@ -108,6 +109,8 @@ def run_analyse(args: argparse.Namespace) -> int:
             print(json.dumps(told, ensure_ascii=False))
         raise
     found = summary(analysis)
+    if args.report is not None:
+        _write_report(args, table, analysis)
     if args.json:
         print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))
     else:
@@ -154,6 +157,18 @@ def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
             seconds=table.seconds,
             progress=lambda done: bar.advance(task, done),
         )
+
+
+def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysis) -> None:
+    from survey.report import Part, write_report
+    from survey.working import other_roles
+
+    beside = []
+    if args.file is None and table.questionnaire is not None and table.questionnaire.dimensions:
+        found = other_roles(args.db or args.data, args.content, table.questionnaire)
+        beside = [Part(other, other.questionnaire) for other in found if other.questionnaire is not None]
+    page = write_report(args.report, table, analysis, beside)
+    print(f"survey: {page}", file=sys.stderr)
 
 
 def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:

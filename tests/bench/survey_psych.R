@@ -47,7 +47,7 @@ told <- function(x) {
   reliable <- suppressWarnings(alpha(as.data.frame(x), check.keys = FALSE, n.iter = 1))
   k <- max(2, sum(eigen(r)$values > 1))
   unrotated <- unclass(principal(r, nfactors = k, rotate = "none")$loadings)
-  one <- factanal(covmat = r, factors = 1, n.obs = n, control = list(lower = 0.005, opt = list(factr = 1, maxit = 5000)))
+  one <- factanal(covmat = r, factors = 1, n.obs = n, control = list(nstart = 5, lower = 0.005, opt = list(factr = 1e3, maxit = 5000)))
   spread <- apply(x, 2, sd)
   common <- sum(one$loadings[, 1] * spread)^2
   few <- all(x == round(x)) && max(apply(x, 2, function(column) length(unique(column)))) <= 8
