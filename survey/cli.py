@@ -15,6 +15,8 @@ from survey.commands.analyse import (
     run_analyse,
     run_grim,
 )
+from survey.commands.export import ABOUT as EXPORT_ABOUT
+from survey.commands.export import add_export_arguments, run_export
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -32,6 +34,7 @@ examples:
   survey export --questionnaire garment --out a.csv  all answers, opens in Excel
   survey analyse a.csv                               every numeric column is an item
   survey analyse --questionnaire garment --json      straight from the data folder
+  survey analyse --demo likert-20 --drop static --report out   a report of a synthetic sample
   survey token --label "Dr Lin"                      access to rows and suggestions over HTTP
 
 exit status: 0 done, 1 the work failed, 2 wrong arguments"""
@@ -126,17 +129,10 @@ def _add_serve(commands) -> argparse.ArgumentParser:
 
 
 def _add_export(commands) -> argparse.ArgumentParser:
-    more = (
-        "CSV in UTF-8 with a byte order mark: one row per answer, one column per item and per module's suggestions.\n"
-        '"Not seen" is an empty cell. Text that a spreadsheet would run as a formula gets an apostrophe in front.'
+    command = _command(
+        commands, "export", run_export, "export all answers to one questionnaire", EXPORT_ABOUT
     )
-    command = _command(commands, "export", _export, "export all answers to one questionnaire", more)
-    command.add_argument("--questionnaire", required=True, metavar="ID", help="which one, such as garment")
-    command.add_argument(
-        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
-    )
-    command.add_argument("--format", choices=["csv"], default="csv", help="format (default: csv)")
-    command.add_argument("--out", type=Path, metavar="FILE", help="where to (default: standard output)")
+    add_export_arguments(command)
     _add_places(command)
     return command
 
@@ -184,27 +180,6 @@ def _serve(args: argparse.Namespace) -> int:
     print(f"content {content}: {len(mounted.questionnaires)} questionnaires, {len(problems)} problems")
     print(f"http://{args.host}:{args.port}/questionnaires", flush=True)
     serve(app, args.host, args.port)
-    return 0
-
-
-def _export(args: argparse.Namespace) -> int:
-    from survey.export import write_csv
-    from survey.working import open_stored, other_versions
-
-    with open_stored(_where(args), args.content, args.questionnaire, args.version) as (questionnaire, store):
-        rows, others = store.rows(questionnaire), other_versions(store, questionnaire)
-    text = write_csv(questionnaire, rows)
-    if others:
-        print(f"survey: {args.questionnaire}: {others}", file=sys.stderr)
-    if args.out is None:
-        sys.stdout.buffer.write(text.encode())
-        sys.stdout.flush()
-        return 0
-    try:
-        args.out.write_text(text, "utf-8", newline="")
-    except OSError as error:
-        raise SurveyError(f"{args.out}: cannot be written ({error.strerror}) – give another --out") from None
-    print(f"{args.out}: {len(rows)} answers")
     return 0
 
 

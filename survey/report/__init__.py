@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from survey.analysis import Analysis
 from survey.analysis.summary import descriptives, summary
 from survey.errors import SurveyError
+from survey.export.r_script import write_r
 from survey.reading import ScoreTable
 from survey.report.page import Part, Report, build
 
@@ -25,6 +29,8 @@ def write_report(folder: Path, table: ScoreTable, analysis: Analysis, beside: Se
     files = {
         "report.html": report.html,
         "analysis.json": json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1) + "\n",
+        "scores.csv": _scores(table),
+        "analysis.R": _repeated(analysis),
         **{f"tables/{name}": text for name, text in report.tables.items()},
         **{f"figures/{name}": text for name, text in report.drawings.items()},
     }
@@ -36,3 +42,27 @@ def write_report(folder: Path, table: ScoreTable, analysis: Analysis, beside: Se
     except OSError as error:
         raise SurveyError(f"{folder}: cannot be written ({error.strerror}) – give another --report") from None
     return folder / "report.html"
+
+
+def _scores(table: ScoreTable) -> str:
+    """What was analysed, for the R script beside it."""
+    out = io.StringIO(newline="")
+    out.write("\ufeff")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(table.items)
+    for row in table.scores.tolist():
+        writer.writerow(["" if math.isnan(score) else f"{score:.17g}" for score in row])
+    return out.getvalue()
+
+
+def _repeated(analysis: Analysis) -> str:
+    chosen = analysis.settings
+    return write_r(
+        analysis.items,
+        file="scores.csv",
+        dropped=analysis.dropped,
+        rotation=chosen.rotation,
+        factors=chosen.factors,
+        missing=chosen.missing,
+        method=chosen.method,
+    )

@@ -81,8 +81,8 @@ def correlations(
     with _style():
         side = WIDTH - 1.75
         size = min(9.0, 118.0 / max(count, 8))
-        figure = _figure(WIDTH, side + 0.55)
-        axes = figure.add_axes((1.7 / WIDTH, 0.5 / (side + 0.55), side / WIDTH, side / (side + 0.55)))
+        figure = _figure(WIDTH, side + 0.3)
+        axes = figure.add_axes((1.7 / WIDTH, 0.28 / (side + 0.3), side / WIDTH, side / (side + 0.3)))
         shown = np.where(np.tri(count, k=-1, dtype=bool), r, np.nan)
         axes.imshow(np.ma.masked_invalid(shown), cmap=_diverging(), vmin=-1, vmax=1, aspect="equal")
         for row in range(count):
@@ -90,7 +90,7 @@ def correlations(
                 value = r[row, col]
                 text = "–" if np.isnan(value) else f"{value:.3f}".replace("0.", ".").replace("-", "−")
                 mark = "" if np.isnan(value) else stars(float(p[row, col]))
-                light = abs(value) > 0.62
+                light = abs(value) > 0.6
                 axes.text(col, row, text + mark, ha="center", va="center", fontsize=size,
                           color="white" if light else INK)  # fmt: skip
         axes.set_xticks(range(count), [str(at + 1) for at in range(count)])
@@ -114,7 +114,7 @@ def scatter_matrix(table: NDArray[np.float64], labels: Sequence[str], name: str,
     with _style():
         figure = _figure(WIDTH, WIDTH * 0.92)
         grid = figure.subplots(count, count, squeeze=False, gridspec_kw={"wspace": 0.08, "hspace": 0.08})
-        figure.subplots_adjust(left=0.09, right=0.985, top=0.985, bottom=0.08)
+        figure.subplots_adjust(left=0.04, right=0.995, top=0.995, bottom=0.04)
         for row in range(count):
             for col in range(count):
                 axes = grid[row][col]
@@ -123,7 +123,7 @@ def scatter_matrix(table: NDArray[np.float64], labels: Sequence[str], name: str,
                 if row == col:
                     _histogram(axes, table[:, col], labels[col], low, high)
                 else:
-                    axes.set_ylim(low - margin, high + margin)
+                    axes.set_ylim(low - margin, high + 2.6 * margin)
                     _cloud(axes, table[:, col], table[:, row])
                 axes.tick_params(labelbottom=row == count - 1, labelleft=col == 0 and row > 0, length=2)
         return _svg(figure, name, title)
@@ -150,7 +150,7 @@ def _cloud(axes: Any, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
         slope, level = np.polyfit(both[:, 0], both[:, 1], 1)
         ends = np.array([both[:, 0].min(), both[:, 0].max()])
         axes.plot(ends, level + slope * ends, color=RED, linewidth=0.9)
-        r = np.corrcoef(both.T)[0, 1] if np.ptp(both[:, 1]) > 0 else np.nan
+        r = float(np.corrcoef(both, rowvar=False)[0][1]) if np.ptp(both[:, 1]) > 0 else np.nan
         axes.text(0.04, 0.95, f"r = {r:.3f}", transform=axes.transAxes, va="top", fontsize=7.5, color=RED)
 
 

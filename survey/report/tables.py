@@ -10,7 +10,7 @@ from html import escape
 
 from survey.analysis import Analysis
 from survey.analysis.components import kaiser_count
-from survey.export import safe_cell
+from survey.export.cells import safe_cell
 from survey.report.words import Words, decimal
 
 __all__ = ["Table", "as_csv", "as_html", "tables_of"]
@@ -231,7 +231,7 @@ def _reliability(analysis: Analysis, say: Words) -> Table | None:
 
 def _notes(analysis: Analysis, say: Words) -> Table:
     rows = tuple(
-        (note.code, ", ".join(map(say.item, note.items)) or "–", note.message) for note in analysis.notes
+        (note.code, ", ".join(map(say.item, note.items)) or "–", say.note(note)) for note in analysis.notes
     )
     return Table(
         "notes", say("section_flags"), (say("note"), say("concerning"), say("message")), rows, left=3

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from survey.analysis.preparation import Note
 from survey.questionnaire import Language, Questionnaire
 
 __all__ = ["Words", "decimal", "probability", "whole"]
@@ -48,6 +49,11 @@ class Words:
         """The module's title, else its key."""
         title = self._modules.get(key)
         return key if title is None else title.in_language(self.language)
+
+    def note(self, note: Note) -> str:
+        """The note's message, in Chinese after what its code means."""
+        meaning = self._words.get(f"note_{note.code}", "")
+        return f"{meaning}（{note.message}）" if meaning else note.message
 
     def either(self, texts: tuple[str, str]) -> str:
         """Of (zh, en) the one that is spoken."""
