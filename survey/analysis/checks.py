@@ -13,6 +13,7 @@ from survey.analysis.errors import (
     ConstantItem,
     DependentItems,
     NotFinite,
+    NotPositiveDefinite,
     TooFewRows,
 )
 
@@ -82,7 +83,14 @@ def dependent_columns(correlation: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def require_independent(correlation: NDArray[np.float64], names: Sequence[str]) -> None:
-    """Raises DependentItems naming the items that follow from each other."""
+    """Raises DependentItems naming the items that follow from each other, or NotPositiveDefinite."""
+    least = float(np.linalg.eigvalsh(correlation)[0])
+    if least < -DEPENDENT:
+        raise NotPositiveDefinite(
+            f"the correlations contradict each other (smallest eigenvalue {least:.3g}), as those of differing answers"
+            " may – use complete answers (listwise) and Pearson",
+            names,
+        )
     dependent = dependent_columns(correlation)
     if dependent.any():
         tied = [name for name, flag in zip(names, dependent, strict=True) if flag]

@@ -6,7 +6,16 @@ from collections.abc import Sequence
 
 from survey.errors import SurveyError
 
-__all__ = ["AllEqual", "AnalysisError", "ConstantItem", "DependentItems", "NotFinite", "TooFewRows"]
+__all__ = [
+    "AllEqual",
+    "AnalysisError",
+    "ConstantItem",
+    "DependentItems",
+    "NotConverged",
+    "NotFinite",
+    "NotPositiveDefinite",
+    "TooFewRows",
+]
 
 
 class AnalysisError(SurveyError):
@@ -47,3 +56,15 @@ class DependentItems(AnalysisError):
     """Items of which one follows exactly from the others: the correlation matrix has no inverse."""
 
     code = "dependent_items"
+
+
+class NotPositiveDefinite(AnalysisError):
+    """A matrix put together from different answers (pairwise, polychoric) that no single sample could have."""
+
+    code = "not_positive_definite"
+
+
+class NotConverged(AnalysisError):
+    """An iteration that did not come to rest."""
+
+    code = "not_converged"

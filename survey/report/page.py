@@ -1,0 +1,361 @@
+"""The report's page: one self-contained HTML, both languages in it, figures inline."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from survey.analysis import Analysis
+from survey.analysis.naming import proposed_modules
+from survey.analysis.platform import Profile, profile
+from survey.questionnaire import LANGUAGES, Language, Questionnaire
+from survey.reading import ScoreTable
+from survey.report import figures
+from survey.report.paper import rows as paper_rows
+from survey.report.tables import Table, as_csv, as_html, tables_of
+from survey.report.words import Words, decimal, probability, whole
+
+__all__ = ["Part", "Report", "build"]
+
+SCATTERED = 5  # items that a scatter matrix shows legibly
+
+
+@dataclass(frozen=True)
+class Part:
+    """A table of answers beside the analysed one, such as the other role's."""
+
+    table: ScoreTable
+    questionnaire: Questionnaire
+
+
+@dataclass(frozen=True)
+class Report:
+    """html: the page; tables: name → CSV text; drawings: name → SVG; names carry their language."""
+
+    html: str
+    tables: dict[str, str]
+    drawings: dict[str, str]
+
+
+def build(table: ScoreTable, analysis: Analysis, beside: Sequence[Part] = ()) -> Report:
+    """Everything in both languages. beside: the other roles of a platform survey."""
+    tables: dict[str, str] = {}
+    drawings: dict[str, str] = {}
+    articles = [_Article(language, table, analysis, beside) for language in LANGUAGES]
+    bodies = []
+    for article in articles:
+        bodies.append(article.html())
+        tables |= article.csv
+        drawings |= article.svg
+    return Report(_document(bodies, articles[1].title, articles[0].title), tables, drawings)
+
+
+class _Article:
+    """One language's half; numbers its tables and figures as they come."""
+
+    def __init__(
+        self, language: Language, table: ScoreTable, analysis: Analysis, beside: Sequence[Part]
+    ) -> None:
+        self.table, self.found, self.beside = table, analysis, beside
+        self.say = Words(language, table.questionnaire)
+        asked = table.questionnaire
+        self.title = self.say("title") if asked is None else asked.title.in_language(language)
+        self.names = _component_names(analysis, asked, self.say)
+        self.tables = tables_of(analysis, self.say, self.names)
+        self.csv: dict[str, str] = {}
+        self.svg: dict[str, str] = {}
+        self._tables = self._figures = self._sections = 0
+
+    def html(self) -> str:
+        """The <article>."""
+        parts = (
+            self._items, self._correlation, self._adequacy, self._retention, self._variance, self._loadings,
+            self._reliability, self._platform, self._suggestions, self._notes, self._paper, self._method,
+        )  # fmt: skip
+        body = "".join("".join(part()) for part in parts)
+        return f'<article lang="{self.say("language")}">{self._head()}{body}</article>'
+
+    def _head(self) -> str:
+        say, found = self.say, self.found
+        banners = ""
+        if self.table.synthetic:
+            banners += f'<p class="banner synthetic"><b>{escape(say("synthetic"))}</b></p>'
+        for note in found.notes:
+            if note.code in ("small_sample", "barely_enough_rows", "too_few_rows"):
+                text = escape(note.message)
+                banners += (
+                    f'<p class="banner"><b>{escape(say("fragile"))}</b> · <code>{note.code}</code> {text}</p>'
+                )
+        subtitle = say("subtitle", source=self.table.source, n=whole(found.n), items=len(found.items))
+        return (
+            f'<header><div class="top"><span>{escape(say("title"))}</span>'
+            f'<button type="button" onclick="turn()">{escape(say("switch"))}</button></div>'
+            f'<h1>{escape(self.title)}</h1><p class="subtitle">{escape(subtitle)}</p></header>{banners}{self._key()}'
+        )
+
+    def _key(self) -> str:
+        say, found = self.say, self.found
+        shown = [(whole(found.n), say("answers")), (str(len(found.factored)), say("kept_items"))]
+        if found.adequacy is not None:
+            shown.append((decimal(found.adequacy.kmo), "KMO"))
+        if found.components is not None:
+            shown.append((str(found.components.kept), say("components_kept")))
+            share = 100 * found.components.rotated.sum() / len(found.factored)
+            shown.append((f"{share:.1f} %", say("explained")))
+        if found.reliability is not None:
+            shown.append((decimal(found.reliability.alpha), "Cronbach α"))
+        if found.omega is not None:
+            shown.append((decimal(found.omega.omega), "McDonald ω"))
+        cells = "".join(
+            f"<div><b>{escape(value)}</b><span>{escape(label)}</span></div>" for value, label in shown
+        )
+        return f'<div class="key">{cells}</div>'
+
+    def _section(self, key: str) -> str:
+        self._sections += 1
+        return f"<h2><i>{self._sections}</i>{escape(self.say(key))}</h2>"
+
+    def _table(self, table: Table | None, kind: str = "") -> str:
+        if table is None:
+            return ""
+        self._tables += 1
+        name = f"{table.key}.{self.say.language}.csv"
+        self.csv[name] = text = as_csv(table)
+        data = base64.b64encode(text.encode()).decode()
+        link = f'<a download="{name}" href="data:text/csv;base64,{data}">{self.say("download")}</a>'
+        made = as_html(table, f"{self.say('table')} {self._tables}.", link)
+        return f'<div class="{kind}">{made}</div>' if kind else made
+
+    def _drawing(self, key: str, caption: str, svg: str) -> str:
+        self._figures += 1
+        self.svg[f"{key}.{self.say.language}.svg"] = svg
+        return (
+            f'<figure class="drawing">{svg}<figcaption><b>{self.say("figure")} {self._figures}.</b> '
+            f"{escape(caption)}</figcaption></figure>"
+        )
+
+    def _name(self, key: str) -> str:
+        return f"{key}-{self.say.language}"
+
+    def _items(self) -> Iterator[str]:
+        yield self._section("section_items")
+        yield self._table(self.tables["items"])
+
+    def _correlation(self) -> Iterator[str]:
+        found, say = self.found.correlation, self.say
+        if found is None:
+            return
+        yield self._section("section_correlation")
+        caption = say(
+            "correlation_caption" if self.found.settings.method == "pearson" else "polychoric_caption"
+        )
+        labels = [say.item(item) for item in self.found.items]
+        yield self._drawing(
+            "correlation",
+            caption,
+            figures.correlations(found.r, found.p, labels, self._name("correlation"), caption),
+        )
+        if "pairs" not in self.tables:
+            yield f"<p>{escape(say('no_pairs'))}</p>"
+            return
+        yield self._table(self.tables["pairs"])
+        close = [note.items for note in self.found.notes if note.code == "close_pair"]
+        items = list(dict.fromkeys(item for pair in close for item in pair))[:SCATTERED]
+        scores = self.found.table[:, [self.found.items.index(item) for item in items]]
+        caption = say("scatter_caption")
+        labels = [say.item(item) for item in items]
+        yield self._drawing(
+            "scatter", caption, figures.scatter_matrix(scores, labels, self._name("scatter"), caption)
+        )
+
+    def _adequacy(self) -> Iterator[str]:
+        yield self._section("section_adequacy")
+        found = self.found.adequacy
+        if found is None:
+            yield f"<p>{escape(self.say('adequacy_none'))}</p>"
+            return
+        test = found.bartlett
+        grade = self.say(f"grade_{min(int(10 * found.kmo), 9) if found.kmo >= 0.5 else 0}")
+        text = self.say(
+            "adequacy_text", kmo=decimal(found.kmo), grade=grade, df=test.df, chi2=decimal(test.chi2, 2),
+            p=probability(test.p),
+        )  # fmt: skip
+        yield f"<p>{escape(text)}</p>"
+        yield self._table(self.tables["kmo"], "narrow")
+
+    def _retention(self) -> Iterator[str]:
+        found, say = self.found, self.say
+        if found.components is None:
+            return
+        yield self._section("section_retention")
+        yield self._table(self.tables["retention"], "narrow")
+        chance, boot = found.parallel, found.bootstrap
+        caption = say(
+            "scree_caption", draws=0 if chance is None else chance.draws,
+            quantile=95 if chance is None else f"{100 * chance.level:.0f}",
+        )  # fmt: skip
+        svg = figures.scree(
+            found.components.eigenvalues, None if chance is None else chance.upper,
+            None if boot is None else boot.eigenvalues, say, self._name("scree"), caption,
+        )  # fmt: skip
+        yield self._drawing("scree", caption, svg)
+
+    def _variance(self) -> Iterator[str]:
+        if self.found.components is not None:
+            yield self._section("section_variance")
+            yield self._table(self.tables["variance"])
+
+    def _loadings(self) -> Iterator[str]:
+        found, say = self.found.components, self.say
+        yield self._section("section_loadings")
+        if found is None:
+            yield f"<p>{escape(say('no_components'))}</p>"
+            return
+        yield self._table(self.tables["loadings"])
+        yield f'<p class="small">{escape(say("naming"))}</p>' if self.table.questionnaire else ""
+        yield self._table(self.tables.get("component-correlations"))
+        order, boot = found.sorted_items(), self.found.bootstrap
+        interval = None if boot is None or boot.loadings is None else boot.loadings[:, order]
+        labels = [say.item(self.found.factored[row]) for row in order]
+        caption = say("loadings_figure")
+        svg = figures.loadings(
+            found.loadings[order], interval, labels, self.names, self._name("loadings"), caption
+        )
+        yield self._drawing("loadings", caption, svg)
+
+    def _reliability(self) -> Iterator[str]:
+        found, boot = self.found.reliability, self.found.bootstrap
+        if found is None:
+            return
+        yield self._section("section_reliability")
+        interval = ""
+        if boot is not None and boot.alpha is not None:
+            interval = f" [{decimal(boot.alpha[0])}, {decimal(boot.alpha[1])}]"
+        omega = "–" if self.found.omega is None else decimal(self.found.omega.omega)
+        text = self.say("reliability_text", alpha=decimal(found.alpha), interval=interval, omega=omega)
+        yield f"<p>{escape(text)}</p>"
+        yield self._table(self.tables.get("alpha"), "narrow")
+
+    def _platform(self) -> Iterator[str]:
+        asked = self.table.questionnaire
+        if asked is None or not asked.dimensions:
+            return
+        yield self._section("section_platform")
+        for part in (Part(self.table, asked), *self.beside):
+            yield from self._role(part.table, part.questionnaire)
+
+    def _role(self, table: ScoreTable, asked: Questionnaire) -> Iterator[str]:
+        say, language = self.say, self.say.language
+        modules = [module.title.in_language(language) for module in asked.modules]
+        sides = [side.label.in_language(language) for side in asked.dimensions]
+        seen = profile(table.scores, len(modules), len(sides))
+        title = f"{asked.title.in_language(language)}, n = {len(table.scores)}"
+        caption = say("platform_figure", title=title)
+        key = f"platform-{asked.id}"
+        svg = figures.lines(seen.mean, seen.half, modules, sides, asked.points, self._name(key), caption)
+        yield self._drawing(key, caption, svg)
+        yield self._table(_platform_table(key, seen, modules, sides, say, title))
+
+    def _suggestions(self) -> Iterator[str]:
+        if self.table.questionnaire is None:
+            return
+        yield self._section("section_suggestions")
+        written: dict[str, list[str]] = {}
+        for part in (self.table, *(part.table for part in self.beside)):
+            words = Words(self.say.language, part.questionnaire)
+            for module, text in part.suggestions:
+                written.setdefault(words.module(module), []).append(text)
+        if not written:
+            yield f"<p>{escape(self.say('no_suggestions'))}</p>"
+        for module, texts in written.items():
+            listed = "".join(f"<li>{escape(text)}</li>" for text in texts)
+            yield f'<h3>{escape(module)}</h3><ul class="suggestions">{listed}</ul>'
+
+    def _notes(self) -> Iterator[str]:
+        yield self._section("section_flags")
+        if "notes" not in self.tables:
+            yield f"<p>{escape(self.say('nothing_flagged'))}</p>"
+        yield self._table(self.tables.get("notes"))
+
+    def _paper(self) -> Iterator[str]:
+        say, asked = self.say, self.table.questionnaire
+        yield self._section("section_paper")
+        yield f"<p>{escape(say('paper_intro'))}</p>"
+        comparable = self.found if asked is not None and asked.id == "garment" else None
+        body = tuple(
+            (say.either(row.quantity), row.printed, row.computed, row.yours, say.either(row.verdict))
+            for row in paper_rows(comparable)
+        )
+        head = (say("quantity"), say("printed"), say("computed"), say("yours"), say("verdict"))
+        rules = frozenset(range(1, len(body)))
+        yield self._table(Table("paper", say("section_paper"), head, body, left=5, rules=rules), "paper")
+
+    def _method(self) -> Iterator[str]:
+        say, chosen = self.say, self.found.settings
+        yield self._section("section_method")
+        dropped = ", ".join(map(say.item, self.found.dropped)) or say("none")
+        text = say(
+            "method_text", method=chosen.method, missing=chosen.missing, rotation=chosen.rotation,
+            factors=chosen.factors, dropped=dropped, seed=chosen.seed,
+        )  # fmt: skip
+        yield f"<p>{escape(text)}</p><p>{escape(say('method_script'))}</p>"
+        yield f'<footer class="small">{escape(say("small_print"))}</footer>'
+
+
+def _platform_table(
+    key: str, seen: Profile, modules: Sequence[str], sides: Sequence[str], say: Words, title: str
+) -> Table:
+    cells = [
+        tuple(f"{decimal(mean, 2)} ± {decimal(half, 2)}" for mean, half in zip(*row, strict=True))
+        for row in zip(seen.mean, seen.half, strict=True)
+    ]
+    body = tuple((module, *row) for module, row in zip(modules, cells, strict=True))
+    return Table(key, say("platform_caption", title=title), (say("module"), *sides), body)
+
+
+def _component_names(analysis: Analysis, asked: Questionnaire | None, say: Words) -> list[str]:
+    if analysis.components is None:
+        return []
+    module_of = {}
+    if asked is not None:
+        module_of = {item.id: module.id for module in asked.modules for item in asked.items_of(module)}
+    proposed = proposed_modules(analysis.components, analysis.factored, module_of)
+    return [
+        say("factor_name", number=at + 1) if module is None else f"{at + 1} {say.module(module)}"
+        for at, module in enumerate(proposed)
+    ]
+
+
+def _document(bodies: Iterable[str], english: str, chinese: str) -> str:
+    style = (Path(__file__).parent / "style.css").read_text("utf-8")
+    # The only script: which of the two languages is shown. Without scripts both are, one after the other.
+    script = (
+        "const root=document.documentElement,both="
+        + f'{{en:"{_quoted(english)}",zh:"{_quoted(chinese)}"}};'
+        + "function show(l){root.className=l;root.lang=l==='zh'?'zh-Hans':'en';document.title=both[l]}"
+        + "function turn(){show(root.className==='zh'?'en':'zh');scrollTo(0,0)}"
+        + "show(location.hash==='#zh'||location.hash!=='#en'&&/^zh/i.test(navigator.language)?'zh':'en');"
+    )
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(english)}</title>
+<link rel="icon" href="data:,">
+<style>{style}</style>
+<script>{script}</script>
+</head>
+<body>
+{"".join(bodies)}
+</body>
+</html>
+"""
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
+    return escaped.replace("<", "\\u003c").replace("\u2028", " ").replace("\u2029", " ")
