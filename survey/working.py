@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from survey.errors import SurveyError
 from survey.questionnaire import Questionnaire
 from survey.reading import ScoreTable, read_scores, scores_of
 from survey.slug import is_slug
-from survey.store import Store, tables
+from survey.store import Store, Stored, tables
 
 __all__ = [
     "dropped",
@@ -20,6 +20,7 @@ __all__ = [
     "open_stored",
     "other_roles",
     "other_versions",
+    "scores_table",
     "stored_scores",
 ]
 
@@ -91,7 +92,12 @@ def load_scores(
 
 def stored_scores(questionnaire: Questionnaire, store: Store) -> ScoreTable:
     """All standing answers to one version."""
-    answers = [row.answer for row in store.rows(questionnaire)]
+    return scores_table(questionnaire, store.rows(questionnaire))
+
+
+def scores_table(questionnaire: Questionnaire, rows: Sequence[Stored]) -> ScoreTable:
+    """Stored answers as an (n, p) table of scores, NaN where an item was not seen."""
+    answers = [row.answer for row in rows]
     return ScoreTable(
         scores_of(answers, questionnaire.item_ids),
         questionnaire.item_ids,

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Path, Query, Request, Response, Security
+from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from fastapi.security import HTTPBearer
 
 from survey.answer import Answer, submission_id
 from survey.api.body import read_json
 from survey.api.limit import Limit
 from survey.api.replies import ExplainingRoute, Receipt, Refusal, Submission
+from survey.api.research import add_research
 from survey.api.schema import UUID_PATTERN, submission_schema
 from survey.errors import AnswerError
-from survey.export import write_csv
 from survey.questionnaire import Questionnaire
 from survey.results import public_results
-from survey.store import Store, Stored
+from survey.store import Store
 
 __all__ = ["described", "find_questionnaire", "router"]
 
@@ -33,8 +32,6 @@ _TAKES_SUBMISSION = {
     }
 }
 
-_BEARER = HTTPBearer(auto_error=False, description="`survey token` makes one")  # documents; the guard decides
-
 Questionnaires = Mapping[str, Questionnaire]
 Code = Annotated[
     str,
@@ -43,7 +40,6 @@ Code = Annotated[
         json_schema_extra={"format": "uuid", "pattern": UUID_PATTERN},
     ),
 ]
-Version = Annotated[int | None, Query(ge=1, le=10_000, description="the current one when left out")]
 
 
 def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = None) -> APIRouter:
@@ -55,7 +51,7 @@ def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = N
     routes = APIRouter(prefix=BASE, route_class=ExplainingRoute, tags=["survey"], responses=_REFUSALS)
     _add_reading(routes, store, questionnaires)
     _add_submitting(routes, store, questionnaires, limit or Limit())
-    _add_research(routes, store, questionnaires)
+    add_research(routes, store, questionnaires)
     return routes
 
 
@@ -179,70 +175,3 @@ async def _within(limit: Limit, request: Request, store: Store, answer: Answer) 
     if wait and not await run_in_threadpool(store.known, answer.id):
         problem, remedy = "too many answers from one address", f"send the same again in {wait} s"
         raise AnswerError("", problem, remedy, status=429, wait=wait)
-
-
-def _add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
-    # Declared beside the store, so that a route of this group cannot be written without its guard.
-    research = APIRouter(
-        route_class=ExplainingRoute, dependencies=[Security(_BEARER), Depends(_token_guard(store))]
-    )
-
-    def asked(key: str, version: int | None) -> tuple[Questionnaire, tuple[Stored, ...]]:
-        current = questionnaires.get(key)
-        if current is None or (version is not None and version != current.version):
-            current = store.frozen(key, version) if version is not None else None
-        if current is None:
-            raise AnswerError(
-                "version", "no such version has answers", "leave it out for the current one", status=404
-            )
-        return current, store.rows(current)
-
-    @research.get("/questionnaires/{key}/rows", summary="All answers (token)")
-    def rows(key: str, version: Version = None) -> list[dict[str, Any]]:
-        return [_row(row) for row in asked(key, version)[1]]
-
-    @research.get("/questionnaires/{key}/suggestions", summary="All suggestions (token)")
-    def suggestions(key: str, version: Version = None) -> list[dict[str, Any]]:
-        found = [
-            (row, module, text) for row in asked(key, version)[1] for module, text in row.answer.suggestions
-        ]
-        return [
-            {"submission": row.answer.id, "language": row.answer.language, "module": module, "text": text}
-            for row, module, text in found
-        ]
-
-    @research.get(
-        "/questionnaires/{key}/export.csv", summary="All answers as CSV (token)", response_class=Response
-    )
-    def export(key: str, version: Version = None) -> Response:
-        questionnaire, found = asked(key, version)
-        name = f"{key}-v{questionnaire.version}.csv"
-        headers = {"Content-Disposition": f'attachment; filename="{name}"', "Cache-Control": "no-store"}
-        return Response(
-            write_csv(questionnaire, found).encode(), media_type="text/csv; charset=utf-8", headers=headers
-        )
-
-    routes.include_router(research)
-
-
-def _token_guard(store: Store) -> Callable[..., None]:
-    def guard(request: Request) -> None:
-        kind, _, secret = request.headers.get("authorization", "").partition(" ")
-        if kind.lower() != "bearer" or not store.tokens.admits(secret.strip()):
-            remedy = "send Authorization: Bearer TOKEN; `survey token` makes one"
-            raise AnswerError("authorization", "no valid token", remedy, status=401)
-
-    return guard
-
-
-def _row(row: Stored) -> dict[str, Any]:
-    answer = row.answer
-    return {
-        "submission": answer.id,
-        "version": answer.version,
-        "language": answer.language,
-        "exhibit": answer.exhibit,
-        "received": row.received.isoformat(),
-        "scores": dict(answer.scores),
-        "suggestions": dict(answer.suggestions),
-    }

@@ -19,6 +19,7 @@ __all__ = [
     "FORMATS",
     "csv_columns",
     "exported",
+    "file_name",
     "safe_cell",
     "write_codebook",
     "write_csv",
@@ -42,3 +43,9 @@ def exported(kind: str, questionnaire: Questionnaire, rows: Sequence[Stored]) ->
         "r": lambda: write_r(questionnaire.item_ids),
     }[kind]()
     return text.encode()
+
+
+def file_name(kind: str, questionnaire: Questionnaire) -> str:
+    """What a file in one of FORMATS is called, such as garment-v1.csv."""
+    ending = {"codebook": "-codebook.csv", "r": ".R"}.get(kind, f".{kind}")
+    return f"{questionnaire.id}-v{questionnaire.version}{ending}"

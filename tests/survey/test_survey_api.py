@@ -196,7 +196,7 @@ def test_rows_suggestions_and_export_need_a_token(hall):
     hall.client.post(hall.url, json=submission(hall.garment, suggestions={"form": "好看"}))
     token = hall.store.tokens.make("test")
     bad = [None, "Bearer ", "Bearer nonsense", f"Basic {token}", f"Bearer {token}x", "Bearer \xff", token]
-    for path in ("rows", "suggestions", "export.csv"):
+    for path in ("rows", "suggestions", "export/csv"):
         url = f"{BASE}/garment/{path}"
         for header in bad:
             raw = {} if header is None else {"authorization": header.encode("latin-1")}
@@ -243,7 +243,7 @@ def test_the_export_opens_in_excel_without_running_anything(hall):
     for body in bodies:
         hall.client.post(hall.url, json=body)
     headers = {"authorization": f"Bearer {hall.store.tokens.make('x')}"}
-    reply = hall.client.get(f"{BASE}/garment/export.csv", headers=headers)
+    reply = hall.client.get(f"{BASE}/garment/export/csv", headers=headers)
     assert reply.content.startswith("\ufeff".encode())
     rows = list(csv.DictReader(io.StringIO(reply.content.decode("utf-8-sig"), newline="")))
     assert list(rows[0])[5:17] == list(hall.garment.item_ids)

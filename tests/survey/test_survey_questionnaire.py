@@ -185,7 +185,7 @@ def test_an_edited_version_stays_readable_as_it_was_asked(content, tmp_path):
         write(content, SMALL.replace('id = "one"', 'id = "other"'))
         assert client.get(f"{base}/results").json()["items"][0]["id"] == "one"
         assert client.get(f"{base}/rows", headers=token).json()[0]["scores"] == {"one": 3}
-        assert ",one" in client.get(f"{base}/export.csv", headers=token).text
+        assert ",one" in client.get(f"{base}/export/csv", headers=token).text
     mounted.close()
     places = ["--content", str(content), "--data", str(tmp_path / "data")]
     assert main(["export", "--questionnaire", "small", "--out", str(tmp_path / "a.csv"), *places]) == 0
