@@ -70,6 +70,14 @@ def refused(error: AnswerError) -> JSONResponse:
     return JSONResponse(body, error.status, headers)
 
 
+def _explained(error: RequestValidationError) -> AnswerError:
+    first = error.errors()[0]
+    field = str(first["loc"][-1])[:60]
+    if first["type"] == "extra_forbidden":
+        return AnswerError(field, "unknown parameter", "leave it out or correct its spelling")
+    return AnswerError(field, str(first["msg"]).lower(), f"correct {field}")
+
+
 class ExplainingRoute(APIRoute):
     """A route that answers every foreseeable failure with a Refusal, so that any app can mount the router."""
 
@@ -82,9 +90,7 @@ class ExplainingRoute(APIRoute):
             except AnswerError as error:
                 return refused(error)
             except RequestValidationError as error:
-                first = error.errors()[0]
-                field = str(first["loc"][-1])
-                return refused(AnswerError(field, str(first["msg"]).lower(), f"correct {field}"))
+                return refused(_explained(error))
             except StoreError as error:
                 body = {
                     "field": "",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
@@ -12,6 +11,7 @@ from fastapi.responses import JSONResponse
 
 from survey.answer import Answer, submission_id
 from survey.api.body import read_json
+from survey.api.finding import Questionnaires, find_questionnaire
 from survey.api.limit import Limit
 from survey.api.replies import ExplainingRoute, Receipt, Refusal, Submission
 from survey.api.research import add_research
@@ -21,7 +21,7 @@ from survey.questionnaire import Questionnaire
 from survey.results import public_results
 from survey.store import Store
 
-__all__ = ["described", "find_questionnaire", "router"]
+__all__ = ["described", "router"]
 
 BASE = "/api/v1"
 _REFUSALS: dict[int | str, dict[str, Any]] = {"4XX": {"model": Refusal}, 503: {"model": Refusal}}
@@ -32,7 +32,6 @@ _TAKES_SUBMISSION = {
     }
 }
 
-Questionnaires = Mapping[str, Questionnaire]
 Code = Annotated[
     str,
     Path(
@@ -53,15 +52,6 @@ def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = N
     _add_submitting(routes, store, questionnaires, limit or Limit())
     add_research(routes, store, questionnaires)
     return routes
-
-
-def find_questionnaire(questionnaires: Questionnaires, key: str) -> Questionnaire:
-    """Raises AnswerError 404."""
-    try:
-        return questionnaires[key]
-    except KeyError:
-        remedy = "choose one of " + (", ".join(questionnaires) or "none yet")
-        raise AnswerError("questionnaire", "no such questionnaire", remedy, status=404) from None
 
 
 def described(questionnaire: Questionnaire) -> dict[str, Any]:

@@ -40,7 +40,11 @@ def exported(kind: str, questionnaire: Questionnaire, rows: Sequence[Stored]) ->
         "csv": lambda: write_csv(questionnaire, rows),
         "json": lambda: write_json(questionnaire, rows),
         "codebook": lambda: write_codebook(questionnaire),
-        "r": lambda: write_r(questionnaire.item_ids),
+        "r": lambda: write_r(
+            questionnaire.item_ids,
+            file=file_name("csv", questionnaire),
+            name=file_name("r", questionnaire),
+        ),
     }[kind]()
     return text.encode()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 
 __all__ = ["write_r"]
@@ -88,10 +89,8 @@ def write_r(
         "NAME": name, "FILE": file, "ITEMS": _strings(items), "DROPPED": _strings(dropped), "MISSING": missing,
         "METHOD": method, "ROTATION": rotation, "KEEP": keep,
     }  # fmt: skip
-    script = _SCRIPT
-    for key, value in filled.items():
-        script = script.replace(f"@{key}@", value)
-    return script
+    # All at once: a column's name that looks like one of our marks stays as it is.
+    return re.sub(r"@([A-Z]+)@", lambda mark: filled[mark[1]], _SCRIPT)
 
 
 def _strings(texts: Sequence[str]) -> str:

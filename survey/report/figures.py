@@ -150,7 +150,7 @@ def _cloud(axes: Any, x: NDArray[np.float64], y: NDArray[np.float64]) -> None:
         slope, level = np.polyfit(both[:, 0], both[:, 1], 1)
         ends = np.array([both[:, 0].min(), both[:, 0].max()])
         axes.plot(ends, level + slope * ends, color=RED, linewidth=0.9)
-        r = float(np.corrcoef(both, rowvar=False)[0][1]) if np.ptp(both[:, 1]) > 0 else np.nan
+        r = np.atleast_2d(np.corrcoef(both, rowvar=False))[0, -1] if np.ptp(both[:, 1]) > 0 else np.nan
         axes.text(0.04, 0.95, f"r = {r:.3f}", transform=axes.transAxes, va="top", fontsize=7.5, color=RED)
 
 

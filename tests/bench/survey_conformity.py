@@ -20,6 +20,11 @@ GENERAL = "{key}"
 CONFIG = """\
 [checks]
 positive_data_acceptance.expected-statuses = ["2xx", "401", "403", "404", "409", "410"]
+
+# A good question to answers that cannot be analysed, or an item to drop that there is not: 422 with the reason.
+[[operations]]
+include-path-regex = "/analysis$"
+checks.positive_data_acceptance.expected-statuses = ["2xx", "401", "403", "404", "422"]
 """
 
 

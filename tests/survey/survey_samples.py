@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import uuid
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ __all__ = [
     "KMO",
     "TABLE_3",
     "TABLE_3_ITEMS",
+    "given",
     "likert_sample",
     "looked_up",
     "paper_sample",
@@ -27,6 +29,15 @@ __all__ = [
 ]
 
 ASSETS = Path(__file__).parents[2] / "assets"
+
+
+T = TypeVar("T")
+
+
+def given(value: T | None) -> T:
+    """What must be there: a step of the analysis that no note excuses."""
+    assert value is not None
+    return value
 
 
 def paper_sample() -> tuple[NDArray[np.float64], tuple[str, ...]]:

@@ -136,7 +136,7 @@ def test_every_text_colour_stands_out_from_every_ground(ink, ground):
 
 def test_the_list_names_every_questionnaire_and_its_links_lead_there(hall):
     page = Tags(hall.client.get("/questionnaires?lang=en").text)
-    links = [link["href"] for link in page.of("a") if (link.get("href") or "").startswith("./")]
+    links = [href for link in page.of("a") if (href := link.get("href") or "").startswith("./")]
     assert len(links) == 3
     for link in links:
         assert hall.client.get(link.removeprefix(".")).status_code == 200

@@ -8,7 +8,7 @@ import shutil
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
-from survey_samples import ASSETS, submission
+from survey_samples import ASSETS, given, submission
 
 import survey
 import survey.content
@@ -166,8 +166,8 @@ def test_a_version_is_frozen_with_its_first_answer(content, tmp_path):
         write(content, SMALL.replace('"One"', '"Too late"').replace("version = 1", "version = 2"))
         assert not mounted.problems
         assert client.post(url, json=submission(mounted.questionnaires["small"], score=3)).status_code == 201
-        assert mounted.store.frozen("small", 1).items[0].label.en == "Still free"
-        assert mounted.store.frozen("small", 2).items[0].label.en == "Too late"
+        assert given(mounted.store.frozen("small", 1)).items[0].label.en == "Still free"
+        assert given(mounted.store.frozen("small", 2)).items[0].label.en == "Too late"
         assert mounted.store.count("small", 1) == 2
     mounted.close()
 
