@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import os
+import time
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -94,10 +96,13 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
     """The questionnaires of a content folder by id, sorted; a changed file shows on the next look.
 
     A faulty file is left out and named in `problems`; one that was good before stays as it was.
+    patience: seconds for which the last look at the folder is good enough. Every look is several system calls, at
+    each of which a busy service may have to wait for its other threads.
     """
 
-    def __init__(self, content: Path) -> None:
+    def __init__(self, content: Path, *, patience: float = 0.0) -> None:
         self.folder = content / FOLDER
+        self._patience, self._looked = patience, -math.inf
         self._marks: dict[str, tuple[int, int]] | None = None
         self._seen: dict[Path, tuple[int, int]] = {}
         self._good: dict[Path, Questionnaire] = {}
@@ -107,13 +112,17 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
     @property
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with the files now, in the order of their names."""
+        self._looked = -math.inf
         self.refresh()
         return tuple(problem for path in sorted(self._bad) for problem in self._bad[path])
 
     def refresh(self) -> None:
         """Read the files that are new or changed; forget those that are gone."""
+        if time.monotonic() - self._looked < self._patience:
+            return
         marks = _marks(self.folder)
-        if marks == self._marks:  # asked at every request, so the usual case is a single look at the folder
+        self._looked = time.monotonic()
+        if marks == self._marks:  # asked again and again, so the usual case is a single look at the folder
             return
         self._marks = marks
         paths = {self.folder / name: mark for name, mark in sorted(marks.items())}

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Mounted", "mount"]
 
+PATIENCE = 0.2  # seconds until a changed questionnaire shows
+
 
 @dataclass(frozen=True)
 class Mounted:
@@ -55,7 +57,7 @@ def mount(
     from survey.api import Limit, router
     from survey.form import form_router
 
-    questionnaires = QuestionnaireFolder(content)
+    questionnaires = QuestionnaireFolder(content, patience=PATIENCE)
     if problems is None and questionnaires.problems:
         raise QuestionnaireError(questionnaires.problems)
     mounted = Mounted(Store(data), questionnaires)

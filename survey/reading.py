@@ -28,6 +28,7 @@ class ScoreTable:
     """scores: (n, p), NaN where missing. seconds: (n,) spent on each answer, or None.
 
     suggestions: (module, text) as they were written. source: where it all comes from, for a heading.
+    beside: a sentence on answers to other versions, may be empty.
     """
 
     scores: NDArray[np.float64]
@@ -37,6 +38,7 @@ class ScoreTable:
     questionnaire: Questionnaire | None = None
     source: str = ""
     synthetic: bool = False
+    beside: str = ""
 
 
 def read_scores(path: Path, questionnaire: Questionnaire | None = None) -> ScoreTable:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from survey.content import content_folder, read_questionnaire
@@ -87,7 +88,7 @@ def load_scores(
     if key is None:
         raise SurveyError("no questionnaire named – give --questionnaire ID")
     with open_stored(where, content, key, version) as (questionnaire, store):
-        return stored_scores(questionnaire, store)
+        return replace(stored_scores(questionnaire, store), beside=other_versions(store, questionnaire))
 
 
 def stored_scores(questionnaire: Questionnaire, store: Store) -> ScoreTable:
@@ -103,7 +104,7 @@ def scores_table(questionnaire: Questionnaire, rows: Sequence[Stored]) -> ScoreT
         questionnaire.item_ids,
         suggestions=tuple(written for answer in answers for written in answer.suggestions),
         questionnaire=questionnaire,
-        source=f"{questionnaire.id}, version {questionnaire.version}",
+        source=f"{questionnaire.id} v{questionnaire.version}",
     )
 
 

@@ -46,18 +46,22 @@ def bootstrap(
 ) -> Bootstrap:
     """Resample the rows of a table (n, p) with replacement.
 
-    Gaps (NaN) count in the means only. factored: (p,) the items of α and the components; rows with a gap among
-    these are left out there. Each sample's loadings are turned towards `components`' by Procrustes, orthogonal or
-    oblique as they are (Milan and Whittaker 1995), since neither order nor sign nor turn is comparable otherwise.
+    The means rest on every score that is there, as those that they are intervals of. factored: (p,) the items of α
+    and the components, which rest on the rows without a gap (NaN) among these. Each sample's loadings are turned
+    towards `components`' by Procrustes, orthogonal or oblique as they are (Milan and Whittaker 1995), since neither
+    order nor sign nor turn is comparable otherwise.
     """
     n = len(table)
     means, alphas, values, loadings, used = [], [], [], [], 0
-    complete = bool(np.isfinite(table[:, factored]).all())
+    whole = np.isfinite(table[:, factored]).all(axis=1)
+    complete = table[whole][:, factored]
     for size in _batches(draws, table):
         rows = rng.integers(0, n, size=(size, n))
         means.append(_means(table, rows))
-        if complete and factored.sum() > 1:
-            covariance = _covariances(table[:, factored], rows)
+        if len(complete) > 1 and complete.shape[1] > 1:
+            if len(complete) < n:
+                rows = rng.integers(0, len(complete), size=(size, len(complete)))
+            covariance = _covariances(complete, rows)
             good = (np.diagonal(covariance, axis1=1, axis2=2) > 1e-12).all(axis=1)
             used += int(good.sum())
             covariance = covariance[good]

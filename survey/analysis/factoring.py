@@ -53,7 +53,7 @@ def factor(
     names, table = named(ready.names, ready.factored), ready.rows_of(ready.factored)
     n, p = table.shape
     if p < 2:
-        notes.append(Note("too_few_items", names, "fewer than two items are left; nothing to factor"))
+        notes.append(Note("too_few_items", names, "fewer than two items are left; nothing to factor", {}))
         return Factored(n, names)
     found = step(notes, lambda: correlation_of(table, names, method, pairwise=ready.pairwise))
     if found is not None:
@@ -61,11 +61,12 @@ def factor(
     alpha = step(notes, lambda: _alpha(table, names, found, ready.pairwise))
     _negative(found, names, notes)
     if found is None or n <= p:
-        notes.append(Note("too_few_rows", (), f"{n} answers for {p} items: no KMO, Bartlett or components"))
+        text = f"{n} answers for {p} items: no KMO, Bartlett or components"
+        notes.append(Note("too_few_rows", (), text, {"n": n, "p": p}))
         return Factored(n, names, reliability=alpha)
     if n == p + 1:
         text = f"{n} answers for {p} items: KMO, Bartlett and the components mean next to nothing here"
-        notes.append(Note("barely_enough_rows", (), text))
+        notes.append(Note("barely_enough_rows", (), text, {"n": n, "p": p}))
     plain = method == "pearson" and not ready.pairwise
     fit = step(notes, lambda: adequacy(table, names) if plain else adequacy_of(found.r, n, names))
     rng = np.random.default_rng(seed)
@@ -75,7 +76,13 @@ def factor(
     if omega is not None and (omega.uniqueness < HEYWOOD + 1e-9).any():
         over = named(names, omega.uniqueness < HEYWOOD + 1e-9)
         notes.append(
-            Note("heywood", over, "the common factor behind ω leaves nothing of the item (Heywood case)")
+            Note(
+                "heywood",
+                over,
+                "the common factor behind ω leaves nothing of the item (Heywood case)",
+                {},
+                "omega",
+            )
         )
     average = minimum_average_partial(found.r)
     _disagreement(found, parallel, average, notes)
@@ -107,7 +114,9 @@ def _components(
     components = principal_components(found.r, keep=keep, rotation=rotation)
     if components.kept < len(names) and (components.communalities >= 1.0 - 1e-9).any():
         over = named(names, components.communalities >= 1.0 - 1e-9)
-        notes.append(Note("heywood", over, "a communality of 1: the components leave nothing of the item"))
+        notes.append(
+            Note("heywood", over, "a communality of 1: the components leave nothing of the item", {})
+        )
     return components
 
 
@@ -117,7 +126,7 @@ def _negative(found: Correlation | None, names: tuple[str, ...], notes: list[Not
     rest = found.r.sum(axis=0) - 1.0
     if (rest < -1e-9).any() and rest.sum() > 0:
         text = "runs against the other items; if it is worded the other way round, turn its scores before α and ω"
-        notes.append(Note("reversed_item", named(names, rest < -1e-9), text))
+        notes.append(Note("reversed_item", named(names, rest < -1e-9), text, {}))
 
 
 def _disagreement(found: Correlation, parallel: Parallel | None, average: Average, notes: list[Note]) -> None:
@@ -127,7 +136,10 @@ def _disagreement(found: Correlation, parallel: Parallel | None, average: Averag
         counts["parallel analysis"] = parallel.kept
     if len(set(counts.values())) > 1:
         told = ", ".join(f"{name} {count}" for name, count in counts.items())
-        notes.append(Note("retention", (), f"the criteria keep different numbers of components: {told}"))
+        text = f"the criteria keep different numbers of components: {told}"
+        form = "parallel" if parallel is not None else ""
+        values = {"kaiser": kaiser, "map": average.kept, "parallel": counts.get("parallel analysis")}
+        notes.append(Note("retention", (), text, values, form))
 
 
 def correlation_of(

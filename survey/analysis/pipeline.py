@@ -138,7 +138,8 @@ def _close_pairs(found: Correlation, names: tuple[str, ...], dropped: tuple[str,
             pair = (names[i], names[j])
             gone = [name for name in pair if name in dropped]
             choice = f"{' and '.join(gone)} dropped" if gone else "consider dropping one of the two"
-            notes.append(Note("close_pair", pair, f"r = {found.r[i, j]:.3f}: {choice}"))
+            r = f"{found.r[i, j]:.3f}"
+            notes.append(Note("close_pair", pair, f"r = {r}: {choice}", {"r": r}, "dropped" if gone else ""))
     return notes
 
 
@@ -151,20 +152,21 @@ def _resampled(
     if not plain:
         notes.append(
             Note(
-                "bootstrap_means", (), "with pairwise or polychoric correlations only the means are resampled"
+                "bootstrap_means",
+                (),
+                "with pairwise or polychoric correlations only the means are resampled",
+                {},
             )
         )
     # A stream of its own, so that the parallel draws do not shift the resamples.
     rng = np.random.default_rng([chosen.seed, 1])
-    table, items = ready.table, ready.factored if plain else np.zeros_like(ready.factored)
-    if plain:  # the answers that the figures rest on
-        table = table[~np.isnan(table[:, items]).any(axis=1)]
-    found = bootstrap(table, items, part.components, rng, draws=chosen.bootstrap, progress=progress)
+    items = ready.factored if plain else np.zeros_like(ready.factored)
+    found = bootstrap(ready.table, items, part.components, rng, draws=chosen.bootstrap, progress=progress)
     if plain and part.components is not None and found.used < 0.9 * found.draws:
         text = (
             f"only {found.used} of {found.draws} resamples vary in every item; the intervals are too narrow"
         )
-        notes.append(Note("bootstrap_few", (), text))
+        notes.append(Note("bootstrap_few", (), text, {"used": found.used, "draws": found.draws}))
     return found
 
 
@@ -172,9 +174,13 @@ def _banner(part: Factored, resampled: Bootstrap | None, notes: list[Note]) -> N
     if part.components is None or part.n >= SMALL:
         return
     text = f"with {part.n} answers loadings and the number of components are fragile"
+    told: dict[str, object] = {"n": part.n}
+    form = ""
     if resampled is not None and resampled.loadings is not None and resampled.kaiser is not None:
         width = np.median(resampled.loadings[1] - resampled.loadings[0]) / 2
         same = 100 * resampled.kaiser[min(part.components.kept, len(resampled.kaiser) - 1)]
         kept = part.components.kept
+        told |= {"width": f"{width:.2f}", "kept": kept, "same": f"{same:.0f}"}
+        form = "bootstrap"
         text += f": loadings ± {width:.2f} (median of the bootstrap), Kaiser keeps {kept} in {same:.0f} % of resamples"
-    notes.insert(0, Note("small_sample", (), text))
+    notes.insert(0, Note("small_sample", (), text, told, form))

@@ -24,6 +24,12 @@ class Profile:
     half: NDArray[np.float64]
     n: NDArray[np.int64]
 
+    @property
+    def lowest(self) -> float:
+        """Lower end of the lowest interval; 1 where nobody answered."""
+        ends = self.mean - np.nan_to_num(self.half)
+        return float(np.nanmin(ends)) if np.isfinite(ends).any() else 1.0
+
 
 def profile(scores: NDArray[np.float64], modules: int, dimensions: int) -> Profile:
     """Of scores (n, modules × dimensions), NaN where missing, the items of a module side by side."""

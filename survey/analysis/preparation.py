@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,11 +19,17 @@ SHOWN = 12  # numbers of answers that a note spells out
 
 @dataclass(frozen=True)
 class Note:
-    """Something the reader must know beside the numbers."""
+    """Something the reader must know beside the numbers.
+
+    message: in English. told: the figures in it, from which another language says the same, or None where the
+    message is an error's. form: which of several sentences of the code it is.
+    """
 
     code: str
     items: tuple[str, ...]
     message: str
+    told: Mapping[str, object] | None = None
+    form: str = ""
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,7 @@ def prepare(
     dropped = named(names, ~wanted)
     if dropped:
         notes.append(
-            Note("dropped", dropped, "left out by choice of KMO, Bartlett, components and reliability")
+            Note("dropped", dropped, "left out by choice of KMO, Bartlett, components and reliability", {})
         )
     return Prepared(table, names, dropped, varying, varying & wanted, pairwise), notes
 
@@ -101,9 +107,10 @@ def _missing(
     touched = named(names, any_row(np.isnan(table)) & wanted)
     if pairwise:
         message = f"{int(gaps.sum())} gaps; each correlation uses the answers that have both items (pairwise)"
-    else:
-        message = f"{len(table) - usable} of {len(table)} answers have gaps and are left out whole (listwise)"
-    return [Note("missing", touched, message)]
+        return [Note("missing", touched, message, {"gaps": int(gaps.sum())}, "pairwise")]
+    left = len(table) - usable
+    message = f"{left} of {len(table)} answers have gaps and are left out whole (listwise)"
+    return [Note("missing", touched, message, {"left": left, "all": len(table)})]
 
 
 def _varying(
@@ -125,7 +132,9 @@ def _varying(
         raise AllEqual("every item has the same score in all answers – nothing can be correlated", names)
     still = named(names, ~varying & ~hollow)
     if still:
-        notes.append(Note("constant_item", still, "the same score in all answers; kept in the means only"))
+        notes.append(
+            Note("constant_item", still, "the same score in all answers; kept in the means only", {})
+        )
     return varying
 
 
@@ -137,23 +146,27 @@ def flagged(table: NDArray[np.float64], seconds: ArrayLike | None) -> tuple[Flag
     notes = []
     if len(flags.straight):
         text = f"{_numbers(flags.straight)}: the same score on every item; look at them, nothing is deleted"
-        notes.append(Note("straight_line", (), text))
+        notes.append(Note("straight_line", (), text, _counted(flags.straight)))
     if flags.duplicates:
         groups = "; ".join(
             " = ".join(str(row + 1) for row in group[:SHOWN]) for group in flags.duplicates[:6]
         )
         more = " …" if len(flags.duplicates) > 6 else ""
         text = f"answers {groups}{more} agree in every score; look at them, nothing is deleted"
-        notes.append(Note("duplicate_answer", (), text))
+        notes.append(Note("duplicate_answer", (), text, {"groups": groups + more}))
     if flags.hasty is not None and len(flags.hasty):
         text = f"{_numbers(flags.hasty)}: less than 2 s an item; look at them, nothing is deleted"
-        notes.append(Note("too_fast", (), text))
+        notes.append(Note("too_fast", (), text, _counted(flags.hasty)))
     return flags, notes
 
 
 def _numbers(rows: NDArray[np.int64]) -> str:
+    return "{count} answers (number {rows})".format(**_counted(rows))
+
+
+def _counted(rows: NDArray[np.int64]) -> dict[str, object]:
     shown = ", ".join(str(row + 1) for row in rows[:SHOWN])
-    return f"{len(rows)} answers (number {shown}{' …' if len(rows) > SHOWN else ''})"
+    return {"count": len(rows), "rows": shown + (" …" if len(rows) > SHOWN else "")}
 
 
 def named(names: Sequence[str], flags: NDArray[np.bool_]) -> tuple[str, ...]:

@@ -16,9 +16,11 @@ from survey.api.schema import UUID_PATTERN
 from survey.errors import AnswerError, StoreError
 from survey.slug import SLUG
 
-__all__ = ["ExplainingRoute", "Receipt", "Refusal", "Submission", "refused"]
+__all__ = ["ExplainingRoute", "PlainRoute", "Receipt", "Refusal", "Submission", "refused"]
 
 RETRY_SECONDS = 5
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class Refusal(BaseModel):
@@ -81,8 +83,8 @@ def _explained(error: RequestValidationError) -> AnswerError:
 class ExplainingRoute(APIRoute):
     """A route that answers every foreseeable failure with a Refusal, so that any app can mount the router."""
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        handle = super().get_route_handler()
+    def get_route_handler(self) -> Handler:
+        handle = self.handler()
 
         async def explaining(request: Request) -> Response:
             try:
@@ -100,3 +102,17 @@ class ExplainingRoute(APIRoute):
                 return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})
 
         return explaining
+
+    def handler(self) -> Handler:
+        """What answers where nothing fails."""
+        return super().get_route_handler()
+
+
+class PlainRoute(ExplainingRoute):
+    """A route whose function takes the request alone and returns a response.
+
+    FastAPI would look for its parameters at each request, a third of what a submission costs apart from its commit.
+    """
+
+    def handler(self) -> Handler:
+        return self.endpoint

@@ -13,7 +13,7 @@ from survey.answer import Answer, submission_id
 from survey.api.body import read_json
 from survey.api.finding import Questionnaires, find_questionnaire
 from survey.api.limit import Limit
-from survey.api.replies import ExplainingRoute, Receipt, Refusal, Submission
+from survey.api.replies import ExplainingRoute, PlainRoute, Receipt, Refusal, Submission
 from survey.api.research import add_research
 from survey.api.schema import UUID_PATTERN, submission_schema
 from survey.errors import AnswerError
@@ -26,10 +26,14 @@ __all__ = ["described", "router"]
 BASE = "/api/v1"
 _REFUSALS: dict[int | str, dict[str, Any]] = {"4XX": {"model": Refusal}, 503: {"model": Refusal}}
 _TAKES_SUBMISSION = {
+    # The route's function takes the request alone, so its parameter is written down here.
+    "parameters": [
+        {"name": "key", "in": "path", "required": True, "schema": {"type": "string", "title": "Key"}}
+    ],
     "requestBody": {
         "required": True,
         "content": {"application/json": {"schema": Submission.model_json_schema()}},
-    }
+    },
 }
 
 Code = Annotated[
@@ -48,8 +52,9 @@ def router(store: Store, questionnaires: Questionnaires, limit: Limit | None = N
     limit: of new answers per address, the usual one when None.
     """
     routes = APIRouter(prefix=BASE, route_class=ExplainingRoute, tags=["survey"], responses=_REFUSALS)
-    _add_reading(routes, store, questionnaires)
+    # Routes are tried in their order, and most requests submit.
     _add_submitting(routes, store, questionnaires, limit or Limit())
+    _add_reading(routes, store, questionnaires)
     add_research(routes, store, questionnaires)
     return routes
 
@@ -95,18 +100,9 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
 def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires, limit: Limit) -> None:
     path = "/questionnaires/{key}/submissions"
 
-    @routes.post(
-        path,
-        status_code=201,
-        summary="Submit an answer",
-        openapi_extra=_TAKES_SUBMISSION,
-        responses={
-            201: {"model": Receipt, "description": "Committed"},
-            200: {"model": Receipt, "description": "It had been committed before"},
-        },
-    )
-    async def submit(key: str, request: Request) -> JSONResponse:
+    async def submit(request: Request) -> JSONResponse:
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
+        key = request.path_params["key"]
         data, unreadable = await _body(request)
         try:
             questionnaire = find_questionnaire(questionnaires, key)
@@ -124,6 +120,20 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
         receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
         return JSONResponse(body, 200 if receipt.replayed else 201)
+
+    routes.add_api_route(
+        path,
+        submit,
+        methods=["POST"],
+        status_code=201,
+        summary="Submit an answer",
+        openapi_extra=_TAKES_SUBMISSION,
+        responses={
+            201: {"model": Receipt, "description": "Committed"},
+            200: {"model": Receipt, "description": "It had been committed before"},
+        },
+        route_class_override=PlainRoute,
+    )
 
     @routes.delete(path + "/{submission}", status_code=204, summary="Take an answer back by its code")
     def withdraw(key: str, submission: Code) -> Response:

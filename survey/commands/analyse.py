@@ -96,6 +96,8 @@ def _run(args: argparse.Namespace) -> int:
         table = _demonstration(args)
     else:
         table = load_scores(args.file, where(args), args.content, args.questionnaire, args.version)
+    if table.beside:
+        print(f"survey: {args.questionnaire}: {table.beside}", file=sys.stderr)
     try:
         analysis = _analysed(table, args)
     except AnalysisError as error:

@@ -289,6 +289,7 @@ byId("withdraw").addEventListener("submit", async (event) => {
   try {
     const response = await fetch(`${settings.submissions}/${encodeURIComponent(code)}`, { method: "DELETE" });
     if (response.ok) told = "withdraw_done";
+    else if (response.status === 409) told = "withdraw_frozen";
     else if (response.status < 500) told = "withdraw_unknown";
   } catch { /* no connection: told so */ }
   byId("withdraw-state").textContent = words[told];

@@ -160,6 +160,7 @@ def _item(questionnaire: Questionnaire, item: Item, language: Language) -> str:
         f'<p class="ends" aria-hidden="true"><span>1 {first}</span><span>{len(anchors)} {last}</span></p>'
     )
     unseen = questionnaire.scale.not_seen
+    wide = _scale_kinds(anchors, unseen, language)
     if unseen:
         points += _point(item, "null", "–", unseen, language)
     hint, described = "", ""
@@ -169,10 +170,21 @@ def _item(questionnaire: Questionnaire, item: Item, language: Language) -> str:
     label = escape(item.label.in_language(language))
     return f"""<div class="item" id="item-{item.id}" data-item="{item.id}">
 <div class="asked"><span class="label" id="label-{item.id}">{label}</span>{hint}</div>
-<div class="answer"><div class="scale of-{len(anchors)}" role="radiogroup" aria-labelledby="label-{item.id}"{described}>
+<div class="answer"><div class="scale {wide}" role="radiogroup" aria-labelledby="label-{item.id}"{described}>
 {points}</div>
 <p class="wrong" id="wrong-{item.id}" hidden>{escape(words(language)["choose"])}</p></div></div>
 """
+
+
+def _scale_kinds(anchors: list[Text], unseen: Text | None, language: Language) -> str:
+    """How the scale is laid out on a phone: what does not fit into a cell of 44 px stands beneath the row."""
+    kinds = [f"of-{len(anchors)}"]
+    if any(len(anchor.in_language(language)) > 3 for anchor in anchors):
+        kinds.append("long")
+    words_apart = [] if unseen is None else unseen.in_language(language).split()
+    if len(anchors) > 5 or len(words_apart) > 2 or any(len(word) > 4 for word in words_apart):
+        kinds.append("apart")
+    return " ".join(kinds)
 
 
 def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) -> str:

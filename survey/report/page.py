@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
 
 from survey.analysis import Analysis
-from survey.analysis.naming import proposed_modules
 from survey.analysis.platform import Profile, profile
-from survey.questionnaire import LANGUAGES, Language, Questionnaire
+from survey.questionnaire import LANGUAGES, Language
 from survey.reading import ScoreTable
-from survey.report import figures
+from survey.report import figures, matrix
+from survey.report.document import document
+from survey.report.headline import component_names, key_figures
 from survey.report.paper import rows as paper_rows
-from survey.report.tables import Table, as_csv, as_html, tables_of
-from survey.report.words import Words, decimal, probability, whole
+from survey.report.platform import PAPER_FIGURES, Part, platform_table, written_by_module
+from survey.report.tables import MANY, Table, as_csv, as_html, tables_of
+from survey.report.words import Words, coefficient, decimal, probability, whole
 
 __all__ = ["Part", "Report", "build"]
 
 SCATTERED = 5  # items that a scatter matrix shows legibly
-
-
-@dataclass(frozen=True)
-class Part:
-    """A table of answers beside the analysed one, such as the other role's."""
-
-    table: ScoreTable
-    questionnaire: Questionnaire
 
 
 @dataclass(frozen=True)
@@ -50,7 +43,7 @@ def build(table: ScoreTable, analysis: Analysis, beside: Sequence[Part] = ()) ->
         bodies.append(article.html())
         tables |= article.csv
         drawings |= article.svg
-    return Report(_document(bodies, articles[1].title, articles[0].title), tables, drawings)
+    return Report(document(bodies, articles[1].title, articles[0].title), tables, drawings)
 
 
 class _Article:
@@ -63,20 +56,35 @@ class _Article:
         self.say = Words(language, table.questionnaire)
         asked = table.questionnaire
         self.title = self.say("title") if asked is None else asked.title.in_language(language)
-        self.names = _component_names(analysis, asked, self.say)
+        self.names = component_names(analysis, asked, self.say)
         self.tables = tables_of(analysis, self.say, self.names)
         self.csv: dict[str, str] = {}
         self.svg: dict[str, str] = {}
-        self._tables = self._figures = self._sections = 0
+        self._tables = self._figures = 0
+        self._sections: list[str] = []
 
     def html(self) -> str:
         """The <article>."""
-        parts = (
+        parts = [
             self._items, self._correlation, self._adequacy, self._retention, self._variance, self._loadings,
-            self._reliability, self._platform, self._suggestions, self._notes, self._paper, self._method,
-        )  # fmt: skip
+            self._reliability, self._suggestions, self._notes, self._paper, self._method,
+        ]  # fmt: skip
+        # A platform survey is read for its modules and dimensions (III.C), and for what visitors wrote of them.
+        if self.table.questionnaire is not None and self.table.questionnaire.dimensions:
+            parts.remove(self._suggestions)
+            parts[:0] = [self._platform, self._suggestions]
         body = "".join("".join(part()) for part in parts)
-        return f'<article lang="{self.say("language")}">{self._head()}{body}</article>'
+        return f'<article lang="{self.say("language")}">{self._head()}{self._contents()}{body}</article>'
+
+    def _contents(self) -> str:
+        links = "".join(
+            f'<li><a href="#{self._place(at)}">{escape(title)}</a></li>'
+            for at, title in enumerate(self._sections, 1)
+        )
+        return f'<nav aria-label="{self.say("contents")}"><ol>{links}</ol></nav>'
+
+    def _place(self, section: int) -> str:
+        return f"{self.say.language}-{section}"
 
     def _head(self) -> str:
         say, found = self.say, self.found
@@ -85,38 +93,21 @@ class _Article:
             banners += f'<p class="banner synthetic"><b>{escape(say("synthetic"))}</b></p>'
         for note in found.notes:
             if note.code in ("small_sample", "barely_enough_rows", "too_few_rows"):
-                text = escape(note.message)
                 banners += (
-                    f'<p class="banner"><b>{escape(say("fragile"))}</b> · <code>{note.code}</code> {text}</p>'
+                    f'<p class="banner"><b>{escape(say("fragile"))}</b>{escape(_opening(say.note(note)))}</p>'
                 )
         subtitle = say("subtitle", source=self.table.source, n=whole(found.n), items=len(found.items))
         return (
             f'<header><div class="top"><span>{escape(say("title"))}</span>'
             f'<button type="button" onclick="turn()">{escape(say("switch"))}</button></div>'
-            f'<h1>{escape(self.title)}</h1><p class="subtitle">{escape(subtitle)}</p></header>{banners}{self._key()}'
+            f'<h1>{escape(self.title)}</h1><p class="subtitle">{escape(subtitle)}</p></header>'
+            f"{banners}{key_figures(found, say)}"
         )
-
-    def _key(self) -> str:
-        say, found = self.say, self.found
-        shown = [(whole(found.n), say("answers")), (str(len(found.factored)), say("kept_items"))]
-        if found.adequacy is not None:
-            shown.append((decimal(found.adequacy.kmo), "KMO"))
-        if found.components is not None:
-            shown.append((str(found.components.kept), say("components_kept")))
-            share = 100 * found.components.rotated.sum() / len(found.factored)
-            shown.append((f"{share:.1f} %", say("explained")))
-        if found.reliability is not None:
-            shown.append((decimal(found.reliability.alpha), "Cronbach α"))
-        if found.omega is not None:
-            shown.append((decimal(found.omega.omega), "McDonald ω"))
-        cells = "".join(
-            f"<div><b>{escape(value)}</b><span>{escape(label)}</span></div>" for value, label in shown
-        )
-        return f'<div class="key">{cells}</div>'
 
     def _section(self, key: str) -> str:
-        self._sections += 1
-        return f"<h2><i>{self._sections}</i>{escape(self.say(key))}</h2>"
+        self._sections.append(title := self.say(key))
+        at = len(self._sections)
+        return f'<h2 id="{self._place(at)}"><i>{at}</i>{escape(title)}</h2>'
 
     def _table(self, table: Table | None, kind: str = "") -> str:
         if table is None:
@@ -133,8 +124,8 @@ class _Article:
         self._figures += 1
         self.svg[f"{key}.{self.say.language}.svg"] = svg
         return (
-            f'<figure class="drawing">{svg}<figcaption><b>{self.say("figure")} {self._figures}.</b> '
-            f"{escape(caption)}</figcaption></figure>"
+            f'<figure class="drawing"><div class="scroll">{svg}</div><figcaption>'
+            f"<b>{self.say('figure')} {self._figures}.</b> {escape(caption)}</figcaption></figure>"
         )
 
     def _name(self, key: str) -> str:
@@ -156,7 +147,7 @@ class _Article:
         yield self._drawing(
             "correlation",
             caption,
-            figures.correlations(found.r, found.p, labels, self._name("correlation"), caption),
+            matrix.correlations(found.r, found.p, labels, self._name("correlation"), caption),
         )
         if "pairs" not in self.tables:
             yield f"<p>{escape(say('no_pairs'))}</p>"
@@ -180,7 +171,7 @@ class _Article:
         test = found.bartlett
         grade = self.say(f"grade_{min(int(10 * found.kmo), 9) if found.kmo >= 0.5 else 0}")
         text = self.say(
-            "adequacy_text", kmo=decimal(found.kmo), grade=grade, df=test.df, chi2=decimal(test.chi2, 2),
+            "adequacy_text", kmo=coefficient(found.kmo), grade=grade, df=test.df, chi2=decimal(test.chi2, 2),
             p=probability(test.p),
         )  # fmt: skip
         yield f"<p>{escape(text)}</p>"
@@ -215,6 +206,8 @@ class _Article:
             yield f"<p>{escape(say('no_components'))}</p>"
             return
         yield self._table(self.tables["loadings"])
+        if found.kept > MANY:
+            yield f'<p class="small">{escape(" · ".join(self.names))}</p>'
         yield f'<p class="small">{escape(say("naming"))}</p>' if self.table.questionnaire else ""
         yield self._table(self.tables.get("component-correlations"))
         order, boot = found.sorted_items(), self.found.bootstrap
@@ -233,41 +226,44 @@ class _Article:
         yield self._section("section_reliability")
         interval = ""
         if boot is not None and boot.alpha is not None:
-            interval = f" [{decimal(boot.alpha[0])}, {decimal(boot.alpha[1])}]"
-        omega = "–" if self.found.omega is None else decimal(self.found.omega.omega)
-        text = self.say("reliability_text", alpha=decimal(found.alpha), interval=interval, omega=omega)
+            interval = f" [{coefficient(boot.alpha[0])}, {coefficient(boot.alpha[1])}]"
+        omega = "–" if self.found.omega is None else coefficient(self.found.omega.omega)
+        text = self.say("reliability_text", alpha=coefficient(found.alpha), interval=interval, omega=omega)
         yield f"<p>{escape(text)}</p>"
         yield self._table(self.tables.get("alpha"), "narrow")
 
     def _platform(self) -> Iterator[str]:
         asked = self.table.questionnaire
-        if asked is None or not asked.dimensions:
-            return
+        assert asked is not None
         yield self._section("section_platform")
-        for part in (Part(self.table, asked), *self.beside):
-            yield from self._role(part.table, part.questionnaire)
+        parts = (Part(self.table, asked), *self.beside)
+        # One scale for all roles, so that their charts can be compared.
+        seen = [profile(part.table.scores, *part.sides) for part in parts]
+        low = min(one.lowest for one in seen)
+        for part, one in zip(parts, seen, strict=True):
+            yield from self._role(part, one, low)
 
-    def _role(self, table: ScoreTable, asked: Questionnaire) -> Iterator[str]:
-        say, language = self.say, self.say.language
-        modules = [module.title.in_language(language) for module in asked.modules]
-        sides = [side.label.in_language(language) for side in asked.dimensions]
-        seen = profile(table.scores, len(modules), len(sides))
-        title = f"{asked.title.in_language(language)}, n = {len(table.scores)}"
+    def _role(self, part: Part, seen: Profile, low: float) -> Iterator[str]:
+        say, asked = self.say, part.questionnaire
+        modules = [module.title.in_language(say.language) for module in asked.modules]
+        sides = [side.label.in_language(say.language) for side in asked.dimensions]
+        title = f"{asked.title.in_language(say.language)}, n = {len(part.table.scores)}"
         caption = say("platform_figure", title=title)
+        if asked.id in PAPER_FIGURES:
+            caption += say("platform_paper", number=PAPER_FIGURES[asked.id])
         key = f"platform-{asked.id}"
-        svg = figures.lines(seen.mean, seen.half, modules, sides, asked.points, self._name(key), caption)
+        svg = figures.lines(
+            seen.mean, seen.half, modules, sides, (low, asked.points), self._name(key), caption
+        )
         yield self._drawing(key, caption, svg)
-        yield self._table(_platform_table(key, seen, modules, sides, say, title))
+        yield self._table(platform_table(key, seen, modules, sides, say, title))
 
     def _suggestions(self) -> Iterator[str]:
         if self.table.questionnaire is None:
             return
         yield self._section("section_suggestions")
-        written: dict[str, list[str]] = {}
-        for part in (self.table, *(part.table for part in self.beside)):
-            words = Words(self.say.language, part.questionnaire)
-            for module, text in part.suggestions:
-                written.setdefault(words.module(module), []).append(text)
+        tables = (self.table, *(part.table for part in self.beside))
+        written = written_by_module(tables, self.say.language)
         if not written:
             yield f"<p>{escape(self.say('no_suggestions'))}</p>"
         for module, texts in written.items():
@@ -298,64 +294,13 @@ class _Article:
         yield self._section("section_method")
         dropped = ", ".join(map(say.item, self.found.dropped)) or say("none")
         text = say(
-            "method_text", method=chosen.method, missing=chosen.missing, rotation=chosen.rotation,
-            factors=chosen.factors, dropped=dropped, seed=chosen.seed,
+            "method_text", method=say(f"way_{chosen.method}"), missing=say(f"way_{chosen.missing}"),
+            rotation=say(f"way_{chosen.rotation}"), dropped=dropped, seed=chosen.seed,
+            factors=chosen.factors if isinstance(chosen.factors, int) else say(f"way_{chosen.factors}"),
         )  # fmt: skip
         yield f"<p>{escape(text)}</p><p>{escape(say('method_script'))}</p>"
         yield f'<footer class="small">{escape(say("small_print"))}</footer>'
 
 
-def _platform_table(
-    key: str, seen: Profile, modules: Sequence[str], sides: Sequence[str], say: Words, title: str
-) -> Table:
-    cells = [
-        tuple(f"{decimal(mean, 2)} ± {decimal(half, 2)}" for mean, half in zip(*row, strict=True))
-        for row in zip(seen.mean, seen.half, strict=True)
-    ]
-    body = tuple((module, *row) for module, row in zip(modules, cells, strict=True))
-    return Table(key, say("platform_caption", title=title), (say("module"), *sides), body)
-
-
-def _component_names(analysis: Analysis, asked: Questionnaire | None, say: Words) -> list[str]:
-    if analysis.components is None:
-        return []
-    module_of = {}
-    if asked is not None:
-        module_of = {item.id: module.id for module in asked.modules for item in asked.items_of(module)}
-    proposed = proposed_modules(analysis.components, analysis.factored, module_of)
-    return [
-        say("factor_name", number=at + 1) if module is None else f"{at + 1} {say.module(module)}"
-        for at, module in enumerate(proposed)
-    ]
-
-
-def _document(bodies: Iterable[str], english: str, chinese: str) -> str:
-    style = (Path(__file__).parent / "style.css").read_text("utf-8")
-    # The only script: which of the two languages is shown. Without scripts both are, one after the other.
-    script = (
-        "const root=document.documentElement,both="
-        + f'{{en:"{_quoted(english)}",zh:"{_quoted(chinese)}"}};'
-        + "function show(l){root.className=l;root.lang=l==='zh'?'zh-Hans':'en';document.title=both[l]}"
-        + "function turn(){show(root.className==='zh'?'en':'zh');scrollTo(0,0)}"
-        + "show(location.hash==='#zh'||location.hash!=='#en'&&/^zh/i.test(navigator.language)?'zh':'en');"
-    )
-    return f"""<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{escape(english)}</title>
-<link rel="icon" href="data:,">
-<style>{style}</style>
-<script>{script}</script>
-</head>
-<body>
-{"".join(bodies)}
-</body>
-</html>
-"""
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
-    return escaped.replace("<", "\\u003c").replace("\u2028", " ").replace("\u2029", " ")
+def _opening(text: str) -> str:
+    return text[:1].upper() + text[1:]

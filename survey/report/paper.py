@@ -56,7 +56,7 @@ def _eigenvalue_rows(analysis: Analysis | None) -> list[Row]:
             "–" if mine is None else f"{mine.eigenvalues.sum():.3f}",
             ("相关矩阵的特征值之和等于项目数", "The eigenvalues of a correlation matrix sum to the number of items")),
         Row(("前三个特征值的方差 %", "% of variance of the first three eigenvalues"), _some(PERCENT),
-            f"{_some(100 * np.array(EIGENVALUES[:3]) / p, 2)}  (λ / {p})",
+            f"{_some(100 * np.array(EIGENVALUES[:3]) / p, 2)} (λ/{p})",
             "–" if mine is None else _some(100 * mine.eigenvalues[:kept] / len(mine.eigenvalues), 2),
             ("两列出自不同的运算：若百分比为真，则 λ₃ = .9335 < 1，Kaiser 只保留两个",
              "The two columns come from different runs: if the % is right, λ₃ = .9335 < 1 and Kaiser keeps two")),

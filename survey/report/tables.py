@@ -11,16 +11,21 @@ from html import escape
 from survey.analysis import Analysis
 from survey.analysis.components import kaiser_count
 from survey.export.cells import safe_cell
-from survey.report.words import Words, decimal
+from survey.report.words import Words, coefficient, decimal
 
-__all__ = ["Table", "as_csv", "as_html", "tables_of"]
+__all__ = ["MANY", "Table", "as_csv", "as_html", "tables_of"]
+
+
+MANY = 4  # components, beyond which the table has room for their loadings alone
 
 
 @dataclass(frozen=True)
 class Table:
     """key: name of the CSV file. head: column titles; body: rows of cells, the first `left` are set flush left.
 
-    strong: cells (row, column) that are set bold. groups: (title, columns) above the head.
+    words: further columns
+    that hold words, flush left too. strong: cells (row, column) that are set bold. groups: (title, columns) above
+    the head.
     """
 
     key: str
@@ -28,6 +33,7 @@ class Table:
     head: tuple[str, ...]
     body: tuple[tuple[str, ...], ...]
     left: int = 1
+    words: frozenset[int] = frozenset()
     strong: frozenset[tuple[int, int]] = frozenset()
     groups: tuple[tuple[str, int], ...] = ()
     rules: frozenset[int] = field(default_factory=frozenset)
@@ -61,7 +67,7 @@ def as_html(table: Table, number: str, link: str) -> str:
             f'<th colspan="{span}"><span>{escape(text)}</span></th>' for text, span in table.groups
         )
         groups = f'<tr class="groups">{cells}</tr>'
-    head = "".join(_th(text, at < table.left) for at, text in enumerate(table.head))
+    head = "".join(_th(text, at < table.left or at in table.words) for at, text in enumerate(table.head))
     rows = "".join(
         f"<tr{' class=rule' if at in table.rules else ''}>"
         + "".join(_td(table, at, column, text) for column, text in enumerate(row))
@@ -80,7 +86,7 @@ def _th(text: str, left: bool) -> str:
 
 def _td(table: Table, row: int, column: int, text: str) -> str:
     kinds = [
-        *(["left"] if column < table.left else []),
+        *(["left"] if column < table.left or column in table.words else []),
         *(["strong"] if (row, column) in table.strong else []),
     ]
     kind = f' class="{" ".join(kinds)}"' if kinds else ""
@@ -92,7 +98,7 @@ def tables_of(analysis: Analysis, say: Words, names: Sequence[str]) -> dict[str,
     made = [
         _items(analysis, say), _pairs(analysis, say), _adequacy(analysis, say), _retention(analysis, say),
         _variance(analysis, say), _loadings(analysis, say, names), _phi(analysis, say, names),
-        _reliability(analysis, say),        _notes(analysis, say),
+        _reliability(analysis, say), _notes(analysis, say),
     ]  # fmt: skip
     return {table.key: table for table in made if table is not None and table.body}
 
@@ -130,16 +136,22 @@ def _pairs(analysis: Analysis, say: Words) -> Table:
         pair = " ~ ".join(say.item(item) for item in note.items)
         p = analysis.correlation.p[i, j]
         rows.append(
-            (pair, decimal(analysis.correlation.r[i, j]), "< .001" if p < 0.001 else decimal(p), choice)
+            (
+                pair,
+                coefficient(analysis.correlation.r[i, j]),
+                "< .001" if p < 0.001 else coefficient(p),
+                choice,
+            )
         )
-    return Table("pairs", say("pairs_caption"), (say("pair"), "r", "p", say("choice")), tuple(rows))
+    head = (say("pair"), "r", "p", say("choice"))
+    return Table("pairs", say("pairs_caption"), head, tuple(rows), words=frozenset({3}))
 
 
 def _adequacy(analysis: Analysis, say: Words) -> Table | None:
     if analysis.adequacy is None:
         return None
     values = zip(analysis.factored, analysis.adequacy.kmo_per_item, strict=True)
-    rows = tuple((say.item(item), decimal(value)) for item, value in values)
+    rows = tuple((say.item(item), coefficient(value)) for item, value in values)
     return Table("kmo", say("adequacy_caption"), (say("item"), "KMO"), rows)
 
 
@@ -191,19 +203,21 @@ def _loadings(analysis: Analysis, say: Words, names: Sequence[str]) -> Table | N
     for row, item in enumerate(found.sorted_items()):
         cells = [say.item(analysis.factored[item])]
         for column in range(found.kept):
-            text = decimal(found.loadings[item, column])
-            if boot is not None and boot.loadings is not None:
+            text = coefficient(found.loadings[item, column])
+            if boot is not None and boot.loadings is not None and found.kept <= MANY:
                 low, high = boot.loadings[:, item, column]
-                text += f" [{decimal(low, 2)}, {decimal(high, 2)}]"
+                text += f" [{coefficient(low, 2)}, {coefficient(high, 2)}]"
             cells.append(text)
-        rows.append((*cells, decimal(found.communalities[item])))
+        rows.append((*cells, coefficient(found.communalities[item])))
         strong.add((row, 1 + int(home[item])))
         if home[item] != last and row:
             rules.add(row)
         last = home[item]
-    head = (say("item"), *names, say("communality"))
+    # Many names beside each other do not fit; the page lists them beneath.
+    titles = names if found.kept <= MANY else [str(at + 1) for at in range(found.kept)]
+    head = (say("item"), *titles, say("communality"))
     caption = say("loadings_caption", rotation=say(f"rotation_{found.rotation}"))
-    if boot is None or boot.loadings is None:
+    if boot is None or boot.loadings is None or found.kept > MANY:  # the figure has the intervals of many
         caption = caption.split("方括号")[0].split(" In brackets")[0]
     return Table("loadings", caption, head, tuple(rows), strong=frozenset(strong), rules=frozenset(rules))
 
@@ -213,7 +227,8 @@ def _phi(analysis: Analysis, say: Words, names: Sequence[str]) -> Table | None:
     if found is None or found.rotation != "oblimin":
         return None
     rows = tuple(
-        (name, *(decimal(value) for value in row)) for name, row in zip(names, found.correlation, strict=True)
+        (name, *(coefficient(value) for value in row))
+        for name, row in zip(names, found.correlation, strict=True)
     )
     return Table("component-correlations", say("phi_caption"), ("", *names), rows)
 
@@ -223,7 +238,7 @@ def _reliability(analysis: Analysis, say: Words) -> Table | None:
     if found is None or found.if_deleted is None:
         return None
     rows = tuple(
-        (say.item(item), decimal(value))
+        (say.item(item), coefficient(value))
         for item, value in zip(analysis.factored, found.if_deleted, strict=True)
     )
     return Table("alpha", say("reliability_caption"), (say("item"), say("without")), rows)

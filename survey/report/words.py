@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from functools import lru_cache
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 from survey.analysis.preparation import Note
 from survey.questionnaire import Language, Questionnaire
 
-__all__ = ["Words", "decimal", "probability", "whole"]
+__all__ = ["Words", "coefficient", "decimal", "probability", "whole"]
 
 
 @lru_cache(maxsize=1)
@@ -51,17 +52,27 @@ class Words:
         return key if title is None else title.in_language(self.language)
 
     def note(self, note: Note) -> str:
-        """The note's message, in Chinese after what its code means."""
-        meaning = self._words.get(f"note_{note.code}", "")
-        return f"{meaning}（{note.message}）" if meaning else note.message
+        """What a note says; of an error in Chinese its kind, and its own words in brackets."""
+        if self.language == "en":
+            return note.message
+        sentences = _texts()["notes"]
+        if note.told is None:
+            kind = sentences.get(f"{note.code}_error") or sentences[note.code]
+            return f"{kind.rstrip('。')}（{note.message}）"
+        return sentences["_".join(filter(None, (note.code, note.form)))].format(**note.told)
 
     def either(self, texts: tuple[str, str]) -> str:
         """Of (zh, en) the one that is spoken."""
         return texts[0] if self.language == "zh" else texts[1]
 
 
+def coefficient(value: float | None, digits: int = 3) -> str:
+    """−.032 as journals print what cannot exceed 1: a true minus, and no zero before the point."""
+    return re.sub(r"^(−?)0\.", r"\1.", decimal(value, digits))
+
+
 def decimal(value: float | None, digits: int = 3) -> str:
-    """−.032 as journals print it: a true minus, no zero before the point where the figure cannot reach 1."""
+    """A figure with a true minus, "–" where there is none."""
     if value is None or not np.isfinite(value):
         return "–"
     return f"{value:.{digits}f}".replace("-", "−")

@@ -31,6 +31,7 @@ from survey import read_questionnaire  # noqa: E402
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 URL = "/api/v1/questionnaires/garment/submissions"
+LEAST_PER_SECOND, MOST_P99_MS = 1000, 100
 PARTS = ("load", "order", "kills", "full", "conformity")
 
 
@@ -77,7 +78,7 @@ def bare_syncs(work: Path, seconds: float) -> float:
 def order(work: Path, number: int = 40) -> dict:
     """What strace sees: between one receipt and the next a sync of the log has returned."""
     if shutil.which("strace") is None:
-        return {"strace": None}
+        return {"strace": None, "receipts": 0, "sent": 0}
     trace = work / "trace"
     watched = "trace=fsync,fdatasync,write,writev,sendto,sendmsg,send"
     service = Service(
@@ -190,6 +191,14 @@ def conformity(work: Path, examples: int) -> dict:
 def failed(found: dict) -> list[str]:
     """What must not be."""
     bad = []
+    if "load" in found and found["load"]["per_second"] < LEAST_PER_SECOND:
+        bad.append(f"load: {found['load']['per_second']:.0f} submissions a second, not {LEAST_PER_SECOND}")
+    if "load" in found and found["load"]["p99_ms"] > MOST_P99_MS:
+        bad.append(f"load: p99 {found['load']['p99_ms']:.0f} ms, not {MOST_P99_MS}")
+    if "load" in found and set(found["load"]["codes"]) != {"201"}:
+        bad.append(f"load: codes {found['load']['codes']}")
+    if found.get("order", {}).get("receipts") != found.get("order", {}).get("sent"):
+        bad.append(f"order: {found['order']['receipts']} receipts of {found['order']['sent']}")
     for part, keys in (("load", ("partial",)), ("order", ("before_the_sync",)), ("full", ("lost",))):
         bad += [f"{part}: {key} {found[part][key]}" for key in keys if found.get(part, {}).get(key)]
     if "kills" in found:
@@ -208,7 +217,7 @@ def failed(found: dict) -> list[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="survey bench --", description=__doc__)
+    parser = argparse.ArgumentParser(prog="survey bench --only service --", description=__doc__)
     parser.add_argument("--parts", default=",".join(PARTS), help="comma-separated: " + ", ".join(PARTS))
     parser.add_argument("--clients", type=int, default=16)
     parser.add_argument("--seconds", type=float, default=8.0, help="of load")

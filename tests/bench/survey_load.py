@@ -27,7 +27,8 @@ class Client(asyncio.Protocol):
         self.body = json.dumps(asked["body"])
         self.heard = b""
 
-    def connection_made(self, transport) -> None:
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
         self.transport = transport
         self.send()
 

@@ -28,7 +28,7 @@ def test_an_answer_is_committed_before_it_is_acknowledged(hall):
     body = submission(hall.garment, exhibit="pibo", suggestions={"fabric": "  更亮一些\r\n谢谢 "})
     reply = hall.client.post(hall.url, json=body)
     assert reply.status_code == 201
-    assert reply.json() == {"id": body["id"], "questionnaire": "garment", "version": 1}
+    assert reply.json() == {"id": body["id"], "questionnaire": "garment", "version": hall.garment.version}
     (row,) = hall.store.rows(hall.garment)
     assert row.answer.id == body["id"]
     assert dict(row.answer.scores) == body["scores"]

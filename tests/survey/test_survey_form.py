@@ -148,3 +148,20 @@ def test_an_empty_folder_shows_an_empty_list(tmp_path):
     with TestClient(app) as client:
         assert words("zh")["list_empty"] in client.get("/questionnaires?lang=zh").text
     mounted.close()
+
+
+def test_a_scale_s_layout_on_a_phone_follows_its_words():
+    garment = survey.read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
+    kinds = {language: set(re.findall(r'class="scale ([^"]+)"', form_page(garment, language, None)))
+             for language in ("zh", "en")}  # fmt: skip
+    assert kinds == {"zh": {"of-5"}, "en": {"of-5 long"}}
+    seven = {"anchors": [{"zh": "好", "en": "ok"}] * 7, "not_seen": {"zh": "无", "en": "no"}}
+    scaled = survey.Questionnaire.model_validate(garment.document() | {"scale": seven})
+    assert 'class="scale of-7 apart"' in form_page(scaled, "en", None)
+
+
+def test_the_consent_tells_until_when_an_answer_can_be_taken_back():
+    for path in (ASSETS / "questionnaires").glob("*.toml"):
+        consent = survey.read_questionnaire(path).consent
+        assert "until" in consent.en
+        assert "之前" in consent.zh

@@ -12,6 +12,7 @@ from survey_samples import ASSETS, given, submission
 
 import survey
 import survey.content
+import survey.mounting
 from survey import QuestionnaireError, content_folder, read_questionnaire
 from survey.cli import main
 
@@ -33,7 +34,8 @@ label = { zh = "一", en = "One" }
 
 
 @pytest.fixture
-def content(tmp_path):
+def content(tmp_path, monkeypatch):
+    monkeypatch.setattr(survey.mounting, "PATIENCE", 0.0)  # edits show at once
     shutil.copytree(ASSETS / "questionnaires", tmp_path / "content" / "questionnaires")
     return tmp_path / "content"
 
@@ -128,6 +130,19 @@ def test_with_a_list_for_problems_the_good_ones_are_served(content, tmp_path):
     assert [problem.file for problem in problems] == ["questionnaires/small.toml"]
     assert problems[0].as_json()["key"] == "module.0.item.0.colour"
     mounted.close()
+
+
+def test_a_look_at_the_folder_is_good_for_as_long_as_patience_says(content, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(survey.content.time, "monotonic", lambda: now[0])
+    write(content, SMALL)
+    folder = survey.QuestionnaireFolder(content, patience=0.2)
+    write(content, SMALL.replace('"Small"', '"Smaller"'))
+    assert folder["small"].title.en == "Small"
+    now[0] += 0.25
+    assert folder["small"].title.en == "Smaller"
+    write(content, SMALL.replace("version = 1", "version = -1"))
+    assert folder.problems  # whoever asks what is wrong now is told of now
 
 
 def test_an_edit_shows_without_a_restart_and_a_bad_one_keeps_the_last_good(content, tmp_path):

@@ -22,6 +22,7 @@ from survey.content import read_questionnaire
 from survey.reading import ScoreTable
 from survey.report import Part, build, write_report
 from survey.report.paper import rows
+from survey.report.words import Words, coefficient
 
 STATIC = ("static_overall", "static_drape")
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
@@ -198,3 +199,49 @@ def test_the_form_s_settings_cannot_end_their_script_element():
     # The element ends where its JSON does, not inside the exhibit's name.
     assert json.loads(settings)["exhibit"] == "</script><img src=x>"
     assert "<" not in settings
+
+
+def test_every_note_of_the_analysis_can_be_said_in_chinese():
+    texts = tomllib.loads((Path(survey.report.__file__).parent / "texts.toml").read_text("utf-8"))["notes"]
+    folder = Path(survey.report.__file__).parents[1] / "analysis"
+    code = "".join(path.read_text("utf-8") for path in folder.glob("*.py"))
+    made = set(re.findall(r'Note\(\s*"(\w+)"', code)) | set(re.findall(r'^    code = "(\w+)"', code, re.M))
+    assert len(made) > 18
+    assert made - set(texts) == set()
+
+
+def test_the_chinese_report_says_its_notes_in_chinese():
+    rng = np.random.default_rng(4)
+    scores = np.clip(np.rint(3 + rng.normal(size=(40, 12)) + rng.normal(size=(40, 1))), 1, 5)
+    scores[:, 3] = scores[:, 4]
+    scores[2] = 5
+    scores[7] = scores[9]
+    scores[rng.random(scores.shape) < 0.02] = np.nan
+    for settings in (
+        Settings(bootstrap=50),
+        Settings(bootstrap=50, missing="pairwise"),
+        Settings(drop=(GARMENT.item_ids[3],), draws=0),
+    ):
+        found = analyse(scores, GARMENT.item_ids, settings=settings)
+        say = Words("zh", GARMENT)
+        for note in found.notes:
+            told = say.note(note)
+            assert "{" not in told
+            if note.told is not None:
+                # Names of methods and figures alone are Latin; no sentence of the English is left over.
+                assert note.message not in told
+                assert re.search("[\u4e00-\u9fff]", told)
+            assert Words("en", GARMENT).note(note) == note.message
+
+
+def test_coefficients_are_printed_as_journals_print_them():
+    printed = [coefficient(x) for x in (0.944, -0.0321, 1.0, -1.03, 0.0, None, float("nan"))]
+    assert printed == [".944", "−.032", "1.000", "−1.030", ".000", "–", "–"]
+
+
+def test_many_components_keep_their_table_within_the_page():
+    table = platform(USER, 60, 1)
+    report = build(table, analyse(table.scores, table.items, settings=Settings(factors=8, bootstrap=40)))
+    head, first = report.tables["loadings.en.csv"].removeprefix("\ufeff").splitlines()[:2]
+    assert head == "Item,1,2,3,4,5,6,7,8,Communality"
+    assert "[" not in first

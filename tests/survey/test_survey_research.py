@@ -73,7 +73,7 @@ def test_each_format_comes_with_its_type_its_name_and_every_answer(hall, researc
     kind_of, read = READERS[kind]
     assert reply.status_code == 200
     assert reply.headers["content-type"].startswith(kind_of)
-    assert 'filename="garment-v1' in reply.headers["content-disposition"]
+    assert f'filename="garment-v{hall.garment.version}' in reply.headers["content-disposition"]
     assert reply.headers["cache-control"] == "no-store"
     assert len(read(reply.content)) == 12
 
@@ -87,9 +87,10 @@ def test_spss_and_the_r_script_come_over_http_too(hall, researcher, tmp_path):
     _, meta = pyreadstat.read_sav(tmp_path / "a.sav")
     assert meta.number_rows == 12
     script = hall.client.get(f"{BASE}/garment/export/r", headers=researcher)
-    assert 'filename="garment-v1.R"' in script.headers["content-disposition"]
+    stem = f"garment-v{hall.garment.version}"
+    assert f'filename="{stem}.R"' in script.headers["content-disposition"]
     # The script reads the file that the CSV route names.
-    assert 'else "garment-v1.csv"' in script.text
+    assert f'else "{stem}.csv"' in script.text
 
 
 def test_the_analysis_over_http_is_that_of_the_command(hall, researcher, capsys):
@@ -208,15 +209,19 @@ def test_an_earlier_version_is_read_after_the_file_was_raised_and_removed(hall, 
     fill(hall, twelve(4))
     folder = hall.mounted.questionnaires
     path = folder.folder / "garment.toml"
-    raised = hall.garment.model_copy(update={"version": 2})
+    now = hall.garment.version
+    raised = hall.garment.model_copy(update={"version": now + 1})
     monkeypatch.setitem(folder._good, path, raised)
     url = f"{BASE}/garment/rows"
     assert hall.client.get(url, headers=researcher).json() == []
-    assert len(hall.client.get(f"{url}?version=1", headers=researcher).json()) == 4
-    assert hall.client.get(f"{url}?version=3", headers=researcher).json()["remedy"] == "choose one of 1"
+    assert len(hall.client.get(f"{url}?version={now}", headers=researcher).json()) == 4
+    assert (
+        hall.client.get(f"{url}?version={now + 9}", headers=researcher).json()["remedy"]
+        == f"choose one of {now}"
+    )
     monkeypatch.delitem(folder._good, path)
     assert hall.client.get(url, headers=researcher).status_code == 404
-    assert len(hall.client.get(f"{url}?version=1", headers=researcher).json()) == 4
+    assert len(hall.client.get(f"{url}?version={now}", headers=researcher).json()) == 4
 
 
 def test_the_service_starts_without_the_statistics():

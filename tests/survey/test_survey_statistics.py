@@ -162,12 +162,18 @@ def test_samples_in_which_an_item_stands_still_are_counted_out():
     assert found.alpha is not None
 
 
-def test_gaps_count_in_the_means_only():
-    table = likert_sample(60, 8)
-    table[rng(1).random(table.shape) < 0.1] = np.nan
-    found = bootstrap(table, np.ones(10, bool), None, rng(2), draws=300)
-    assert found.alpha is None
-    assert np.isfinite(found.means).all()
+def test_the_intervals_of_the_means_rest_on_all_scores_and_those_of_alpha_on_whole_answers():
+    table = likert_sample(300, 8)
+    # Whoever skips an item gave it a low score: the mean of the whole answers lies elsewhere.
+    table[:150, 3] = 1
+    table[:150, 7] = np.nan
+    found = bootstrap(table, np.ones(10, bool), None, rng(2), draws=500)
+    for item in range(10):
+        assert found.means[0, item] < np.nanmean(table[:, item]) < found.means[1, item]
+    assert found.means[1, 3] < table[150:, 3].mean()
+    low, high = given(found.alpha)
+    assert low < reliability(table[150:]).alpha < high
+    assert bootstrap(table, np.zeros(10, bool), None, rng(2), draws=50).alpha is None
     table[:, 4] = np.nan
     assert np.isnan(bootstrap(table, np.ones(10, bool), None, rng(2), draws=50).means[:, 4]).all()
 
