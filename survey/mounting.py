@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from survey.content import QuestionnaireFolder
-from survey.errors import Problem, QuestionnaireError
+from survey.errors import Problem, QuestionnaireError, StoreError
 from survey.published import Published
 from survey.store import Store
 
@@ -30,8 +30,13 @@ class Mounted:
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is wrong with the questionnaires now: faulty files, versions changed after their first answer."""
-        return (*self.questionnaires.problems, *_changed(self.store, self.questionnaires))
+        """What is wrong now: faulty files, versions changed after their first answer, a store that is lost."""
+        try:
+            changed = _changed(self.store, self.questionnaires)
+        except StoreError as error:
+            what, _, fix = error.problem.partition(" – ")
+            changed = (Problem(error.place, "", what, fix or "see that the database is there"),)
+        return (*self.questionnaires.problems, *changed)
 
     def close(self) -> None:
         self.store.close()

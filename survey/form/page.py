@@ -9,12 +9,13 @@ from collections.abc import Iterable
 from functools import lru_cache
 from html import escape
 from pathlib import Path
+from typing import Literal
 
 from survey.answer import TEXT_LIMIT
 from survey.form.clip import Clip, clip_html
 from survey.questionnaire import Item, Language, Module, Questionnaire, Text
 
-__all__ = ["ASSETS", "form_page", "list_page", "missing_page", "words"]
+__all__ = ["ASSETS", "form_page", "list_page", "notice_page", "words"]
 
 FOLDER = Path(__file__).parent
 ASSETS = {"form.css": "text/css; charset=utf-8", "form.js": "text/javascript; charset=utf-8"}
@@ -87,15 +88,13 @@ def list_page(questionnaires: Iterable[Questionnaire], language: Language) -> st
     return _page(say["list_title"], language, head + listed, script=False, base="./")
 
 
-def missing_page(language: Language) -> str:
-    """What a wrong address shows."""
+def notice_page(kind: Literal["missing", "unavailable"], language: Language) -> str:
+    """What a wrong address shows, or any while the store does not answer."""
     say = words(language)
-    return _page(
-        say["missing_title"],
-        language,
-        _header(say["missing_title"], say["missing_text"], language, None),
-        script=False,
-    )
+    titles = {"missing": say["missing_title"], "unavailable": say["unavailable_title"]}
+    texts = {"missing": say["missing_text"], "unavailable": say["unavailable_text"]}
+    head = _header(titles[kind], texts[kind], language, None)
+    return _page(titles[kind], language, head, script=False)
 
 
 def _page(title: str, language: Language, body: str, *, script: bool, base: str = "../") -> str:

@@ -165,3 +165,23 @@ def test_the_consent_tells_until_when_an_answer_can_be_taken_back():
         consent = survey.read_questionnaire(path).consent
         assert "until" in consent.en
         assert "之前" in consent.zh
+
+
+@pytest.mark.parametrize("database", ["sqlite"], indirect=True)
+def test_while_the_database_is_away_every_door_says_so_and_opens_again_afterwards(hall):
+    file, away = hall.data / "survey.sqlite", hall.data / "away"
+    file.rename(away)
+    for address in ("/questionnaires", PAGE):
+        reply = hall.client.get(f"{address}?lang=en")
+        assert reply.status_code == 503
+        assert "not available just now" in reply.text
+        assert int(reply.headers["retry-after"]) > 0
+        assert str(file) not in reply.text  # where it lies is for the operator
+    assert hall.client.get("/api/v1/questionnaires").status_code == 503
+    (problem,) = hall.mounted.problems
+    assert problem.file == str(file)
+    assert "is gone" in problem.what
+    assert not file.exists()
+    away.rename(file)
+    assert hall.client.get(PAGE).status_code == 200
+    assert hall.mounted.problems == ()
