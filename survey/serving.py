@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -55,5 +56,9 @@ def serve(app: FastAPI, host: str, port: int) -> None:
             raise SurveyError(
                 f"{host}:{port}: cannot listen ({error.strerror}) – choose another --port"
             ) from None
+    # What stands now stands until the end: the collector need not walk through it again and again while it holds
+    # everybody up.
+    gc.collect()
+    gc.freeze()
     # No access log: it would keep the visitors' addresses, which we promise not to.
     uvicorn.run(app, host=host, port=port, log_level="warning", access_log=False)

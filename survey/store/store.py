@@ -219,6 +219,8 @@ def explained(place: str) -> Iterator[None]:
     """Turn the database's errors into a StoreError of one line that names the place."""
     try:
         yield
+    except StoreError as error:
+        raise StoreError(error.problem, error.place or place) from None
     except (DataError, IntegrityError):
         raise  # a row that cannot be, not a database that does not answer
     except SQLAlchemyError as error:

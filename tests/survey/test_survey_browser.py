@@ -94,6 +94,20 @@ def test_a_visitor_answers_and_receives_the_code(visit, site):
     assert stored(site) == []
 
 
+def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    site.store.freeze("garment")
+    page.locator("details.withdraw summary").click()
+    page.locator("#withdraw-code").fill(page.locator("#code").inner_text())
+    page.locator("#withdraw button").click()
+    page.get_by_text("can no longer be withdrawn").wait_for()
+    assert len(stored(site)) == 1
+
+
 def test_what_is_lacking_is_listed_and_reached_by_keyboard_alone(visit, site):
     page = visit("/questionnaires/platform-user?lang=zh")
     page.locator("#send").focus()

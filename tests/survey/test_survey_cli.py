@@ -17,6 +17,7 @@ from survey_samples import ASSETS, paper_sample, submission
 import survey
 from survey.analysis.summary import KEYS
 from survey.cli import main
+from survey.reading import read_scores
 
 HERE = ["--content", str(ASSETS)]
 
@@ -321,3 +322,11 @@ def test_seconds_in_a_table_flag_haste(tmp_path, capsys):
     assert "seconds" not in found["items"]
     (note,) = [note for note in found["warnings"] if note["code"] == "too_fast"]
     assert "number 5)" in note["message"]
+
+
+@pytest.mark.parametrize("gap", ["", "NA", ".", " NA "])
+def test_gaps_are_written_as_spreadsheets_r_and_spss_write_them(tmp_path, gap):
+    (tmp_path / "a.csv").write_text(f"a,b\n1,2\n{gap},3\n2,4\n", "utf-8")
+    table = read_scores(tmp_path / "a.csv")
+    assert table.items == ("a", "b")
+    assert np.isnan(table.scores).tolist() == [[False, False], [True, False], [False, False]]

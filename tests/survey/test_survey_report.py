@@ -22,6 +22,7 @@ from survey.content import read_questionnaire
 from survey.reading import ScoreTable
 from survey.report import Part, build, write_report
 from survey.report.paper import rows
+from survey.report.tables import Table, as_csv
 from survey.report.words import Words, coefficient
 
 STATIC = ("static_overall", "static_drape")
@@ -245,3 +246,8 @@ def test_many_components_keep_their_table_within_the_page():
     head, first = report.tables["loadings.en.csv"].removeprefix("\ufeff").splitlines()[:2]
     assert head == "Item,1,2,3,4,5,6,7,8,Communality"
     assert "[" not in first
+
+
+def test_a_table_s_figures_are_numbers_to_a_spreadsheet_and_its_texts_run_nothing():
+    table = Table("x", "", ("a", "b"), (("−.032", "=1+1"), (".944", "−x")))
+    assert as_csv(table).splitlines()[1:] == ["-.032,'=1+1", ".944,−x"]

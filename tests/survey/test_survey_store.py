@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sqlite3
+import threading
 from contextlib import closing
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
-from survey.store import Store, schema
+from survey.store import Receipt, Store, schema
+from survey.store.writer import Writer
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 
@@ -68,8 +70,9 @@ def test_a_store_of_a_later_version_is_refused_and_left_alone(tmp_path, store):
     with closing(sqlite3.connect(tmp_path / "survey.sqlite")) as database:
         database.execute("UPDATE alembic_version SET version_num = '9999'")
         database.commit()
-    with pytest.raises(StoreError, match="9999.*newer"):
+    with pytest.raises(StoreError, match="9999.*newer") as refused:
         Store(tmp_path)
+    assert str(refused.value).startswith(f"{tmp_path / 'survey.sqlite'}: ")
     with closing(sqlite3.connect(tmp_path / "survey.sqlite")) as database:
         assert database.execute("SELECT version_num FROM alembic_version").fetchall() == [("9999",)]
 
@@ -188,3 +191,55 @@ def test_a_full_database_refuses_and_takes_answers_again_when_there_is_room(stor
     for answer, _ in refused:
         store.submit(GARMENT, answer)
     assert {row.answer for row in store.rows(GARMENT)} == {kept, *taken, *(answer for answer, _ in refused)}
+
+
+@pytest.mark.parametrize("trouble", ["no database", "a folder", "no room for a folder"])
+def test_a_store_that_cannot_be_opened_names_where_it_is(tmp_path, trouble):
+    place = tmp_path / "data"
+    file = place / "survey.sqlite"
+    if trouble == "no room for a folder":
+        place.write_text("a file")
+        file = place
+    else:
+        place.mkdir()
+        file.mkdir() if trouble == "a folder" else file.write_bytes(b"no database at all " * 100)
+    with pytest.raises(StoreError, match=" – ") as refused:
+        Store(place)
+    assert str(refused.value).startswith(f"{file}: ")
+    assert "\n" not in str(refused.value)
+
+
+def test_an_answer_written_into_a_file_that_went_away_meanwhile_is_not_acknowledged(store, tmp_path):
+    file, away = tmp_path / "survey.sqlite", tmp_path / "away.sqlite"
+    with pytest.raises(StoreError, match="gone"), store._write() as connection:
+        os.replace(file, away)
+        connection.exec_driver_sql("DELETE FROM token")
+    os.replace(away, file)
+    store.submit(GARMENT, an_answer())
+
+
+def test_one_entry_that_cannot_be_costs_the_others_nothing_and_the_writer_goes_on():
+    gate, sizes = threading.Event(), []
+    poisoned = an_answer()
+
+    def commit(entries):
+        gate.wait(10)
+        sizes.append(len(entries))
+        if any(answer is poisoned for _, answer in entries):
+            raise ValueError("no database has a row for this")
+        return [Receipt(answer.id, replayed=False) for _, answer in entries]
+
+    writer = Writer(commit)
+    answers = [an_answer(), an_answer(), poisoned, an_answer()]
+    futures = [writer.put((GARMENT, answer)) for answer in answers]
+    gate.set()
+    for answer, future in zip(answers, futures, strict=True):
+        if answer is poisoned:
+            with pytest.raises(ValueError, match="no database"):
+                future.result(10)
+        else:
+            assert future.result(10).id == answer.id
+    late = an_answer()
+    assert writer.put((GARMENT, late)).result(10).id == late.id
+    writer.close()
+    assert max(sizes) > 1
