@@ -12,9 +12,9 @@ const CHOSEN = "hall.quality", FOUND = "hall.quality.found";
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 const SETTINGS = {
-  low: { anisotropy: 1, reflections: false },
-  medium: { anisotropy: 4, reflections: false },
-  high: { anisotropy: 8, reflections: true },
+  low: { anisotropy: 1, blend: false, reflections: false },
+  medium: { anisotropy: 4, blend: true, reflections: false },
+  high: { anisotropy: 8, blend: true, reflections: true },
 };
 
 /** Pixels drawn per CSS pixel, of a screen with `ratio` of them. */
@@ -73,13 +73,15 @@ export function createQuality(onChange = () => {}) {
     /** Ahead of every picture: viser's client and a changed content bring new meshes and put old settings back. */
     frame(now) {
       watch(now);
-      const { anisotropy, reflections } = SETTINGS[level()];
+      const { anisotropy, blend, reflections } = SETTINGS[level()];
       const room = meshesOf("/room");
       plainTones();
       layLight(room);
       reflect(reflections);
-      sharpen(room, anisotropy);
-      for (const name of nodeNames()) if (name.startsWith("/exhibits/") || name === "/closeup") sharpen(meshesOf(name), anisotropy);
+      sharpen(room, anisotropy, blend);
+      for (const name of nodeNames()) {
+        if (name.startsWith("/exhibits/") || name === "/closeup") sharpen(meshesOf(name), anisotropy, blend);
+      }
       apply();
     },
   };

@@ -87,6 +87,7 @@ def enter_screens(browser, url: str, album: Album) -> None:
 def hall(browser, url: str, album: Album) -> None:
     page = new_page(browser, DESK)
     enter(page, f"{url}/?lang=zh")
+    page.wait_for_timeout(1500)  # the Enter screen gives way to the page slowly
     album.shoot(page, "hall")
     found = page.evaluate(STANDS)
     for name, there in found["stands"].items():
