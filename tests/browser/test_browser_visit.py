@@ -125,7 +125,15 @@ def test_walks_and_is_stopped(page):
 
 def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
     closed(page)
-    page.evaluate("() => hall.goTo(-9.3, -4, Math.PI / 2)")
+    page.evaluate(
+        """async (id) => {
+        const {standBefore} = await import("/static/ui/map_geometry.js");
+        const scene = await (await fetch("/api/scene")).json();
+        const {x, z, yaw} = standBefore(scene.exhibits.find((exhibit) => exhibit.id === id), scene);
+        hall.goTo(x, z, yaw);
+    }""",
+        GARMENT,
+    )
     page.locator("[data-testid=caption]", has_text="pibo").wait_for(timeout=10_000)
     page.keyboard.press("Enter")
     page.locator("[data-testid=panel]").wait_for(timeout=10_000)
