@@ -267,19 +267,18 @@ def test_highlights_keep_their_shades():
     room = quads(box((0, 0, 0), (4, 3, 4), inward=True), albedo=0.8, density=10)
     atlas = atlas_of(room)
     image = np.full((atlas.height, atlas.width, 3), 1.0, np.float32)
-    inside = np.argwhere(atlas.chart_image() == 0)
-    ramp = np.linspace(1.0, 2.0, len(inside)).astype(np.float32)  # a tenth of all: the gain stays
+    inside = np.argwhere(atlas.chart_image() == 5)
+    ramp = np.linspace(1.0, 2.0, len(inside)).astype(np.float32)  # the floor: walls set the gain
     image[inside[:, 0], inside[:, 1]] = ramp[:, None]
     found = show(room, atlas, image)
     asked = WALL * ramp
     drawn = 0.8 * found.shown[inside[:, 0], inside[:, 1], 0]
     low = asked < SHOULDER
-    assert np.allclose(drawn[low], asked[low], rtol=1e-4)
+    assert np.allclose(drawn[low], asked[low], rtol=1e-3)
     assert (np.diff(drawn) > 0).all()
-    assert drawn.max() < 0.99
+    assert drawn.max() < 0.995
     assert drawn[asked > 1.1].min() > SHOULDER + 0.5 * (1 - SHOULDER)
     assert 0.85 <= SHOULDER <= 0.92
-    assert 0 < found.rolled < 0.15
     assert found.rolled == pytest.approx((~low).sum() / (atlas.chart_image() >= 0).sum(), rel=0.02)
 
 
