@@ -123,8 +123,7 @@ def test_walks_and_is_stopped(page):
     assert displayed(page) == pytest.approx(still, abs=1e-3)
 
 
-def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
-    closed(page)
+def stand_before(page) -> None:
     page.evaluate(
         """async (id) => {
         const {standBefore} = await import("/static/ui/map_geometry.js");
@@ -134,6 +133,11 @@ def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
     }""",
         GARMENT,
     )
+
+
+def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
+    closed(page)
+    stand_before(page)
     page.locator("[data-testid=caption]", has_text="pibo").wait_for(timeout=10_000)
     page.keyboard.press("Enter")
     page.locator("[data-testid=panel]").wait_for(timeout=10_000)
@@ -183,6 +187,24 @@ def test_the_fine_model_can_be_turned(page):
     middle = [500, turned[1], 0]
     away = [sum((a - b) ** 2 for a, b in zip(at, middle, strict=True)) for at in (turned, nearer)]
     assert away[1] < away[0]
+
+
+def test_cloth_is_shaded_towards_the_visitor(page):
+    """Every fine mesh drawn from both sides has the shading that leaves no dots along folds, and it compiles."""
+    opened(page)
+    found = page.evaluate("""() => {
+        const found = [];
+        window.__viserMutable.nodeRefFromName["/closeup"].traverse((o) => {
+            if (o.isMesh && o.material.side === 2) {
+                const program = window.__viserMutable.scene.__r3f.root.getState().gl.properties.get(o.material).currentProgram;
+                const source = program?.fragmentShader;
+                found.push([o.material.userData.bySight === true, program?.diagnostics === undefined, Boolean(source)]);
+            }
+        });
+        return found;
+    }""")  # fmt: skip
+    assert found
+    assert all(all(mesh) for mesh in found)
 
 
 def test_text_in_both_languages(page):
@@ -247,6 +269,49 @@ def test_escape_leads_back_to_the_same_spot(page):
     assert displayed(page)[0] > 400
     closed(page)
     assert displayed(page) == pytest.approx(before, abs=1e-6)
+
+
+def test_escape_leads_back_from_a_films_own_controls(page):
+    """Chromium keeps keys that fall inside a film's controls from the page."""
+    opened(page)
+    page.click("[data-testid=tab-film]")
+    page.focus("[data-testid=sheet-film] video")
+    for _ in range(3):  # into the controls
+        page.keyboard.press("Tab")
+    assert page.evaluate("() => document.activeElement.tagName") == "VIDEO"
+    page.keyboard.press("Escape")
+    page.locator("[data-testid=panel]").wait_for(state="hidden", timeout=5_000)
+    back_in_the_hall(page)
+
+
+def test_escape_closes_a_window_over_the_close_up_first(page):
+    opened(page)
+    page.click("[data-testid=tab-pictures]")
+    page.locator("[data-testid=sheet-pictures] .picture").first.click()
+    page.locator("dialog[open]").wait_for()
+    page.keyboard.press("Escape")
+    page.locator("dialog[open]").wait_for(state="detached")
+    assert page.locator("[data-testid=panel]").is_visible()
+    page.keyboard.press("Escape")
+    page.locator("[data-testid=panel]").wait_for(state="hidden", timeout=5_000)
+
+
+def test_enter_opens_the_exhibit_one_has_walked_to(page):
+    """A window gives the focus back to its button; walking gives it back to the hall."""
+    closed(page)
+    stand_before(page)
+    page.focus("[data-testid=settings]")
+    page.keyboard.press("Enter")
+    page.locator("dialog[open]").wait_for()
+    page.keyboard.press("Escape")
+    page.locator("dialog[open]").wait_for(state="detached")
+    assert page.evaluate("() => document.activeElement.dataset.testid") == "settings"
+    page.keyboard.press("KeyW")
+    page.locator("[data-testid=caption]", has_text="pibo").wait_for(timeout=10_000)
+    page.keyboard.press("Enter")
+    page.locator("[data-testid=panel]").wait_for(timeout=10_000)
+    assert page.locator("dialog[open]").count() == 0
+    assert page.evaluate("() => hall.opened()") == GARMENT
 
 
 def test_typing_never_walks(page):
