@@ -193,10 +193,10 @@ def test_cloth_is_shaded_towards_the_visitor(page):
     """Every fine mesh drawn from both sides has the shading that leaves no dots along folds, and it compiles."""
     opened(page)
     found = page.evaluate("""() => {
-        const found = [];
-        window.__viserMutable.nodeRefFromName["/closeup"].traverse((o) => {
+        const found = [], m = window.__viserMutable, {properties} = m.scene.__r3f.root.getState().gl;
+        m.nodeRefFromName["/closeup"].traverse((o) => {
             if (o.isMesh && o.material.side === 2) {
-                const program = window.__viserMutable.scene.__r3f.root.getState().gl.properties.get(o.material).currentProgram;
+                const program = properties.get(o.material).currentProgram;
                 const source = program?.fragmentShader;
                 found.push([o.material.userData.bySight === true, program?.diagnostics === undefined, Boolean(source)]);
             }
