@@ -1,8 +1,6 @@
 """The room as files: one GLB within its budget, letters, key, environment, and the checks that go with them."""
 
 import io
-import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +8,7 @@ import pytest
 from content_house import make_house
 from PIL import Image
 from room_font import BLANK, needs_font
+from stored_room import store_room
 
 from hall_app.cli import main
 from hall_app.content.check import check
@@ -219,36 +218,30 @@ def test_the_key_ignores_what_is_not_seen(tmp_path):
     assert room_key(load(house)) == before
 
 
-def baked(house: Path, key: str) -> None:
-    (house / "room").mkdir(exist_ok=True)
-    for name in ("room.glb", "environment.jpg"):
-        (house / "room" / name).write_bytes(b"glTF")
-    (house / "room/room.json").write_text(json.dumps({"key": key, "triangles": 1}), "utf-8")
-
-
 def test_a_baked_room_is_shown_while_it_fits(tmp_path):
     house, data = make_house(tmp_path / "house"), tmp_path / "data"
     content = load(house)
     assert room_folder(content, data) is None
-    baked(house, room_key(content))
+    store_room(house / "room", room_key(content))
     assert room_folder(content, data) == content.folder / "room"
     assert shown_room(content, data).baked
     assert not check(house)
-    baked(house, "0" * 16)
+    store_room(house / "room", "0" * 16)
     assert room_folder(content, data) is None
     assert not shown_room(content, data).baked
     assert any("stale" in problem.what for problem in check(house))
-    shutil.copytree(house / "room", data / f"room-{room_key(content)}")
-    (data / f"room-{room_key(content)}/room.json").write_text(json.dumps({"key": room_key(content)}), "utf-8")
+    store_room(data / f"room-{room_key(content)}", room_key(content))
     assert shown_room(content, data).baked
 
 
 def test_half_a_bake_is_none(tmp_path):
     house = make_house(tmp_path / "house")
-    baked(house, room_key(load(house)))
+    store_room(house / "room", room_key(load(house)))
     (house / "room/room.glb").unlink()
     assert room_folder(load(house), tmp_path) is None
-    assert any("not whole" in problem.what for problem in check(house))
+    assert [str(problem) for problem in check(house)] == [
+        "room/room.glb: is missing – run: hall build --room"
+    ]
 
 
 def test_environment_is_warm_above_and_grey_below():
