@@ -6,6 +6,7 @@ import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from content_house import edit
@@ -76,9 +77,9 @@ def recipe(name: str) -> GarmentRecipe:
     return GarmentRecipe.model_validate({**files, "recipe": name})
 
 
-def judged(name: str, again: Measured = NOTHING, **changes: object) -> dict[str, quality.Line]:
+def judged(name: str, again: Measured | None = None, /, **changes: Any) -> dict[str, quality.Line]:
     record = {**TIMES, "errors": {**GOOD[name], **changes}}
-    return {line.name: line for line in figure_lines("x", recipe(name), record, again)}
+    return {line.name: line for line in figure_lines("x", recipe(name), record, again or NOTHING)}
 
 
 @pytest.mark.parametrize("name", ASKED)
