@@ -301,3 +301,25 @@ def test_dress_that_sinks_into_its_backdrop_is_a_problem(tmp_path):
             assert "#2F4B6B" in found[0]
             assert "ΔE 16" in found[0]
             assert 'backdrop = "pale" (ΔE 58)' in found[0]
+
+
+def dress_at(away: float, backdrop: str) -> str:
+    """A grey between black and white that is `away` (ΔE) from the backdrop, as near as 8 bits allow."""
+    greys = [f"#{level:02X}{level:02X}{level:02X}" for level in range(256)]
+    return min(greys, key=lambda g: abs(difference(linear(g), linear(BACKDROPS[backdrop])) - away))
+
+
+@pytest.mark.parametrize("backdrop", ["pale", "dark"])
+@pytest.mark.parametrize(("away", "said"), [(39.0, True), (41.0, False)])
+def test_the_limit_of_backdrops_is_forty(backdrop, away, said, tmp_path):
+    house = make_house(tmp_path / "house")
+    toml, plan = house / "exhibits/chest/exhibit.toml", house / "plan.toml"
+    place = 'x = -3.0\nz = 0.0\nfacing = 90\non = "booth"'
+    toml.write_text(toml.read_text("utf-8").replace("x = 0.0\nz = -1.0", place), "utf-8")
+    text = plan.read_text("utf-8").replace("height = 0.2", f'height = 0.2\nbackdrop = "{backdrop}"')
+    plan.write_text(text, "utf-8")
+    colour = dress_at(away, backdrop)
+    assert difference(linear(colour), linear(BACKDROPS[backdrop])) == pytest.approx(away, abs=0.5)
+    coloured(house / "exhibits/chest/media/chest.glb", colour)
+    found = [problem for problem in check(house) if "backdrop" in problem.what]
+    assert bool(found) == said
