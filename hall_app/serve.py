@@ -188,7 +188,7 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
 def _greet(house: House, arguments: argparse.Namespace) -> None:
     count, wrong = len(house.shown()), len(house.problems)
     exhibits = f"{count} exhibit{'' if count == 1 else 's'}"
-    for problem in house.unbaked:
+    for problem in (*house.unbaked, *house.room_problems):
         _say(f"  left out: {problem}")
     shown = f"[{arguments.host}]" if ":" in arguments.host else arguments.host
     _say(f"{exhibits}, {wrong} problem{'' if wrong == 1 else 's'}")

@@ -227,6 +227,25 @@ class Stopped(Exception):
     """What interrupts a bake."""
 
 
+def test_the_state_of_another_bake_is_not_taken(tmp_path):
+    """The same room at another seed, and another room: their passes would be mixed without a word."""
+    sides, kept = box((0, 0, 0), (2, 2, 2), inward=True), tmp_path / "light.npz"
+    room = quads(sides, albedo=0.5, emission=[1, 0, 0, 0, 0, 0], density=8)
+    other = quads(sides, albedo=0.5, emission=[0, 1, 0, 0, 0, 0], density=8)
+
+    def stop(share, label):
+        if label == "pass 3 of 3":
+            raise Stopped
+
+    with pytest.raises(Stopped):
+        bake_light(room, rays=(9, 9, 16), seed=3, progress=stop, checkpoint=kept)
+    state = kept.read_bytes()
+    for surfaces, seed in ((room, 4), (other, 3)):
+        kept.write_bytes(state)
+        resumed = bake_light(surfaces, rays=(9, 9, 16), seed=seed, checkpoint=kept)
+        assert np.array_equal(resumed.image, bake_light(surfaces, rays=(9, 9, 16), seed=seed).image)
+
+
 def test_resumed_bake_has_the_same_bits(tmp_path):
     room = quads(box((0, 0, 0), (2, 2, 2), inward=True), albedo=0.5, emission=[1, 0, 0, 0, 0, 0], density=8)
     whole = bake_light(room, rays=(9, 9, 16), seed=3)
