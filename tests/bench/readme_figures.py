@@ -59,6 +59,9 @@ def page() -> list[tuple[str, str, str]]:
     return rows
 
 
+AIM = {"ambient": "½", "beside": "½", "default": "⅓"}  # what the shipped look may cost of each
+
+
 def look() -> list[tuple[str, str, str]]:
     found, command = read("look")["summary"], "`hall bench look`"
     cost, share = found["cpu_ms"], found["share"]
@@ -74,7 +77,7 @@ def look() -> list[tuple[str, str, str]]:
     where = " / ".join(cost["shipped"])
     rows = [(f"CPU a picture as software WebGL is given it: {where}", views("shipped"), command)]
     rows += [
-        (name, f"{views(other)} – as shipped {share[other]:.2f} of it at worst", command)
+        (name, f"{views(other)} – as shipped {share[other]:.2f} of it at worst, aim {AIM[other]}", command)
         for other, name in names.items()
     ]
     return rows
@@ -104,7 +107,13 @@ def garment(exhibit: str, name: str) -> list[tuple[str, str, str]]:
         (f"{name}: edge–triangle self-intersections", str(errors["self_intersections"]), command),
     ]
     if "asymmetry_m" in errors:
-        rows.append((f"{name}: left against right half", f"{1000 * errors['asymmetry_m']:.1f} mm", command))
+        rows.append(
+            (
+                f"{name}: left against right half (one is simulated)",
+                f"{1000 * errors['asymmetry_m']:.1f} mm",
+                command,
+            )
+        )
     rows += [
         (
             f"{name}: displacement at rest, p99, in 1/25 s",
