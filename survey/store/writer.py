@@ -79,7 +79,7 @@ class Writer:
             for _, future in batch:
                 future.set_exception(StoreError(error.problem, error.place))
             return
-        except KeyError as error:  # nothing may end this thread: everybody after would wait for ever
+        except Exception as error:  # nothing may end this thread: everybody after would wait for ever
             if len(batch) == 1:
                 batch[0][1].set_exception(error)
                 return
