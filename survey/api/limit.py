@@ -32,7 +32,7 @@ class Limit:
         """Take one from the address's bucket: 0, or where it is empty the seconds to wait, at least 1."""
         if not self.per_minute:
             return 0
-        name = hashlib.blake2b(address.encode("utf-8", "replace"), key=self._key, digest_size=16).digest()
+        name = self._name(address)
         with self._changing:
             now, rate = self._clock(), self.per_minute / 60.0
             if len(self._spent) >= MOST:
@@ -43,6 +43,17 @@ class Limit:
                 return max(1, math.ceil((spent + 1.0 - self.per_minute) / rate))
             self._spent[name] = (spent + 1.0, now)
         return 0
+
+    def give_back(self, address: str) -> None:
+        """Put one back that was taken for what turned out to be a replay."""
+        name = self._name(address)
+        with self._changing:
+            spent, at = self._spent.get(name, (0.0, 0.0))
+            if spent > 0.0:
+                self._spent[name] = (max(0.0, spent - 1.0), at)
+
+    def _name(self, address: str) -> bytes:
+        return hashlib.blake2b(address.encode("utf-8", "replace"), key=self._key, digest_size=16).digest()
 
     def _forget(self, now: float, rate: float) -> None:
         """Drop the full buckets; where there are none, the longest untouched half."""

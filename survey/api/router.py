@@ -104,6 +104,7 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
         """Acknowledged once it is committed. The same id and body again: 200 and still one answer."""
         key = request.path_params["key"]
         data, unreadable = await _body(request)
+        taken = False
         try:
             questionnaire = find_questionnaire(questionnaires, key)
             if unreadable is not None:
@@ -116,8 +117,10 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
                 raise
             answer = _as_then(questionnaire, data, refusal)
         else:
-            await _within(limit, request, store, answer)
+            taken = await _within(limit, request, store, answer)
         receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
+        if receipt.replayed and taken:
+            limit.give_back(_address(request))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}
         return JSONResponse(body, 200 if receipt.replayed else 201)
 
@@ -169,9 +172,14 @@ def _as_then(questionnaire: Questionnaire, data: object, refusal: AnswerError) -
         raise refusal from None
 
 
-async def _within(limit: Limit, request: Request, store: Store, answer: Answer) -> None:
-    """Raises AnswerError 429 where the address gave too many new answers; repeating one is free."""
-    wait = limit.take(request.client.host if request.client else "")
+def _address(request: Request) -> str:
+    return request.client.host if request.client else ""
+
+
+async def _within(limit: Limit, request: Request, store: Store, answer: Answer) -> bool:
+    """Whether the answer was counted. Raises AnswerError 429 where the address gave too many new answers."""
+    wait = limit.take(_address(request))
     if wait and not await run_in_threadpool(store.known, answer.id):
         problem, remedy = "too many answers from one address", f"send the same again in {wait} s"
         raise AnswerError("", problem, remedy, status=429, wait=wait)
+    return wait == 0

@@ -358,7 +358,19 @@ def test_too_many_new_answers_from_one_address_wait_and_replays_do_not(hall):
         assert set(refused.json()) == {"field", "problem", "remedy"}
         assert int(refused.headers["retry-after"]) >= 1
         assert [client.post(hall.url, json=body).status_code for body in bodies[:3]] == [200] * 3
+        assert (
+            client.post(hall.url, json=bodies[3]).status_code == 429
+        )  # replays do not fill the bucket either
     assert count(hall) == 3
+
+
+def test_replays_leave_the_new_answers_of_an_address_their_room(hall):
+    app = FastAPI()
+    app.include_router(survey.router(hall.store, hall.mounted.questionnaires, Limit(3)))
+    with TestClient(app) as client:
+        bodies = [submission(hall.garment) for _ in range(3)]
+        assert [client.post(hall.url, json=bodies[0]).status_code for _ in range(9)] == [201] + [200] * 8
+        assert [client.post(hall.url, json=body).status_code for body in bodies[1:]] == [201] * 2
 
 
 def test_a_bucket_fills_again_evenly_and_each_address_has_its_own():

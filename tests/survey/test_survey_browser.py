@@ -100,7 +100,7 @@ def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
     page.locator("#consent").check()
     page.locator("#send").click()
     page.wait_for_selector("#thanks:not([hidden])")
-    site.store.freeze("garment")
+    site[1].store.freeze("garment")
     page.locator("details.withdraw summary").click()
     page.locator("#withdraw-code").fill(page.locator("#code").inner_text())
     page.locator("#withdraw button").click()

@@ -190,6 +190,13 @@ def test_a_huge_body_is_refused_from_its_announcement_alone(service):
         assert b" 413 " in line.recv(4096)
 
 
+def test_who_sends_too_much_hears_why(service):
+    body = json.dumps(submission(GARMENT) | {"suggestions": {"fabric": "a" * 3_000_000}}).encode()
+    status, reply = service.request("POST", URL, body)  # sends all of it before it listens
+    assert status == 413
+    assert set(json.loads(reply)) == {"field", "problem", "remedy"}
+
+
 def test_an_endless_chunked_body_is_cut_off(service):
     with socket.create_connection(("127.0.0.1", service.port), timeout=20) as line:
         head = f"POST {URL} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"

@@ -211,9 +211,14 @@ def test_a_store_that_cannot_be_opened_names_where_it_is(tmp_path, trouble):
 
 def test_an_answer_written_into_a_file_that_went_away_meanwhile_is_not_acknowledged(store, tmp_path):
     file, away = tmp_path / "survey.sqlite", tmp_path / "away.sqlite"
-    with pytest.raises(StoreError, match="gone"), store._write() as connection:
-        os.replace(file, away)
-        connection.exec_driver_sql("DELETE FROM token")
+
+    def write_while_it_goes() -> None:
+        with store._write() as connection:
+            os.replace(file, away)
+            connection.exec_driver_sql("DELETE FROM token")
+
+    with pytest.raises(StoreError, match="gone"):
+        write_while_it_goes()
     os.replace(away, file)
     store.submit(GARMENT, an_answer())
 
@@ -222,7 +227,7 @@ def test_one_entry_that_cannot_be_costs_the_others_nothing_and_the_writer_goes_o
     gate, sizes = threading.Event(), []
     poisoned = an_answer()
 
-    def commit(entries):
+    def commit(entries) -> list[Receipt | AnswerError]:
         gate.wait(10)
         sizes.append(len(entries))
         if any(answer is poisoned for _, answer in entries):
