@@ -14,9 +14,10 @@ from survey.reading import ScoreTable
 from survey.report import figures, matrix
 from survey.report.document import document
 from survey.report.headline import component_names, key_figures
-from survey.report.paper import rows as paper_rows
-from survey.report.platform import PAPER_FIGURES, Part, platform_table, written_by_module
-from survey.report.tables import MANY, Table, as_csv, as_html, tables_of
+from survey.report.paper import paper_table
+from survey.report.platform import PAPER_FIGURES, Part, platform_table, suggestions_html
+from survey.report.sheets import as_csv, matrix_csv
+from survey.report.tables import MANY, Table, as_html, tables_of
 from survey.report.words import Words, coefficient, decimal, probability, whole
 
 __all__ = ["Part", "Report", "build"]
@@ -113,19 +114,22 @@ class _Article:
         if table is None:
             return ""
         self._tables += 1
-        name = f"{table.key}.{self.say.language}.csv"
-        self.csv[name] = text = as_csv(table)
-        data = base64.b64encode(text.encode()).decode()
-        link = f'<a download="{name}" href="data:text/csv;base64,{data}">{self.say("download")}</a>'
-        made = as_html(table, f"{self.say('table')} {self._tables}.", link)
+        text = as_csv(table, (self.say("low"), self.say("high")))
+        made = as_html(table, f"{self.say('table')} {self._tables}.", self._link(table.key, text))
         return f'<div class="{kind}">{made}</div>' if kind else made
 
-    def _drawing(self, key: str, caption: str, svg: str) -> str:
+    def _link(self, key: str, text: str, words: str = "") -> str:
+        name = f"{key}.{self.say.language}.csv"
+        self.csv[name] = text
+        data = base64.b64encode(text.encode()).decode()
+        return f'<a download="{name}" href="data:text/csv;base64,{data}">{self.say("download")}{words}</a>'
+
+    def _drawing(self, key: str, caption: str, svg: str, links: str = "") -> str:
         self._figures += 1
         self.svg[f"{key}.{self.say.language}.svg"] = svg
         return (
             f'<figure class="drawing"><div class="scroll">{svg}</div><figcaption>'
-            f"<b>{self.say('figure')} {self._figures}.</b> {escape(caption)}</figcaption></figure>"
+            f"<b>{self.say('figure')} {self._figures}.</b> {escape(caption)} {links}</figcaption></figure>"
         )
 
     def _name(self, key: str) -> str:
@@ -148,6 +152,8 @@ class _Article:
             "correlation",
             caption,
             matrix.correlations(found.r, found.p, labels, self._name("correlation"), caption),
+            f"{self._link('correlation', matrix_csv(found.r, labels), ' r')} "
+            f"{self._link('probability', matrix_csv(found.p, labels), ' p')}",
         )
         if "pairs" not in self.tables:
             yield f"<p>{escape(say('no_pairs'))}</p>"
@@ -262,13 +268,7 @@ class _Article:
         if self.table.questionnaire is None:
             return
         yield self._section("section_suggestions")
-        tables = (self.table, *(part.table for part in self.beside))
-        written = written_by_module(tables, self.say.language)
-        if not written:
-            yield f"<p>{escape(self.say('no_suggestions'))}</p>"
-        for module, texts in written.items():
-            listed = "".join(f"<li>{escape(text)}</li>" for text in texts)
-            yield f'<h3>{escape(module)}</h3><ul class="suggestions">{listed}</ul>'
+        yield from suggestions_html((self.table, *(part.table for part in self.beside)), self.say)
 
     def _notes(self) -> Iterator[str]:
         yield self._section("section_flags")
@@ -281,13 +281,7 @@ class _Article:
         yield self._section("section_paper")
         yield f"<p>{escape(say('paper_intro'))}</p>"
         comparable = self.found if asked is not None and asked.id == "garment" else None
-        body = tuple(
-            (say.either(row.quantity), row.printed, row.computed, row.yours, say.either(row.verdict))
-            for row in paper_rows(comparable)
-        )
-        head = (say("quantity"), say("printed"), say("computed"), say("yours"), say("verdict"))
-        rules = frozenset(range(1, len(body)))
-        yield self._table(Table("paper", say("section_paper"), head, body, left=5, rules=rules), "paper")
+        yield self._table(paper_table(comparable, say), "paper")
 
     def _method(self) -> Iterator[str]:
         say, chosen = self.say, self.found.settings

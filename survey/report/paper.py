@@ -9,8 +9,10 @@ from scipy.special import stdtrit
 
 from survey.analysis import Analysis, adequacy_of, grim, least_n, varimax
 from survey.demonstration.table3 import TABLE_3, N
+from survey.report.tables import Table
+from survey.report.words import Words
 
-__all__ = ["MEANS", "Row", "rows"]
+__all__ = ["MEANS", "Row", "paper_table", "rows"]
 
 # The thirteen means of III.C as printed.
 MEANS = "4.15 4.46 4.35 4.88 4.84 4.55 4.60 4.98 4.92 4.57 4.94 4.27 4.78".split()
@@ -38,6 +40,16 @@ def rows(analysis: Analysis | None) -> list[Row]:
         *_loading_rows(analysis),
         *_mean_rows(analysis),
     ]
+
+
+def paper_table(analysis: Analysis | None, say: Words) -> Table:
+    """The rows in one language."""
+    body = tuple(
+        (say.either(row.quantity), row.printed, row.computed, row.yours, say.either(row.verdict))
+        for row in rows(analysis)
+    )
+    head = (say("quantity"), say("printed"), say("computed"), say("yours"), say("verdict"))
+    return Table("paper", say("section_paper"), head, body, left=5, rules=frozenset(range(1, len(body))))
 
 
 def _some(values: object, digits: int = 3) -> str:

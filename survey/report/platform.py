@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from html import escape
 
 from survey.analysis.platform import Profile
 from survey.questionnaire import Language, Questionnaire
@@ -11,7 +12,7 @@ from survey.reading import ScoreTable
 from survey.report.tables import Table
 from survey.report.words import Words, decimal
 
-__all__ = ["PAPER_FIGURES", "Part", "platform_table", "written_by_module"]
+__all__ = ["PAPER_FIGURES", "Part", "platform_table", "suggestions_html", "written_by_module"]
 
 PAPER_FIGURES = {"platform-user": 8, "platform-admin": 9}  # where the paper draws the role
 
@@ -39,6 +40,16 @@ def written_by_module(tables: Iterable[ScoreTable], language: Language) -> dict[
         for module, text in sorted(table.suggestions, key=lambda one: place.get(one[0], len(place))):
             written.setdefault(words.module(module), []).append(text)
     return written
+
+
+def suggestions_html(tables: Iterable[ScoreTable], say: Words) -> Iterator[str]:
+    """A list of texts for each module, or that there are none."""
+    written = written_by_module(tables, say.language)
+    if not written:
+        yield f"<p>{escape(say('no_suggestions'))}</p>"
+    for module, texts in written.items():
+        listed = "".join(f"<li>{escape(text)}</li>" for text in texts)
+        yield f'<h3>{escape(module)}</h3><ul class="suggestions">{listed}</ul>'
 
 
 def platform_table(

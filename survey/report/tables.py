@@ -1,20 +1,16 @@
-"""The report's tables as rows of text: once for the page, once as CSV."""
+"""The report's tables as rows of text, and how the page sets them."""
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 
 from survey.analysis import Analysis
 from survey.analysis.components import kaiser_count
-from survey.export.cells import safe_cell
 from survey.report.words import Words, coefficient, decimal
 
-__all__ = ["MANY", "Table", "as_csv", "as_html", "tables_of"]
-
+__all__ = ["MANY", "Table", "as_html", "tables_of"]
 
 MANY = 4  # components, beyond which the table has room for their loadings alone
 
@@ -23,9 +19,8 @@ MANY = 4  # components, beyond which the table has room for their loadings alone
 class Table:
     """key: name of the CSV file. head: column titles; body: rows of cells, the first `left` are set flush left.
 
-    words: further columns
-    that hold words, flush left too. strong: cells (row, column) that are set bold. groups: (title, columns) above
-    the head.
+    words: further columns that hold words, flush left too. strong: cells (row, column) that are set bold.
+    groups: (title, columns) above the head.
     """
 
     key: str
@@ -37,26 +32,6 @@ class Table:
     strong: frozenset[tuple[int, int]] = frozenset()
     groups: tuple[tuple[str, int], ...] = ()
     rules: frozenset[int] = field(default_factory=frozenset)
-
-
-def as_csv(table: Table) -> str:
-    """UTF-8 with a byte order mark, cells safe against formulas."""
-    out = io.StringIO(newline="")
-    out.write("\ufeff")
-    writer = csv.writer(out)
-    writer.writerow(table.head)
-    # A figure's minus is no formula: it goes back to the hyphen that a spreadsheet reads as a number.
-    writer.writerows([[_cell(cell) for cell in row] for row in table.body])
-    return out.getvalue()
-
-
-def _cell(cell: str) -> str:
-    plain = cell.replace("−", "-")
-    try:
-        float(plain)
-    except ValueError:
-        return safe_cell(cell)
-    return plain
 
 
 def as_html(table: Table, number: str, link: str) -> str:

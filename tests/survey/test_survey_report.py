@@ -22,7 +22,8 @@ from survey.content import read_questionnaire
 from survey.reading import ScoreTable
 from survey.report import Part, build, write_report
 from survey.report.paper import rows
-from survey.report.tables import Table, as_csv
+from survey.report.sheets import as_csv, matrix_csv
+from survey.report.tables import Table
 from survey.report.words import Words, coefficient
 
 STATIC = ("static_overall", "static_drape")
@@ -81,6 +82,8 @@ def test_every_figure_is_svg_and_every_table_csv_in_both_languages(folder):
             "items",
             "pairs",
             "kmo",
+            "correlation",
+            "probability",
             "retention",
             "variance",
             "loadings",
@@ -100,9 +103,14 @@ def test_the_tables_hold_the_analysis_s_figures(folder):
     table = list(
         csv.reader(io.StringIO((folder / "tables/loadings.en.csv").read_text("utf-8-sig"), newline=""))
     )
-    first = float(table[1][1].split(" ")[0])
-    assert first == pytest.approx(told["loadings"]["values"][0][0], abs=5e-4)
-    assert table[0][1:4] == ["1 The fabric", "2 Cut and form", "3 In motion"]
+    assert float(table[1][1]) == pytest.approx(told["loadings"]["values"][0][0], abs=5e-4)
+    assert table[0][1:10:3] == ["1 The fabric", "2 Cut and form", "3 In motion"]
+    assert table[0][2:4] == ["1 The fabric: low", "1 The fabric: high"]
+    for name, key in (("correlation", "correlation"), ("probability", "p")):
+        table = list(
+            csv.reader(io.StringIO((folder / f"tables/{name}.en.csv").read_text("utf-8-sig"), newline=""))
+        )
+        assert [[float(cell) for cell in row[1:]] for row in table[1:]] == told[key]["values"]
 
 
 def test_the_page_beside_the_paper_computes_its_column():
@@ -251,3 +259,25 @@ def test_many_components_keep_their_table_within_the_page():
 def test_a_table_s_figures_are_numbers_to_a_spreadsheet_and_its_texts_run_nothing():
     table = Table("x", "", ("a", "b"), (("−.032", "=1+1"), (".944", "−x")))
     assert as_csv(table).splitlines()[1:] == ["-.032,'=1+1", ".944,−x"]
+
+
+def test_an_interval_has_columns_of_its_own_and_equal_titles_their_group_s_name():
+    body = (("x", ".944 [−.13, .97]", "2.75 – 4.10", "4.46 ± 0.31"), ("y", "–.5", "–", "1.00 ± –"))
+    table = Table("x", "", ("item", "F1", "95 %", "tone"), body[:1], groups=(("", 1), ("G", 1), ("", 2)))
+    assert as_csv(table, ("low", "high")).removeprefix("\ufeff").splitlines() == [
+        "item,G: F1,G: F1: low,G: F1: high,95 %: low,95 %: high,tone,tone: ±",
+        "x,.944,-.13,.97,2.75,4.10,4.46,0.31",
+    ]
+    mixed = Table("x", "", ("item", "F1", "95 %", "tone"), body)
+    assert as_csv(mixed).splitlines()[2] == "y,–.5,,1.00,"
+
+
+def test_the_correlations_come_back_from_their_table_to_the_last_digit():
+    scores = np.random.default_rng(0).normal(size=(30, 4))
+    analysis = analyse(scores, ("a", "b", "c", "d"), settings=Settings(bootstrap=0, draws=0))
+    assert analysis.correlation is not None
+    text = matrix_csv(analysis.correlation.r, analysis.items).removeprefix("\ufeff")
+    read = list(csv.reader(io.StringIO(text)))
+    assert tuple(read[0][1:]) == analysis.items
+    assert np.array_equal(np.array([row[1:] for row in read[1:]], float), analysis.correlation.r)
+    assert matrix_csv(np.array([[1.0, np.nan], [np.nan, 1.0]]), "ab").splitlines()[1:] == ["a,1.0,", "b,,1.0"]
