@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +21,9 @@ __all__ = ["SECONDS", "ScoreTable", "read_scores", "scores_of"]
 
 SECONDS = "seconds"  # column of the time an answer took
 MISSING = {"", "NA", "."}  # how spreadsheets, R and SPSS write a missing score
+
+SEPARATORS = ",;\t"  # also how Excel writes a CSV where the comma is the decimal point
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
 
 Lines = list[tuple[int, list[str]]]
 
@@ -70,14 +75,16 @@ def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.flo
 
 
 def _lines(path: Path) -> tuple[list[str], Lines]:
+    text = _text(path)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            table = csv.reader(file)
-            lines = [(table.line_num, line) for line in table if any(map(str.strip, line))]
-    except OSError as error:
-        raise SurveyError(f"{path}: cannot be read ({error.strerror}) – check the file") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise SurveyError(f"{path}: is no CSV in UTF-8 ({error}) – export it again") from None
+        head = [line for line in text if line.strip()]
+        separator = max(SEPARATORS, key=lambda one: len(next(csv.reader(head, delimiter=one), [])))
+        table = csv.reader(text, delimiter=separator)
+        lines = [(table.line_num, line) for line in table if any(map(str.strip, line))]
+    except csv.Error as error:
+        raise SurveyError(f"{path}: is no CSV ({error}) – export it again") from None
+    if separator != ",":
+        lines = [(number, [_with_point(cell) for cell in line]) for number, line in lines]
     if len(lines) < 2:
         raise SurveyError(
             f"{path}: no rows – the first line names the columns, each further line is an answer"
@@ -92,6 +99,26 @@ def _lines(path: Path) -> tuple[list[str], Lines]:
     if twice:
         raise SurveyError(f"{path}: column {twice[0]!r} stands twice – rename one")
     return header, body
+
+
+def _text(path: Path) -> list[str]:
+    """The file's lines, in UTF-8, or as Excel writes them in Chinese (GB 18030) or as Unicode text (UTF-16)."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise SurveyError(f"{path}: cannot be read ({error.strerror}) – check the file") from None
+    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    reason = ""
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "gb18030"):
+        try:
+            return [*io.StringIO(data.decode(encoding), newline="")]
+        except UnicodeDecodeError as error:
+            reason = reason or str(error)
+    raise SurveyError(f"{path}: is no CSV in UTF-8, UTF-16 or GB 18030 ({reason}) – export it again")
+
+
+def _with_point(cell: str) -> str:
+    return cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell
 
 
 def _columns(

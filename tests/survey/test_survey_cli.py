@@ -330,3 +330,23 @@ def test_gaps_are_written_as_spreadsheets_r_and_spss_write_them(tmp_path, gap):
     table = read_scores(tmp_path / "a.csv")
     assert table.items == ("a", "b")
     assert np.isnan(table.scores).tolist() == [[False, False], [True, False], [False, False]]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "gb18030"])
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_as_excel_writes_it_anywhere_is_read(tmp_path, encoding, separator):
+    rows = [["姓名", "质感,光泽", "垂感"], ["李, 一", "1", "2"], ["吴；二", "3", "4.5"], ["何三", "", "5"]]
+    if separator != ",":
+        rows[2][2] = "4,5"
+    with (tmp_path / "a.csv").open("w", encoding=encoding, newline="") as file:
+        csv.writer(file, delimiter=separator).writerows(rows)
+    table = read_scores(tmp_path / "a.csv")
+    assert table.items == ("质感,光泽", "垂感")
+    np.testing.assert_array_equal(table.scores, [[1, 2], [3, 4.5], [np.nan, 5]])
+
+
+def test_a_reader_who_has_enough_ends_the_command_quietly():
+    command = f"{sys.executable} -m survey.cli analyse --demo likert-20 --bootstrap 0 --json | head -c 5"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ASSETS.parent)
+    assert done.stdout == '{\n "n'
+    assert done.stderr == ""
