@@ -382,3 +382,13 @@ def test_a_bucket_fills_again_evenly_and_each_address_has_its_own():
     clock[0] = 2.0
     assert [limit.take("a") for _ in range(3)] == [0, 0, 1]
     assert [Limit(0).take("a") for _ in range(1000)] == [0] * 1000
+
+
+def test_who_waits_as_long_as_told_is_let_in_and_not_before():
+    clock = [0.0]
+    limit = Limit(3, clock=lambda: clock[0])
+    assert [limit.take("a") for _ in range(4)] == [0, 0, 0, 20]
+    clock[0] = 19.0
+    assert limit.take("a") == 1
+    clock[0] = 20.0
+    assert limit.take("a") == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sqlite3
 from contextlib import closing
 from datetime import date
@@ -80,3 +81,9 @@ def test_a_version_frozen_by_the_first_release_keeps_its_digest():
     assert frozen
     for digest, document in frozen:
         assert Questionnaire.model_validate_json(document).digest == digest
+
+
+def test_the_readme_shows_what_was_measured(monkeypatch):
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[1] / "bench"))
+    figures = importlib.import_module("readme_survey")
+    assert figures.table() in figures.README.read_text("utf-8")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal, norm
 
 from survey.analysis import (
     adequacy_of,
@@ -109,3 +110,26 @@ def test_omega_is_that_of_factanal_s_one_factor(name):
 @pytest.mark.parametrize("name", ["likert-200x12", "likert-1000x8"])
 def test_polychoric_is_psych_s_to_its_tolerance(name):
     assert apart(polychoric(OURS[name]()).r, SETS[name]["polychoric"]) < 5e-5
+
+
+def log_likelihood(x, y, rho: float) -> float:
+    """Of two scales' table of frequencies, thresholds from their own; by SciPy's bivariate normal."""
+    cuts = [
+        [-9.0, *norm.ppf([(column <= level).mean() for level in np.unique(column)[:-1]]), 9.0]
+        for column in (x, y)
+    ]
+    pair = multivariate_normal([0, 0], [[1, rho], [rho, 1]])
+    corners = np.array([[pair.cdf([a, b]) for b in cuts[1]] for a in cuts[0]])
+    cells = np.diff(np.diff(corners, axis=0), axis=1)
+    codes = [np.unique(column, return_inverse=True)[1] for column in (x, y)]
+    return float(np.log(cells[codes[0], codes[1]]).sum())
+
+
+def test_where_few_answers_set_psych_apart_ours_is_the_likelier():
+    table = OURS["likert-20x12"]()
+    ours, theirs = polychoric(table).r, np.array(SETS["likert-20x12"]["polychoric"])
+    apart_most = np.argsort(-np.abs(ours - theirs), axis=None)[:8:2]
+    for i, j in zip(*np.unravel_index(apart_most, ours.shape), strict=True):
+        x, y = table[:, i], table[:, j]
+        mine, other = float(ours[i, j]), float(theirs[i, j])
+        assert log_likelihood(x, y, mine) > log_likelihood(x, y, other) + 1e-3

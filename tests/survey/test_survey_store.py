@@ -15,7 +15,7 @@ from survey_samples import ASSETS, submission
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
 from survey.store import Receipt, Store, schema
-from survey.store.writer import Writer
+from survey.store.writer import MOST, Writer
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 
@@ -248,3 +248,54 @@ def test_one_entry_that_cannot_be_costs_the_others_nothing_and_the_writer_goes_o
     assert writer.put((GARMENT, late)).result(10).id == late.id
     writer.close()
     assert max(sizes) > 1
+
+
+def acknowledged(entries) -> list[Receipt | AnswerError]:
+    return [Receipt(answer.id, replayed=False) for _, answer in entries]
+
+
+def test_a_transaction_is_never_longer_than_its_bound_and_keeps_the_order():
+    gate, batches = threading.Event(), []
+
+    def commit(entries) -> list[Receipt | AnswerError]:
+        gate.wait(10)
+        batches.append([answer.id for _, answer in entries])
+        return acknowledged(entries)
+
+    writer = Writer(commit)
+    answers = [an_answer() for _ in range(MOST + 50)]
+    futures = [writer.put((GARMENT, answer)) for answer in answers]
+    gate.set()
+    for future in futures:
+        future.result(10)
+    writer.close()
+    assert max(map(len, batches)) <= MOST
+    assert [one for batch in batches for one in batch] == [answer.id for answer in answers]
+
+
+def test_who_hangs_up_before_the_write_is_not_written_and_holds_up_nobody():
+    gate, begun, written = threading.Event(), threading.Event(), []
+
+    def commit(entries) -> list[Receipt | AnswerError]:
+        begun.set()
+        gate.wait(10)
+        written.extend(answer.id for _, answer in entries)
+        return acknowledged(entries)
+
+    writer = Writer(commit)
+    first, gone, last = (an_answer() for _ in range(3))
+    heard = [writer.put((GARMENT, first))]
+    assert begun.wait(10)
+    assert writer.put((GARMENT, gone)).cancel()
+    heard.append(writer.put((GARMENT, last)))
+    gate.set()
+    assert [future.result(10).id for future in heard] == [first.id, last.id]
+    writer.close()
+    assert written == [first.id, last.id]
+
+
+def test_times_of_receipt_are_whole_seconds(store):
+    answers = [an_answer() for _ in range(3)]
+    for answer in answers:
+        store.submit(GARMENT, answer)
+    assert {row.received.microsecond for row in store.rows(GARMENT)} == {0}
