@@ -118,7 +118,8 @@ def log_likelihood(x, y, rho: float) -> float:
         [-9.0, *norm.ppf([(column <= level).mean() for level in np.unique(column)[:-1]]), 9.0]
         for column in (x, y)
     ]
-    pair = multivariate_normal([0, 0], [[1, rho], [rho, 1]])
+    # SciPy's annotation is that of the default alone.
+    pair = multivariate_normal([0, 0], [[1, rho], [rho, 1]])  # pyright: ignore[reportArgumentType]
     corners = np.array([[pair.cdf([a, b]) for b in cuts[1]] for a in cuts[0]])
     cells = np.diff(np.diff(corners, axis=0), axis=1)
     codes = [np.unique(column, return_inverse=True)[1] for column in (x, y)]

@@ -14,6 +14,7 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
+from survey.questionnaire import Questionnaire
 from survey.store import Receipt, Store, schema
 from survey.store.writer import MOST, Writer
 
@@ -299,3 +300,16 @@ def test_times_of_receipt_are_whole_seconds(store):
     for answer in answers:
         store.submit(GARMENT, answer)
     assert {row.received.microsecond for row in store.rows(GARMENT)} == {0}
+
+
+def test_a_version_that_reads_differently_takes_no_answer_beside_the_first_ones(store):
+    first = an_answer()
+    store.submit(GARMENT, first)
+    document = GARMENT.document()
+    other = Questionnaire.model_validate(document | {"title": document["title"] | {"en": "Something else"}})
+    assert other.digest != GARMENT.digest
+    with pytest.raises(AnswerError) as refused:
+        store.submit(other, an_answer())
+    assert (refused.value.field, refused.value.status) == ("version", 409)
+    assert [row.answer for row in store.rows(GARMENT)] == [first]
+    assert store.submit(other, first).replayed
