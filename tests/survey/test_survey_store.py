@@ -305,8 +305,8 @@ def test_times_of_receipt_are_whole_seconds(store):
 def test_a_version_that_reads_differently_takes_no_answer_beside_the_first_ones(store):
     first = an_answer()
     store.submit(GARMENT, first)
-    document = GARMENT.document()
-    other = Questionnaire.model_validate(document | {"title": document["title"] | {"en": "Something else"}})
+    title = {"zh": GARMENT.title.zh, "en": "Something else"}
+    other = Questionnaire.model_validate(GARMENT.document() | {"title": title})
     assert other.digest != GARMENT.digest
     with pytest.raises(AnswerError) as refused:
         store.submit(other, an_answer())
