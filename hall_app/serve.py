@@ -122,6 +122,7 @@ def _server(app: FastAPI, arguments: argparse.Namespace) -> uvicorn.Server:
         port=arguments.port,
         log_level="warning",
         access_log=False,
+        loop="asyncio",  # the loop viser runs on as well
         ws="websockets-sansio",
         ws_max_size=1 << 26,
         timeout_graceful_shutdown=2,
