@@ -4,19 +4,20 @@ from sim_core.errors import OutlineError
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.model import MeshReport, PanelMesh
 from sim_core.mesh.outline import outline_samples
-from sim_core.mesh.panel import grow, panel_mesh
+from sim_core.mesh.panel import panel_mesh
 from sim_core.mesh.quality import quality
 from sim_core.mesh.raycast import inside, keep_points
+from sim_core.mesh.triangulation import triangulate
 
 __all__ = [
     "MeshReport",
     "OutlineError",
     "PanelMesh",
-    "grow",
     "inside",
     "keep_points",
     "outline_samples",
     "panel_mesh",
     "quality",
     "staggered_points",
+    "triangulate",
 ]

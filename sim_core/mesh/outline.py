@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.exact import orient, snap_frame
+from sim_core.mesh.exact import orient
 
 __all__ = [
     "check_count",
@@ -119,9 +119,8 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
     following = np.concatenate(
         [np.roll(np.arange(len(c)), -1) + s for c, s in zip(contours, first, strict=False)]
     )
-    snapped = snap_frame(points).snap(points)
-    left = np.minimum(snapped[:, 0], snapped[following, 0])
-    i, j = _first_crossing(snapped, following, np.argsort(left, kind="stable"))
+    left = np.minimum(points[:, 0], points[following, 0])
+    i, j = _first_crossing(points, following, np.argsort(left, kind="stable"))
     if i < 0:
         return
     i, j = min(i, j), max(i, j)

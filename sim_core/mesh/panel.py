@@ -3,11 +3,9 @@
 from time import perf_counter
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.exact import snap_frame
-from sim_core.mesh.growth import grow_snapped
+from sim_core.mesh.growth import grow_points
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.outline import check_edge, clean_contours, sharpest_corner
@@ -18,47 +16,11 @@ from sim_core.mesh.sampling import sampled_contours
 from sim_core.mesh.smoothing import smoothed
 from sim_core.mesh.verify import fills, verify
 
-__all__ = ["grow", "panel_mesh"]
+__all__ = ["panel_mesh"]
 
-DUPLICATE = 1e-7  # of the bounding box: points closer than this are one point
+UPRIGHT = np.array([1.0, -1.0])  # y down -> y up; exact
 ENOUGH_DEGREES = 30.0
 OTHER_THRESHOLDS = (0.76, 0.64, 0.82)
-
-
-def grow(points: np.ndarray, edges: np.ndarray | None = None) -> np.ndarray:
-    """Growth triangulation of a point set (Eq. 9).
-
-    points: (n, 2) [m], y down; points nearer to each other than 1e-7 of the bounding box count as one (the first).
-    edges: (m, 2) int, outline steps with the cloth on their left in (x, -y); None grows to the convex hull.
-    Returns faces (F, 3) int32 with positive area in (x, -y). Raises OutlineError where growth cannot close.
-    """
-    points = np.asarray(points, dtype=float)
-    if len(points) < 3:
-        raise OutlineError(f"{len(points)} points – a triangle needs three")
-    keep, unique = _without_duplicates(points)
-    if len(keep) < 3:
-        raise OutlineError(f"{len(keep)} different points – a triangle needs three")
-    place = points[keep]
-    seeds = None if edges is None else unique[np.asarray(edges)]
-    faces, status, where = grow_snapped(snap_frame(place).snap(place), seeds)
-    if status:
-        x, y = place[where]
-        raise OutlineError(
-            f"growth does not close near ({x:.4f}, {y:.4f}) m – the outline crosses or is too fine"
-        )
-    return keep[faces].astype(np.int32)
-
-
-def _without_duplicates(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the points kept, and for every point its position among those."""
-    reach = DUPLICATE * float(np.ptp(points, axis=0).max())
-    first = np.arange(len(points))
-    for i, j in np.sort(KDTree(points).query_pairs(reach, output_type="ndarray"), axis=1)[::-1]:
-        first[j] = min(first[j], i)
-    while not np.array_equal(first, first[first]):
-        first = first[first]
-    keep = np.flatnonzero(first == np.arange(len(points)))
-    return keep, np.searchsorted(keep, first)
 
 
 def panel_mesh(
@@ -115,14 +77,10 @@ def _loops(samples: list[np.ndarray]) -> tuple[np.ndarray, ...]:
 def _fill(vertices: np.ndarray, boundary: tuple[np.ndarray, ...]) -> np.ndarray:
     """Grow inward from the oriented outline, so that nothing outside, in holes or across notches needs culling.
 
-    Outline steps are Delaunay edges nearly always; where a spike or slit is so fine that one is not, growth runs again
-    with the steps as walls.
+    Outline steps are Delaunay edges nearly always; where a spike or slit is so fine that one is not, it becomes a wall.
     """
     steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in boundary])
-    snapped = snap_frame(vertices).snap(vertices)
-    faces, status, where = grow_snapped(snapped, steps)
-    if status or not fills(vertices, faces, boundary):
-        faces, status, where = grow_snapped(snapped, steps, walls=True)
+    faces, status, where, _ = grow_points(vertices * UPRIGHT, steps)
     if status:
         x, y = vertices[where]
         raise OutlineError(

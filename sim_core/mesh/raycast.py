@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.exact import Frame, orient, snap_frame
+from sim_core.mesh.exact import orient
 
 __all__ = ["distance_below", "inside", "keep_points"]
 
@@ -13,54 +13,56 @@ def inside(points: np.ndarray, contours: list[np.ndarray]) -> np.ndarray:
 
     points: (n, 2) [m]; contours: outline and holes, (m, 2) [m] each, in any direction. Returns (n,) bool.
     An edge counts where exactly one of its ends is above the ray (half-open rule), so a ray through a corner counts
-    once. Points on a contour are decided exactly on the snapped grid and are not inside, as the paper has it.
+    once. Points on a contour are found exactly and are not inside, as the paper has it.
     """
-    points = np.asarray(points, dtype=float).reshape(-1, 2)
-    frame = snap_frame(np.concatenate([points, *contours]))
-    segments = np.concatenate([_segments(contour, frame) for contour in contours])
-    top = float(segments[:, [1, 3]].max())
+    points = np.ascontiguousarray(points, dtype=float).reshape(-1, 2)
+    segments = np.concatenate([np.hstack([c, np.roll(c, -1, axis=0)]) for c in contours])
+    low, high = float(segments[:, [1, 3]].min()), float(segments[:, [1, 3]].max())
     rows = max(1, len(segments))
-    height = max(top / rows, 1.0)
-    start, items = _row_buckets(segments, height, rows)
-    return _strictly_inside(frame.snap(points), segments, start, items, height, rows)
+    per_metre = rows / max(high - low, 1e-300)
+    start, items = _row_buckets(segments, low, per_metre, rows)
+    return _strictly_inside(points, segments, start, items, low, per_metre, rows)
 
 
-def _segments(contour: np.ndarray, frame: Frame) -> np.ndarray:
-    """The edges of a closed contour as (m, 4) snapped a.x a.y b.x b.y."""
-    snapped = frame.snap(contour)
-    return np.hstack([snapped, np.roll(snapped, -1, axis=0)])
+@njit(cache=True, error_model="numpy")
+def _row(y, low, per_metre, rows):
+    """The bucket of a height; it never falls where y grows, so a segment's buckets hold those of all its points."""
+    return int(min(max((y - low) * per_metre, 0.0), rows - 1.0))
 
 
-@njit(cache=True)
-def _row_buckets(segments, height, rows):
-    """For each row of the given height the segments that touch it, as start (rows + 1,) and items."""
+@njit(cache=True, error_model="numpy")
+def _row_buckets(segments, low, per_metre, rows):
+    """For each row the segments that touch it, as start (rows + 1,) and items."""
     start = np.zeros(rows + 1, np.int64)
     for k in range(segments.shape[0]):
-        low = min(int(min(segments[k, 1], segments[k, 3]) // height), rows - 1)
-        high = min(int(max(segments[k, 1], segments[k, 3]) // height), rows - 1)
-        for row in range(low, high + 1):
+        first = _row(min(segments[k, 1], segments[k, 3]), low, per_metre, rows)
+        last = _row(max(segments[k, 1], segments[k, 3]), low, per_metre, rows)
+        for row in range(first, last + 1):
             start[row + 1] += 1
     start = np.cumsum(start)
     items = np.zeros(start[-1], np.int64)
     fill = start.copy()
     for k in range(segments.shape[0]):
-        low = min(int(min(segments[k, 1], segments[k, 3]) // height), rows - 1)
-        high = min(int(max(segments[k, 1], segments[k, 3]) // height), rows - 1)
-        for row in range(low, high + 1):
+        first = _row(min(segments[k, 1], segments[k, 3]), low, per_metre, rows)
+        last = _row(max(segments[k, 1], segments[k, 3]), low, per_metre, rows)
+        for row in range(first, last + 1):
             items[fill[row]] = k
             fill[row] += 1
     return start, items
 
 
-@njit(cache=True)
-def _strictly_inside(points, segments, start, items, height, rows):
+@njit(cache=True, error_model="numpy")
+def _strictly_inside(points, segments, start, items, low, per_metre, rows):
     result = np.zeros(points.shape[0], np.bool_)
     for i in range(points.shape[0]):
         x, y = points[i, 0], points[i, 1]
-        row = min(int(y // height), rows - 1)
+        row = _row(y, low, per_metre, rows)
         odd = False
-        for k in range(start[row], start[row + 1]):
-            ax, ay, bx, by = segments[items[k]]
+        for m in range(start[row], start[row + 1]):
+            k = items[m]
+            ax, ay, bx, by = segments[k, 0], segments[k, 1], segments[k, 2], segments[k, 3]
+            if (ay > y and by > y) or (ay < y and by < y) or (ax < x and bx < x):
+                continue
             side = orient(ax, ay, bx, by, x, y)
             if side == 0 and min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by):
                 odd = False

@@ -17,7 +17,7 @@ from time import perf_counter
 import numpy as np
 from scipy.spatial import Delaunay
 
-from sim_core.mesh import grow, inside, keep_points, panel_mesh, quality, staggered_points
+from sim_core.mesh import inside, keep_points, panel_mesh, quality, staggered_points, triangulate
 from sim_core.mesh.naive import grow_naive
 from sim_core.mesh.outline import clean_contours, signed_area
 from sim_core.mesh.quality import triangle_areas
@@ -60,7 +60,7 @@ def engines(points, steps, samples):
         return faces[inside(points[faces].mean(axis=1), samples)]
 
     made = {
-        "growth, grid": lambda: grow(points, steps),
+        "growth, grid": lambda: triangulate(points, steps),
         "Qhull (scipy)": lambda: culled(Delaunay(points).simplices),
     }
     if len(points) <= NAIVE_LIMIT:
