@@ -36,8 +36,9 @@ def _crowded(points: np.ndarray, ahead: np.ndarray, samples: list[np.ndarray]) -
     behind = np.concatenate([np.roll(loop, 1, axis=0) for loop in samples])
     beyond = np.concatenate([np.roll(loop, -2, axis=0) for loop in samples])
     crowded = np.zeros(len(points), dtype=bool)
-    for k, near in enumerate(KDTree(points).query_ball_point(middle, radius * (1 - 1e-9))):
-        others = points[near]
+    tree, reach = KDTree(points), radius * (1 - 1e-9)
+    for k in np.flatnonzero(tree.query_ball_point(middle, reach, return_length=True)):
+        others = points[tree.query_ball_point(middle[k], reach[k])]
         known = np.stack([points[k], ahead[k], behind[k], beyond[k]])
         crowded[k] = bool((others[:, None] != known).any(axis=2).all(axis=1).any())
     return crowded

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from exact_delaunay import delaunay_faults
 
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh
@@ -58,6 +59,18 @@ def test_panels_are_sound_and_well_shaped(name, edge):
 
 
 @pytest.mark.parametrize("name", PANELS)
+@pytest.mark.parametrize("edge", [0.03, 0.012])
+def test_best_panels_have_no_small_angle(name, edge):
+    outline, holes = PANELS[name]
+    mesh = panel_mesh(outline, edge=edge, holes=holes, quality="best")
+    assert_sound(mesh, len(holes))
+    assert mesh.report.min_angle_deg >= 38
+    assert mesh.report.mean_quality >= (0.992 if edge < 0.02 else 0.985)
+    steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+    assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+
+
+@pytest.mark.parametrize("name", PANELS)
 def test_direction_of_the_contours_does_not_matter(name):
     outline, holes = PANELS[name]
     mesh = panel_mesh(outline[::-1], edge=0.04, holes=[hole[::-1] for hole in holes])
@@ -65,7 +78,7 @@ def test_direction_of_the_contours_does_not_matter(name):
 
 
 def test_paper_lattice_without_smoothing_keeps_its_points():
-    mesh = panel_mesh(RECTANGLE, edge=0.05, smooth=0)
+    mesh = panel_mesh(RECTANGLE, edge=0.05, quality="fair")
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary[0])
     rows = mesh.vertices[inner, 1] / (0.05 * np.sqrt(3) / 2)
     np.testing.assert_allclose(rows, np.rint(rows), atol=1e-9)
