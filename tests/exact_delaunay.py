@@ -15,7 +15,7 @@ def orient_sign(a, b, c) -> int:
 
 
 def incircle_sign(a, b, c, d) -> int:
-    """1 where d lies inside the circle through a, b, c (counter-clockwise), 0 on it, -1 outside; by rational numbers."""
+    """1 where d lies inside the circle of a, b, c (counter-clockwise), 0 on it, -1 outside; by rationals."""
     dx, dy = (Fraction(float(v)) for v in d)
     rows = []
     for p in (a, b, c):

@@ -3,13 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from sim_core.mesh.growth import CLOSED, grow_points
+from sim_core.mesh.growth import CLOSED, Growth, grow_points
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.layer import apart, layer_points
 from sim_core.mesh.raycast import distance_below, inside, keep_points
-from sim_core.mesh.smoothing import centre, open_angles, stars
+from sim_core.mesh.repair import repaired
+from sim_core.mesh.smoothing import centre, open_angles, sharpest_angle, stars
 
 __all__ = ["BestFill", "best_fill"]
 
@@ -19,10 +19,11 @@ LAYER_APART = 0.7
 LATTICE_OFF_OUTLINE = 1.2
 LATTICE_OFF_LAYER = 0.65
 BAND = 5.0  # of the edge: what lies deeper is lattice already and stays
-PASSES = 3  # of smoothing, each of SWEEPS rounds over the band, and growth again
-SWEEPS = 3
+PASSES = 1  # of smoothing, each of SWEEPS rounds over the band, and growth again
+SWEEPS = 5
 POLISHES = 4
 ENOUGH = np.cos(np.radians(42.0))  # angles are opened up to this
+LEAST = np.cos(np.radians(38.0))  # below this points are added and removed
 
 
 class BestFill(NamedTuple):
@@ -61,7 +62,7 @@ def _points(samples: list[np.ndarray], edge: float) -> np.ndarray:
 
 
 def _relaxed(places: np.ndarray, steps: np.ndarray, free: np.ndarray, fixed: int) -> BestFill:
-    """Grow, smooth and grow again; then open the smallest angles as long as that helps."""
+    """Grow, smooth and grow again; then open the smallest angles, and treat the spots where that is not enough."""
     weights = np.ones(len(places))
     grown = grow_points(places, steps)
     for _ in range(PASSES):
@@ -70,34 +71,34 @@ def _relaxed(places: np.ndarray, steps: np.ndarray, free: np.ndarray, fixed: int
         start, items = stars(grown.faces, len(places))
         centre(places, grown.faces, start, items, free, weights, SWEEPS)
         grown = grow_points(places, steps)
-    best = _smallest(places, grown.faces), places, grown
-    for _ in range(POLISHES):
-        if grown.status != CLOSED or best[0] <= ENOUGH:
-            break
-        start, items = stars(grown.faces, len(places))
-        places = places.copy()
-        if open_angles(places, grown.faces, start, items, free, ENOUGH, 4) == 0:
-            break
-        grown = grow_points(places, steps)
-        angle = _smallest(places, grown.faces)
-        if angle < best[0]:
-            best = angle, places, grown
-    _, places, grown = best
+    angle, places, grown = _opened(places, grown, steps, free)
+    if grown.status == CLOSED and angle > LEAST:
+        again, weights, free = repaired(places, grown.faces, free, weights, fixed)
+        regrown = grow_points(again, steps)
+        if regrown.status == CLOSED:
+            again_angle, again, regrown = _opened(again, regrown, steps, free)
+            if again_angle < angle:
+                places, grown = again, regrown
     return BestFill(places * UPRIGHT, grown.faces, grown.status, grown.where)
 
 
-@njit(cache=True, error_model="numpy")
-def _smallest(places, faces):
-    """Cosine of the smallest angle of a mesh with y up; 2 where a triangle is turned over."""
-    worst = -1.0
-    for f in range(faces.shape[0]):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
-        wx, wy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
-        if ux * wy - uy * wx <= 0.0:
-            return 2.0
-        u, w, t = ux * ux + uy * uy, wx * wx + wy * wy, (wx - ux) ** 2 + (wy - uy) ** 2
-        least = min(u, min(w, t))
-        product = u * w if least == t else (t * w if least == u else t * u)
-        worst = max(worst, (u + w + t - 2 * least) / (2 * np.sqrt(product)))
-    return worst
+def _opened(places: np.ndarray, grown: Growth, steps: np.ndarray, free: np.ndarray):
+    """Open small angles and grow again as long as that helps: (cosine of the smallest angle, places, growth)."""
+    if grown.status != CLOSED:
+        return 2.0, places, grown
+    best = sharpest_angle(places, grown.faces), places, grown
+    for _ in range(POLISHES):
+        if best[0] <= ENOUGH:
+            break
+        start, items = stars(best[2].faces, len(places))
+        places = best[1].copy()
+        if open_angles(places, best[2].faces, start, items, free, ENOUGH, 6) == 0:
+            break
+        grown = grow_points(places, steps)
+        if grown.status != CLOSED:
+            break
+        angle = sharpest_angle(places, grown.faces)
+        if angle >= best[0]:
+            break
+        best = angle, places, grown
+    return best

@@ -42,8 +42,8 @@ def panel_mesh(
     nearer to the outline than threshold * edge are redundant; 0.5 to 0.9.  quality: "fair", the paper's method and
     nothing else; "light", with up to three smoothing passes, kept where the smallest angle grows, and other thresholds
     where it stays below 30 degrees (or the outline's own sharpest corner); "best", with a row of points along the
-    outline and smoothing until the angles are open (`best.py`; the threshold plays no part).  sampled: the contours are sampled already, so that
-    every point becomes a boundary vertex, in its order where the cloth lies to the left in (x, -y).
+    outline and smoothing until the angles are open (`best.py`; the threshold plays no part).  sampled: the contours
+    are sampled already, so that every point becomes a boundary vertex, in its order where the cloth lies to the left in (x, -y).
     Raises OutlineError saying what is wrong with the outline, where, and what to do.
     """
     begin = perf_counter()

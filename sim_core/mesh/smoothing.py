@@ -8,7 +8,7 @@ from numba import njit
 
 from sim_core.mesh.quality import triangle_areas
 
-__all__ = ["centre", "open_angles", "smoothed", "stars"]
+__all__ = ["centre", "open_angles", "sharpest_angle", "smoothed", "stars"]
 
 TURNS = np.arange(8) * np.pi / 4
 WAYS = np.column_stack([np.cos(TURNS), np.sin(TURNS)])  # directions a point is tried in
@@ -124,3 +124,20 @@ def open_angles(places, faces, start, items, free, cosine, sweeps):
         if moved == before:
             break
     return moved
+
+
+@njit(cache=True, error_model="numpy")
+def sharpest_angle(places, faces):
+    """Cosine of the smallest angle of a mesh with y up; 2 where a triangle is turned over."""
+    worst = -1.0
+    for f in range(faces.shape[0]):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
+        wx, wy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
+        if ux * wy - uy * wx <= 0.0:
+            return 2.0
+        u, w, t = ux * ux + uy * uy, wx * wx + wy * wy, (wx - ux) ** 2 + (wy - uy) ** 2
+        least = min(u, min(w, t))
+        product = u * w if least == t else (t * w if least == u else t * u)
+        worst = max(worst, (u + w + t - 2 * least) / (2 * np.sqrt(product)))
+    return worst
