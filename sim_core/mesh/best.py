@@ -4,11 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim_core.mesh.graded import graded_points
 from sim_core.mesh.growth import CLOSED, Growth, grow_points
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.layer import apart, layer_points
 from sim_core.mesh.raycast import distance_below, inside, keep_points
 from sim_core.mesh.repair import repaired
+from sim_core.mesh.sampling import Rim
+from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.smoothing import centre, open_angles, sharpest_angle, stars
 
 __all__ = ["BestFill", "best_fill"]
@@ -21,6 +24,7 @@ LATTICE_OFF_LAYER = 0.65
 BAND = 5.0  # of the edge: what lies deeper is lattice already and stays
 PASSES = 1  # of smoothing, each of SWEEPS rounds over the band, and growth again
 SWEEPS = 5
+GRADED_PASSES = 4
 POLISHES = 4
 ENOUGH = np.cos(np.radians(42.0))  # angles are opened up to this
 LEAST = np.cos(np.radians(38.0))  # below this points are added and removed
@@ -35,37 +39,40 @@ class BestFill(NamedTuple):
     where: int
 
 
-def best_fill(samples: list[np.ndarray], steps: np.ndarray, edge: float) -> BestFill:
-    """Fill sampled contours with nearly equilateral triangles.
+def best_fill(rim: Rim, edge: float, sizes: SizeField | None = None) -> BestFill:
+    """Fill a sampled rim with nearly equilateral triangles of `edge` [m], or of the lengths a size field wants."""
+    fixed = len(rim.points)
+    if sizes is None:
+        places = np.concatenate([rim.points, _points(rim, edge)])
+        free = fixed + np.flatnonzero(distance_below(places[fixed:], rim.segments, BAND * edge))
+        return _relaxed(places * UPRIGHT, rim.steps, free, np.ones(len(places)), PASSES)
+    places = np.concatenate([rim.points, graded_points(rim, edge, sizes)])
+    weights = (
+        edge / sizes.at(places, edge)
+    ) ** 4  # density per area that gives edges in proportion to the sizes
+    return _relaxed(places * UPRIGHT, rim.steps, np.arange(fixed, len(places)), weights, GRADED_PASSES)
 
-    samples: contours (m, 2) [m], y down, cloth on the left in (x, -y).  steps: (sum m, 2) their directed edges.
-    """
-    fixed = sum(len(loop) for loop in samples)
-    places = _points(samples, edge) * UPRIGHT
-    segments = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in samples])
-    free = fixed + np.flatnonzero(distance_below(places[fixed:] * UPRIGHT, segments, BAND * edge))
-    return _relaxed(places, steps, free, fixed)
 
-
-def _points(samples: list[np.ndarray], edge: float) -> np.ndarray:
-    """Samples, then the row along the outline, then the lattice where neither is near. (n, 2) [m]"""
-    segments = np.concatenate([np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in samples])
-    row = layer_points(samples)
-    row = row[inside(row, samples)]
+def _points(rim: Rim, edge: float) -> np.ndarray:
+    """The row along the rim, then the lattice where neither is near. (n, 2) [m]"""
+    contours, segments = rim.contours, rim.segments
+    row = layer_points(rim.points, rim.steps)
+    row = row[inside(row, contours)]
     row = row[~distance_below(row, segments, LAYER_OFF_OUTLINE * edge)]
-    lattice = staggered_points(samples[0].min(axis=0), samples[0].max(axis=0), edge)
-    lattice = keep_points(lattice, samples, edge=edge, threshold=LATTICE_OFF_OUTLINE)
+    lattice = staggered_points(contours[0].min(axis=0), contours[0].max(axis=0), edge)
+    lattice = keep_points(lattice, contours, edge=edge, threshold=LATTICE_OFF_OUTLINE, segments=segments)
     inner = np.concatenate([row, lattice])
+    if len(inner) == 0:
+        return inner
     reach = np.full(len(inner), LATTICE_OFF_LAYER * edge)
     reach[: len(row)] = LAYER_APART * edge
-    return np.concatenate([*samples, inner[apart(inner, reach, 0)]])
+    return inner[apart(inner, reach, 0)]
 
 
-def _relaxed(places: np.ndarray, steps: np.ndarray, free: np.ndarray, fixed: int) -> BestFill:
+def _relaxed(places, steps, free, weights, passes: int) -> BestFill:
     """Grow, smooth and grow again; then open the smallest angles, and treat the spots where that is not enough."""
-    weights = np.ones(len(places))
     grown = grow_points(places, steps)
-    for _ in range(PASSES):
+    for _ in range(passes):
         if grown.status != CLOSED:
             break
         start, items = stars(grown.faces, len(places))
@@ -73,7 +80,7 @@ def _relaxed(places: np.ndarray, steps: np.ndarray, free: np.ndarray, fixed: int
         grown = grow_points(places, steps)
     angle, places, grown = _opened(places, grown, steps, free)
     if grown.status == CLOSED and angle > LEAST:
-        again, weights, free = repaired(places, grown.faces, free, weights, fixed)
+        again, weights, free = repaired(places, grown.faces, free, weights)
         regrown = grow_points(again, steps)
         if regrown.status == CLOSED:
             again_angle, again, regrown = _opened(again, regrown, steps, free)

@@ -12,14 +12,11 @@ __all__ = ["apart", "layer_points"]
 HEIGHT = np.sqrt(3) / 2
 
 
-def layer_points(samples: list[np.ndarray]) -> np.ndarray:
-    """For each step of sampled contours (m, 2) [m], cloth on the left in (x, -y), the apex over it: (sum m, 2) [m]."""
-    rows = []
-    for loop in samples:
-        ahead = np.roll(loop, -1, axis=0)
-        along = ahead - loop
-        rows.append((loop + ahead) / 2 + HEIGHT * np.column_stack([along[:, 1], -along[:, 0]]))
-    return np.concatenate(rows)
+def layer_points(points: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """The apex over each directed step (m, 2) of points (b, 2) [m], y down, on its left in (x, -y): (m, 2) [m]."""
+    a, b = points[steps[:, 0]], points[steps[:, 1]]
+    along = b - a
+    return (a + b) / 2 + HEIGHT * np.column_stack([along[:, 1], -along[:, 0]])
 
 
 def apart(points: np.ndarray, reach: np.ndarray, first: int) -> np.ndarray:

@@ -7,13 +7,17 @@ from numba import njit
 
 from sim_core.errors import OutlineError
 from sim_core.mesh.exact import orient
+from sim_core.mesh.merging import merged
 
 __all__ = [
+    "CORNER_DEGREES",
     "check_count",
     "check_edge",
     "clean_contour",
     "clean_contours",
+    "clean_points",
     "outline_samples",
+    "outline_turning",
     "sharpest_corner",
     "signed_area",
 ]
@@ -55,11 +59,8 @@ def check_count(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS
         raise OutlineError(f"edge {edge} m makes more than {most} vertices – give at least {least:.2g} m")
 
 
-def clean_contour(points, name: str) -> np.ndarray:
-    """A contour as (n, 2) float64 [m] without repeated points.
-
-    Raises OutlineError naming the contour where it is empty, not finite, of fewer than three points or without area.
-    """
+def clean_points(points, name: str) -> np.ndarray:
+    """A list of points as (n, 2) float64 [m]; raises OutlineError naming it where it is none, or not finite."""
     try:
         contour = np.array(points, dtype=float)
     except (TypeError, ValueError, OverflowError, RecursionError) as error:
@@ -78,6 +79,15 @@ def clean_contour(points, name: str) -> np.ndarray:
         raise OutlineError(
             f"{name}: point {far} is {contour[far].tolist()} – give metres, at most {LARGEST:g}"
         )
+    return contour
+
+
+def clean_contour(points, name: str) -> np.ndarray:
+    """A contour as (n, 2) float64 [m] without repeated points.
+
+    Raises OutlineError naming the contour where it is empty, not finite, of fewer than three points or without area.
+    """
+    contour = clean_points(points, name)
     extent = float(np.ptp(contour, axis=0).max())
     if 0 < extent < LEAST:
         raise OutlineError(f"{name}: {extent:.2g} m across – give metres, at least {LEAST:g} across")
@@ -92,13 +102,18 @@ def clean_contour(points, name: str) -> np.ndarray:
     return contour
 
 
-def clean_contours(outline, holes) -> list[np.ndarray]:
+def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndarray]:
     """The outline and its holes, checked and turned so that the cloth lies to their left in (x, -y).
 
-    Raises OutlineError for crossing or touching contours (naming the segments), zero area, and holes outside.
+    edge: [m]; with it, holes that touch the outline or each other are merged (`merging.py`), with an OutlineWarning.
+    Raises OutlineError for crossing contours (naming the segments), zero area, and holes outside.
     """
     named = [("outline", clean_contour(outline, "outline"))]
     named += [(f"hole {k}", clean_contour(hole, f"hole {k}")) for k, hole in enumerate(holes)]
+    for name, contour in named:
+        _check_crossings([(name, contour)])
+    if edge is not None and len(named) > 1:
+        named = merged(named, edge)
     _check_crossings(named)
     contours = []
     for name, contour in named:
@@ -200,7 +215,7 @@ def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:
     contour: (n, 2) [m], closing point not repeated; a corner turns by more than 20 degrees.  edge: [m].
     Returns (m, 2) [m] in the same direction; smooth closed curves start at their first point.
     """
-    corners = np.flatnonzero(_turning(contour) > CORNER_DEGREES)
+    corners = np.flatnonzero(outline_turning(contour) > CORNER_DEGREES)
     if corners.size == 0:
         corners = np.array([0])
     turned = np.roll(contour, -corners[0], axis=0)
@@ -213,7 +228,7 @@ def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:
     return np.concatenate(chains)
 
 
-def _turning(contour: np.ndarray) -> np.ndarray:
+def outline_turning(contour: np.ndarray) -> np.ndarray:
     """Angle [degrees] by which a closed contour turns at each point."""
     ahead = np.roll(contour, -1, axis=0) - contour
     behind = contour - np.roll(contour, 1, axis=0)

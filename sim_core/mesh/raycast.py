@@ -74,17 +74,24 @@ def _strictly_inside(points, segments, start, items, low, per_metre, rows):
 
 
 def keep_points(
-    points: np.ndarray, contours: list[np.ndarray], *, edge: float, threshold: float = 0.7
+    points: np.ndarray,
+    contours: list[np.ndarray],
+    *,
+    edge: float,
+    threshold: float = 0.7,
+    segments: np.ndarray | None = None,
 ) -> np.ndarray:
     """The points that are not redundant: strictly inside the contours and at least threshold * edge away from them.
 
     points: (n, 2) [m]; contours: sampled outline and holes (m, 2) [m]; edge: [m]; threshold: fraction of the edge.
+    segments: (m, 4) a.x a.y b.x b.y [m] to keep off instead of the contours, such as these and inner lines.
     With threshold >= 1/2 and outline steps <= edge no point lies in the circle over an outline step as diameter, so
     every step becomes a mesh edge. (The paper says points within the threshold are retained; that would keep a
     crowded band along the outline and nothing else, so the sign is turned.)
     """
     kept = points[inside(points, contours)]
-    segments = np.concatenate([np.hstack([c, np.roll(c, -1, axis=0)]) for c in contours])
+    if segments is None:
+        segments = np.concatenate([np.hstack([c, np.roll(c, -1, axis=0)]) for c in contours])
     return kept[~distance_below(kept, segments, threshold * edge)]
 
 

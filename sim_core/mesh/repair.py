@@ -35,12 +35,11 @@ class Patch(NamedTuple):
 
 
 def repaired(
-    places: np.ndarray, faces: np.ndarray, free: np.ndarray, weights: np.ndarray, fixed: int
+    places: np.ndarray, faces: np.ndarray, free: np.ndarray, weights: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Treat the worst spots of a mesh; returns places (V', 2), weights and free anew. The mesh is to be grown again.
 
     places: (V, 2), y up.  faces: (F, 3).  free: (m,) vertices that may move or go.  weights: (V,) as in `centre`.
-    fixed: vertices before this are on the outline.
     """
     movable = np.zeros(len(places), dtype=bool)
     movable[free] = True

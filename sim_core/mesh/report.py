@@ -28,12 +28,18 @@ def measured(vertices, faces, boundary, contours, seconds: float) -> MeshReport:
 
 
 def _deviation(contour: np.ndarray, loop: np.ndarray) -> float:
-    """Largest distance [m] from a point of the given contour to the meshed one."""
+    """Hausdorff distance [m] between a given contour and the meshed one, from the points and middles of their steps."""
+    return max(_farthest(contour, loop), _farthest(loop, contour))
+
+
+def _farthest(points: np.ndarray, loop: np.ndarray) -> float:
+    """Largest distance [m] from a point or step's middle of one closed contour to another."""
     worst = 0.0
+    probes = np.concatenate([points, (points + np.roll(points, -1, axis=0)) / 2])
     a, b = loop, np.roll(loop, -1, axis=0)
     along = b - a
     square = (along**2).sum(axis=1)
-    for block in np.array_split(contour, max(1, len(contour) * len(loop) // 2_000_000)):
+    for block in np.array_split(probes, max(1, len(probes) * len(loop) // 2_000_000)):
         t = np.clip(((block[:, None] - a) * along).sum(axis=2) / square, 0, 1)
         gap = block[:, None] - a - t[..., None] * along
         worst = max(worst, float(np.sqrt((gap**2).sum(axis=2).min(axis=1)).max()))
