@@ -7,17 +7,24 @@ from sim_core.mesh.outline import outline_samples
 from sim_core.mesh.panel import panel_mesh
 from sim_core.mesh.quality import quality
 from sim_core.mesh.raycast import inside, keep_points
+from sim_core.mesh.seams import Seam, SeamFit, SeamSide, sewn_meshes
+from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.triangulation import triangulate
 
 __all__ = [
     "MeshReport",
     "OutlineError",
     "PanelMesh",
+    "Seam",
+    "SeamFit",
+    "SeamSide",
+    "SizeField",
     "inside",
     "keep_points",
     "outline_samples",
     "panel_mesh",
     "quality",
+    "sewn_meshes",
     "staggered_points",
     "triangulate",
 ]

@@ -18,6 +18,7 @@ import json
 import statistics
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -164,9 +165,7 @@ def panels(sizes: list[int], names: list[str], peers: Peers | None) -> list[dict
             found = {}
             for _ in range(5 if size <= 30_000 else 3):
                 for kind in ("fair", "best"):
-                    seconds, mesh = timed(
-                        lambda k=kind: panel_mesh(outline, edge=edge, holes=holes, quality=k)
-                    )
+                    seconds, mesh = timed(partial(panel_mesh, outline, edge=edge, holes=holes, quality=kind))
                     times.setdefault(kind, []).append(seconds)
                     figures = {key: getattr(mesh.report, key) for key in ("area_error", "conformity")}
                     found[kind] = {**shape(mesh.vertices, mesh.faces), **figures}
