@@ -139,3 +139,34 @@ def report_faults(seed: int) -> list[str]:
         found.append(f"deviation {mesh.report.outline_deviation / edge:.3f} edge")
     steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary])
     return found + delaunay_faults(mesh.vertices, mesh.faces, steps)
+
+
+def main() -> int:
+    """Count bad meshes among the first so many seeds; --json FILE writes the count."""
+    import argparse
+    import json
+    from pathlib import Path
+
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("count", type=int)
+    parser.add_argument("--json", type=Path)
+    args = parser.parse_args()
+    bad, holes = {}, 0
+    for seed in range(args.count):
+        holes += bool(random_panel(seed)[1])
+        try:
+            faults = report_faults(seed)
+        except Exception as error:  # a refusal counts like any other fault
+            faults = [f"{type(error).__name__}: {error}"]
+        if faults:
+            bad[seed] = faults[:3]
+            print(seed, faults[:3], flush=True)
+    told = {"polygons": args.count, "with_holes": holes, "bad": len(bad), "faults": bad}
+    print(f"{args.count} polygons, {holes} with holes: {len(bad)} bad meshes")
+    if args.json:
+        args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

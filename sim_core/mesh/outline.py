@@ -1,6 +1,6 @@
 """Outlines: what may be meshed, and sampling at equal steps that keeps the corners."""
 
-from math import isfinite, sqrt
+from math import fsum, isfinite, sqrt
 
 import numpy as np
 from numba import njit
@@ -29,10 +29,27 @@ FLAT = 1e-9  # of the squared extent: less area than this is none
 
 
 def signed_area(contour: np.ndarray) -> float:
-    """Area [m2] of a closed contour (n, 2), y down: positive where it runs counter-clockwise in (x, -y)."""
-    moved = contour - contour[0]
-    x, y = moved[:, 0], -moved[:, 1]
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    """Area [m2] of a closed contour (n, 2), y down: positive where it runs counter-clockwise in (x, -y).
+
+    Every product is split into two floats without error and all are summed exactly, so that a thin strip far from the
+    origin has its area to the last bit.
+    """
+    x, y = contour[:, 0], -contour[:, 1]
+    terms = [*_product(x, np.roll(y, -1)), *_product(-np.roll(x, -1), y)]
+    return 0.5 * fsum(np.concatenate(terms).tolist())
+
+
+def _product(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """a * b as the rounded product and its rounding error (Dekker)."""
+    (a_high, a_low), (b_high, b_low) = _halves(a), _halves(b)
+    product = a * b
+    return product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)
+
+
+def _halves(a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    turned = (2.0**27 + 1) * a
+    high = turned - (turned - a)
+    return high, a - high
 
 
 def check_edge(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS) -> None:

@@ -121,6 +121,8 @@ def _near(points, segments, reach, low, cell, columns, rows, start, items):
         last_row = min(int((max(ay, by) + reach - low[1]) // cell), rows - 1)
         first_column = max(int((min(ax, bx) - reach - low[0]) // cell), 0)
         last_column = min(int((max(ax, bx) + reach - low[0]) // cell), columns - 1)
+        if first_column > last_column:  # the segment lies beside all points
+            continue
         for i in range(first_row, last_row + 1):
             for k in range(start[i * columns + first_column], start[i * columns + last_column + 1]):
                 p = items[k]
