@@ -118,7 +118,7 @@ def random_panel(seed: int):
             return np.array(polygon.exterior.coords)[:-1] @ np.array([[c, s], [-s, c]]) + move
 
         extent = float(np.ptp(np.array(shape.exterior.coords), axis=0).max())
-        edge = extent / rng.uniform(1.1, 25)
+        edge = extent / rng.uniform(1.5, 25)
         quality = ("fair", "light", "best")[int(rng.integers(3))]
         return placed(shape), [placed(hole) for hole in holes], edge, quality
 

@@ -44,7 +44,7 @@ def grow_points(points: np.ndarray, seeds: np.ndarray | None) -> Growth:
     boxes = block_boxes(places, cells.start, cells.columns, cells.rows)
     walls = None
     if seeds is None:
-        edges = _nearest_pair(places)
+        edges = _nearest_pair(places, cells, boxes)
     else:
         edges = rank[np.asarray(seeds, dtype=np.int64)]
         weak = ~strictly_delaunay(places, edges, *cells, boxes)
@@ -73,13 +73,18 @@ def _without_equals(
     return order[fresh], places[fresh], cells._replace(start=start), rank
 
 
-def _nearest_pair(places: np.ndarray) -> np.ndarray:
-    """Both directions of the edge from the first point to its nearest neighbour, which is a Delaunay edge always."""
+def _nearest_pair(places: np.ndarray, cells: Cells, boxes: np.ndarray) -> np.ndarray:
+    """Both directions of the edge from the first point to its nearest neighbour, which is a Delaunay edge always.
+
+    Rounded distances leave a few candidates; the nearest of them has nothing else in its diametral circle.
+    """
     if len(places) < 2:
         return np.zeros((0, 2), np.int32)
     square = ((places - places[0]) ** 2).sum(axis=1)
     square[0] = np.inf
-    nearest = int(square.argmin())
+    near = np.flatnonzero(square <= square.min() * (1 + 1e-12)).astype(np.int32)
+    edges = np.column_stack([np.zeros_like(near), near])
+    nearest = int(near[strictly_delaunay(places, edges, *cells, boxes).argmax()])
     return np.array([[0, nearest], [nearest, 0]], dtype=np.int32)
 
 

@@ -76,8 +76,8 @@ def figure_3(path: Path) -> None:
     shape = np.column_stack([1.5 * radius * np.cos(t), radius * np.sin(t)])
     page = Sheet((-2.6, -1.45), (2.7, 1.45), 760)
     page.line([*shape, shape[0]], INK, 3)
-    page.text((-0.1, 1.18), "S")
-    asked = {"N": (-0.9, -0.62), "M": (-2.2, -0.25), "P": (0.15, 0.2), "Q": (-2.0, 0.62)}
+    page.text((0.9, 0.05), "S")
+    asked = {"N": (-2.2, 0.62), "M": (-0.9, -0.25), "P": (-2.3, 0.2), "Q": (-1.2, -0.755)}
     for name, point in asked.items():
         x, y = point
         a, b = shape, np.roll(shape, -1, axis=0)

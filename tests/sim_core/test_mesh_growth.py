@@ -88,6 +88,15 @@ def test_order_of_the_points_does_not_matter_even_in_ties(name):
     assert triangles(shuffle[triangulate(points[shuffle])]) == triangles(triangulate(points))
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_small_clouds_of_neighbouring_floats(seed):
+    """The first edge too is chosen exactly: many points are nearest but for rounding."""
+    rng = np.random.default_rng(seed)
+    points = np.concatenate([[[0.1, 0.1]], 0.1 + rng.random((6, 2))])
+    points = np.concatenate([points, np.nextafter(points, 2), np.nextafter(points[:, ::-1], 0)])
+    assert_whole(points, triangulate(points))
+
+
 def same_up_to_ties(points, faces, others) -> bool:
     """Whether two triangulations differ in nothing but how cocircular polygons are cut (both are whole)."""
     assert_whole(points, faces)
