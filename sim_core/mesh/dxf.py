@@ -18,7 +18,7 @@ __all__ = ["read_dxf"]
 METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 14: 0.1}
 NEAR = 1e-6  # of the drawing's extent: ends this near are joined
 ROUND = 128  # pieces of a full circle
-PIECES = 16  # of a spline between knots
+PIECES = 64  # of a spline between knots
 
 Entity = tuple[str, list[tuple[int, str]]]
 
