@@ -9,7 +9,7 @@ import { renderer, requestRender, viser } from "./hooks.js";
 const MAP = "lightmap";
 const ROOM = "hall_";
 const SKY_ALONE = 2.4; // times: garments are as bright without reflections as with them
-const LINEAR = 1006; // three.js' LinearFilter
+const LINEAR = 1006, NEAREST_SIZE = 1007, BETWEEN_SIZES = 1008; // three.js: Linear, LinearMipmapNearest, …Linear
 const STRENGTH = 2 * Math.PI; // the map holds light / 2, and three.js divides a light map by pi
 
 const listOf = (material) => [material ?? []].flat();
@@ -61,16 +61,24 @@ function plainly(map) {
   map.needsUpdate = true;
 }
 
-/** Filter textures seen at a slant with `wanted` samples, as far as the machine can. Light maps stay as they are. */
-export function sharpen(meshes, wanted) {
+/**
+ * Filter textures: `wanted` samples where seen at a slant, as far as the machine can; `blend` mixes two sizes of a
+ * texture in each, which hides where one size follows another. A software renderer pays dearly for both. Light maps
+ * stay as they are.
+ */
+export function sharpen(meshes, wanted, blend = true) {
   const anisotropy = Math.min(wanted, renderer()?.capabilities.getMaxAnisotropy() ?? 1);
+  const sizes = blend ? BETWEEN_SIZES : NEAREST_SIZE;
   let changed = false;
   for (const mesh of meshes) {
     for (const material of listOf(mesh.material)) {
+      if (material.name === MAP) continue;
       for (const texture of Object.values(material)) {
-        if (!texture?.isTexture || texture === material.lightMap || texture.anisotropy === anisotropy) continue;
-        if (material.name === MAP) continue;
+        if (!texture?.isTexture || texture === material.lightMap) continue;
+        const wantedFilter = texture.minFilter === LINEAR ? LINEAR : sizes;
+        if (texture.anisotropy === anisotropy && texture.minFilter === wantedFilter) continue;
         texture.anisotropy = anisotropy;
+        texture.minFilter = wantedFilter;
         texture.needsUpdate = true;
         changed = true;
       }

@@ -3,6 +3,7 @@
 import { framesDrawn, meshesOf, nodeNames, renderer } from "./hooks.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { layLight, plainTones, reflect, sharpen } from "./light.js";
+import { shadeBySight } from "./sides.js";
 import { recall, remember } from "./ui/words.js";
 
 export const CHOICES = ["auto", ...LEVELS];
@@ -12,9 +13,9 @@ const CHOSEN = "hall.quality", FOUND = "hall.quality.found";
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 const SETTINGS = {
-  low: { anisotropy: 1, reflections: false },
-  medium: { anisotropy: 4, reflections: false },
-  high: { anisotropy: 8, reflections: true },
+  low: { anisotropy: 1, blend: false, reflections: false },
+  medium: { anisotropy: 4, blend: true, reflections: false },
+  high: { anisotropy: 8, blend: true, reflections: true },
 };
 
 /** Pixels drawn per CSS pixel, of a screen with `ratio` of them. */
@@ -73,13 +74,18 @@ export function createQuality(onChange = () => {}) {
     /** Ahead of every picture: viser's client and a changed content bring new meshes and put old settings back. */
     frame(now) {
       watch(now);
-      const { anisotropy, reflections } = SETTINGS[level()];
+      const { anisotropy, blend, reflections } = SETTINGS[level()];
       const room = meshesOf("/room");
       plainTones();
       layLight(room);
       reflect(reflections);
-      sharpen(room, anisotropy);
-      for (const name of nodeNames()) if (name.startsWith("/exhibits/") || name === "/closeup") sharpen(meshesOf(name), anisotropy);
+      sharpen(room, anisotropy, blend);
+      for (const name of nodeNames()) {
+        if (!name.startsWith("/exhibits/") && name !== "/closeup") continue;
+        const meshes = meshesOf(name);
+        sharpen(meshes, anisotropy, blend);
+        shadeBySight(meshes);
+      }
       apply();
     },
   };

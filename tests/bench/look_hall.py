@@ -1,7 +1,7 @@
 """`hall` whose room is lit another way: the same content, for comparison by bench_look.py.
 
 HALL_LOOK says how: "shipped" (unlit, baked light), "ambient" (lit materials, one ambient light), "default" (lit
-materials, viser's default environment map; its default lamps, which cost more still, are left out).
+materials, viser's default environment map; its default lamps, which cost more still, are left out), "beside" (both).
 """
 
 import json
@@ -33,7 +33,7 @@ def for_lights(glb: bytes) -> bytes:
 
 def look_otherwise(how: str) -> None:
     """Make every HallScene of this process light its room in the given way."""
-    configure = HallScene._configure
+    configure, show_environment = HallScene._configure, HallScene.show_environment
 
     def configured(self) -> None:
         configure(self)
@@ -46,16 +46,18 @@ def look_otherwise(how: str) -> None:
         scene.add_glb = add  # pyright: ignore[reportAttributeAccessIssue]
         for light in ("/light/sky", "/light/key"):
             scene.remove_by_name(light)
-        if how == "ambient":
+        if how in ("ambient", "beside"):
             scene.add_light_ambient("/light/all", intensity=3.0)
-        else:
+        if how in ("beside", "default"):
             scene.configure_environment_map()
 
-    def no_environment(self, jpeg: bytes | None) -> None:
-        pass
+    def another_environment(self, jpeg: bytes | None) -> None:
+        # viser's client begins with an environment of its own: "ambient" takes it off as the hall does.
+        if how == "ambient":
+            show_environment(self, None)
 
     HallScene._configure = configured
-    HallScene.show_environment = no_environment
+    HallScene.show_environment = another_environment
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -68,6 +69,15 @@ def test_progress_in_a_log_is_a_line_now_and_then():
     assert "\r" not in log.getvalue()
 
 
+def test_a_log_does_not_repeat_itself():
+    log, now = io.StringIO(), [0.0]
+    line = ProgressLine(log, clock=lambda: now[0])
+    for tick in range(100):
+        now[0] = tick
+        line.tell("Preparing 0 %" if tick < 90 else "Preparing 1 %")
+    assert log.getvalue().splitlines() == ["Preparing 0 %", "Preparing 1 %"]
+
+
 def test_the_next_step_is_told_at_once():
     log = io.StringIO()
     line = ProgressLine(log, clock=lambda: 0.0)
@@ -91,13 +101,19 @@ def test_progress_on_a_terminal_is_written_over():
     assert screen.getvalue().count("\n") == 2
 
 
+def run_alone(work):
+    """asyncio.run in a thread of its own: a browser test before this one leaves its loop running in the main thread."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, work).result()
+
+
 def test_work_beside_the_loop_gives_and_raises():
     async def both() -> int:
         with pytest.raises(ZeroDivisionError):
             await beside(broken)
         return await beside(divmod, 7, 2)
 
-    assert asyncio.run(both()) == (3, 1)
+    assert run_alone(both()) == (3, 1)
 
 
 def test_work_beside_the_loop_does_not_keep_it_from_ending():
@@ -111,7 +127,7 @@ def test_work_beside_the_loop_does_not_keep_it_from_ending():
         with pytest.raises(asyncio.TimeoutError):
             await asyncio.wait_for(beside(slow), 0.05)
 
-    asyncio.run(impatient())
+    run_alone(impatient())
     assert not ended.is_set()
     go.set()
     assert ended.wait(30)

@@ -91,6 +91,8 @@ def test_bench_keeps_debug_to_itself(monkeypatch: pytest.MonkeyPatch) -> None:
         return subprocess.CompletedProcess(words, 0)
 
     monkeypatch.setattr(subprocess, "run", heard)
+    # The package may be an installed one, without the benches of a checkout.
+    monkeypatch.setattr(cli, "__file__", str(Path(__file__).parents[2] / "sim_core" / "cli.py"))
     for words in (["bench", "--debug", "mesh"], ["bench", "mesh", "--debug"], ["--debug", "bench", "mesh"]):
         assert cli.main([*words, "--", "--quick"]) == 0
     assert ran == [["--quick"]] * 3
