@@ -9,8 +9,8 @@ panels    Outline in, checked mesh out, beside gmsh's Frontal-Delaunay on the sa
 cloth     How far the sheet that hangs by one edge is from the converged one, by the edge length of its mesh.
 
 Triangle and gmsh are no dependencies: `--peers` makes an environment of their own from tests/bench/peers.txt (in
-build/peers, or FOLDER) and runs them there. The ratio of an engine is the median over the rounds of its time divided
-by growth's in the same round.
+build/peers, or FOLDER) and runs them there. The ratio of an engine is its time divided by growth's (or best's) in the
+same round: median, least and greatest over the rounds. --add puts further parts into the --json file that is there.
 """
 
 import argparse
@@ -21,9 +21,11 @@ import sys
 from functools import partial
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 from mesh_cases import PANELS, PointSet, edge_for, errors, shape
+from mesh_figures import added, exponent
 from peers import Peers, peer_python
 from scipy.spatial import Delaunay
 
@@ -35,7 +37,7 @@ NAIVE_LIMIT, QHULL_LIMIT, GMSH_LIMIT = 7000, 1_100_000, 150_000
 SIZES = {"quick": [3000, 6000], "usual": [3000, 10_000, 30_000, 100_000], "large": [1_000_000, 2_000_000]}
 
 
-def timed(run) -> tuple[float, np.ndarray]:
+def timed(run) -> tuple[float, Any]:
     begin = perf_counter()
     found = run()
     return perf_counter() - begin, found
@@ -54,8 +56,8 @@ def growth_engines(case: PointSet, peers: Peers | None) -> dict:
         return seconds, points, case.culled(found.simplices)
 
     def naive():
-        seconds, faces = timed(lambda: grow_naive(points))
-        return seconds, points, case.culled(faces)
+        seconds, faces = timed(lambda: grow_naive(points, case.steps))
+        return seconds, points, faces
 
     def triangle():
         assert peers is not None
@@ -82,25 +84,29 @@ def growth(sizes: list[int], panels: list[str], peers: Peers | None) -> list[dic
             found = {}
             for turn in range(7 if size <= 30_000 else 5):
                 for name, run in runs.items():
-                    if name in ("Qhull", "growth, naive") and turn >= (3 if size <= 30_000 else 1):
-                        continue  # seconds long: what they cost is plain after one round
+                    if name in ("Qhull", "growth, naive") and turn >= (3 if size <= 100_000 else 2):
+                        continue  # seconds long: what they cost is plain after few rounds
                     seconds, vertices, faces = run()
                     times[name].append(seconds)
                     found[name] = errors(vertices, np.asarray(faces), case)
             for name, spent in times.items():
                 ratios = [t / own for t, own in zip(spent, times["growth"], strict=False)]
-                rows.append(
-                    {
-                        "panel": panel,
-                        "engine": name,
-                        "points": len(case.points),
-                        "seconds": min(spent),
-                        "ratio": statistics.median(ratios),
-                        **found[name],
-                    }
-                )
+                rows.append({"panel": panel, "engine": name, "points": len(case.points)})
+                rows[-1].update(spread(spent, ratios), **found[name])
                 tell_growth(rows[-1])
     return rows
+
+
+def spread(seconds: list[float], ratios: list[float]) -> dict:
+    """Least and median time, and the ratio's median, least and greatest."""
+    return {
+        "seconds": min(seconds),
+        "seconds_median": statistics.median(seconds),
+        "rounds": len(seconds),
+        "ratio": statistics.median(ratios),
+        "ratio_least": min(ratios),
+        "ratio_most": max(ratios),
+    }
 
 
 def tell_growth(row: dict) -> None:
@@ -111,37 +117,34 @@ def tell_growth(row: dict) -> None:
     )
 
 
-def exponent(rows: list[dict]) -> dict:
-    """Slope of log seconds against log points for growth, from 10 000 points on, per panel."""
-    found = {}
-    for panel in {row["panel"] for row in rows}:
-        own = [r for r in rows if r["panel"] == panel and r["engine"] == "growth" and r["points"] > 8000]
-        if len(own) > 1:
-            n, t = (np.log([r[key] for r in own]) for key in ("points", "seconds"))
-            found[panel] = float(np.polyfit(n, t, 1)[0])
-    return found
-
-
 MEMORY = """
-import resource, sys
+import re, sys
+from pathlib import Path
 sys.path.insert(0, {bench!r})
 import numpy as np
 from mesh_cases import PointSet, edge_for
 from sim_core.mesh import triangulate
+
+def kilobytes(name):
+    return int(re.search(name + r":\\s+(\\d+)", Path("/proc/self/status").read_text()).group(1))
+
 small = PointSet("rectangle", edge_for("rectangle", 2000))
 triangulate(small.points, small.steps)
 points = np.load({points!r})
 steps = np.load({steps!r})
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+Path("/proc/self/clear_refs").write_text("5")  # the greatest resident size counts from here
+before = kilobytes("VmRSS")
 triangulate(points, steps)
-print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024 / len(points))
+print((kilobytes("VmHWM") - before) * 1024 / len(points))
 """
 
 
-def memory(size: int) -> dict:
-    """Bytes a point that growth adds to the greatest resident size of a fresh process."""
+def memory(size: int) -> dict | None:
+    """Bytes a point that growth adds to the greatest resident size of a fresh process; None where no Linux tells."""
     from tempfile import TemporaryDirectory
 
+    if not Path("/proc/self/clear_refs").exists():
+        return None
     case = PointSet("rectangle", edge_for("rectangle", size))
     with TemporaryDirectory() as folder:
         points, steps = f"{folder}/points.npy", f"{folder}/steps.npy"
@@ -163,7 +166,7 @@ def panels(sizes: list[int], names: list[str], peers: Peers | None) -> list[dict
             case = PointSet(name, edge)
             times: dict[str, list[float]] = {}
             found = {}
-            for _ in range(5 if size <= 30_000 else 3):
+            for _ in range(5 if size <= 100_000 else 2):
                 for kind in ("fair", "best"):
                     seconds, mesh = timed(partial(panel_mesh, outline, edge=edge, holes=holes, quality=kind))
                     times.setdefault(kind, []).append(seconds)
@@ -176,11 +179,8 @@ def panels(sizes: list[int], names: list[str], peers: Peers | None) -> list[dict
                     found["gmsh"] = shape(made["vertices"] * (1, -1), made["faces"])
             for kind, spent in times.items():
                 ratios = [t / own for t, own in zip(spent, times["best"], strict=True)]
-                ratio = statistics.median(ratios)
-                rows.append(
-                    {"panel": name, "engine": kind, "edge": edge, "seconds": min(spent), "ratio": ratio}
-                )
-                rows[-1].update(found[kind])
+                rows.append({"panel": name, "engine": kind, "edge": edge})
+                rows[-1].update(spread(spent, ratios), **found[kind])
                 tell_panel(rows[-1])
     return rows
 
@@ -211,6 +211,9 @@ def main() -> int:
     parser.add_argument("--only", choices=("growth", "panels", "cloth"), help="one part")
     parser.add_argument("--panel", choices=tuple(PANELS), help="one outline")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument(
+        "--add", action="store_true", help="keep what the --json file holds of other parts and sizes"
+    )
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw time against points and quality")
     args = parser.parse_args()
     sizes = SIZES["quick"] if args.quick else SIZES["usual"] + (SIZES["large"] if args.large else [])
@@ -219,14 +222,13 @@ def main() -> int:
     figures: dict = {}
     warm = PointSet("hole", 0.05)
     triangulate(warm.points, warm.steps)
-    grow_naive(warm.points)
+    grow_naive(warm.points, warm.steps)
     for kind in ("fair", "best"):
         panel_mesh(PANELS["hole"][0], edge=0.05, holes=PANELS["hole"][1], quality=kind)
     if args.only in (None, "growth"):
         figures["growth"] = growth(sizes, names, peers)
-        figures["exponent"] = exponent(figures["growth"])
         figures["memory"] = memory(max(sizes))
-        print(f"time grows as points to the power {figures['exponent']}; {figures['memory']}")
+        print(f"time grows as points to the power {exponent(figures['growth'])}; {figures['memory']}")
     if args.only in (None, "panels"):
         figures["panels"] = panels(sizes, names, peers)
     if args.only in (None, "cloth"):
@@ -236,6 +238,8 @@ def main() -> int:
     if peers:
         peers.close()
     if args.json:
+        if args.add and args.json.is_file():
+            figures = added(json.loads(args.json.read_text("utf-8")), figures)
         args.json.parent.mkdir(parents=True, exist_ok=True)
         args.json.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
     if args.plot:

@@ -6,8 +6,9 @@ from exact_delaunay import delaunay_faults
 from scipy.spatial import ConvexHull, Delaunay
 
 from sim_core.errors import OutlineError
-from sim_core.mesh import triangulate
+from sim_core.mesh import panel_mesh, triangulate
 from sim_core.mesh.naive import grow_naive
+from sim_core.mesh.outline import signed_area
 from sim_core.mesh.quality import triangle_areas
 
 
@@ -131,6 +132,30 @@ def test_equals_the_naive_form_of_eq_9(n, seed):
 def test_equals_the_naive_form_of_eq_9_on_6000_points():
     points = np.random.default_rng(11).random((6000, 2))
     assert triangles(triangulate(points)) == triangles(grow_naive(points))
+
+
+OUTLINES = {
+    "rectangle": ([[0, 0], [1, 0], [1, 0.7], [0, 0.7]], ()),
+    "round hole": ([[0.2, 0], [0.8, 0], [1, 0.9], [0, 0.9]], (circle(64, 0.15) + (0.5, 0.45),)),
+    "concave": ([[0, 0], [0.7, 0.02], [0.7, 0.3], [0.35, 0.32], [0.26, 0.4], [0.38, 1.2], [0, 1.22]], ()),
+}
+
+
+@pytest.mark.parametrize("edge", [0.03, pytest.param(0.012, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", OUTLINES)
+def test_equals_the_naive_form_of_eq_9_within_outlines(name, edge):
+    """From the outline inward on the points of a panel, many of them in ties: the same but for how ties are cut."""
+    outline, holes = OUTLINES[name]
+    mesh = panel_mesh(outline, edge=edge, holes=holes, quality="fair")
+    steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary])
+    ours, naive = triangulate(mesh.vertices, steps), grow_naive(mesh.vertices, steps)
+    assert triangles(ours) == triangles(mesh.faces)
+    for faces in (ours, naive):
+        assert delaunay_faults(mesh.vertices, faces, steps) == []
+        assert triangle_areas(mesh.vertices, faces).sum() == pytest.approx(
+            sum(signed_area(mesh.vertices[loop]) for loop in mesh.boundary), rel=1e-12
+        )
+    assert len(ours) == len(naive)
 
 
 def test_equals_scipy_delaunay_on_generic_points():
