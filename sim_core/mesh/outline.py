@@ -56,10 +56,17 @@ def check_edge(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS)
     """Raise OutlineError unless edge [m] is a positive length no longer than the panel, and not absurdly short."""
     if not (isfinite(edge) and edge > 0):
         raise OutlineError(f"edge {edge} m – give a positive length in metres")
-    extent = float(np.ptp(contours[0], axis=0).max())
-    if edge > extent:
-        raise OutlineError(f"edge {edge} m is longer than the panel ({extent:.4g} m) – give a smaller edge")
+    if edge > float(np.ptp(contours[0], axis=0).max()) and edge > (longest := _longest(contours[0])):
+        raise OutlineError(f"edge {edge} m is longer than the panel ({longest:.4g} m) – give a smaller edge")
     check_count(edge, contours, most)
+
+
+def _longest(contour: np.ndarray) -> float:
+    """Longer side [m] of the smallest rectangle around a contour, however it is turned."""
+    from shapely import MultiPoint, get_coordinates
+
+    sides = np.diff(get_coordinates(MultiPoint(contour).minimum_rotated_rectangle), axis=0)
+    return float(np.hypot(*sides.T).max()) * (1 + 1e-9)
 
 
 def check_count(edge: float, contours: list[np.ndarray], most: int = MOST_POINTS) -> None:

@@ -150,8 +150,11 @@ def test_equals_the_naive_form_of_eq_9_within_outlines(name, edge):
     steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary])
     ours, naive = triangulate(mesh.vertices, steps), grow_naive(mesh.vertices, steps)
     assert triangles(ours) == triangles(mesh.faces)
+    assert (
+        delaunay_faults(mesh.vertices, ours, steps) == []
+    )  # the naive form is rounded: it takes near ties for ties
     for faces in (ours, naive):
-        assert delaunay_faults(mesh.vertices, faces, steps) == []
+        assert triangle_areas(mesh.vertices, faces).min() > 0
         assert triangle_areas(mesh.vertices, faces).sum() == pytest.approx(
             sum(signed_area(mesh.vertices[loop]) for loop in mesh.boundary), rel=1e-12
         )

@@ -152,7 +152,7 @@ BAD = {
     "edge -1.0 m": (RECTANGLE, {"edge": -1.0}),
     "edge nan m": (RECTANGLE, {"edge": np.nan}),
     "edge 0 m": (RECTANGLE, {"edge": 0}),
-    "longer than the panel": (RECTANGLE, {"edge": 1.5}),
+    "longer than the panel": (RECTANGLE, {"edge": 1.1}),
     "threshold": (RECTANGLE, {"threshold": 0.2}),
 }
 
@@ -162,6 +162,18 @@ def test_bad_outlines_are_named(message):
     outline, options = BAD[message]
     with pytest.raises(OutlineError, match=message):
         panel_mesh(outline, **{"edge": 0.05, **options})
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 45])
+def test_how_long_an_edge_may_be_does_not_depend_on_how_the_panel_lies(degrees):
+    t = np.radians(degrees)
+    strip = np.array([[0, 0], [1, 0], [1, 0.02], [0, 0.02]]) @ [
+        [np.cos(t), np.sin(t)],
+        [-np.sin(t), np.cos(t)],
+    ]
+    assert_sound(panel_mesh(strip, edge=0.99), 0)
+    with pytest.raises(OutlineError, match="longer than the panel"):
+        panel_mesh(strip, edge=1.01)
 
 
 def test_repeated_closing_point_is_accepted():
