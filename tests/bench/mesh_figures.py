@@ -131,13 +131,17 @@ def _panels_table(found: dict) -> list[str]:
 
 def _cloth_table(found: dict) -> list[str]:
     cloth = found["cloth"]
-    lines = ["| Edge | quality | vertices | mesh | drape | error mean / max |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| Edge | quality | vertices | mesh | mean q | drape | error mean / max |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for r in cloth["rows"]:
         cells = [
             f"{100 * r['edge']:g} cm",
             r["quality"],
             str(r["vertices"]),
             f"{1e3 * r['mesh_seconds']:.1f} ms",
+            f"{r['mean_quality']:.4f}",
             f"{r['drape_seconds']:.2f} s",
             f"{r['error_mean_mm']:.2f} / {r['error_max_mm']:.1f} mm",
         ]
