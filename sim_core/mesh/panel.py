@@ -64,8 +64,8 @@ def panel_mesh(
         sizes.check(edge)
     rim = _rim(contours, constraints, edge, sizes, sampled)
     vertices, faces = _filled(rim, edge, threshold, quality, sizes)
-    verify(vertices, faces, rim.loops, edge, rim.lines)
-    report = measured(vertices, faces, rim.loops, contours, perf_counter() - begin)
+    free = verify(vertices, faces, rim.loops, edge, rim.lines)
+    report = measured(vertices, faces, rim.loops, contours, free, perf_counter() - begin)
     return PanelMesh(vertices, faces, rim.loops, report, rim.lines)
 
 

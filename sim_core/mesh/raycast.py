@@ -103,11 +103,26 @@ def distance_below(points: np.ndarray, segments: np.ndarray, reach: float) -> np
     extent = np.ptp(points, axis=0)
     cell = max(reach, float(extent.max()) / 2048, 1e-300)
     columns, rows = (int(size // cell) + 1 for size in extent)
-    index = ((points[:, 1] - low[1]) // cell).astype(np.int64) * columns
-    index += ((points[:, 0] - low[0]) // cell).astype(np.int64)
-    items = np.argsort(index, kind="stable")
-    start = np.searchsorted(index[items], np.arange(columns * rows + 1))
+    start, items = _cell_buckets(points, low, cell, columns, rows)
     return _near(points, segments, reach, low, cell, columns, rows, start, items)
+
+
+@njit(cache=True, error_model="numpy")
+def _cell_buckets(points, low, cell, columns, rows):
+    """For each cell the points in it, as start (columns * rows + 1,) and items."""
+    place = np.zeros(points.shape[0], np.int64)
+    start = np.zeros(columns * rows + 1, np.int64)
+    for k in range(points.shape[0]):
+        row = min(int((points[k, 1] - low[1]) // cell), rows - 1)
+        place[k] = row * columns + min(int((points[k, 0] - low[0]) // cell), columns - 1)
+        start[place[k] + 1] += 1
+    for k in range(columns * rows):
+        start[k + 1] += start[k]
+    items, filled = np.zeros(points.shape[0], np.int64), start.copy()
+    for k in range(points.shape[0]):
+        items[filled[place[k]]] = k
+        filled[place[k]] += 1
+    return start, items
 
 
 @njit(cache=True)

@@ -29,26 +29,29 @@ def open_edges(faces: np.ndarray, count: int) -> tuple[np.ndarray, int]:
 @njit(cache=True, error_model="numpy")
 def _open_edges(faces, start, items):
     found, kept, twice = np.zeros((3 * faces.shape[0], 2), np.int32), 0, -1
+    ahead = np.zeros(items.size, np.int32)  # where the edges that leave a vertex lead, vertex by vertex
+    for m in range(items.size):
+        ahead[m] = faces[items[m] // 3, (items[m] % 3 + 1) % 3]
     for f in range(faces.shape[0]):
         for k in range(3):
             a, b = faces[f, k], faces[f, (k + 1) % 3]
             same = 0
             for m in range(start[a], start[a + 1]):
-                same += faces[items[m] // 3, (items[m] % 3 + 1) % 3] == b
+                same += ahead[m] == b
             if same > 1:
                 twice = a
             paired = False
             for m in range(start[b], start[b + 1]):
-                paired |= faces[items[m] // 3, (items[m] % 3 + 1) % 3] == a
+                paired |= ahead[m] == a
             if not paired:
                 found[kept, 0], found[kept, 1] = a, b
                 kept += 1
     return found[:kept].copy(), twice
 
 
-def conformity(faces: np.ndarray, boundary: tuple[np.ndarray, ...], count: int) -> float:
-    """Fraction of outline steps that are edges of the mesh with the cloth on their left only."""
-    return float(np.isin(_keys(_steps(boundary), count), _keys(open_edges(faces, count)[0], count)).mean())
+def conformity(free: np.ndarray, boundary: tuple[np.ndarray, ...], count: int) -> float:
+    """Fraction of outline steps that are among the mesh's `open_edges` (k, 2): with the cloth on their left only."""
+    return float(np.isin(_keys(_steps(boundary), count), _keys(free, count)).mean())
 
 
 def _steps(boundary: tuple[np.ndarray, ...]) -> np.ndarray:
@@ -72,13 +75,16 @@ def mesh_fault(
     lines: tuple[np.ndarray, ...] = (),
 ) -> tuple[str, int] | None:
     """The first thing that is wrong with a mesh as (what, vertex index where), or None. Arrays as in PanelMesh."""
+    return _fault(vertices, faces, boundary, lines, *open_edges(faces, len(vertices)))
+
+
+def _fault(vertices, faces, boundary, lines, free: np.ndarray, twice: int) -> tuple[str, int] | None:
     count = len(vertices)
     if len(faces) == 0:
         return "a triangle without area", 0
     areas = triangle_areas(vertices, faces)
     if areas.min() <= 0:
         return "a triangle without area", int(faces[areas.argmin(), 0])
-    free, twice = open_edges(faces, count)
     if twice >= 0:
         return "two triangles over each other", twice
     open_keys, steps = _keys(free, count), _keys(_steps(boundary), count)
@@ -115,12 +121,14 @@ def verify(
     boundary: tuple[np.ndarray, ...],
     edge: float,
     lines: tuple[np.ndarray, ...] = (),
-) -> None:
-    """Raise OutlineError, saying where, unless the mesh is a manifold that fills the contours exactly."""
-    fault = mesh_fault(vertices, faces, boundary, lines)
+) -> np.ndarray:
+    """The mesh's `open_edges`. Raises OutlineError, saying where, unless it is a manifold that fills the contours."""
+    free, twice = open_edges(faces, len(vertices))
+    fault = _fault(vertices, faces, boundary, lines, free, twice)
     if fault is not None:
         x, y = vertices[fault[1]]
         raise OutlineError(
             f"outline: {fault[0]} near ({x:.4f}, {y:.4f}) m – the outline has a feature finer than the edge of "
             f"{edge} m there; give a smaller edge or smooth the outline"
         )
+    return free

@@ -200,6 +200,7 @@ def main() -> int:
     )
     parser.add_argument("--quick", action="store_true", help="up to 6 000 points")
     parser.add_argument("--large", action="store_true", help="one and two million points too")
+    parser.add_argument("--sizes", nargs="+", type=int, metavar="N", help="these numbers of points instead")
     parser.add_argument(
         "--peers",
         nargs="?",
@@ -217,6 +218,7 @@ def main() -> int:
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw time against points and quality")
     args = parser.parse_args()
     sizes = SIZES["quick"] if args.quick else SIZES["usual"] + (SIZES["large"] if args.large else [])
+    sizes = args.sizes or sizes
     names = [args.panel] if args.panel else list(PANELS)
     peers = Peers(peer_python(args.peers)) if args.peers else None
     figures: dict = {}
