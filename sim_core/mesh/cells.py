@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-__all__ = ["Cells", "cell_of", "point_cells"]
+__all__ = ["Cells", "bounds", "cell_of", "point_cells"]
 
 PER_CELL = 1.0  # points on average; one search meets about six cells
 
@@ -31,20 +31,32 @@ def cell_of(value, low, per_metre, count):
     return int(min(max((value - low) * per_metre, 0.0), count - 1.0))
 
 
+@njit(cache=True, error_model="numpy")
+def bounds(points):
+    """Least and greatest coordinates (left, low, right, high) of points (n, 2), n > 0, sooner than numpy has them."""
+    left, low = points[0, 0], points[0, 1]
+    right, high = left, low
+    for k in range(1, points.shape[0]):
+        x, y = points[k, 0], points[k, 1]
+        left, right = min(left, x), max(right, x)
+        low, high = min(low, y), max(high, y)
+    return left, low, right, high
+
+
 def point_cells(points: np.ndarray) -> tuple[np.ndarray, Cells]:
     """Sort points (n, 2) float64 into cells; returns order (n,) int32 and the cells over points[order].
 
     Within a cell points go by (y, x), so the order follows from the places alone; equal points become neighbours.
     """
-    low = points.min(axis=0)
-    wide, high = (float(side) for side in points.max(axis=0) - low)
+    left, low, right, top = bounds(points)
+    wide, high = right - left, top - low
     longest = max(wide, high)
     if longest == 0.0:
         wide = high = longest = 1.0
     count = len(points)
     cell = max(np.sqrt(PER_CELL * wide * high / count), PER_CELL * longest / count)
     columns, rows = int(wide / cell) + 1, int(high / cell) + 1
-    x0, y0, per_metre = float(low[0]), float(low[1]), 1.0 / float(cell)
+    x0, y0, per_metre = left, low, 1.0 / float(cell)
     order, start = _sorted(points, x0, y0, per_metre, columns, rows)
     return order, Cells(start, x0, y0, per_metre, columns, rows)
 

@@ -7,6 +7,8 @@ One row that follows the outline puts it between free points, and smoothing spre
 import numpy as np
 from numba import njit
 
+from sim_core.mesh.cells import bounds
+
 __all__ = ["apart", "layer_points"]
 
 HEIGHT = np.sqrt(3) / 2
@@ -24,10 +26,10 @@ def apart(points: np.ndarray, reach: np.ndarray, first: int) -> np.ndarray:
 
     points: (n, 2) [m]; reach: (n,) [m], at least a little above zero; the first `first` points stay in any case.
     """
-    low = points.min(axis=0)
+    left, low, right, high = bounds(points)
     cell = float(reach.max())
-    columns, rows = (int(size / cell) + 1 for size in np.ptp(points, axis=0))
-    return _apart(points, reach, first, low[0], low[1], 1.0 / cell, columns, rows)
+    columns, rows = int((right - left) / cell) + 1, int((high - low) / cell) + 1
+    return _apart(points, reach, first, left, low, 1.0 / cell, columns, rows)
 
 
 @njit(cache=True, error_model="numpy")

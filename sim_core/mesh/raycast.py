@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from sim_core.mesh.cells import bounds
 from sim_core.mesh.exact import orient
 
 __all__ = ["distance_below", "inside", "keep_points"]
@@ -99,10 +100,10 @@ def distance_below(points: np.ndarray, segments: np.ndarray, reach: float) -> np
     """Whether points (n, 2) lie nearer than `reach` to any segment (m, 4) a.x a.y b.x b.y. Returns (n,) bool."""
     if len(points) == 0:
         return np.zeros(0, dtype=bool)
-    low = points.min(axis=0)
-    extent = np.ptp(points, axis=0)
-    cell = max(reach, float(extent.max()) / 2048, 1e-300)
-    columns, rows = (int(size // cell) + 1 for size in extent)
+    left, bottom, right, top = bounds(points)
+    low, wide, high = np.array([left, bottom]), right - left, top - bottom
+    cell = max(reach, max(wide, high) / 2048, 1e-300)
+    columns, rows = int(wide // cell) + 1, int(high // cell) + 1
     start, items = _cell_buckets(points, low, cell, columns, rows)
     return _near(points, segments, reach, low, cell, columns, rows, start, items)
 

@@ -93,7 +93,13 @@ def summary() -> list[tuple[str, str, str]]:
     text = (
         f"{polygons['polygons']:,}, {polygons['with_holes']:,} with holes: **{polygons['bad']} bad meshes**"
     )
-    made.append(("random polygons, exact Delaunay check", text, "`python tests/mesh_polygons.py 10000`"))
+    made.append(
+        (
+            "random polygons, exact Delaunay check",
+            text,
+            f"`python tests/mesh_polygons.py {polygons['polygons']}`",
+        )
+    )
     return made
 
 
