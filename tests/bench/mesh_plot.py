@@ -60,7 +60,9 @@ def _panel(
         draw.line(places, fill=colour, width=2 * FINE)
         for x, y in places:
             draw.ellipse([x - 4 * FINE, y - 4 * FINE, x + 4 * FINE, y + 4 * FINE], fill=colour)
-        draw.text(((left + EDGE + 12) * FINE, (58 + 18 * k) * FINE), name, fill=colour, font=font)
+        falls = min(curve)[1] > max(curve)[1]  # the name stands in the empty corner
+        column = WIDE - 130 if falls else EDGE + 12
+        draw.text(((left + column) * FINE, (58 + 18 * k) * FINE), name, fill=colour, font=font)
 
 
 def plot(figures: dict, path: Path) -> None:
@@ -83,6 +85,10 @@ def plot(figures: dict, path: Path) -> None:
         for row in figures["cloth"]["rows"]:
             curves.setdefault(row["quality"], []).append((row["mesh_seconds"], row["error_mean_mm"]))
         diagrams.append(("hanging sheet: error by time to mesh", curves, ("s", "mm"), (True, True)))
+        by_edge: dict = {}
+        for row in figures["cloth"]["rows"]:
+            by_edge.setdefault(row["quality"], []).append((row["edge"], row["error_mean_mm"]))
+        diagrams.append(("hanging sheet: error by edge length", by_edge, ("m", "mm"), (True, True)))
     across = min(3, max(1, len(diagrams)))
     down = -(-len(diagrams) // across)
     image = Image.new("RGB", (across * WIDE, down * HIGH), "white")
