@@ -86,7 +86,19 @@ def _relaxed(places, steps, free, weights, passes: int) -> BestFill:
             again_angle, again, regrown = _opened(again, regrown, steps, free)
             if again_angle < angle:
                 places, grown = again, regrown
+    if grown.status == CLOSED:
+        places, grown = _without_strays(places, grown, int(steps.max()) + 1)
     return BestFill(places * UPRIGHT, grown.faces, grown.status, grown.where)
+
+
+def _without_strays(places: np.ndarray, grown: Growth, fixed: int) -> tuple[np.ndarray, Growth]:
+    """Drop points behind the first `fixed`, the rim's, that smoothing moved out of the cloth: no triangle has them."""
+    kept = np.arange(len(places)) < fixed
+    kept[grown.faces.ravel()] = True
+    if kept.all():
+        return places, grown
+    number = (np.cumsum(kept) - 1).astype(np.int32)
+    return places[kept], grown._replace(faces=number[grown.faces])
 
 
 def _opened(places: np.ndarray, grown: Growth, steps: np.ndarray, free: np.ndarray):
