@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from exact_delaunay import delaunay_faults
 
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh
@@ -58,6 +59,18 @@ def test_panels_are_sound_and_well_shaped(name, edge):
 
 
 @pytest.mark.parametrize("name", PANELS)
+@pytest.mark.parametrize("edge", [0.03, 0.012])
+def test_best_panels_have_no_small_angle(name, edge):
+    outline, holes = PANELS[name]
+    mesh = panel_mesh(outline, edge=edge, holes=holes, quality="best")
+    assert_sound(mesh, len(holes))
+    assert mesh.report.min_angle_deg >= 38
+    assert mesh.report.mean_quality >= (0.992 if edge < 0.02 else 0.985)
+    steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+    assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+
+
+@pytest.mark.parametrize("name", PANELS)
 def test_direction_of_the_contours_does_not_matter(name):
     outline, holes = PANELS[name]
     mesh = panel_mesh(outline[::-1], edge=0.04, holes=[hole[::-1] for hole in holes])
@@ -65,7 +78,7 @@ def test_direction_of_the_contours_does_not_matter(name):
 
 
 def test_paper_lattice_without_smoothing_keeps_its_points():
-    mesh = panel_mesh(RECTANGLE, edge=0.05, smooth=0)
+    mesh = panel_mesh(RECTANGLE, edge=0.05, quality="fair")
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary[0])
     rows = mesh.vertices[inner, 1] / (0.05 * np.sqrt(3) / 2)
     np.testing.assert_allclose(rows, np.rint(rows), atol=1e-9)
@@ -139,7 +152,7 @@ BAD = {
     "edge -1.0 m": (RECTANGLE, {"edge": -1.0}),
     "edge nan m": (RECTANGLE, {"edge": np.nan}),
     "edge 0 m": (RECTANGLE, {"edge": 0}),
-    "longer than the panel": (RECTANGLE, {"edge": 1.5}),
+    "longer than the panel": (RECTANGLE, {"edge": 1.1}),
     "threshold": (RECTANGLE, {"threshold": 0.2}),
 }
 
@@ -149,6 +162,18 @@ def test_bad_outlines_are_named(message):
     outline, options = BAD[message]
     with pytest.raises(OutlineError, match=message):
         panel_mesh(outline, **{"edge": 0.05, **options})
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 45])
+def test_how_long_an_edge_may_be_does_not_depend_on_how_the_panel_lies(degrees):
+    t = np.radians(degrees)
+    strip = np.array([[0, 0], [1, 0], [1, 0.02], [0, 0.02]]) @ [
+        [np.cos(t), np.sin(t)],
+        [-np.sin(t), np.cos(t)],
+    ]
+    assert_sound(panel_mesh(strip, edge=0.99), 0)
+    with pytest.raises(OutlineError, match="longer than the panel"):
+        panel_mesh(strip, edge=1.01)
 
 
 def test_repeated_closing_point_is_accepted():

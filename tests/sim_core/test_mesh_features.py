@@ -1,0 +1,226 @@
+"""Inner lines, size fields, holes that touch, bends, and the promise of `best` for wide corners."""
+
+import json
+
+import numpy as np
+import pytest
+from exact_delaunay import delaunay_faults
+
+from sim_core.errors import FileProblem, OutlineError, OutlineWarning
+from sim_core.mesh import SizeField, panel_mesh, quality
+from sim_core.mesh.outline import clean_contours, sharpest_corner
+from sim_core.mesh.sizes import read_size_field
+from sim_core.mesh.verify import mesh_fault
+
+RECTANGLE = np.array([[0, 0], [1, 0], [1, 0.7], [0, 0.7]])
+TURN = np.arange(64) * 2 * np.pi / 64
+ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])
+QUALITIES = ["fair", "light", "best"]
+
+
+def assert_sound(mesh) -> None:
+    assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary, mesh.lines) is None
+    steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+    steps += [np.column_stack([line[:-1], line[1:]]) for line in mesh.lines]
+    assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+    assert mesh.report.conformity == 1.0
+    assert mesh.report.area_error <= 1e-12
+
+
+def line_length(mesh) -> float:
+    return float(sum(np.hypot(*np.diff(mesh.vertices[line], axis=0).T).sum() for line in mesh.lines))
+
+
+LINES = {
+    "pleat folds from edge to edge": ([[[x, 0], [x, 0.7]] for x in (0.2, 0.25, 0.31)], 2.1),
+    "crossing": ([[[0.1, 0.1], [0.5, 0.6]], [[0.1, 0.6], [0.5, 0.1]]], 2 * np.hypot(0.4, 0.5)),
+    "ending on another": ([[[0.1, 0.3], [0.9, 0.3]], [[0.4, 0.3], [0.5, 0.6]]], 0.8 + np.hypot(0.1, 0.3)),
+    "closed": ([[[0.4, 0.2], [0.7, 0.25], [0.6, 0.5], [0.4, 0.2]]], None),
+    "from a corner": ([[[0, 0], [0.3, 0.3]]], np.hypot(0.3, 0.3)),
+    "along the outline for a part": ([[[0.2, 0], [0.5, 0], [0.5, 0.3]]], 0.3),
+    "close together": ([[[0.1, 0.3], [0.9, 0.3]], [[0.1, 0.301], [0.9, 0.301]]], 1.6),
+}
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("name", LINES)
+def test_inner_lines_are_edges_of_the_mesh(name, kind):
+    lines, length = LINES[name]
+    mesh = panel_mesh(RECTANGLE, edge=0.05, constraints=lines, quality=kind)
+    assert_sound(mesh)
+    wanted = length or sum(np.hypot(*np.diff(np.array(line), axis=0).T).sum() for line in lines)
+    assert line_length(mesh) == pytest.approx(wanted, rel=1e-9)
+    for line in mesh.lines:
+        assert np.hypot(*np.diff(mesh.vertices[line], axis=0).T).max() <= 0.05 * (1 + 1e-9)
+
+
+BAD_LINES = {
+    "constraint 0: leaves the cloth": [[[0.5, 0.1], [1.5, 0.2]]],
+    "constraint 1: 1 different": [[[0.1, 0.1], [0.2, 0.2]], [[0.5, 0.5], [0.5, 0.5]]],
+    "constraint 0: point 0 is": [[[np.nan, 0.5], [0.1, 0.1]]],
+    "constraint 0: 0 points": [[]],
+    "constraint 0: not a list": [[[1], [1, 2]]],
+}
+
+
+@pytest.mark.parametrize("message", BAD_LINES)
+def test_bad_lines_are_named(message):
+    with pytest.raises(OutlineError, match=message):
+        panel_mesh(RECTANGLE, edge=0.05, constraints=BAD_LINES[message])
+
+
+def test_lines_do_not_go_with_sampled_contours():
+    with pytest.raises(OutlineError, match="sampled"):
+        panel_mesh(RECTANGLE, edge=0.5, constraints=[[[0.1, 0.1], [0.2, 0.2]]], sampled=True)
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+def test_edges_follow_the_size_field(kind):
+    field = SizeField(np.array([[0.0, 0.0], [0.6, 0.4]]), np.array([0.01, 0.015]), 0.2)
+    mesh = panel_mesh(RECTANGLE, edge=0.05, sizes=field, quality=kind)
+    assert_sound(mesh)
+    pairs = np.unique(np.sort(mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    a, b = mesh.vertices[pairs[:, 0]], mesh.vertices[pairs[:, 1]]
+    ratio = np.hypot(*(b - a).T) / field.at((a + b) / 2, 0.05)
+    assert 0.85 < np.median(ratio) < 1.15
+    assert np.percentile(ratio, 99) < 1.7
+    assert np.percentile(ratio, 1) > 0.6
+    if kind != "fair":
+        assert mesh.report.min_angle_deg >= 33
+
+
+def test_size_field_has_bounded_gradation():
+    rng = np.random.default_rng(0)
+    field = SizeField(rng.random((9, 2)), rng.uniform(0.01, 0.05, 9), 0.3)
+    a, b = rng.random((2, 500, 2))
+    assert (np.abs(field.at(a, 0.1) - field.at(b, 0.1)) <= 0.3 * np.hypot(*(a - b).T) + 1e-15).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[]", "points: missing"),
+        ('{"points": [[0, 0]]}', "shape"),
+        ('{"points": [[0, 0, "a"]]}', "not a list"),
+        ('{"points": [[0, 0, -1]]}', "positive"),
+        ('{"points": [[0, 0, 0.1]], "gradation": 2}', "gradation"),
+        ('{"points": [[0, 0, 0.1]], "gradation": "x"}', "gradation"),
+        ('{"points": [[0, 0, 0.1]], "extra": 2}', "extra"),
+    ],
+)
+def test_bad_size_fields_are_named(tmp_path, text, message):
+    path = tmp_path / "field.json"
+    path.write_text(text)
+    with pytest.raises(FileProblem, match=message):
+        read_size_field(path)
+
+
+def test_size_fields_beyond_measure_are_refused():
+    with pytest.raises(OutlineError, match="below a 64th"):
+        panel_mesh(RECTANGLE, edge=0.1, sizes=SizeField(np.zeros((1, 2)), np.array([1e-4])))
+    with pytest.raises(OutlineError, match="points – give larger"):
+        panel_mesh(RECTANGLE, edge=0.02, sizes=SizeField(np.full((1, 2), 0.5), np.array([5e-4]), 1e-4))
+
+
+def test_a_good_size_field_is_read(tmp_path):
+    path = tmp_path / "field.json"
+    path.write_text(json.dumps({"points": [[0, 0, 0.01]], "gradation": 0.1}))
+    assert read_size_field(path).at(np.array([[1.0, 0]]), 1.0)[0] == pytest.approx(0.11)
+
+
+TOUCHING = {
+    "a circle inside the border": ([0.1 * ROUND + (0.1, 0.35)], 1),
+    "a side on the border": ([[[0.5, 0], [0.6, 0], [0.6, 0.1], [0.5, 0.1]]], 1),
+    "two holes at a corner": (
+        [[[0.3, 0.3], [0.4, 0.3], [0.4, 0.4]], [[0.4, 0.4], [0.5, 0.4], [0.5, 0.5]]],
+        2,
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("name", TOUCHING)
+def test_holes_that_touch_are_merged_with_a_warning(name, kind):
+    holes, loops = TOUCHING[name]
+    with pytest.warns(OutlineWarning, match="hole 0.*merged"):
+        mesh = panel_mesh(RECTANGLE, edge=0.04, holes=holes, quality=kind)
+    assert_sound(mesh)
+    assert len(mesh.boundary) == loops
+    cloth = 0.7 - sum(
+        abs(np.linalg.det(np.array([h[1], h[2]]) - h[0])) / 2 for h in map(np.array, holes) if len(h) == 3
+    )
+    if name == "two holes at a corner":
+        assert clean_area(mesh) == pytest.approx(cloth, abs=0.001)
+
+
+def clean_area(mesh) -> float:
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    u, v = b - a, c - a
+    return float(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2)
+
+
+def test_a_hole_that_cuts_the_panel_in_two_is_named():
+    with pytest.raises(OutlineError, match="hole 0: cuts the panel"):
+        panel_mesh(RECTANGLE, edge=0.05, holes=[[[0.5, 0], [0.6, 0], [0.6, 0.7], [0.5, 0.7]]])
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("radius", [0.06, 0.1, 0.3])
+def test_bends_are_followed_within_a_twentieth_of_the_edge(radius, kind):
+    t = np.arange(400) * 2 * np.pi / 400
+    circle = radius * np.column_stack([np.cos(t), np.sin(t)])
+    mesh = panel_mesh(circle, edge=0.05, quality=kind)
+    assert_sound(mesh)
+    assert mesh.report.outline_deviation <= 0.05 * 0.05
+
+
+def distance(a, b, c, d) -> float:
+    """Between two segments that do not cross."""
+
+    def to(p, a, b):
+        t = np.clip(np.dot(p - a, b - a) / np.dot(b - a, b - a), 0, 1)
+        return np.hypot(*(p - a - t * (b - a)))
+
+    return min(to(a, c, d), to(b, c, d), to(c, a, b), to(d, a, b))
+
+
+def feature_size(polygon) -> float:
+    """Shortest side, or distance of sides that are no neighbours."""
+    n = len(polygon)
+    least = np.hypot(*(polygon - np.roll(polygon, 1, axis=0)).T).min()
+    for i in range(n):
+        for j in range(i + 2, n):
+            if (j + 1) % n != i:
+                least = min(
+                    least, distance(polygon[i], polygon[(i + 1) % n], polygon[j], polygon[(j + 1) % n])
+                )
+    return float(least)
+
+
+def wide_cornered(seed: int):
+    """A random polygon with corners of at least 60 degrees, and an edge of at most half its feature size."""
+    rng = np.random.default_rng(seed)
+    while True:
+        count = int(rng.integers(3, 12))
+        t, r = np.sort(rng.random(count)) * 2 * np.pi, rng.uniform(0.4, 1, count)
+        try:
+            polygon = clean_contours(np.column_stack([r * np.cos(t), r * np.sin(t)]), ())[0]
+        except OutlineError:
+            continue
+        size = feature_size(polygon)
+        if sharpest_corner([polygon]) >= 60 and size > 0.05:
+            return polygon, max(size / rng.uniform(2, 8), 0.015)
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_best_keeps_every_angle_above_38_degrees_where_corners_are_wide(block):
+    for seed in range(25 * block, 25 * block + 25):
+        polygon, edge = wide_cornered(seed)
+        mesh = panel_mesh(polygon, edge=edge, quality="best")
+        assert_sound(mesh)
+        assert mesh.report.min_angle_deg >= 38, seed
+
+
+def test_best_beats_fair_in_mean_quality():
+    fair, best = (panel_mesh(RECTANGLE, edge=0.02, quality=kind) for kind in ("fair", "best"))
+    assert quality(best.vertices, best.faces).shape.mean() > quality(fair.vertices, fair.faces).shape.mean()
