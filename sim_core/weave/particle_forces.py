@@ -1,0 +1,189 @@
+"""Kernels of stage B: bending, tension, contact, friction and side contact of yarn particles in one periodic repeat.
+
+Lengths in D, the mean height of warp and weft; forces in EI/D^2. Particles of an end stay at their place along the
+warp (l apart) and move sideways (u) and in height (z); the yarn's length flows through them, so that particles stay
+abreast of the crossings whatever the yarn takes up. Likewise for the picks.
+"""
+
+from math import floor, sqrt
+
+import numpy as np
+from numba import njit
+
+__all__ = ["contact_forces", "side_forces", "yarn_forces"]
+
+
+@njit(cache=True, fastmath=True)
+def yarn_forces(u, z, length, stiffness, tension, fu, fz):
+    """Add bending and tension of the yarns u, z (yarns, particles) to the forces fu, fz. Returns the energy.
+
+    Bending energy of the angle between two pieces: EI phi^2 / (2 l), phi^2 = 2 (1 - c) (1 + (1 - c) / 6 + ...), c its
+    cosine; tension times length besides.
+    """
+    energy = 0.0
+    count = u.shape[1]
+    for yarn in range(u.shape[0]):
+        last = count - 1
+        du, dz = u[yarn, 0] - u[yarn, last], z[yarn, 0] - z[yarn, last]
+        piece = sqrt(length * length + du * du + dz * dz)
+        ty, tu, tz = length / piece, du / piece, dz / piece
+        for k in range(count):
+            after = k + 1 if k < last else 0
+            before = k - 1 if k > 0 else last
+            du2, dz2 = u[yarn, after] - u[yarn, k], z[yarn, after] - z[yarn, k]
+            piece2 = sqrt(length * length + du2 * du2 + dz2 * dz2)
+            ty2, tu2, tz2 = length / piece2, du2 / piece2, dz2 / piece2
+            cosine = ty * ty2 + tu * tu2 + tz * tz2
+            turn = 1.0 - cosine
+            mean = 0.5 * (piece + piece2)
+            bend = stiffness * turn * (1.0 + turn / 6.0) / mean
+            slope = stiffness * (1.0 + turn / 3.0) / mean  # -dE/dc
+            shrink = 0.5 * bend / mean  # -dE/d piece
+            a, b = slope / piece, slope / piece2
+            gu1 = -a * (tu2 - cosine * tu) - shrink * tu
+            gz1 = -a * (tz2 - cosine * tz) - shrink * tz
+            gu2 = -b * (tu - cosine * tu2) - shrink * tu2 + tension * tu2
+            gz2 = -b * (tz - cosine * tz2) - shrink * tz2 + tension * tz2
+            fu[yarn, before] += gu1
+            fz[yarn, before] += gz1
+            fu[yarn, k] += gu2 - gu1
+            fz[yarn, k] += gz2 - gz1
+            fu[yarn, after] -= gu2
+            fz[yarn, after] -= gz2
+            energy += bend + tension * piece2
+            piece, ty, tu, tz = piece2, ty2, tu2, tz2
+    return energy
+
+
+@njit(cache=True, fastmath=True)
+def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff, fu2, fz2, out):
+    """Contact of a point with the curve of a crossing yarn.
+
+    c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
+    The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
+    (dc / wide_c)^2 + (dd / wide_d)^2 + dz^2 is found by Newton. sign: +1 where the point belongs above.
+    Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap and pressing force to out.
+    """
+    count = u2.shape[1]
+    s = c / l2
+    out[0], out[1], out[2], out[3] = 0.0, 0.0, 0.0, 0.0
+    n0, n1, n2, n3 = 0, 0, 0, 0
+    w0, w1, w2, w3 = 0.0, 0.0, 0.0, 0.0
+    dc, dd, dz = 0.0, 0.0, 0.0
+    for step in range(3):
+        s = min(max(s, -reach), reach)
+        k = int(floor(s))
+        f = s - k
+        n1 = (base + k) % count
+        n0, n2 = n1 - 1 if n1 > 0 else count - 1, n1 + 1 if n1 < count - 1 else 0
+        n3 = n2 + 1 if n2 < count - 1 else 0
+        g = 1.0 - f
+        w0, w3 = -0.5 * f * g * g, -0.5 * f * f * g
+        w1, w2 = 1.0 + f * f * (1.5 * f - 2.5), 1.0 + g * g * (1.5 * g - 2.5)
+        dc = c - s * l2
+        dd = d - (w0 * u2[yarn2, n0] + w1 * u2[yarn2, n1] + w2 * u2[yarn2, n2] + w3 * u2[yarn2, n3])
+        dz = z - (w0 * z2[yarn2, n0] + w1 * z2[yarn2, n1] + w2 * z2[yarn2, n2] + w3 * z2[yarn2, n3])
+        if step == 2:
+            break
+        v0, v3 = -0.5 * g * (g - 2 * f), -0.5 * f * (2 * g - f)
+        v1, v2 = f * (4.5 * f - 5.0), -g * (4.5 * g - 5.0)
+        su = v0 * u2[yarn2, n0] + v1 * u2[yarn2, n1] + v2 * u2[yarn2, n2] + v3 * u2[yarn2, n3]
+        sz = v0 * z2[yarn2, n0] + v1 * z2[yarn2, n1] + v2 * z2[yarn2, n2] + v3 * z2[yarn2, n3]
+        bent = (
+            (2.0 - 3.0 * f) * z2[yarn2, n0] + (9.0 * f - 5.0) * z2[yarn2, n1]
+            + (4.0 - 9.0 * f) * z2[yarn2, n2] + (3.0 * f - 1.0) * z2[yarn2, n3]
+        )  # fmt: skip
+        flat = l2 * l2 / (wide_c * wide_c) + su * su / (wide_d * wide_d) + sz * sz
+        rise = dc * l2 / (wide_c * wide_c) + dd * su / (wide_d * wide_d) + dz * sz
+        s += rise / max(flat - dz * bent, 0.2 * flat)
+    high = sign * dz
+    if high < 0.05:
+        high = 0.05
+    norm = sqrt(dc * dc / (wide_c * wide_c) + dd * dd / (wide_d * wide_d) + high * high)
+    if norm >= 1.0:
+        return 0.0
+    press = stiff * (1.0 - norm)
+    along_c, along_d, along_z = (
+        press * dc / (wide_c * wide_c * norm), press * dd / (wide_d * wide_d * norm), press * sign * high / norm
+    )  # fmt: skip
+    fu2[yarn2, n0] -= w0 * along_d
+    fu2[yarn2, n1] -= w1 * along_d
+    fu2[yarn2, n2] -= w2 * along_d
+    fu2[yarn2, n3] -= w3 * along_d
+    fz2[yarn2, n0] -= w0 * along_z
+    fz2[yarn2, n1] -= w1 * along_z
+    fz2[yarn2, n2] -= w2 * along_z
+    fz2[yarn2, n3] -= w3 * along_z
+    out[0], out[1], out[2], out[3] = along_c, along_z, 1.0 - norm, press * high / norm
+    return 0.5 * press * (1.0 - norm)
+
+
+@njit(cache=True, fastmath=True)
+def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
+                   stiff, friction, slip):  # fmt: skip
+    """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
+
+    wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
+    pressing: (picks, ends), read as the friction's normal force of the last evaluation, then written.
+    wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
+    sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
+    place as woven.
+    """
+    picks, ends = lift.shape
+    n1, n2 = wu.shape[1], fu.shape[1]
+    energy, deepest, largest = 0.0, 0.0, 0.0
+    out = np.zeros(4)
+    for i in range(picks):
+        for j in range(ends):
+            sign = 1.0 if lift[i, j] else -1.0
+            c1, c2 = i * per, j * per
+            total = 0.0
+            for a in range(-reach1, reach1 + 1):
+                n = (c1 + a) % n1
+                energy += _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_x, wide_y, sign, stiff,
+                                 gfu, gfz, out)  # fmt: skip
+                gwu[j, n] += out[0]
+                gwz[j, n] += out[1]
+                total += out[3]
+                deepest = max(deepest, out[2])
+            for b in range(-reach2, reach2 + 1):
+                n = (c2 + b) % n2
+                energy += _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_y, wide_x, -sign, stiff,
+                                 gwu, gwz, out)  # fmt: skip
+                gfu[i, n] += out[0]
+                gfz[i, n] += out[1]
+                total += out[3]
+                deepest = max(deepest, out[2])
+            if friction > 0.0:
+                x, y = wu[j, c1], fu[i, c2]
+                hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
+                gwu[j, c1] -= hold * x
+                gfu[i, c2] -= hold * y
+            pressing[i, j] = total
+            largest = max(largest, total)
+    return energy, deepest, largest
+
+
+@njit(cache=True, fastmath=True)
+def side_forces(u, z, spacing, wide, high, stiff, gu, gz):
+    """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap)."""
+    yarns, count = u.shape
+    energy, deepest = 0.0, 0.0
+    for yarn in range(yarns):
+        other = yarn + 1 if yarn < yarns - 1 else 0
+        for k in range(count):
+            du = (spacing + u[other, k] - u[yarn, k]) / wide
+            dz = (z[other, k] - z[yarn, k]) / high
+            square = du * du + dz * dz
+            if square >= 1.0 or square < 1e-12:
+                continue
+            norm = sqrt(square)
+            press = stiff * (1.0 - norm)
+            energy += 0.5 * press * (1.0 - norm)
+            deepest = max(deepest, 1.0 - norm)
+            side, up = press * du / (norm * wide), press * dz / (norm * high)
+            gu[other, k] += side
+            gz[other, k] += up
+            gu[yarn, k] -= side
+            gz[yarn, k] -= up
+    return energy, deepest
