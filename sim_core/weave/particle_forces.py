@@ -56,25 +56,33 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 
 @njit(cache=True, fastmath=True)
-def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff, fu2, fz2, out):
+def _touch(
+    c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out
+):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
     The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
     (dc / wide_c)^2 + (dd / wide_d)^2 + dz^2 is found by Newton. sign: +1 where the point belongs above.
-    Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap and pressing force to out.
+    Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, and the
+    contact's stiffness along c and z to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
     count = u2.shape[1]
-    s = c / l2
-    out[0], out[1], out[2], out[3] = 0.0, 0.0, 0.0, 0.0
-    n0, n1, n2, n3 = 0, 0, 0, 0
+    s = min(max(c / l2, -reach), reach)
+    n1 = base + int(floor(s + 0.5))
+    n1 = n1 + count if n1 < 0 else n1 - count if n1 >= count else n1
+    dd, dz = (d - u2[yarn2, n1]) / wide_d, z - z2[yarn2, n1]
+    if dd * dd >= 1.0 or (dz * sign > 0.0 and dd * dd + dz * dz > 2.2):
+        return 0.0
+    n0, n2, n3 = 0, 0, 0
     w0, w1, w2, w3 = 0.0, 0.0, 0.0, 0.0
-    dc, dd, dz = 0.0, 0.0, 0.0
-    for step in range(3):
+    dc = 0.0
+    for step in range(2):
         s = min(max(s, -reach), reach)
         k = int(floor(s))
         f = s - k
-        n1 = (base + k) % count
+        n1 = base + k
+        n1 = n1 + count if n1 < 0 else n1 - count if n1 >= count else n1
         n0, n2 = n1 - 1 if n1 > 0 else count - 1, n1 + 1 if n1 < count - 1 else 0
         n3 = n2 + 1 if n2 < count - 1 else 0
         g = 1.0 - f
@@ -83,7 +91,7 @@ def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff,
         dc = c - s * l2
         dd = d - (w0 * u2[yarn2, n0] + w1 * u2[yarn2, n1] + w2 * u2[yarn2, n2] + w3 * u2[yarn2, n3])
         dz = z - (w0 * z2[yarn2, n0] + w1 * z2[yarn2, n1] + w2 * z2[yarn2, n2] + w3 * z2[yarn2, n3])
-        if step == 2:
+        if step == 1:
             break
         v0, v3 = -0.5 * g * (g - 2 * f), -0.5 * f * (2 * g - f)
         v1, v2 = f * (4.5 * f - 5.0), -g * (4.5 * g - 5.0)
@@ -114,13 +122,19 @@ def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff,
     fz2[yarn2, n1] -= w1 * along_z
     fz2[yarn2, n2] -= w2 * along_z
     fz2[yarn2, n3] -= w3 * along_z
+    stiff_d, stiff_z = stiff * (dd / (wide_d * wide_d * norm)) ** 2, stiff * (high / norm) ** 2
+    if weigh:
+        for n, w in ((n0, abs(w0)), (n1, abs(w1)), (n2, abs(w2)), (n3, abs(w3))):
+            hu2[yarn2, n] += w * stiff_d
+            hz2[yarn2, n] += w * stiff_z
+        out[4], out[5] = stiff * (dc / (wide_c * wide_c * norm)) ** 2, stiff_z
     out[0], out[1], out[2], out[3] = along_c, along_z, 1.0 - norm, press * high / norm
     return 0.5 * press * (1.0 - norm)
 
 
 @njit(cache=True, fastmath=True)
 def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-                   stiff, friction, slip):  # fmt: skip
+                   stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
     wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
@@ -132,24 +146,38 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, 
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
     energy, deepest, largest = 0.0, 0.0, 0.0
-    out = np.zeros(4)
+    out = np.zeros(6)
     for i in range(picks):
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
             c1, c2 = i * per, j * per
             total = 0.0
             for a in range(-reach1, reach1 + 1):
-                n = (c1 + a) % n1
-                energy += _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_x, wide_y, sign, stiff,
-                                 gfu, gfz, out)  # fmt: skip
+                n = c1 + a
+                n = n + n1 if n < 0 else n - n1 if n >= n1 else n
+                more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_x, wide_y, sign, stiff,
+                              gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
+                if more == 0.0:
+                    continue
+                energy += more
+                if weigh:
+                    hwu[j, n] += out[4]
+                    hwz[j, n] += out[5]
                 gwu[j, n] += out[0]
                 gwz[j, n] += out[1]
                 total += out[3]
                 deepest = max(deepest, out[2])
             for b in range(-reach2, reach2 + 1):
-                n = (c2 + b) % n2
-                energy += _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_y, wide_x, -sign, stiff,
-                                 gwu, gwz, out)  # fmt: skip
+                n = c2 + b
+                n = n + n2 if n < 0 else n - n2 if n >= n2 else n
+                more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_y, wide_x, -sign, stiff,
+                              gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
+                if more == 0.0:
+                    continue
+                energy += more
+                if weigh:
+                    hfu[i, n] += out[4]
+                    hfz[i, n] += out[5]
                 gfu[i, n] += out[0]
                 gfz[i, n] += out[1]
                 total += out[3]
@@ -159,13 +187,16 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, 
                 hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
                 gwu[j, c1] -= hold * x
                 gfu[i, c2] -= hold * y
+                if weigh:
+                    hwu[j, c1] += hold
+                    hfu[i, c2] += hold
             pressing[i, j] = total
             largest = max(largest, total)
     return energy, deepest, largest
 
 
 @njit(cache=True, fastmath=True)
-def side_forces(u, z, spacing, wide, high, stiff, gu, gz):
+def side_forces(u, z, spacing, wide, high, stiff, gu, gz, weigh, hu, hz):
     """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap)."""
     yarns, count = u.shape
     energy, deepest = 0.0, 0.0
@@ -181,6 +212,10 @@ def side_forces(u, z, spacing, wide, high, stiff, gu, gz):
             press = stiff * (1.0 - norm)
             energy += 0.5 * press * (1.0 - norm)
             deepest = max(deepest, 1.0 - norm)
+            if weigh:
+                for y in (yarn, other):
+                    hu[y, k] += stiff * (du / (norm * wide)) ** 2
+                    hz[y, k] += stiff * (dz / (norm * high)) ** 2
             side, up = press * du / (norm * wide), press * dz / (norm * high)
             gu[other, k] += side
             gz[other, k] += up

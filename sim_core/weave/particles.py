@@ -27,7 +27,9 @@ MOST_STEPS = 60_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
-LONGEST_STEP = 1.25  # x 1 / fastest frequency
+LONGEST_STEP = 1.2  # x 1 / fastest frequency
+WEIGH, FADE = 10, 0.9  # steps between two weighings of the particles, and how slowly a mass may fall
+SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,48 +69,53 @@ class ParticleCell:
 
 
 @njit(cache=True)
-def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, mass1, mass2, stiff, tolerance, overlap, most):
+def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, overlap, most):
     """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
     friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
     reach1, reach2 = int(r1), int(r2)
-    n1, n2 = wu.shape[1], fu.shape[1]
     gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     vwu, vwz, vfu, vfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    inverse1, inverse2 = np.zeros(n1), np.zeros(n2)
+    hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
     dt, mix, downhill = START, MIX, 0
     residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
     for step in range(most):
         steps = step + 1
-        for k in range(n1):
-            inverse1[k] = 1.0 / (16.0 * e1 / l1**3 + 4.0 * t1 / l1 + mass1[k] * stiff)
-        for k in range(n2):
-            inverse2[k] = 1.0 / (16.0 * e2 / l2**3 + 4.0 * t2 / l2 + mass2[k] * stiff)
+        weigh = step % WEIGH == 0
         gwu[:], gwz[:], gfu[:], gfz[:] = 0.0, 0.0, 0.0, 0.0
+        if weigh:
+            hwu[:], hwz[:], hfu[:], hfz[:] = 0.0, 0.0, 0.0, 0.0
         energy = yarn_forces(wu, wz, l1, e1, t1, gwu, gwz) + yarn_forces(fu, fz, l2, e2, t2, gfu, gfz)
+        side = 0.0
         if s1 > 0:
-            more, deep1 = side_forces(wu, wz, p1, s1, h1, stiff, gwu, gwz)
+            more, side = side_forces(wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, weigh, hwu, hwz)
             energy += more
         if s2 > 0:
-            more, deep2 = side_forces(fu, fz, p2, s2, h2, stiff, gfu, gfz)
+            more, other = side_forces(fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, weigh, hfu, hfz)
             energy += more
-        more, deepest, largest = contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2,
-                                                wide_x, wide_y, reach1, reach2, stiff, friction, slip)  # fmt: skip
+            side = max(side, other)
+        more, deepest, largest = contact_forces(
+            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2, stiff,
+            friction, slip, weigh, hwu, hwz, hfu, hfz,
+        )  # fmt: skip
         energy += more
+        deepest = max(deepest, side)
+        if weigh:
+            for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
+                for y in range(m.shape[0]):
+                    for k in range(m.shape[1]):
+                        m[y, k] = max(base + 2.0 * h[y, k], FADE * m[y, k])
         power, speed, push, worst = 0.0, 0.0, 0.0, 0.0
-        for v, g, inverse in (
-            (vwu, gwu, inverse1),
-            (vwz, gwz, inverse1),
-            (vfu, gfu, inverse2),
-            (vfz, gfz, inverse2),
-        ):
+        for v, g, m in ((vwu, gwu, mwu), (vwz, gwz, mwz), (vfu, gfu, mfu), (vfz, gfz, mfz)):
             for y in range(v.shape[0]):
                 for k in range(v.shape[1]):
                     force = g[y, k]
                     worst = max(worst, abs(force))
                     power += force * v[y, k]
-                    push += force * force * inverse[k]
-                    speed += v[y, k] * v[y, k] / inverse[k]
+                    push += force * force / m[y, k]
+                    speed += v[y, k] * v[y, k] * m[y, k]
         residual = worst / max(largest, 1e-300)
         if residual < tolerance:
             if deepest <= overlap:
@@ -126,13 +133,15 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, mass1, mass2, stiff, t
             downhill, mix, blend = 0, MIX, 0.0
             dt = max(dt * CUT, 0.05)
         keep = 1.0 - mix if power > 0 else 0.0
-        for x, v, g, inverse in (
-            (wu, vwu, gwu, inverse1), (wz, vwz, gwz, inverse1), (fu, vfu, gfu, inverse2), (fz, vfz, gfz, inverse2),
-        ):  # fmt: skip
+        for x, v, g, m in (
+            (wu, vwu, gwu, mwu),
+            (wz, vwz, gwz, mwz),
+            (fu, vfu, gfu, mfu),
+            (fz, vfz, gfz, mfz),
+        ):
             for y in range(v.shape[0]):
                 for k in range(v.shape[1]):
-                    pull = g[y, k] * inverse[k]
-                    v[y, k] = keep * v[y, k] + (blend + dt) * pull
+                    v[y, k] = keep * v[y, k] + (blend + dt) * g[y, k] / m[y, k]
                     x[y, k] += min(max(dt * v[y, k], -0.05), 0.05)
     return residual, deepest, energy, steps, stiff
 
@@ -166,11 +175,10 @@ def relax_particles(
     )
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
     pressing = first.force / scale.force
-    stiff = 2500.0 * max(float(pressing.max()), 1e-12)
-    mass1, mass2 = _window(per, scale.reach[0], lift.shape[0]), _window(per, scale.reach[1], lift.shape[1])
+    stiff = 1250.0 * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
     residual, deepest, energy, steps, _ = _settle(
-        wu, wz, fu, fz, lift, pressing, per, numbers, mass1, mass2, stiff, tolerance, OVERLAP, most
+        wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, OVERLAP, most
     )
     if residual > tolerance or deepest > 1.25 * OVERLAP:
         raise WeaveError(
@@ -207,7 +215,7 @@ class _Scale:
         wide = (warp.width + weft.height) / 2 / length, (weft.width + warp.height) / 2 / length
         piece = p2 / per, p1 / per
         half = per * min(weave.draft.picks, weave.draft.ends) - 1
-        reach = tuple(min(ceil(w / l), per - 1, half) for w, l in ((wide[1], piece[0]), (wide[0], piece[1])))
+        reach = tuple(min(ceil(w / p), per - 1, half) for w, p in ((wide[1], piece[0]), (wide[0], piece[1])))
         return cls(weave, length, stiffness / length**2, stiffness, (p1, p2), piece, wide, reach)  # type: ignore[arg-type]
 
     def numbers(self, friction: float) -> tuple[float, ...]:
@@ -222,13 +230,6 @@ class _Scale:
             weft.tension / self.force, *self.wide, float(self.reach[0]), float(self.reach[1]), *self.spacing, *sides,
             friction, SLIP,
         )  # fmt: skip
-
-
-def _window(per: int, reach: int, crossings: int) -> np.ndarray:
-    """Share of the contact stiffness that a particle's mass must bear, by its place between crossings."""
-    place = np.arange(per * crossings) % per
-    near = np.minimum(place, per - place) <= reach
-    return np.where(near, 4.0, 0.5)
 
 
 def _resampled(height: np.ndarray, per: int) -> np.ndarray:
