@@ -16,6 +16,7 @@ from numba import njit
 from sim_core.errors import WeaveError
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
+from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
 
@@ -23,7 +24,7 @@ __all__ = ["ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
 OVERLAP = 4e-4  # of D; what is promised is 5e-4
-MOST_STEPS = 60_000
+MOST_STEPS = 12_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
@@ -170,8 +171,8 @@ def relax_particles(
     first = start or relax(weave, tolerance=1e-4)
     scale = _Scale.of(weave, per)
     wz, fz = (
-        _resampled(first.warp_height.T, per) / scale.length,
-        _resampled(first.weft_height, per) / scale.length,
+        resampled(first.warp_height.T, per) / scale.length,
+        resampled(first.weft_height, per) / scale.length,
     )
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
     pressing = first.force / scale.force
@@ -230,20 +231,6 @@ class _Scale:
             weft.tension / self.force, *self.wide, float(self.reach[0]), float(self.reach[1]), *self.spacing, *sides,
             friction, SLIP,
         )  # fmt: skip
-
-
-def _resampled(height: np.ndarray, per: int) -> np.ndarray:
-    """(lines, crossings) -> (lines, crossings * per) on the periodic cubic spline through the crossings."""
-    from sim_core.weave.lines import spline_slopes
-
-    slope = spline_slopes(height)
-    t = np.arange(per) / per
-    after, slope_after = np.roll(height, -1, axis=1), np.roll(slope, -1, axis=1)
-    z = (
-        height[..., None] * (1 + 2 * t) * (1 - t) ** 2 + after[..., None] * t * t * (3 - 2 * t)
-        + slope[..., None] * t * (1 - t) ** 2 - slope_after[..., None] * t * t * (1 - t)
-    )  # fmt: skip
-    return np.ascontiguousarray(z.reshape(len(height), -1))
 
 
 def _crimp(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
