@@ -126,15 +126,16 @@ def brocade_heights(weave: Weave, warp: Strands, extra: np.ndarray, at: np.ndarr
     gap = (weave.warp.height + yarn.height) / 2
     # a binding end is drawn up by the extra weft as far as the weft is pressed down by it: half way each
     limit = np.where(bound, axis - 0.5 * gap, axis + gap)
-    sign = np.where(gone, 0.0, np.where(bound, -1.0, 1.0))
+    sign = np.where(gone, 2.0, np.where(bound, -1.0, 1.0))  # where it is not, it may lie anywhere: in the cloth
+    limit = np.where(gone, axis, limit)
     z = lay_beams(beam_stiffness(weave.draft.ends, weave.end_spacing, yarn.stiffness, yarn.tension), sign, limit)
     return resampled(z, per)
 
 
 def lay_beams(stiffness: np.ndarray, sign: np.ndarray, limit: np.ndarray, steps: int = 400) -> np.ndarray:
-    """Periodic beams on rigid obstacles: heights (beams, n) [m] of least energy with sign (z - limit) >= 0.
+    """Periodic beams on rigid obstacles: heights (beams, n) [m] of least energy on or under limits.
 
-    stiffness: (n,) [N/m] per mode.  sign: (beams, n) +1 obstacle below, -1 above, 0 none.  limit: (beams, n) [m].
+    stiffness: (n,) [N/m] per mode.  sign: (beams, n) +1 obstacle below, -1 above, 2 held at the limit.  limit: (beams, n) [m].
     """
     scale = max(float(np.abs(limit).max()), 1e-12)
     goal, positive = limit / scale, stiffness[stiffness > 0]
@@ -144,7 +145,7 @@ def lay_beams(stiffness: np.ndarray, sign: np.ndarray, limit: np.ndarray, steps:
     for _ in range(steps):
         free = np.fft.ifft(filtered * np.fft.fft(z - dual, axis=1), axis=1).real
         wanted = free + dual
-        z = np.where(sign > 0, np.maximum(wanted, goal), np.where(sign < 0, np.minimum(wanted, goal), wanted))
+        z = np.where(sign == 1, np.maximum(wanted, goal), np.where(sign == -1, np.minimum(wanted, goal), goal))
         dual = wanted - z
     return z * scale
 

@@ -90,7 +90,7 @@ def brocade(
 
     motif: (picks of the ground, ends) int, colour number, -1 where the ground shows.  every: within a figure each
     `every`-th end binds the extra weft, moved on by half of that from pick to pick.  Ground picks without figure get
-    no extra pick. Where an extra pick is absent its lift is 1, the face of nothing.
+    no extra pick; stretches of one or two crossings are left out. Where an extra pick is absent its lift is 1.
     """
     colours = np.array(motif)
     if colours.ndim != 2 or colours.size == 0 or colours.dtype.kind not in "iu" or colours.min() < -1:
@@ -103,16 +103,47 @@ def brocade(
     rows, columns = np.indices(colours.shape)
     under = base.lift[rows % base.picks, columns % base.ends]
     lines, regions, kinds = [], [], []
-    for row, colour in enumerate(colours):
+    for row, drawn in enumerate(colours):
+        colour = _long_enough(drawn)
         lines.append(under[row])
         regions.append(np.zeros(colour.size, int))
         kinds.append(MAIN)
         if (colour >= 0).any():
             binding = (np.arange(colour.size) + (row % 2) * (every // 2)) % every == 0
+            binding = _bound(colour, binding)
             lines.append((colour < 0) | binding)
             regions.append(np.where(colour < 0, -1, colour + 1))
             kinds.append(EXTRA)
     return Draft(name, np.array(lines), Channels(pick_kind=np.array(kinds), region=np.array(regions)))
+
+
+def _runs(colour: np.ndarray) -> list[np.ndarray]:
+    """Places of each stretch of one colour along a pick, round the border."""
+    begins = np.flatnonzero(colour != np.roll(colour, 1))
+    if not begins.size:
+        return [np.arange(colour.size)]
+    lengths = np.diff(np.append(begins, begins[0] + colour.size))
+    return [(b + np.arange(n)) % colour.size for b, n in zip(begins, lengths, strict=True)]
+
+
+def _long_enough(colour: np.ndarray) -> np.ndarray:
+    """Stretches of one or two crossings left to the ground: no end could bind them and leave them to be seen."""
+    colour = colour.copy()
+    for run in _runs(colour.copy()):
+        if len(run) < 3:
+            colour[run] = -1
+    return colour
+
+
+def _bound(colour: np.ndarray, binding: np.ndarray) -> np.ndarray:
+    """Binding points so that every stretch of colour is held by at least one end and shows at its own ends."""
+    binding = binding.copy()
+    for run in _runs(colour):
+        if colour[run[0]] >= 0 and len(run) < colour.size:
+            binding[run[[0, -1]]] = False
+            if not binding[run].any():
+                binding[run[len(run) // 2]] = True
+    return binding
 
 
 def _numbers(values: np.ndarray, most: int, name: str) -> np.ndarray:
