@@ -45,7 +45,9 @@ def add_parser(subparsers) -> None:
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("source", metavar="SOURCE", help="plain, twill:2/1, satin:8/3, a file or a motif picture")
+    parser.add_argument(
+        "source", metavar="SOURCE", help="plain, twill:2/1, satin:8/3, a file or a motif picture"
+    )
     parser.add_argument("--relax", action="store_true", help="relax the yarns in three dimensions (stage B)")
     parser.add_argument("--maps", type=Path, metavar="DIR", help="folder for the maps")
     parser.add_argument(

@@ -129,6 +129,8 @@ def figure_one_picture(figure: FigureOne) -> np.ndarray:
         dots, _splat(cloud[front], np.full((int(front.sum()), 1), 0.8), n), _splat(cloud[front], facing[front] / 2 + 0.5, n),
         figure.drawn[..., None], figure.translated[..., None], figure.tiled[..., None], figure.turned[..., None],
     ]  # fmt: skip
-    shown = [np.rint(np.nan_to_num(np.broadcast_to(g, (n, n, 3)), nan=0.06) * 255).astype(np.uint8) for g in grey]
+    shown = [
+        np.rint(np.nan_to_num(np.broadcast_to(g, (n, n, 3)), nan=0.06) * 255).astype(np.uint8) for g in grey
+    ]
     shown.append(figure.lit)
     return np.vstack([np.hstack(shown[:4]), np.hstack(shown[4:])])

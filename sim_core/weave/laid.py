@@ -108,7 +108,9 @@ def _leno_side(weave: Weave, pairs, per: int) -> np.ndarray:
     side = (at - np.arange(draft.ends)).T * weave.end_spacing
     t = np.arange(per) / per
     ease = t * t * (3 - 2 * t)
-    return (side[..., None] * (1 - ease) + np.roll(side, -1, axis=1)[..., None] * ease).reshape(draft.ends, -1)
+    return (side[..., None] * (1 - ease) + np.roll(side, -1, axis=1)[..., None] * ease).reshape(
+        draft.ends, -1
+    )
 
 
 def brocade_heights(weave: Weave, warp: Strands, extra: np.ndarray, at: np.ndarray, per: int) -> np.ndarray:
@@ -122,13 +124,21 @@ def brocade_heights(weave: Weave, warp: Strands, extra: np.ndarray, at: np.ndarr
     sample = np.rint(at / warp.length * n).astype(int) % n
     axis = warp.height[:, sample].T  # (extra picks, ends)
     bound = weave.draft.lift[extra]
-    gone = weave.draft.channels.region[extra] < 0 if weave.draft.channels.region is not None else np.zeros_like(bound)
+    gone = (
+        weave.draft.channels.region[extra] < 0
+        if weave.draft.channels.region is not None
+        else np.zeros_like(bound)
+    )
     gap = (weave.warp.height + yarn.height) / 2
     # a binding end is drawn up by the extra weft as far as the weft is pressed down by it: half way each
     limit = np.where(bound, axis - 0.5 * gap, axis + gap)
-    sign = np.where(gone, 2.0, np.where(bound, -1.0, 1.0))  # where it is not, it may lie anywhere: in the cloth
+    sign = np.where(
+        gone, 2.0, np.where(bound, -1.0, 1.0)
+    )  # where it is not, it may lie anywhere: in the cloth
     limit = np.where(gone, axis, limit)
-    z = lay_beams(beam_stiffness(weave.draft.ends, weave.end_spacing, yarn.stiffness, yarn.tension), sign, limit)
+    z = lay_beams(
+        beam_stiffness(weave.draft.ends, weave.end_spacing, yarn.stiffness, yarn.tension), sign, limit
+    )
     return resampled(z, per)
 
 
@@ -145,7 +155,9 @@ def lay_beams(stiffness: np.ndarray, sign: np.ndarray, limit: np.ndarray, steps:
     for _ in range(steps):
         free = np.fft.ifft(filtered * np.fft.fft(z - dual, axis=1), axis=1).real
         wanted = free + dual
-        z = np.where(sign == 1, np.maximum(wanted, goal), np.where(sign == -1, np.minimum(wanted, goal), goal))
+        z = np.where(
+            sign == 1, np.maximum(wanted, goal), np.where(sign == -1, np.minimum(wanted, goal), goal)
+        )
         dual = wanted - z
     return z * scale
 

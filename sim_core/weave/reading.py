@@ -173,7 +173,8 @@ class _WeaveFile(_Part):
     friction: float = 0.3
     source: str | None = None
     draft: Annotated[
-        _Plain | _Twill | _Satin | _Damask | _Leno | _Compound | _Tapestry | _Brocade | _Lift, Field(discriminator="kind")
+        _Plain | _Twill | _Satin | _Damask | _Leno | _Compound | _Tapestry | _Brocade | _Lift,
+        Field(discriminator="kind"),
     ]
     warp: _Yarn
     weft: _Yarn

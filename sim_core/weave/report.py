@@ -106,7 +106,9 @@ def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothP
     note = dict(made.provenance)
     if channels.order is not None or channels.layer is not None:
         for key in ("stretch_warp", "stretch_weft", "shear", "poisson", "bend_warp", "bend_weft", "bend"):
-            note[key] += "; of a plain weave with the same yarns and sett in place of the leno or compound weave"
+            note[key] += (
+                "; of a plain weave with the same yarns and sett in place of the leno or compound weave"
+            )
     stage = "the relaxed particles" if isinstance(geometry, ParticleCell) else "the relaxed beams"
     note["density"] += f"; yarn paths of {stage}"
     return replace(made, density=size["areal_density"], thickness=size["thickness"], provenance=note)
@@ -123,4 +125,6 @@ def _stand_in(weave: Weave) -> Weave:
     room = 1.01 * (weave.warp.height + weave.weft.height)
     ends = min(weave.ends_per_m / warp, 1 / (room + weave.warp.width - weave.warp.height))
     picks = min(weave.picks_per_m / weft, 1 / (room + weave.weft.width - weave.weft.height))
-    return replace(weave, draft=plain(), ends_per_m=ends, picks_per_m=picks, warp_colours=(), weft_colours=(), extra=None)
+    return replace(
+        weave, draft=plain(), ends_per_m=ends, picks_per_m=picks, warp_colours=(), weft_colours=(), extra=None
+    )

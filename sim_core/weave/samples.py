@@ -53,7 +53,11 @@ class Samples:
 
 
 def tile_of(
-    systems: tuple[Strands, ...], repeats: tuple[int, int], shape: tuple[int, int], seed: int, origin=(0.0, 0.0)
+    systems: tuple[Strands, ...],
+    repeats: tuple[int, int],
+    shape: tuple[int, int],
+    seed: int,
+    origin=(0.0, 0.0),
 ) -> tuple[list[Tile], np.ndarray, tuple[float, float]]:
     """Tiles of repeats (across, up) at rows x columns samples, the colours (n, 3) linear, and the size [m] (x, y).
 
@@ -81,10 +85,18 @@ def tile_of(
         waves = lengthwise * system.length / (6 * system.yarn.width)
         swell = 1 + system.yarn.unevenness * _noise(rng, count, waves, at / (n * lengthwise))
         swell = np.clip(swell, 0.6, 1.5)
-        centre = (system.place[of] + (np.arange(count) // yarns) * system.across)[:, None] + side[of] - origin[along]
+        centre = (
+            (system.place[of] + (np.arange(count) // yarns) * system.across)[:, None]
+            + side[of]
+            - origin[along]
+        )
         room = max(system.across / yarns - system.yarn.width, 0.1 * system.across / yarns)
-        centre = centre + 0.3 * system.yarn.unevenness * room * _noise(rng, count, waves, at / (n * lengthwise))
-        palette = np.where(system.palette <= 0.04045, system.palette / 12.92, ((system.palette + 0.055) / 1.055) ** 2.4)
+        centre = centre + 0.3 * system.yarn.unevenness * room * _noise(
+            rng, count, waves, at / (n * lengthwise)
+        )
+        palette = np.where(
+            system.palette <= 0.04045, system.palette / 12.92, ((system.palette + 0.055) / 1.055) ** 2.4
+        )
         colour = system.colour[of][:, near]
         colour = np.where(colour < 0, -1, colour + sum(len(c) for c in colours))
         colours.append(palette)

@@ -26,7 +26,9 @@ def ground_of(weave: Weave) -> Weave:
                    weft_colours=())  # fmt: skip
 
 
-def solve(weave: Weave, *, particles: bool = False, per: int = 8, friction: float = 0.3, tolerance: float = 1e-3):
+def solve(
+    weave: Weave, *, particles: bool = False, per: int = 8, friction: float = 0.3, tolerance: float = 1e-3
+):
     """Relax a weave: stage A, and stage B on it with `particles`. Returns YarnGeometry or ParticleCell over the draft.
 
     The ground of a brocade is relaxed alone. Leno and compound weaves stay at stage A (their ends cross or lie over
@@ -53,8 +55,12 @@ def _copies(shape: tuple[int, int], weave: Weave) -> tuple[int, int]:
 
 def _tiled(g: YarnGeometry, weave: Weave) -> YarnGeometry:
     up, across = _copies(g.warp_height.shape, weave)
-    arrays = {name: np.tile(getattr(g, name), (up, across)) for name in ("warp_height", "weft_height", "force")}
-    return replace(g, **arrays, warp_crimp=np.tile(g.warp_crimp, across), weft_crimp=np.tile(g.weft_crimp, up))
+    arrays = {
+        name: np.tile(getattr(g, name), (up, across)) for name in ("warp_height", "weft_height", "force")
+    }
+    return replace(
+        g, **arrays, warp_crimp=np.tile(g.warp_crimp, across), weft_crimp=np.tile(g.weft_crimp, up)
+    )
 
 
 def _tiled_cell(c: ParticleCell, weave: Weave) -> ParticleCell:
@@ -72,10 +78,12 @@ def _woven_leno(weave: Weave) -> YarnGeometry:
     per = 16
     side, height, _, weft = leno_paths(weave, per)
     lengths = []
-    for u, z, step in ((side, height, weave.pick_spacing / per), (np.zeros_like(weft), weft, weave.end_spacing / per)):
+    for u, z, step in (
+        (side, height, weave.pick_spacing / per),
+        (np.zeros_like(weft), weft, weave.end_spacing / per),
+    ):
         pieces = np.sqrt(step**2 + (np.roll(u, -1, 1) - u) ** 2 + (np.roll(z, -1, 1) - z) ** 2)
         lengths.append(pieces.mean(axis=1) / step - 1)
     at, ft = height[:, ::per].T, weft[:, ::per]
     gap = np.where(weave.draft.lift, 1, -1) * (at - ft) - (weave.warp.height + weave.weft.height) / 2
     return YarnGeometry(at, ft, np.zeros_like(at), *lengths, 0.0, float(max(0.0, -gap.min())), 0.0, 1)
-

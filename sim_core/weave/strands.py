@@ -53,9 +53,15 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
     draft, channels = weave.draft, weave.draft.channels
     width, height = weave.size
     main = main_picks(weave)
-    palette_warp, palette_weft = _palette(weave.warp_colours, weave.warp), _palette(weave.weft_colours, weave.weft)
+    palette_warp, palette_weft = (
+        _palette(weave.warp_colours, weave.warp),
+        _palette(weave.weft_colours, weave.weft),
+    )
     if isinstance(geometry, ParticleCell):
-        per, paths = geometry.per, (geometry.warp_side, geometry.warp_height, geometry.weft_side, geometry.weft_height)
+        per, paths = (
+            geometry.per,
+            (geometry.warp_side, geometry.warp_height, geometry.weft_side, geometry.weft_height),
+        )
     elif channels.order is not None and channels.layer is None:
         paths = leno_paths(weave, per)
     else:
@@ -83,7 +89,9 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
         z = brocade_heights(weave, made[0], extra, (after + 0.5) * pick_step, per)
         colour = _weft_colours(weave, extra, len(palette_weft), z.shape[1])
         place = (after + 0.5) * pick_step
-        made.append(Strands("weft", place, np.zeros_like(z), z, colour, palette_weft, weave.extra, width, height))
+        made.append(
+            Strands("weft", place, np.zeros_like(z), z, colour, palette_weft, weave.extra, width, height)
+        )
     return tuple(made)
 
 
@@ -108,7 +116,9 @@ def _weft_colours(weave: Weave, rows: np.ndarray, colours: int, n: int) -> np.nd
     """(rows, n) palette index of each place along the picks; a slit or an end of a region leaves one place free."""
     channels = weave.draft.channels
     if channels.region is None:
-        series = channels.pick_series if channels.pick_series is not None else np.zeros(weave.draft.picks, int)
+        series = (
+            channels.pick_series if channels.pick_series is not None else np.zeros(weave.draft.picks, int)
+        )
         return np.repeat((series[rows] % colours)[:, None], n, axis=1)
     per = n // weave.draft.ends
     crossing = ((np.arange(n) + per // 2) // per) % weave.draft.ends  # the nearest crossing

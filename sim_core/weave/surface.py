@@ -90,14 +90,23 @@ def resolve(samples: Samples, colours: np.ndarray, low: float, high: float, size
     rows, columns = (n // SAMPLES for n in samples.height.shape)
     out = np.zeros((rows, columns, CHANNELS), np.float32)
     number = np.zeros((rows, columns), np.uint16)
-    lit = np.array([((k / 255) / 12.92 if k / 255 <= 0.04045 else ((k / 255 + 0.055) / 1.055) ** 2.4) for k in range(256)])
+    lit = np.array(
+        [
+            ((k / 255) / 12.92 if k / 255 <= 0.04045 else ((k / 255 + 0.055) / 1.055) ** 2.4)
+            for k in range(256)
+        ]
+    )
     to_srgb = np.searchsorted(lit[1:] / 2 + lit[:-1] / 2, np.arange(4096) / 4095).astype(np.uint8)
-    pictures = [np.zeros((rows, columns, c) if c > 1 else (rows, columns), np.uint8) for c in (3, 3, 1, 1, 3, 1)]
+    pictures = [
+        np.zeros((rows, columns, c) if c > 1 else (rows, columns), np.uint8) for c in (3, 3, 1, 1, 3, 1)
+    ]
     _resolve(samples.height, samples.yarn, samples.dx, samples.dy, samples.run, samples.colour, samples.across,
              colours.astype(np.float32), streak, low, high, colours.mean(axis=0) * 0.7, to_srgb, number, *pictures)  # fmt: skip
     del out
     albedo, normal, height, roughness, direction, opacity = pictures
-    return SurfaceMaps(albedo, normal, height, roughness, direction, opacity, number, size, high - low, repeats)
+    return SurfaceMaps(
+        albedo, normal, height, roughness, direction, opacity, number, size, high - low, repeats
+    )
 
 
 @njit(cache=True, fastmath=True)
@@ -159,7 +168,9 @@ def _resolve(height, yarn, dx, dy, run, colour, across, colours, streak, low, hi
             direction[i, j, 2] = int(min(spread, 1.0) * 255 + 0.5)
 
 
-def lit_cloth(maps: SurfaceMaps, *, backdrop: float = 0.07, light=(-0.35, 0.5, 0.75), gloss: float = 0.3) -> np.ndarray:
+def lit_cloth(
+    maps: SurfaceMaps, *, backdrop: float = 0.07, light=(-0.35, 0.5, 0.75), gloss: float = 0.3
+) -> np.ndarray:
     """The maps under one lamp: Lambert, and Kajiya-Kay's highlight along the yarns. Returns (n, n, 3) uint8.
 
     The highlight is cos^p of the angle between the half vector and the plane across the yarn, so floats gleam along

@@ -26,7 +26,10 @@ def tube_mesh(points: np.ndarray, half_width: float, half_height: float, sides: 
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     up = np.cross(tangent, across)
     angle = 2 * np.pi * np.arange(sides) / sides
-    ring = half_width * np.cos(angle)[:, None] * across[:, None] + half_height * np.sin(angle)[:, None] * up[:, None]
+    ring = (
+        half_width * np.cos(angle)[:, None] * across[:, None]
+        + half_height * np.sin(angle)[:, None] * up[:, None]
+    )
     vertices = (points[:, None] + ring).reshape(-1, 3)
     i, k = np.indices((len(points) - 1, sides))
     a, b = i * sides + k, i * sides + (k + 1) % sides
@@ -78,7 +81,9 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
             made[colour] = ([*vs, vertices], [*fs, faces + count], count + len(vertices))
         for colour, (vertices, faces, _) in made.items():
             rgb = np.append(np.rint(system.palette[colour] * 255), 255).astype(np.uint8)
-            material = trimesh.visual.material.PBRMaterial(baseColorFactor=rgb, metallicFactor=0.0, roughnessFactor=0.5)
+            material = trimesh.visual.material.PBRMaterial(
+                baseColorFactor=rgb, metallicFactor=0.0, roughnessFactor=0.5
+            )
             mesh = trimesh.Trimesh(np.concatenate(vertices), np.concatenate(faces), process=False)
             mesh.visual = trimesh.visual.TextureVisuals(material=material)
             scene.add_geometry(mesh, geom_name=f"{system.along} {colour}")

@@ -15,7 +15,7 @@ from sim_core.weave.algebra import Harness, harness
 from sim_core.weave.draft import Draft
 from sim_core.weave.model import Weave, draft_from_dict, draft_to_dict
 
-__all__ = ["PRIVATE", "Wif", "wif_of"]
+__all__ = ["PRIVATE", "Wif", "plain_title", "wif_of"]
 
 PRIVATE = "PRIVATE HALL WEAVE"
 MOST_TREADLES = 64  # beyond, the file has a lift plan instead of tie-up and treadling
@@ -98,7 +98,12 @@ def wif_of(cloth: Weave | Draft) -> Wif:
     made = harness(draft.lift)
     plan = made.tieup.shape[1] > MOST_TREADLES
     private = {"weave": weave.to_dict()} if weave else {"draft": draft_to_dict(draft)}
-    value = Wif(draft.name, _with_plan(made) if plan else made, plan, private=json.loads(json.dumps(private)))
+    value = Wif(
+        plain_title(draft.name),
+        _with_plan(made) if plan else made,
+        plan,
+        private=json.loads(json.dumps(private)),
+    )
     if weave is None:
         return value
     sides = weave.warp, weave.weft
@@ -116,6 +121,11 @@ def _with_plan(made: Harness) -> Harness:
     from sim_core.weave.algebra import lift_plan
 
     return Harness(made.threading, np.eye(len(made.tieup), dtype=bool), lift_plan(made.tieup, made.treadling))
+
+
+def plain_title(text: str) -> str:
+    """A title as one line of printable ASCII; the private section keeps the name itself."""
+    return " ".join("".join(c if " " <= c <= "~" else "?" for c in text).split())
 
 
 def _tidy(metres: float) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.wif import PRIVATE, Wif
+from sim_core.weave.wif import PRIVATE, Wif, plain_title
 
 __all__ = ["wif_text", "write_wif"]
 
@@ -40,7 +40,9 @@ def write_wif(wif: Wif, path: str | Path) -> None:
 def _body(wif: Wif):
     harness = wif.harness
     yield "COLOR PALETTE", (("Entries", str(len(wif.palette))), ("Form", "RGB"), ("Range", f"0,{wif.top}"))
-    yield "TEXT", (("Title", _plain(wif.title)), *wif.text)
+    title = (("Title", plain_title(wif.title)),) if wif.title else ()
+    if title or wif.text:
+        yield "TEXT", (*title, *wif.text)
     shafts, treadles = harness.tieup.shape
     treadles = 0 if wif.plan else treadles
     yield "WEAVING", (("Shafts", str(shafts)), ("Treadles", str(treadles)), ("Rising Shed", "true"))
@@ -88,8 +90,3 @@ def _rows(matrix: np.ndarray):
     return tuple(
         (str(k + 1), ",".join(str(n + 1) for n in np.flatnonzero(row)) or "0") for k, row in enumerate(matrix)
     )
-
-
-def _plain(text: str) -> str:
-    """A title as one line of printable ASCII; the private section keeps the name itself."""
-    return " ".join("".join(c if " " <= c <= "~" else "?" for c in text).split()) or "draft"

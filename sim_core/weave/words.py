@@ -16,7 +16,9 @@ from sim_core.weave.yarn import Yarn
 
 __all__ = ["draft_of_words", "dressed", "satin_by_pick", "weave_of"]
 
-WORDS = "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .json or .toml file, or a picture of a motif"
+WORDS = (
+    "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .json or .toml file, or a picture of a motif"
+)
 PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"}
 # What a bare draft is woven of: degummed silk, two threads of 20/22 den; an assumption, told in the provenance.
 TEX, DIAMETER, FLATTENING, ROOM = 3.59e-6, 78e-6, 1.8, 1.7
@@ -40,23 +42,25 @@ def weave_of(source: str) -> tuple[Weave, str]:
     return dressed(draft_of_words(source)), ASSUMED
 
 
-ASSUMED = (
-    f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, spaced {ROOM} widths"
-)
+ASSUMED = f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, spaced {ROOM} widths"
 
 
 def draft_of_words(words: str) -> Draft:
     """A draft by name; `twill:2/1` is Z, `satin:8/3` has the one weft point of pick i on end 3 i mod 8."""
     name, *rest = words.strip().split(":")
     numbers = rest.pop(0) if name in ("twill", "satin") and rest else ""
-    if name not in ("plain", "twill", "satin") or any(word not in ("S", "Z", "weft", "warp") for word in rest):
+    if name not in ("plain", "twill", "satin") or any(
+        word not in ("S", "Z", "weft", "warp") for word in rest
+    ):
         raise WeaveError(f"{words[:60]!r}: no such weave – give {WORDS}")
     if name == "plain":
         draft = plain()
     else:
         found = re.fullmatch(r"(\d{1,4})/(\d{1,4})", numbers, re.ASCII)
         if not found:
-            raise WeaveError(f"{words[:60]!r}: numbers are missing – give {name}:{'2/1' if name == 'twill' else '8/3'}")
+            raise WeaveError(
+                f"{words[:60]!r}: numbers are missing – give {name}:{'2/1' if name == 'twill' else '8/3'}"
+            )
         first, second = int(found[1]), int(found[2])
         draft = twill(first, second) if name == "twill" else satin_by_pick(first, second)
     if "weft" in rest and draft.face != "warp":
@@ -78,7 +82,15 @@ def dressed(draft: Draft) -> Weave:
     """A bare draft with yarns and sett of a plain silk."""
     yarn = Yarn(DIAMETER, TEX, FLATTENING, unevenness=0.05)
     sett = 1 / (ROOM * yarn.width)
-    return Weave(draft.name, draft, yarn, yarn, sett, sett, extra=yarn if draft.channels.pick_kind is not None else None)
+    return Weave(
+        draft.name,
+        draft,
+        yarn,
+        yarn,
+        sett,
+        sett,
+        extra=yarn if draft.channels.pick_kind is not None else None,
+    )
 
 
 def _from_json(path: Path) -> tuple[Weave, str]:
@@ -116,7 +128,9 @@ def _motif_of(path: Path) -> np.ndarray:
     try:
         with Image.open(path) as picture:
             if max(picture.size) > MOST:
-                raise WeaveError(f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST}")
+                raise WeaveError(
+                    f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST}"
+                )
             grey = np.asarray(picture.convert("L"))
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         if isinstance(error, WeaveError):

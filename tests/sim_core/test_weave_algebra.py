@@ -7,7 +7,15 @@ from sim_core.errors import WeaveError
 from sim_core.weave.algebra import Harness, drawdown, harness, lift_plan, tie_up
 from sim_core.weave.analysis import float_statistics, hangs_together, summary
 from sim_core.weave.draft import Channels, Draft, plain, satin, twill
-from sim_core.weave.generators import basket, damask, diamond, herringbone, limit_floats, satin_of_six, weft_faced
+from sim_core.weave.generators import (
+    basket,
+    damask,
+    diamond,
+    herringbone,
+    limit_floats,
+    satin_of_six,
+    weft_faced,
+)
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
 from sim_core.weave.words import draft_of_words
 
@@ -63,7 +71,9 @@ def test_facts_of_the_basic_weaves():
 def test_conventions_of_the_words():
     lift = draft_of_words("twill:2/1").lift
     np.testing.assert_array_equal(np.roll(lift[0], 1), lift[1])  # one end on, a pick
-    np.testing.assert_array_equal(np.roll(draft_of_words("twill:2/1:S").lift[0], -1), draft_of_words("twill:2/1:S").lift[1])
+    np.testing.assert_array_equal(
+        np.roll(draft_of_words("twill:2/1:S").lift[0], -1), draft_of_words("twill:2/1:S").lift[1]
+    )
     for ends, step in ((8, 3), (5, 2), (7, 4), (10, 3)):
         satin_lift = draft_of_words(f"satin:{ends}/{step}").lift
         for pick in range(ends):
@@ -116,7 +126,9 @@ def test_gauze_holds_by_its_crossings_alone():
         assert hangs_together(draft)
         assert not hangs_together(Draft("no order", draft.lift))
     still = np.tile(np.arange(2), (2, 1))
-    assert not hangs_together(Draft("uncrossed", gauze().lift, Channels(end_series=np.array([0, 1]), order=still)))
+    assert not hangs_together(
+        Draft("uncrossed", gauze().lift, Channels(end_series=np.array([0, 1]), order=still))
+    )
     order = four_end_gauze().channels.order
     assert order is not None
     assert all(len({p % 4 for p in row}) == 4 for row in order.tolist())  # one end a place
@@ -189,6 +201,10 @@ def test_irregular_satin_of_six_touches_nowhere_and_derivatives_close():
 
 
 def test_channels_of_the_wrong_shape_are_named():
-    for channels in (Channels(end_series=np.zeros(3, int)), Channels(order=np.zeros((2, 2))), Channels(region=-2 * np.ones((2, 2), int))):
+    for channels in (
+        Channels(end_series=np.zeros(3, int)),
+        Channels(order=np.zeros((2, 2))),
+        Channels(region=-2 * np.ones((2, 2), int)),
+    ):
         with pytest.raises(WeaveError, match="draft x"):
             Draft("x", plain().lift, channels)
