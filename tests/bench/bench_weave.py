@@ -1,10 +1,11 @@
 """Weaving: time and error together. The references are closed forms, and a dense solver for weaves without one.
 
-    python tests/bench/bench_weave.py [--quick] [--json FILE]
+    python tests/bench/bench_weave.py [--quick] [--json FILE] [--plot FILE.png] [--sheet FILE.png] [--large]
 
 Plain weave: heights and crossing forces have closed forms (small slope). Twill and satin: the same contact problem is
 solved in dense matrices by scipy's non-negative least squares, to 1e-12, interleaved with ours. Maps: seconds and
-the measured seam.
+the measured seam. Stage B, fuzz, densities and TexGen (optional: pytexgen in the environment whose Python
+WEAVE_PEERS_PYTHON names) are in weave_particles.py.
 """
 
 import argparse
@@ -16,6 +17,8 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+import weave_particles
+import weave_sheet
 from scipy.optimize import nnls
 
 from sim_core.weave import Weave, Yarn, plain, relax, satin, texture_maps, twill
@@ -118,7 +121,16 @@ def main() -> int:
     )
     parser.add_argument("--quick", action="store_true", help="small repeats and maps")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument("--plot", type=Path, help="draw speed against error (PNG)")
+    parser.add_argument(
+        "--sheet", type=Path, help="draw the contact sheet of all weaves (PNG) and nothing else"
+    )
+    parser.add_argument("--large", action="store_true", help="also 400 x 400 by stage B, minutes")
     args = parser.parse_args()
+    if args.sheet:
+        weave_sheet.draw(args.sheet)
+        return 0
+    particles = weave_particles.measure(quick=args.quick, large=args.large)
     drafts = [twill(2, 2), twill(3, 1), satin(5, 2), satin(8, 3)] + ([] if args.quick else [satin(16, 7)])
     closed, dense_results = closed_rows(), dense_rows(drafts)
     maps = map_rows([256] if args.quick else [512, 1024])
@@ -136,8 +148,11 @@ def main() -> int:
     print(f"\n{'maps':<24}{'ms':>9}{'seam/255':>10}")
     for row in maps:
         print(f"{row['case']:<24}{row['seconds'] * 1e3:>9.1f}{row['seam'] * 255:>10.0f}")
+    weave_particles.show(particles)
+    if args.plot:
+        weave_sheet.plot(particles, args.plot)
     if args.json:
-        rows = {"closed": closed, "dense": dense_results, "maps": maps}
+        rows = {"closed": closed, "dense": dense_results, "maps": maps, **particles}
         args.json.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
     sound = all(row["error"] < 1e-5 for row in closed) and all(row["seam"] <= 1 / 255 for row in maps)
     return 0 if sound else 1
