@@ -1,4 +1,4 @@
-"""What a draft tells before anything is simulated: floats on both faces, interlacings, and whether it hangs together."""
+"""What a draft tells before anything is simulated: floats, interlacings, whether it hangs together."""
 
 from dataclasses import dataclass
 

@@ -32,13 +32,14 @@ def elastica_crimp(spacing: float) -> float:
 def peirce_crimp(spacing: float) -> float:
     """Crimp of Peirce's flexible yarns: straight pieces and arcs of diameter D = 2d about the crossing yarn.
 
-    spacing: p/d, from the jam at sqrt(3) on. From p = (l - D a) cos a + D sin a and d = (l - D a) sin a + D (1 - cos a).
+    spacing: p/d, from the jam at sqrt(3) on.
+    p = (l - D a) cos a + D sin a and d = (l - D a) sin a + D (1 - cos a), l the length, a the steepest angle.
     """
 
     def rest(a: float) -> float:
         straight = (1.0 - 2.0 * (1 - cos(a))) / sin(a)
         return straight * cos(a) + 2.0 * sin(a) - spacing
 
-    angle = brentq(rest, 1e-3, acos(0.5))
+    angle = float(np.asarray(brentq(rest, 1e-3, acos(0.5))))
     straight = (1.0 - 2.0 * (1 - cos(angle))) / sin(angle)
     return (straight + 2.0 * angle) / spacing - 1

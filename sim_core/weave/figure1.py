@@ -13,7 +13,7 @@ from sim_core.weave.strands import strands
 
 __all__ = ["FigureOne", "figure_one", "figure_one_picture"]
 
-SIDES = 16
+SIDES = 96
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +46,12 @@ def figure_one(weave: Weave, geometry: YarnGeometry | ParticleCell, *, pixels: i
     systems = strands(weave, geometry)
     lamp = np.array([-0.4, 0.5, 0.77])
     points, normals, colours = [], [], []
-    first: tuple | None = None
+    first: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
     for system in systems:
         for number in range(len(system.place)):
-            axis = _dense(system.points(number), system, 12)
+            axis = _dense(system.points(number), system, 20)
             surface, normal = _section(axis, system.yarn.width / 2, system.yarn.height / 2)
-            colour = np.repeat(np.repeat(system.colour[number], 12)[:, None], SIDES, axis=1)
+            colour = np.repeat(np.repeat(system.colour[number], 20)[:, None], SIDES, axis=1)
             keep = (colour >= 0).ravel()
             first = first or (axis, surface, normal)
             points.append(surface.reshape(-1, 3)[keep])
@@ -68,7 +68,9 @@ def figure_one(weave: Weave, geometry: YarnGeometry | ParticleCell, *, pixels: i
     shade = lambda n: 0.2 + 0.8 * np.clip(n @ lamp, 0, 1)  # noqa: E731
     lit = _splat(many @ turn, _shine(many_tint, many_facing @ turn, lamp), pixels)
     return FigureOne(
-        *first,
+        first[0],
+        first[1],
+        first[2],
         _splat(first[1].reshape(-1, 3), shade(first[2].reshape(-1, 3))[:, None], pixels)[..., 0],
         _splat(cloud, shade(facing)[:, None], pixels)[..., 0],
         _splat(many, shade(many_facing)[:, None], pixels)[..., 0],
@@ -122,11 +124,12 @@ def figure_one_picture(figure: FigureOne) -> np.ndarray:
     n = len(figure.drawn)
     pace = max(1, len(figure.axis) // 60)
     dots = _splat(figure.axis[::pace], np.ones((len(figure.axis[::pace]), 1)), n)
-    cloud = figure.surface[::pace].reshape(-1, 3)
-    facing = figure.normals[::pace].reshape(-1, 3)
+    cloud = figure.surface[::pace, ::8].reshape(-1, 3)
+    facing = figure.normals[::pace, ::8].reshape(-1, 3)
     front = facing[:, 2] >= 0
     grey = [
-        dots, _splat(cloud[front], np.full((int(front.sum()), 1), 0.8), n), _splat(cloud[front], facing[front] / 2 + 0.5, n),
+        dots, _splat(cloud[front], np.full((int(front.sum()), 1), 0.8), n),
+        _splat(cloud[front], facing[front] / 2 + 0.5, n),
         figure.drawn[..., None], figure.translated[..., None], figure.tiled[..., None], figure.turned[..., None],
     ]  # fmt: skip
     shown = [

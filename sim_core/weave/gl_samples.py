@@ -41,7 +41,7 @@ class NoOpenGL(SimCoreError):  # noqa: N818 - a state of the machine, told by it
 def context():
     """A moderngl context without a screen; raises NoOpenGL where there is none."""
     try:
-        import moderngl
+        import moderngl  # pyright: ignore[reportMissingImports] - optional
 
         return moderngl.create_context(standalone=True, backend="egl")
     except Exception as error:  # whatever a driver may raise
@@ -50,7 +50,7 @@ def context():
 
 def sample_surface(tiles: list[Tile], shape: tuple[int, int], size: tuple[float, float]) -> Samples:
     """As `samples.sample_surface`, by OpenGL. Raises NoOpenGL."""
-    import moderngl
+    import moderngl  # pyright: ignore[reportMissingImports] - optional
 
     gl = context()
     program = gl.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)

@@ -1,4 +1,4 @@
-"""Heights that stage A's grid of crossings cannot hold: leno ends that cross each other, extra wefts laid on a ground."""
+"""Heights beyond the grid of crossings: leno ends that cross each other, extra wefts laid on a ground."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _leno_side(weave: Weave, pairs, per: int) -> np.ndarray:
 
 
 def brocade_heights(weave: Weave, warp: Strands, extra: np.ndarray, at: np.ndarray, per: int) -> np.ndarray:
-    """Heights (extra picks, ends * per) [m] of extra wefts laid as beams over the ends, beneath the ends that bind them.
+    """Heights (extra picks, ends * per) [m] of extra wefts laid as beams over the ends, under the binding ones.
 
     warp: the relaxed ends.  at: (extra picks,) [m] where each lies along the warp. The ground does not give way.
     """
@@ -145,7 +145,8 @@ def brocade_heights(weave: Weave, warp: Strands, extra: np.ndarray, at: np.ndarr
 def lay_beams(stiffness: np.ndarray, sign: np.ndarray, limit: np.ndarray, steps: int = 400) -> np.ndarray:
     """Periodic beams on rigid obstacles: heights (beams, n) [m] of least energy on or under limits.
 
-    stiffness: (n,) [N/m] per mode.  sign: (beams, n) +1 obstacle below, -1 above, 2 held at the limit.  limit: (beams, n) [m].
+    stiffness: (n,) [N/m] per mode.  sign: (beams, n) +1 obstacle below, -1 above, 2 held at the limit.
+    limit: (beams, n) [m].
     """
     scale = max(float(np.abs(limit).max()), 1e-12)
     goal, positive = limit / scale, stiffness[stiffness > 0]

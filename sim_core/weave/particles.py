@@ -183,8 +183,8 @@ def relax_particles(
     )
     if residual > tolerance or deepest > 1.25 * OVERLAP:
         raise WeaveError(
-            f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D after "
-            f"{steps} steps) – lower the sett, or allow a larger residual"
+            f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
+            f"after {steps} steps) – lower the sett, or allow a larger residual"
         )
     l1, l2 = numbers[0], numbers[1]
     return ParticleCell(

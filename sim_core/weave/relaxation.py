@@ -88,7 +88,7 @@ def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np
     dual = np.zeros_like(gap)
     error = np.inf
     for iteration in range(1, ITERATIONS + 1):
-        free = irfft2(rho / (rho + resist) * rfft2(gap - dual), s=gap.shape)
+        free = np.asarray(irfft2(rho / (rho + resist) * np.asarray(rfft2(gap - dual)), s=gap.shape))
         mixed = OVER_RELAXATION * free + (1 - OVER_RELAXATION) * gap
         before = gap
         gap = problem.sign * np.maximum(problem.sign * (mixed + dual), 1.0)

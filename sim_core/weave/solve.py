@@ -86,4 +86,6 @@ def _woven_leno(weave: Weave) -> YarnGeometry:
         lengths.append(pieces.mean(axis=1) / step - 1)
     at, ft = height[:, ::per].T, weft[:, ::per]
     gap = np.where(weave.draft.lift, 1, -1) * (at - ft) - (weave.warp.height + weave.weft.height) / 2
-    return YarnGeometry(at, ft, np.zeros_like(at), *lengths, 0.0, float(max(0.0, -gap.min())), 0.0, 1)
+    return YarnGeometry(
+        at, ft, np.zeros_like(at), lengths[0], lengths[1], 0.0, float(max(0.0, -gap.min())), 0.0, 1
+    )

@@ -12,7 +12,7 @@ DOUP = 1
 
 
 def gauze(pairs: int = 1) -> Draft:
-    """纱, simple leno: a doup end crosses beneath its ground end after every pick; doup over, ground under each pick."""
+    """纱, simple leno: a doup end crosses beneath its ground end after every pick."""
     if not 1 <= pairs <= 64:
         raise WeaveError(f"gauze: {pairs} pairs – give 1 to 64")
     lift = np.tile(np.array([[False, True], [False, True]]), (1, pairs))

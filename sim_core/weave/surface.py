@@ -1,4 +1,4 @@
-"""The full map set of a cloth from samples of its surface: albedo, normal, height, roughness, direction, opacity, yarn."""
+"""The full map set of a cloth from samples of its surface: from albedo to yarn number."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ __all__ = ["SurfaceMaps", "lit_cloth", "resolve", "surface_maps"]
 SAMPLES = 2  # per pixel and direction
 YARNS_WANTED = 28
 ROUGH_ALONG, ROUGH_BONUS = 0.34, 0.5  # a yarn seen on the flat; turned away
-CHANNELS = 11
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,6 @@ def resolve(samples: Samples, colours: np.ndarray, low: float, high: float, size
     """Average the samples of each pixel. colours: (n, 3) linear.  low, high: [m] of heights 0 and 255."""
     streak = 1 + 0.05 * np.random.default_rng(7).standard_normal((256, 48)).astype(np.float32)
     rows, columns = (n // SAMPLES for n in samples.height.shape)
-    out = np.zeros((rows, columns, CHANNELS), np.float32)
     number = np.zeros((rows, columns), np.uint16)
     lit = np.array(
         [
@@ -101,8 +99,8 @@ def resolve(samples: Samples, colours: np.ndarray, low: float, high: float, size
         np.zeros((rows, columns, c) if c > 1 else (rows, columns), np.uint8) for c in (3, 3, 1, 1, 3, 1)
     ]
     _resolve(samples.height, samples.yarn, samples.dx, samples.dy, samples.run, samples.colour, samples.across,
-             colours.astype(np.float32), streak, low, high, colours.mean(axis=0) * 0.7, to_srgb, number, *pictures)  # fmt: skip
-    del out
+             colours.astype(np.float32), streak, low, high, colours.mean(axis=0) * 0.7, to_srgb, number,
+             *pictures)  # fmt: skip
     albedo, normal, height, roughness, direction, opacity = pictures
     return SurfaceMaps(
         albedo, normal, height, roughness, direction, opacity, number, size, high - low, repeats

@@ -1,4 +1,4 @@
-"""Yarn curves as tubes: GLB (tubes, one mesh a yarn system) and PLY (curves as points and edges), for the closest zoom."""
+"""Yarn curves as tubes: GLB (tubes) and PLY (axes as points and edges), for the closest zoom."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def write_yarns(systems: tuple[Strands, ...], path: str | Path) -> None:
 
 
 def _pieces(system: Strands):
-    """(points, colour index) of each stretch of yarn that is there and of one colour; whole yarns close to the repeat."""
+    """(points, colour index) of each stretch of yarn that is there and of one colour; whole yarns close."""
     for number, colour in enumerate(system.colour):
         points = system.points(number)
         step = np.zeros(3)
@@ -71,6 +71,8 @@ def _pieces(system: Strands):
 
 def _glb(systems: tuple[Strands, ...]) -> bytes:
     import trimesh
+    from trimesh.visual import TextureVisuals
+    from trimesh.visual.material import PBRMaterial
 
     scene = trimesh.Scene()
     for system in systems:
@@ -81,11 +83,9 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
             made[colour] = ([*vs, vertices], [*fs, faces + count], count + len(vertices))
         for colour, (vertices, faces, _) in made.items():
             rgb = np.append(np.rint(system.palette[colour] * 255), 255).astype(np.uint8)
-            material = trimesh.visual.material.PBRMaterial(
-                baseColorFactor=rgb, metallicFactor=0.0, roughnessFactor=0.5
-            )
+            material = PBRMaterial(baseColorFactor=rgb, metallicFactor=0.0, roughnessFactor=0.5)
             mesh = trimesh.Trimesh(np.concatenate(vertices), np.concatenate(faces), process=False)
-            mesh.visual = trimesh.visual.TextureVisuals(material=material)
+            mesh.visual = TextureVisuals(material=material)
             scene.add_geometry(mesh, geom_name=f"{system.along} {colour}")
     return scene.export(file_type="glb")  # type: ignore[return-value]
 

@@ -1,4 +1,4 @@
-"""SOURCE of the command: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; a .wif, .json, .toml; a motif picture."""
+"""SOURCE of the command: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; a file; a motif picture."""
 
 from __future__ import annotations
 
@@ -42,7 +42,10 @@ def weave_of(source: str) -> tuple[Weave, str]:
     return dressed(draft_of_words(source)), ASSUMED
 
 
-ASSUMED = f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, spaced {ROOM} widths"
+ASSUMED = (
+    f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, "
+    f"spaced {ROOM} widths"
+)
 
 
 def draft_of_words(words: str) -> Draft:

@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, lit_cloth, solve, surface_maps
+from sim_core.weave import ParticleCell, Weave, lit_cloth, solve, surface_maps
 from sim_core.weave.figure1 import figure_one, figure_one_picture
 from sim_core.weave.words import weave_of
 
@@ -26,9 +26,10 @@ def draw(path: Path) -> None:
     for k, file in enumerate(files):
         weave = Weave.load(file)
         try:
-            geometry, stage = solve(weave, particles=True), "B"
+            geometry = solve(weave, particles=True)
         except WeaveError:
-            geometry, stage = solve(weave), "A"
+            geometry = solve(weave)
+        stage = "B" if isinstance(geometry, ParticleCell) else "A"
         maps = surface_maps(weave, geometry, pixels=2 * SIDE)
         picture = Image.fromarray(lit_cloth(maps)).resize((SIDE, SIDE), Image.Resampling.BOX)
         x, y = k % COLUMNS * SIDE, k // COLUMNS * (SIDE + 18)

@@ -82,8 +82,13 @@ def test_conventions_of_the_words():
         np.testing.assert_array_equal(weft, ~satin_lift)
 
 
-@pytest.mark.parametrize("words", ["", "knit", "twill", "twill:2", "twill:a/b", "satin:8/2", "satin:8/3:Q", "plain:weft",
-                                   "twill:1/3:weft", "twill:9999/1", "satin:5/1"])  # fmt: skip
+BAD_WORDS = (
+    "", "knit", "twill", "twill:2", "twill:a/b", "satin:8/2", "satin:8/3:Q", "plain:weft", "twill:1/3:weft",
+    "twill:9999/1", "satin:5/1",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("words", BAD_WORDS)
 def test_bad_words_are_one_line(words):
     with pytest.raises(WeaveError) as caught:
         draft_of_words(words)

@@ -184,8 +184,8 @@ CITED = {
     # doupioni taffeta 15209: 22.20/24.42 dtex x 2, 33.30/44.40 dtex x 2, 564 x 365 per 10 cm, 43 g/m2 (dictionary of
     # silk cloths at cuzhiwang.com, thread 14452); degumming 23 % of raw silk, the middle of 18-25 % given for sericin
     "taffeta 15209": (5640, 3650, 4.662e-6, 7.77e-6, 0.77, 43.0),
-    # gauze of the plain robe of Mawangdui: 58 x 40 per cm, 10.2-11.3 denier, 12 g/m2 (Inner Mongolia Daily, 7 July 2022,
-    # page 12; other reports give 15.4 g/m2); measured on the finished threads
+    # gauze of the plain robe of Mawangdui: 58 x 40 per cm, 10.2-11.3 denier, 12 g/m2 (Inner Mongolia Daily, 7 July
+    # 2022, page 12; other reports give 15.4 g/m2); measured on the finished threads
     "Mawangdui gauze": (5800, 4000, 10.75e-6 / 9, 10.75e-6 / 9, 1.0, 12.0),
 }
 
