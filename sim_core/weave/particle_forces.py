@@ -103,7 +103,7 @@ def _touch(
         )  # fmt: skip
         flat = l2 * l2 / (wide_c * wide_c) + su * su / (wide_d * wide_d) + sz * sz
         rise = dc * l2 / (wide_c * wide_c) + dd * su / (wide_d * wide_d) + dz * sz
-        s += rise / max(flat - dz * bent, 0.2 * flat)
+        s += rise / flat
     high = sign * dz
     if high < 0.05:
         high = 0.05
