@@ -79,11 +79,20 @@ class House:
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with the content now."""
         asked = (Problem(p.file, p.key, p.what, p.fix) for p in self.survey_problems())
-        flat = self._failed.get(self.room.key)
+        return (*self.content.problems, *self.unbaked, *self.room_problems, *asked)
+
+    @property
+    def room_problems(self) -> tuple[Problem, ...]:
+        """Why the room is shown without its light or its letters."""
+        found = [self._failed[self.room.key]] if self.room.key in self._failed else []
         if self.room.lacking is not None:
             what, _, fix = self.room.lacking.partition(" – ")
-            flat = Problem("plan.toml", "", f"the hall's boards are blank: {what}", fix)
-        return (*self.content.problems, *self.unbaked, *((flat,) if flat else ()), *asked)
+            found = [Problem("plan.toml", "", f"the hall's boards are blank: {what}", fix)]
+        if self.room.broken is not None:
+            file, _, what = self.room.broken.partition(" ")
+            what = f"{what}: the room is shown evenly lit"
+            found.append(Problem(file, "", what, "run: hall build --room"))
+        return tuple(found)
 
     def baked(self, exhibit: Exhibit, failure: str | None) -> None:
         """A bake of the exhibit's garment ended; `failure` says why it did not succeed."""

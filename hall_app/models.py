@@ -26,8 +26,11 @@ class ExhibitModels:
         return info.low, info.high
 
 
-def models_of(content: Content, exhibit: Exhibit, data: Path) -> ExhibitModels | None:
-    """What to draw `exhibit` with, or None while its garment has not been baked."""
+def models_of(content: Content, exhibit: Exhibit, data: Path | None) -> ExhibitModels | None:
+    """What to draw `exhibit` with, or None while its garment has not been baked.
+
+    data: the data folder, where a bake of its own may lie; None looks beside the exhibit alone.
+    """
     if exhibit.file.garment is None:
         hall, close = exhibit.model_path("hall"), exhibit.model_path("close")
         return ExhibitModels(hall, close or hall, None) if hall is not None else None

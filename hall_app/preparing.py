@@ -9,12 +9,12 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
 from .bake.places import bake_folder, key_now
 from .content.loading import Content, Exhibit
+from .ending import undisturbed
 
 __all__ = ["Preparation", "stale_garments"]
 
@@ -28,26 +28,6 @@ def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
         and key_now(content, exhibit) is not None  # an input is missing: nothing can be baked from it
         and bake_folder(content, exhibit, data, stale=False) is None
     )
-
-
-@contextlib.contextmanager
-def undisturbed() -> Iterator[None]:
-    """Put signals off that end the program, while something is begun that has to be ended again."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    before = {
-        sign: signal.signal(sign, lambda number, frame: came.append(number))
-        for sign in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    }
-    try:
-        yield
-    finally:
-        for sign, act in before.items():
-            signal.signal(sign, act)
-        for number in came:
-            signal.raise_signal(number)
 
 
 class Preparation:

@@ -1,4 +1,4 @@
-"""Progress in words: one line that is written over on a terminal, a line now and then anywhere else."""
+"""Progress in words: one line that is written over on a terminal, a new line now and then anywhere else."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ProgressLine:
 
     def __init__(self, stream: TextIO | None = None, *, clock: Callable[[], float] = time.monotonic) -> None:
         self._stream, self._clock = stream, clock
-        self._told = float("-inf")
+        self._told, self._last = float("-inf"), ""
         self._open = False
 
     def tell(self, text: str, *, done: bool = False) -> None:
@@ -29,8 +29,9 @@ class ProgressLine:
             shown = text if done else text[:WIDTH]
             stream.write(f"\r{shown:<{WIDTH}}" + ("\n" if done else ""))
             self._open = not done
-        elif done or self._clock() - self._told >= EVERY:
+        elif done or (text != self._last and self._clock() - self._told >= EVERY):
             stream.write(f"{text}\n")
+            self._last = text
             self._told = float("-inf") if done else self._clock()
         stream.flush()
 

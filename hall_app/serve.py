@@ -9,7 +9,7 @@ import signal
 import socket
 import sys
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,10 +17,12 @@ from .beside import beside
 from .content.loading import Content, Exhibit, load
 from .content.lookup import content_folder
 from .content.problems import ContentError
+from .ending import at_once
 from .preparing import Preparation, stale_garments
 from .progress_line import ProgressLine
 
 if TYPE_CHECKING:
+    import uvicorn
     from fastapi import FastAPI
 
     from .house import House
@@ -73,12 +75,29 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve until interrupted."""
+    with at_once():
+        content = _prepared(arguments)
+        if content is None:
+            return 1
+        stale = stale_garments(content, arguments.data)
+    for sign in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(sign, _end)  # a closed terminal or a service manager ends a bake as Ctrl-C does
+    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the hall at any time, and is no failure
+        _bake_missing(content, arguments.data, stale)
+        with at_once():
+            server = _server(_open(content, arguments), arguments)
+        server.run()
+    return 0
+
+
+def _prepared(arguments: argparse.Namespace) -> Content | None:
+    """The content, told of; None, told why, where there is no hall."""
     try:
         content = load(content_folder(arguments.content))
     except ContentError as error:
         for problem in error.problems:
             print(f"hall serve: {problem}", file=sys.stderr)
-        return 1
+        return None
     _check_port(arguments.host, arguments.port)
     try:
         arguments.data.mkdir(parents=True, exist_ok=True)
@@ -86,18 +105,13 @@ def run(arguments: argparse.Namespace) -> int:
         raise OSError(
             f"--data {arguments.data}: {error.strerror} – choose a folder that can be written"
         ) from error
-    for sign in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(sign, _end)  # a closed terminal or a service manager ends a bake as Ctrl-C does
     _say(f"Content  {content.folder}")
     for problem in content.problems:
         _say(f"  left out: {problem}")
-    with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the hall at any time, and is no failure
-        _bake_missing(content, arguments.data)
-        _serve(_open(content, arguments), arguments)
-    return 0
+    return content
 
 
-def _serve(app: FastAPI, arguments: argparse.Namespace) -> None:
+def _server(app: FastAPI, arguments: argparse.Namespace) -> uvicorn.Server:
     import uvicorn
 
     config = uvicorn.Config(
@@ -110,7 +124,7 @@ def _serve(app: FastAPI, arguments: argparse.Namespace) -> None:
         ws_max_size=1 << 26,
         timeout_graceful_shutdown=2,
     )
-    uvicorn.Server(config).run()
+    return uvicorn.Server(config)
 
 
 def _end(number: int, frame: object) -> None:
@@ -174,7 +188,7 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
 def _greet(house: House, arguments: argparse.Namespace) -> None:
     count, wrong = len(house.shown()), len(house.problems)
     exhibits = f"{count} exhibit{'' if count == 1 else 's'}"
-    for problem in house.unbaked:
+    for problem in (*house.unbaked, *house.room_problems):
         _say(f"  left out: {problem}")
     shown = f"[{arguments.host}]" if ":" in arguments.host else arguments.host
     _say(f"{exhibits}, {wrong} problem{'' if wrong == 1 else 's'}")
@@ -184,10 +198,10 @@ def _greet(house: House, arguments: argparse.Namespace) -> None:
     _say(f"Open     http://{shown}:{arguments.port}   (Ctrl-C ends)")
 
 
-def _bake_missing(content: Content, data: Path) -> None:
+def _bake_missing(content: Content, data: Path, stale: Sequence[Exhibit]) -> None:
     """Bake garments that have no bake yet, in a process of their own, before the doors open."""
     progress = ProgressLine()
-    for exhibit in stale_garments(content, data):
+    for exhibit in stale:
         try:
             with Preparation(content.folder, data, "--exhibit", exhibit.id) as preparation:
                 while preparation.poll() is None:

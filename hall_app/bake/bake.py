@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import shutil
 import time
@@ -14,6 +13,7 @@ import numpy as np
 
 from ..content.glb import read_glb
 from ..content.loading import Content, Exhibit
+from ..sealing import FILES, seal, text_of
 from .encode import film_possible
 from .film import filming, stills
 from .places import RECORD
@@ -65,9 +65,8 @@ def bake_garment(
     stills(draping.still(garment), garment.positions, out)
     seconds["all"] = round(time.perf_counter() - began, 2)
     record = _record(key, garment, light, inputs, seconds)
-    (out / RECORD).write_text(
-        json.dumps(record, ensure_ascii=False, indent=1, sort_keys=True) + "\n", "utf-8"
-    )
+    record[FILES] = seal(out, RECORD)
+    (out / RECORD).write_text(text_of(record), "utf-8")
     _publish(out, target)
     shutil.rmtree(work, ignore_errors=True)
     progress(1.0, "done")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..content.loading import Content, Exhibit, load
 from ..content.lookup import content_folder
-from .places import baked_here, data_bake, read_record
+from .places import bake_fault, baked_here, data_bake, read_record
 
 __all__ = ["add_parser", "run"]
 
@@ -72,7 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
         key = bake_key(content, exhibit)
         target = data_bake(arguments.data, exhibit.id, key) if arguments.into_data else baked_here(exhibit)
         record = read_record(target)
-        if record is not None and record.get("key") == key and not arguments.force:
+        whole = record is not None and record.get("key") == key and bake_fault(target) is None
+        if whole and not arguments.force:
             _tell(arguments.json, {"exhibit": exhibit.id, "state": "up to date"}, f"{exhibit.id}: up to date")
             continue
         summary = _bake(content, exhibit, key, target, arguments)
@@ -91,7 +92,7 @@ def _build_room(content: Content, arguments: argparse.Namespace) -> None:
     from ..room.key import room_key
     from ..room.places import data_room, room_here, room_record
 
-    key = room_key(content)
+    key = room_key(content, arguments.data)
     target = data_room(arguments.data, key) if arguments.into_data else room_here(content.folder)
     record = room_record(target)
     if record is not None and record.get("key") == key and not arguments.force:

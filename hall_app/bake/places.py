@@ -7,9 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from ..content.loading import Content, Exhibit
+from ..sealing import Fault, seal_fault
 from .key import bake_key
 
-__all__ = ["bake_folder", "baked_here", "data_bake", "key_now", "read_record", "RECORD"]
+__all__ = [
+    "NEEDED",
+    "RECORD",
+    "bake_fault",
+    "bake_folder",
+    "baked_here",
+    "data_bake",
+    "key_now",
+    "read_record",
+]
 
 RECORD = "bake.json"
 NEEDED = ("garment.npz", "hall.glb", "close.glb")
@@ -24,6 +34,11 @@ def read_record(folder: Path) -> dict[str, Any] | None:
     if not isinstance(record, dict) or not all((folder / name).is_file() for name in NEEDED):
         return None
     return record
+
+
+def bake_fault(folder: Path) -> Fault | None:
+    """(file name, what is wrong with it) of a bake whose files are not those that were baked."""
+    return seal_fault(folder, RECORD, NEEDED)
 
 
 def baked_here(exhibit: Exhibit) -> Path:
@@ -44,8 +59,11 @@ def key_now(content: Content, exhibit: Exhibit) -> str | None:
         return None
 
 
-def bake_folder(content: Content, exhibit: Exhibit, data: Path, *, stale: bool = True) -> Path | None:
-    """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one."""
+def bake_folder(content: Content, exhibit: Exhibit, data: Path | None, *, stale: bool = True) -> Path | None:
+    """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one.
+
+    data: the data folder, None to look beside the exhibit alone.
+    """
     here = baked_here(exhibit)
     record = read_record(here)
     key = key_now(content, exhibit)
@@ -53,7 +71,7 @@ def bake_folder(content: Content, exhibit: Exhibit, data: Path, *, stale: bool =
         return here if stale and record is not None else None
     if record is not None and record.get("key") == key:
         return here
-    fresh = data_bake(data, exhibit.id, key)
-    if read_record(fresh) is not None:
+    fresh = data_bake(data, exhibit.id, key) if data is not None else None
+    if fresh is not None and read_record(fresh) is not None:
         return fresh
     return here if stale and record is not None else None

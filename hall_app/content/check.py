@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from .checks import CHECKS
-from .loading import load, load_exhibit_problems
+from .loading import Content, load, load_exhibit_problems
 from .problems import ContentError, Problem
 
 __all__ = ["check"]
@@ -20,5 +21,14 @@ def check(folder: Path) -> list[Problem]:
         return [*error.problems, *load_exhibit_problems(folder)]
     found = list(content.problems)
     for look in CHECKS:
-        found += look(content)
+        found += _looked(look, content)
     return list(dict.fromkeys(found))
+
+
+def _looked(look: Callable[[Content], list[Problem]], content: Content) -> list[Problem]:
+    """What one check finds; a fault that nobody foresaw is a problem of its own, and the other checks go on."""
+    try:
+        return look(content)
+    except Exception as error:
+        what = f"{look.__name__.replace('_', ' ')}: cannot be checked ({' '.join(str(error).split())[:200]})"
+        return [Problem(".", "", what, "undo the last change, and report it with the folder")]

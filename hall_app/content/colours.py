@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .glb import open_glb
+from .glb_arrays import accessor
 from .pictures import LARGEST, PictureError, picture_size
 
 __all__ = ["difference", "hex_of", "main_colour"]
 
 Floats = NDArray[np.float64]
 _SUPPORT = ("stand", "figure", "mannequin")  # nodes that hold the dress up and are not what is shown
-_COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 _WHITE = np.array([0.95047, 1.0, 1.08883])
 
@@ -68,28 +67,16 @@ def main_colour(path: Path) -> Floats | None:
 def _covered(document: dict[str, Any], binary: bytes, primitive: dict[str, Any]) -> tuple[float, Floats]:
     """Area [m2] of a primitive's triangles and the mean of its vertex colours."""
     attributes = primitive["attributes"]
-    points = _values(document, binary, attributes["POSITION"])
+    points = accessor(document, binary, attributes["POSITION"])
     index = np.arange(len(points))
     if "indices" in primitive:
-        index = _values(document, binary, primitive["indices"]).reshape(-1).astype(int)
+        index = accessor(document, binary, primitive["indices"]).reshape(-1).astype(int)
     corners = points[index[: len(index) // 3 * 3].reshape(-1, 3)]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     tint = np.ones(3)
     if "COLOR_0" in attributes:
-        tint = _values(document, binary, attributes["COLOR_0"])[:, :3].mean(0)
+        tint = accessor(document, binary, attributes["COLOR_0"])[:, :3].mean(0)
     return float(np.linalg.norm(cross, axis=1).sum() / 2), tint
-
-
-def _values(document: dict[str, Any], binary: bytes, number: int) -> Floats:
-    """(N, width) an accessor's numbers; fractions where they are normalised."""
-    accessor = document["accessors"][number]
-    view = document["bufferViews"][accessor["bufferView"]]
-    kind, width = np.dtype(_COMPONENTS[accessor["componentType"]]), _WIDTH[accessor["type"]]
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    stride = view.get("byteStride", width * kind.itemsize)
-    rows = np.ndarray((accessor["count"], width), kind, binary, start, (stride, kind.itemsize))
-    values = rows.astype(float)
-    return values / np.iinfo(kind).max if accessor.get("normalized") else values
 
 
 def _colour_of(document: dict[str, Any], binary: bytes, number: int) -> Floats:

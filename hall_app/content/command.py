@@ -15,10 +15,12 @@ __all__ = ["add_parser", "run"]
 DESCRIPTION = """\
 Look through a content folder: form of the TOML files, files named and present, both languages, descriptions
 of media, media and models (readable, in metres, within budget), exhibits inside the hall and reachable on
-foot, licences, questionnaires, weaves, patterns, bakes, unused files. One line a problem: file, key, what is
+foot, openings and signs held by walls, licences, questionnaires, weaves, patterns, bakes and the room (files
+as they were baked), unused files. One line a problem: file, key, what is
 wrong, how to put it right.
 
-With --garments instead: what every baked garment was measured to be, marked ! where it breaks a limit.
+With --garments instead: what every baked garment was measured to be, measured again from its files where that
+is cheap; marked ! where it breaks a limit or where record and files disagree.
 
 Exit status: 0 no problem, 1 problems or a broken limit, 2 wrong arguments."""
 

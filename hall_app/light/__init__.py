@@ -4,11 +4,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .baking import bake_light, irradiance
+    from .baking import bake_light
     from .encode import light_jpeg
     from .model import LightError, LightMap, Spot, Surfaces
 
-__all__ = ["LightError", "LightMap", "Spot", "Surfaces", "bake_light", "irradiance", "light_jpeg"]
+__all__ = ["LightError", "LightMap", "Spot", "Surfaces", "bake_light", "light_jpeg"]
 
 _WHERE = {
     "LightError": "model",
@@ -16,7 +16,6 @@ _WHERE = {
     "Spot": "model",
     "Surfaces": "model",
     "bake_light": "baking",
-    "irradiance": "baking",
     "light_jpeg": "encode",
 }
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from .bvh import build_tree
 from .checkpoint import State, key_of, load, save
@@ -21,7 +21,7 @@ from .packing import Atlas, atlas_of
 from .spots import gather_spots
 from .texels import Places, places_of
 
-__all__ = ["bake_light", "irradiance", "scene_of"]
+__all__ = ["bake_light", "scene_of"]
 
 _INSIDE = 0.4  # points more of whose rays than this meet backs of faces lie inside a body
 _LAMP_SHARE = 1 / 3  # points on lamps for every ray
@@ -197,54 +197,5 @@ def _light_map(
         "mean": mean,
     }
     drawn_as = show(surfaces, atlas, image)
-    record |= {"gain": drawn_as.gain, "rolled_off": drawn_as.rolled}
+    record |= {"gain": drawn_as.gain, "rolled_off": drawn_as.rolled, "dimmed": drawn_as.dimmed}
     return LightMap(drawn_as.glow, drawn_as.shown, uv.astype(np.float32), covered, drawn_as.gain, record)
-
-
-def irradiance(
-    surfaces: Surfaces,
-    light: LightMap,
-    points: ArrayLike,
-    normals: ArrayLike,
-    *,
-    spots: Sequence[Spot] = (),
-    rays: int = 144,
-    seed: int = 0,
-) -> Singles:
-    """Light (irradiance / π, before gain) at points (N, 3) [m] that face along normals (N, 3), e.g. of a garment.
-
-    Faces without a chart reflect nothing here (their light is not in the map); spots: those of the bake.
-    Points are lifted 2 mm off their surface. Raises LightError.
-    """
-    place, facing = np.asarray(points, np.float64), np.asarray(normals, np.float64)
-    if place.shape != facing.shape or place.ndim != 2 or place.shape[1:] != (3,) or rays < 1:
-        raise LightError(f"light: points, normals: shapes {place.shape}, {facing.shape} – give (N, 3) each")
-    if not (np.isfinite(place).all() and np.isfinite(facing).all()):
-        raise LightError("light: points, normals: not finite – mend the mesh")
-    atlas = atlas_of(surfaces)
-    if light.image.shape[:2] != (atlas.height, atlas.width):
-        raise LightError("light: the light map belongs to other surfaces – bake these")
-    facing = facing / np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-12)
-    scene, lamps = scene_of(surfaces, atlas), lamps_of(surfaces)
-    corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
-    count = len(place)
-    unit = facing.astype(np.float32)
-    places = Places(
-        np.zeros(count, np.int32), np.arange(count + 1, dtype=np.int32), np.zeros(count, bool),
-        (place + 0.002 * facing).astype(np.float32), unit, unit,
-    )  # fmt: skip
-    kept = _dark(atlas, surfaces)
-    kept[: atlas.width * atlas.height] = light.image.reshape(-1, 3)
-    kept[: atlas.width * atlas.height][_lamp_slots(surfaces, atlas)] = 0
-    halves, _, _ = gather(
-        scene, lamps, corners, places, kept, rays=rays, drawn=round(_LAMP_SHARE * rays), seed=seed
-    )
-    return halves.mean(1) + gather_spots(scene.tree, spot_rows(spots), places, seed=seed)
-
-
-def _lamp_slots(surfaces: Surfaces, atlas: Atlas) -> NDArray[np.bool_]:
-    """(H·W,) texels of shining charts, whose picture holds their own glow."""
-    shining = np.zeros(len(atlas.size) + 1, bool)
-    shining[surfaces.chart[surfaces.emission.max(1) > 0]] = True
-    shining[-1] = False
-    return shining[atlas.chart_image().reshape(-1)]

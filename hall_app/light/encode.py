@@ -16,10 +16,10 @@ from .texels import face_normals
 
 __all__ = ["Shown", "light_jpeg", "show"]
 
-WALL = 0.75  # linear brightness pale walls come to
+WALL = 0.64  # linear brightness pale walls come to
 _WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in deep shade or never seen
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
-SHOULDER = 0.8  # linear brightness from which highlights are rolled off
+SHOULDER = 0.88  # linear brightness from which highlights are rolled off
 _SCALE = 2.0  # the file holds light / 2
 _KNEE = 1.1  # light from which it is rolled off too, as the file ends at _SCALE
 
@@ -28,12 +28,17 @@ Singles = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Shown:
-    """glow: image with the lamps' own light; shown: what a picture shows; gain; rolled: share of texels rolled off."""
+    """glow: image with the lamps' own light; shown: what a picture shows; gain.
+
+    rolled: share of texels whose brightness is rolled off, which would burn out; dimmed: share of those whose light
+    alone is, dark enough to bear it.
+    """
 
     glow: Singles
     shown: Singles
     gain: float
     rolled: float
+    dimmed: float
 
 
 def _rolled(value: NDArray[Any], knee: float, limit: float) -> NDArray[Any]:
@@ -46,7 +51,7 @@ def _rolled(value: NDArray[Any], knee: float, limit: float) -> NDArray[Any]:
 def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
     """The light (H, W, 3) as it is drawn: well-lit parts of pale, upright charts (of all, where there are none)
     come to WALL of the picture; above SHOULDER brightness, and above _KNEE light itself,
-    rise ever more slowly and stay below 1 and 2, hue kept.
+    rise ever more slowly and stay below 1 and _SCALE, hue kept.
     """
     count = len(atlas.size)
     albedo, glow, upright = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count)
@@ -69,12 +74,13 @@ def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
     stored = _rolled(strong, _KNEE, _SCALE)
     bright = gain * picture.max(1) * stored
     factor = stored * _rolled(bright, SHOULDER, 1.0)
-    over = factor < 1.0
+    over, dim = bright > SHOULDER, (strong > _KNEE) & (bright <= SHOULDER)
     factor[lamp[on]] = 1.0
     added = (glow / np.maximum(albedo, 0.05))[on].reshape(image.shape).astype(np.float32)
     lit = image + added
     shown = (gain * lit * factor.reshape(*image.shape[:2], 1)).astype(np.float32)
-    return Shown(lit, shown, gain, float(over[plain].mean()) if plain.any() else 0.0)
+    rolled, dimmed = (float(share[plain].mean()) if plain.any() else 0.0 for share in (over, dim))
+    return Shown(lit, shown, gain, rolled, dimmed)
 
 
 def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:

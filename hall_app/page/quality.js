@@ -3,6 +3,7 @@
 import { framesDrawn, meshesOf, nodeNames, renderer } from "./hooks.js";
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { layLight, plainTones, reflect, sharpen } from "./light.js";
+import { shadeBySight } from "./sides.js";
 import { recall, remember } from "./ui/words.js";
 
 export const CHOICES = ["auto", ...LEVELS];
@@ -80,7 +81,10 @@ export function createQuality(onChange = () => {}) {
       reflect(reflections);
       sharpen(room, anisotropy, blend);
       for (const name of nodeNames()) {
-        if (name.startsWith("/exhibits/") || name === "/closeup") sharpen(meshesOf(name), anisotropy, blend);
+        if (!name.startsWith("/exhibits/") && name !== "/closeup") continue;
+        const meshes = meshesOf(name);
+        sharpen(meshes, anisotropy, blend);
+        shadeBySight(meshes);
       }
       apply();
     },

@@ -30,6 +30,7 @@ export function createVisit({ scene, grid, display, ui, wake }) {
   const { gaze } = createGaze(document.documentElement, scene.eye, walking, wake);
   const closeup = createCloseup(ui); // before the walking keys: in a close-up the arrows turn the exhibit
   const keys = createKeys(walking, () => {
+    ui.walks();
     requestRender(); // a key wakes the renderer in time for the next frame
     wake();
   });

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import time
 from collections.abc import Callable, Sequence
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..content.loading import Content
+from ..sealing import FILES, seal, text_of
 from .charts import surfaces
 from .drawn import room_glb
 from .environment import environment_jpeg, seen
@@ -68,9 +68,9 @@ def bake_room(
         "seconds": round(time.perf_counter() - began, 1),
         "cpu_seconds": round(time.process_time() - cpu, 1),
         "light": _plain(light.record),
+        FILES: seal(out, RECORD),
     }
-    text = json.dumps(record, ensure_ascii=False, indent=1, sort_keys=True) + "\n"
-    (out / RECORD).write_text(text, "utf-8")
+    (out / RECORD).write_text(text_of(record), "utf-8")
     _publish(out, target)
     shutil.rmtree(work, ignore_errors=True)
     progress(1.0, "done")

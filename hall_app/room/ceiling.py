@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -127,12 +128,10 @@ def _laylight(light: Laylight, shape: Any, region: Region) -> list[Patch]:
     nx, nz = max(2, round(wide / 0.8)), max(2, round(deep / 1.0))
     for k in range(1, nx):
         at = -hx + wide * k / nx
-        patches += box(
-            frame, (at - 0.025, -0.04, -hz), (at + 0.025, 0.03, hz), "joist", skip="top front back"
-        )
+        bar = box(frame, (at - 0.025, -0.04, -hz), (at + 0.025, 0.03, hz), "joist", skip="top front back")
+        patches += [replace(side, density=5.0) for side in bar]
     for k in range(1, nz):
         at = -hz + deep * k / nz
-        patches += box(
-            frame, (-hx, -0.075, at - 0.035), (hx, 0.03, at + 0.035), "joist", skip="top left right"
-        )
+        bar = box(frame, (-hx, -0.075, at - 0.035), (hx, 0.03, at + 0.035), "joist", skip="top left right")
+        patches += [replace(side, density=5.0) for side in bar]
     return patches

@@ -16,7 +16,7 @@ __all__ = ["furniture"]
 _DECK = 0.04  # [m] thickness of the wooden deck on a plinth of stone
 _RIM = 0.05  # [m] of stone left uncovered round the deck
 _LOW, _TOP = 0.12, 2.42  # [m] cloth above the deck: foot and head
-_STAND_OFF = 0.09  # [m] a backdrop's middle before the booth's back edge
+_STAND_OFF = 0.12  # [m] a backdrop's middle before the booth's back edge: its feet stand on the deck
 
 
 def furniture(plan: PlanFile) -> list[Patch]:
@@ -88,17 +88,16 @@ def _backdrop(frame: Frame, width: float, cloth: str) -> list[Patch]:
     for side in (-1, 1):
         x = side * (half + post)
         patches += box(frame, (x - post, 0, -0.055), (x + post, _TOP, 0.055), "lacquer", skip="bottom top")
-        patches += box(frame, (x - 0.09, 0, -0.08), (x + 0.09, 0.10, 0.10), "lacquer", skip="bottom")
+        patches += box(frame, (x - 0.09, 0, -0.07), (x + 0.09, 0.10, 0.10), "lacquer", skip="bottom")
         tip = side * (half + 2 * post + 0.14)
         low, high = sorted((tip, tip - side * 0.05))
         patches += box(frame, (low, _TOP - 0.105, -0.068), (high, _TOP + 0.005, 0.068), "gold")
     patches += box(frame, (-half, 0.02, -0.045), (half, _LOW, 0.045), "lacquer", skip="left right bottom")
     head = half + 2 * post + 0.10
     patches += box(frame, (-head, _TOP - 0.1, -0.06), (head, _TOP, 0.06), "lacquer")
-    for y in (_LOW, _TOP - 0.112):
-        patches += box(
-            frame, (-half, y, 0.02), (half, y + 0.012, 0.026), "gold", skip="back left right bottom"
-        )
+    for y, hidden in ((_LOW, "bottom"), (_TOP - 0.112, "top")):
+        skip = f"back left right {hidden}"
+        patches += box(frame, (-half, y, 0.02), (half, y + 0.012, 0.026), "gold", skip=skip)
     return patches
 
 
@@ -153,8 +152,8 @@ def _leaf(frame: Frame, width: float, height: float, cloth: str) -> list[Patch]:
     )
     for y in (low, height - post - 0.012):
         patches += box(frame, (-inner, y, 0.012), (inner, y + 0.012, 0.02), "gold", skip="back left right")
-    patches += box(frame, (-half, height, -0.05), (half, height + 0.05, 0.05), "lacquer", skip="bottom")
-    return patches
+    # Its underside shows: it stands out over the leaf.
+    return patches + box(frame, (-half, height, -0.05), (half, height + 0.05, 0.05), "lacquer")
 
 
 def _step(solid: Solid) -> list[Patch]:
@@ -203,7 +202,8 @@ def _stand(solid: Solid) -> list[Patch]:
     body = [(0.90 * r, foot), (0.82 * r, foot + 0.07), (0.80 * r, top - 0.14), (0.92 * r, top - 0.06)]
     patches += tube(frame, body, "lacquer", sides=32)
     for y in (foot + 0.07, top - 0.15):
-        patches += tube(frame, [(0.83 * r, y), (0.83 * r, y + 0.018)], "gold", sides=32)
+        ring = [(0.83 * r, y), (0.83 * r, y + 0.016), (0.80 * r, y + 0.018)]
+        patches += tube(frame, ring, "gold", sides=32)
     patches += tube(frame, [(r * 0.96, top - 0.06), (r, top - 0.03), (r, top)], "lacquer", sides=32)
     return patches + disc(frame.moved(y=top), r, "wood", sides=32)
 
@@ -221,9 +221,9 @@ def _rope(solid: Solid) -> list[Patch]:
     patches: list[Patch] = []
     for x in ends:
         post, top = frame.moved(x=x), solid.height
-        patches += tube(post, [(foot, 0), (foot, 0.015), (0.03, 0.035)], "gold", sides=16)
+        patches += tube(post, [(foot, 0), (foot, 0.015), (0.03, 0.035), (0.016, 0.04)], "gold", sides=16)
         patches += tube(post, [(0.017, 0.03), (0.017, top - 0.06)], "gold", sides=10)
-        knob = [(0.02, top - 0.07), (0.036, top - 0.045), (0.036, top - 0.02), (0.012, top)]
+        knob = [(0.016, top - 0.07), (0.036, top - 0.045), (0.036, top - 0.02), (0.012, top), (0.0, top)]
         patches += tube(post, knob, "gold", sides=10)
     return patches + _cord(frame, ends, solid.height - 0.09)
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+from pathlib import Path
 from typing import Any
 
+from ..content.files import digest
 from ..content.loading import Content, Exhibit
+from ..models import models_of
 
 __all__ = ["ROOM_VERSION", "room_key"]
 
@@ -14,13 +17,18 @@ __all__ = ["ROOM_VERSION", "room_key"]
 ROOM_VERSION = 1
 
 
-def room_key(content: Content) -> str:
-    """16 hex digits over the plan, the hall's title, the exhibits' labels and places, and ROOM_VERSION."""
+def room_key(content: Content, data: Path | None = None) -> str:
+    """16 hex digits over plan, title, the exhibits' labels, places and hall models, and ROOM_VERSION.
+
+    The models stand in the light, so that a garment baked again takes the old shadows with it. data: the data folder,
+    where garments' own bakes may lie.
+    """
     inputs = {
         "version": ROOM_VERSION,
         "plan": content.plan.model_dump(mode="json"),
         "title": content.hall.title.as_json(),
         "labels": {exhibit.id: _label(exhibit) for exhibit in content.exhibits},
+        "models": {exhibit.id: _model(content, exhibit, data) for exhibit in content.exhibits},
     }
     return hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -30,3 +38,12 @@ def _label(exhibit: Exhibit) -> dict[str, Any]:
     place = exhibit.file.place.model_dump(mode="json")
     body = exhibit.file.body.model_dump(mode="json")
     return {"title": exhibit.file.title.as_json(), "place": place, "body": body}
+
+
+def _model(content: Content, exhibit: Exhibit, data: Path | None) -> str | None:
+    """Digest of the model that casts the exhibit's shadow, None while it has none."""
+    models = models_of(content, exhibit, data)
+    try:
+        return digest(models.hall) if models is not None else None
+    except OSError:  # not there, or not ours to read: it casts none
+        return None

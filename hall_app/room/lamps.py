@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 __all__ = ["spots_of"]
 
 _WARM = "#FFF0DA"
-_POWER = {"booth": 4.0, "dais": 4.6, "stand": 2.5}  # light on a white surface at 1 m, facing the lamp
-_PALE = 0.7  # of it before a pale backdrop, which would burn out
+_POWER = {"booth": 1.6, "dais": 1.9, "stand": 1.2}  # light on a white surface at 1 m, facing the lamp
+_PALE = 0.15  # of it before a pale backdrop, which the room alone lights nearly to its palette tone
 
 
 def spots_of(plan: PlanFile, exhibits: Sequence[Exhibit] = ()) -> list[Spot]:

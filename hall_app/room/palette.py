@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 __all__ = ["BACKDROPS", "MATERIALS", "Material", "linear"]
 
 # Radiosity of what shines, linear, relative to a white wall that is lit by 1.
-LAYLIGHT, WINDOW, LANTERN = 3.4, 2.6, 5.0
+LAYLIGHT, WINDOW, LANTERN = 2.6, 2.6, 5.0
 
 
 @dataclass(frozen=True, slots=True)

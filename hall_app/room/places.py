@@ -7,9 +7,20 @@ from pathlib import Path
 from typing import Any
 
 from ..content.loading import Content
+from ..sealing import Fault, seal_fault
 from .key import room_key
 
-__all__ = ["ENVIRONMENT", "GLB", "RECORD", "data_room", "room_folder", "room_here", "room_record"]
+__all__ = [
+    "ENVIRONMENT",
+    "GLB",
+    "RECORD",
+    "broken_room",
+    "data_room",
+    "room_fault",
+    "room_folder",
+    "room_here",
+    "room_record",
+]
 
 GLB, ENVIRONMENT, RECORD = "room.glb", "environment.jpg", "room.json"
 
@@ -25,21 +36,30 @@ def data_room(data: Path, key: str) -> Path:
 
 
 def room_record(folder: Path) -> dict[str, Any] | None:
-    """The record of a baked room, None where there is no complete one."""
-    try:
-        record = json.loads((folder / RECORD).read_text("utf-8"))
-    except (OSError, ValueError):
+    """The record of a baked room, None where there is no whole one: every file is the one that was baked."""
+    if room_fault(folder) is not None:
         return None
-    if not isinstance(record, dict) or not all((folder / name).is_file() for name in (GLB, ENVIRONMENT)):
-        return None
-    return record
+    return json.loads((folder / RECORD).read_text("utf-8"))
+
+
+def room_fault(folder: Path) -> Fault | None:
+    """(file name, what is wrong with it) of a baked room that is not whole."""
+    return seal_fault(folder, RECORD, (GLB, ENVIRONMENT))
 
 
 def room_folder(content: Content, data: Path) -> Path | None:
     """The folder of the room that was baked from the content as it is now, None where there is none."""
-    key = room_key(content)
+    key = room_key(content, data)
     for folder in (room_here(content.folder), data_room(data, key)):
         record = room_record(folder)
         if record is not None and record.get("key") == key:
             return folder
+    return None
+
+
+def broken_room(content: Content, data: Path) -> str | None:
+    """Which file of a baked room keeps it from being shown, in words; None where no baked room is broken."""
+    for folder in (room_here(content.folder), data_room(data, room_key(content, data))):
+        if folder.is_dir() and (fault := room_fault(folder)):
+            return f"{folder.name}/{fault[0]} {fault[1]}"
     return None

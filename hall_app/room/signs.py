@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .frame import beams_of, columns_of
 from .lettering import Sheet, Writing
-from .patch import Frame, Patch, box, quad, tube
+from .patch import Frame, Patch, box, quad, strip, tube
 from .regions import Regions, bay_height
 
 if TYPE_CHECKING:
@@ -23,13 +23,14 @@ __all__ = ["Board", "boards_of", "signs"]
 Floats = NDArray[np.float64]
 _LABEL, _SMALL = (0.52, 0.17), (0.36, 0.13)  # [m]
 _POST = 0.92  # [m] height of a label's middle above the floor or the booth it stands on
+_POST_RADIUS = 0.011  # [m]
 _PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340}  # per metre
 
 
 @dataclass(frozen=True, slots=True)
 class Board:
     """A writing in its place. frame: its middle, z out of its front; size [m]; tilt [deg]: how far its head leans
-    back; post: height [m] of the post below it, 0: none."""
+    back (not 0 above a post); post: height [m] of the post below it, 0: none."""
 
     writing: Writing
     frame: Frame
@@ -141,16 +142,31 @@ def signs(boards: Sequence[Board], sheet: Sheet) -> list[Patch]:
         if board.writing.kind == "banner":
             patches += _rods(board)
         if board.post:
-            foot = board.frame.moved(y=-board.post)
-            patches += tube(foot, [(0.10, 0.0), (0.10, 0.012), (0.02, 0.024)], "gold", sides=16)
-            patches += tube(foot, [(0.011, 0.02), (0.011, board.post)], "gold", sides=8)
+            patches += _post(board)
     return patches
+
+
+def _thickness(board: Board) -> float:
+    """Of its plate [m]."""
+    return {"label": 0.012, "banner": 0.004}.get(board.writing.kind, 0.05)
+
+
+def _post(board: Board) -> list[Patch]:
+    """A round foot and a rod, cut at the slant of the plate it carries: it ends within the plate's thickness."""
+    foot = board.frame.moved(y=-board.post)
+    angle = 2 * np.pi * np.arange(9) / 8
+    low = np.column_stack([np.sin(angle), np.zeros(9), np.cos(angle)]) * _POST_RADIUS
+    low[:, 1] = 0.02 - board.post
+    high, tilt = low.copy(), np.radians(board.tilt)
+    high[:, 1] = -(_thickness(board) / 2 + low[:, 2] * np.cos(tilt)) / np.sin(tilt)
+    rod = strip(board.frame(low), board.frame(high), "gold", grain=1)
+    return [*tube(foot, [(0.10, 0.0), (0.10, 0.012), (0.01, 0.024)], "gold", sides=16), rod]
 
 
 def _plate(board: Board, place: tuple[float, float, float, float]) -> list[Patch]:
     """The tilted board: its picture in front, lacquer or brass round it."""
     wide, high = board.size
-    thick = {"label": 0.012, "banner": 0.004}.get(board.writing.kind, 0.05)
+    thick = _thickness(board)
     material = "gold" if board.writing.kind == "label" else "lacquer"
     tilt = np.radians(board.tilt)
     lean = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
@@ -160,7 +176,7 @@ def _plate(board: Board, place: tuple[float, float, float, float]) -> list[Patch
         patches.append(replace(patch, vertices=board.frame(patch.vertices @ lean)))
     x0, y0, x1, y1 = place
     uv = np.array([[x0, y1], [x1, y1], [x1, y0], [x0, y0]])
-    face = quad(patches[0].vertices, "signs", uv=uv, density=20.0)
+    face = quad(patches[0].vertices, "signs", uv=uv)
     return [face, *patches[1:]]
 
 

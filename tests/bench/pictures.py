@@ -38,6 +38,10 @@ async () => {
 """
 
 
+STILL = """() => document.getAnimations().every(
+  (one) => one.playState !== "running" || one.effect.getTiming().iterations === Infinity)"""
+
+
 @dataclass(frozen=True)
 class Album:
     """Where pictures go, which are wanted (all when empty), and their format."""
@@ -53,6 +57,7 @@ class Album:
         if not self.wants(name):
             return
         page.wait_for_timeout(900)
+        page.wait_for_function(STILL, timeout=30_000)
         file = self.folder / f"{name}.{'png' if self.png else 'jpg'}"
         page.screenshot(path=file, **({} if self.png else {"type": "jpeg", "quality": 84}))
         print(file, flush=True)
@@ -87,7 +92,6 @@ def enter_screens(browser, url: str, album: Album) -> None:
 def hall(browser, url: str, album: Album) -> None:
     page = new_page(browser, DESK)
     enter(page, f"{url}/?lang=zh")
-    page.wait_for_timeout(1500)  # the Enter screen gives way to the page slowly
     album.shoot(page, "hall")
     found = page.evaluate(STANDS)
     for name, there in found["stands"].items():

@@ -86,7 +86,7 @@ def test_eight_keys(visit, key, direction):
     track = walk(visit, hold=0.6, keys=(key,))
     dx, dz = track.shown[-1] - (x, z)
     away = math.hypot(dx, dz)
-    assert away > 0.3
+    assert away > 0.1  # which way; how fast is another test
     assert (dx / away, dz / away) == pytest.approx(direction, abs=0.01)
     assert displayed(visit)[1] == pytest.approx(height, abs=1e-6)
 

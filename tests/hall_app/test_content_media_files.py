@@ -189,6 +189,8 @@ def test_a_questionnaire_that_is_not_there(house: Path, name: str, toml: str):
 def test_crafts_no_exhibit_names_are_read_too(house: Path, name: str):
     (house / name).parent.mkdir()
     (house / name).write_text("x=1")
+    if name.startswith("mannequins/"):  # a figure needs a licence as well
+        (house / "mannequins/README.md").write_text("nobody.npz: CC0-1.0")
     (line,) = lines(house)
     assert line.startswith(f"{name}: ")
     assert " – " in line

@@ -69,6 +69,15 @@ def test_progress_in_a_log_is_a_line_now_and_then():
     assert "\r" not in log.getvalue()
 
 
+def test_a_log_does_not_repeat_itself():
+    log, now = io.StringIO(), [0.0]
+    line = ProgressLine(log, clock=lambda: now[0])
+    for tick in range(100):
+        now[0] = tick
+        line.tell("Preparing 0 %" if tick < 90 else "Preparing 1 %")
+    assert log.getvalue().splitlines() == ["Preparing 0 %", "Preparing 1 %"]
+
+
 def test_the_next_step_is_told_at_once():
     log = io.StringIO()
     line = ProgressLine(log, clock=lambda: 0.0)

@@ -1,8 +1,6 @@
 """The room as files: one GLB within its budget, letters, key, environment, and the checks that go with them."""
 
 import io
-import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +8,7 @@ import pytest
 from content_house import make_house
 from PIL import Image
 from room_font import BLANK, needs_font
+from stored_room import store_room
 
 from hall_app.cli import main
 from hall_app.content.check import check
@@ -219,36 +218,30 @@ def test_the_key_ignores_what_is_not_seen(tmp_path):
     assert room_key(load(house)) == before
 
 
-def baked(house: Path, key: str) -> None:
-    (house / "room").mkdir(exist_ok=True)
-    for name in ("room.glb", "environment.jpg"):
-        (house / "room" / name).write_bytes(b"glTF")
-    (house / "room/room.json").write_text(json.dumps({"key": key, "triangles": 1}), "utf-8")
-
-
 def test_a_baked_room_is_shown_while_it_fits(tmp_path):
     house, data = make_house(tmp_path / "house"), tmp_path / "data"
     content = load(house)
     assert room_folder(content, data) is None
-    baked(house, room_key(content))
+    store_room(house / "room", room_key(content))
     assert room_folder(content, data) == content.folder / "room"
     assert shown_room(content, data).baked
     assert not check(house)
-    baked(house, "0" * 16)
+    store_room(house / "room", "0" * 16)
     assert room_folder(content, data) is None
     assert not shown_room(content, data).baked
     assert any("stale" in problem.what for problem in check(house))
-    shutil.copytree(house / "room", data / f"room-{room_key(content)}")
-    (data / f"room-{room_key(content)}/room.json").write_text(json.dumps({"key": room_key(content)}), "utf-8")
+    store_room(data / f"room-{room_key(content)}", room_key(content))
     assert shown_room(content, data).baked
 
 
 def test_half_a_bake_is_none(tmp_path):
     house = make_house(tmp_path / "house")
-    baked(house, room_key(load(house)))
+    store_room(house / "room", room_key(load(house)))
     (house / "room/room.glb").unlink()
     assert room_folder(load(house), tmp_path) is None
-    assert any("not whole" in problem.what for problem in check(house))
+    assert [str(problem) for problem in check(house)] == [
+        "room/room.glb: is missing – run: hall build --room"
+    ]
 
 
 def test_environment_is_warm_above_and_grey_below():
@@ -308,3 +301,25 @@ def test_dress_that_sinks_into_its_backdrop_is_a_problem(tmp_path):
             assert "#2F4B6B" in found[0]
             assert "ΔE 16" in found[0]
             assert 'backdrop = "pale" (ΔE 58)' in found[0]
+
+
+def dress_at(away: float, backdrop: str) -> str:
+    """A grey between black and white that is `away` (ΔE) from the backdrop, as near as 8 bits allow."""
+    greys = [f"#{level:02X}{level:02X}{level:02X}" for level in range(256)]
+    return min(greys, key=lambda g: abs(difference(linear(g), linear(BACKDROPS[backdrop])) - away))
+
+
+@pytest.mark.parametrize("backdrop", ["pale", "dark"])
+@pytest.mark.parametrize(("away", "said"), [(39.0, True), (41.0, False)])
+def test_the_limit_of_backdrops_is_forty(backdrop, away, said, tmp_path):
+    house = make_house(tmp_path / "house")
+    toml, plan = house / "exhibits/chest/exhibit.toml", house / "plan.toml"
+    place = 'x = -3.0\nz = 0.0\nfacing = 90\non = "booth"'
+    toml.write_text(toml.read_text("utf-8").replace("x = 0.0\nz = -1.0", place), "utf-8")
+    text = plan.read_text("utf-8").replace("height = 0.2", f'height = 0.2\nbackdrop = "{backdrop}"')
+    plan.write_text(text, "utf-8")
+    colour = dress_at(away, backdrop)
+    assert difference(linear(colour), linear(BACKDROPS[backdrop])) == pytest.approx(away, abs=0.5)
+    coloured(house / "exhibits/chest/media/chest.glb", colour)
+    found = [problem for problem in check(house) if "backdrop" in problem.what]
+    assert bool(found) == said

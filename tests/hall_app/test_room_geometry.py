@@ -13,8 +13,10 @@ from hall_app.content.models import PlanFile
 from hall_app.room import raise_room
 from hall_app.room.charts import charts_of
 from hall_app.room.frame import beams_of
+from hall_app.room.lettering import Sheet
 from hall_app.room.palette import MATERIALS
 from hall_app.room.regions import Regions
+from hall_app.room.signs import boards_of, signs
 
 ASSETS = Path(__file__).parents[2] / "assets"
 HEAD = 2.0  # [m] nobody walks into what hangs above
@@ -261,3 +263,23 @@ def test_materials_are_few_and_lamps_glow(shipped):
     assert used <= set(MATERIALS)
     assert len(used) <= 18  # as many draw calls
     assert {name for name in used if MATERIALS[name].glow} == {"laylight", "paper", "lantern"}
+
+
+def test_a_label_hides_the_end_of_its_post(content):
+    """The post reaches into the plate it carries, and not through it."""
+    regions = Regions(content.plan)
+    boards = boards_of(content.plan, regions, content.hall.title, content.exhibits)
+    posts = [board for board in boards if board.post]
+    assert posts
+    for board in posts:
+        (patches,) = [signs([board], Sheet(np.zeros((8, 8, 3), np.uint8), ((0.0, 0.0, 1.0, 1.0),)))]
+        plate = patches[0].vertices
+        front = np.cross(plate[1] - plate[0], plate[3] - plate[0])
+        front /= np.linalg.norm(front)
+        post = max((p for p in patches if p.material == "gold"), key=lambda p: np.ptp(p.vertices[:, 1]))
+        depth = (post.vertices - plate[0]) @ front  # [m] before the plate's face
+        assert np.ptp(post.vertices[:, 1]) > 0.8
+        assert depth.max() < -0.002
+        assert depth.max() > -0.012
+        top = np.sort(depth)[-8:]
+        assert np.ptp(top) < 1e-6  # cut at the plate's slant: no gap on one side

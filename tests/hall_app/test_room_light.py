@@ -1,5 +1,7 @@
 """What the room hands to the light: surfaces with charts, spots, exhibits in the way."""
 
+import io
+import json
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +12,19 @@ from PIL import Image
 from room_font import BLANK, needs_font
 
 from hall_app.content.check import check
+from hall_app.content.colours import difference
 from hall_app.content.glb import open_glb
 from hall_app.content.loading import load
+from hall_app.content.models import PlanFile
+from hall_app.light import bake_light
+from hall_app.light.encode import SHOULDER
 from hall_app.room import raise_room
 from hall_app.room.bake import bake_room
 from hall_app.room.charts import surfaces
 from hall_app.room.key import room_key
 from hall_app.room.lamps import spots_of
 from hall_app.room.occluders import exhibit_solids
+from hall_app.room.palette import MATERIALS, linear
 from hall_app.room.places import room_here
 from hall_app.room.regions import Regions
 from hall_app.room.showing import shown_room
@@ -85,6 +92,91 @@ def test_spots_hang_in_the_hall_and_shine_down_on_their_place(content):
         footprints = [shapely.Point(s.round.x, s.round.z) if s.round else shapely.Point(s.at) for s in places]
         aimed = shapely.Point(spot.towards[0], spot.towards[2])
         assert min(f.distance(aimed) for f in footprints) < 0.1
+
+
+TONE = 12.0  # ΔE76 between a backdrop as it is seen and its palette tone
+BOOTH = {
+    "outline": [[-3, -3], [3, -3], [3, 3], [-3, 3]],
+    "height": 4.3,
+    "bay": [{"id": "all", "name": {"zh": "厅", "en": "Hall"}, "polygon": [[-3, -3], [3, -3], [3, 3], [-3, 3]]}],
+    "laylight": [{"at": [0, 0.5], "size": [3, 3]}],
+    "solid": [
+        {"id": "b", "kind": "booth", "size": [2.5, 1.6], "at": [0, -2.1], "height": 0.16, "backdrop": "pale"}
+    ],
+}  # fmt: skip
+
+
+def tone(colour: np.ndarray, material: str) -> float:
+    """ΔE76 of the mean of linear colours (N, 3), as they are seen, to the material's own."""
+    return difference(colour.mean(0), linear(MATERIALS[material].colour))
+
+
+def test_a_pale_backdrop_keeps_its_tone_under_its_spot(content):
+    """Neither its own spot nor the room's light burns it out, nor leaves it in the dark."""
+    plan = PlanFile.model_validate(BOOTH)
+    room = raise_room(plan, content.hall.title, (), blank=True)
+    walls, spots = surfaces(room.patches), spots_of(plan)
+    light = bake_light(walls, spots, rays=(16, 16, 16))
+    cloth = [k for k, patch in enumerate(room.patches) if patch.material == "pale"]
+    assert len(cloth) == 1
+    first = sum(len(patch.faces) for patch in room.patches[: cloth[0]])
+    high, wide = light.shown.shape[:2]
+    x0, y0, x1, y1 = np.round(
+        np.r_[light.uv[first : first + 2].min((0, 1)), light.uv[first : first + 2].max((0, 1))]
+        * [wide, high, wide, high]
+    ).astype(int)
+    seen = light.shown[y0:y1, x0:x1].reshape(-1, 3) * linear(MATERIALS["pale"].colour)
+    assert tone(seen, "pale") < TONE
+    assert np.quantile(seen.max(1), 0.9) < SHOULDER
+    assert light.record["rolled_off"] < 0.05
+
+
+@pytest.mark.parametrize("backdrop", ["pale", "dark"])
+def test_shipped_backdrops_keep_their_tone(backdrop):
+    light, uv, faces = shipped_light(f"hall_{backdrop}")
+    rng = np.random.default_rng(0)
+    corners = uv[faces]
+    weights = rng.dirichlet([1, 1, 1], (len(faces), 500))
+    at = np.einsum("fnk,fkc->fnc", weights, corners).reshape(-1, 2)
+    high, wide = light.shape[:2]
+    x, y = np.clip((at * [wide, high]).astype(int), 0, [wide - 1, high - 1]).T
+    seen = light[y, x] * linear(MATERIALS[backdrop].colour)
+    assert tone(seen, backdrop) < TONE
+    assert np.mean(seen.max(1) > SHOULDER) < 0.05
+
+
+def test_hardly_anything_of_the_shipped_room_burns_out():
+    record = json.loads((ASSETS / "room" / "room.json").read_text("utf-8"))
+    assert record["light"]["rolled_off"] < 0.05
+
+
+def shipped_light(mesh: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The shipped light map (H, W, 3) linear, and where a mesh lies in it: (V, 2) and its faces (F, 3)."""
+    document, blob = open_glb(ASSETS / "room" / "room.glb")
+    material = next(m for m in document["materials"] if m["name"] == "lightmap")
+    source = document["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]
+    view = document["bufferViews"][document["images"][source]["bufferView"]]
+    start = view.get("byteOffset", 0)
+    picture = Image.open(io.BytesIO(blob[start : start + view["byteLength"]])).convert("RGB")
+    stored = np.asarray(picture) / 255
+    light = 2 * np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
+    primitive = next(m for m in document["meshes"] if m["name"] == mesh)["primitives"][0]
+    uv, faces = (
+        _values(document, blob, primitive["attributes"]["TEXCOORD_1"]),
+        _values(document, blob, primitive["indices"]),
+    )
+    return light, uv, faces.reshape(-1, 3).astype(int)
+
+
+def _values(document, blob, number: int) -> np.ndarray:
+    accessor = document["accessors"][number]
+    view = document["bufferViews"][accessor["bufferView"]]
+    kind = np.dtype({5126: "<f4", 5125: "<u4", 5123: "<u2", 5121: "u1"}[accessor["componentType"]])
+    wide = {"SCALAR": 1, "VEC2": 2}[accessor["type"]]
+    step = view.get("byteStride") or wide * kind.itemsize
+    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    found = np.ndarray((accessor["count"], wide), kind, blob, start, (step, kind.itemsize))
+    return found / np.iinfo(kind).max if accessor.get("normalized") else found
 
 
 LIT = """

@@ -7,6 +7,8 @@ from ..problems import Problem
 from .backdrops import backdrop_problems
 from .bakes import bake_problems
 from .budget import budget_problems
+from .figures import figure_problems
+from .fittings import fitting_problems
 from .media import media_problems
 from .questionnaires import questionnaire_problems
 from .reach import reach_problems
@@ -25,7 +27,9 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     reach_problems,
     backdrop_problems,
     bake_problems,
+    figure_problems,
     questionnaire_problems,
+    fitting_problems,
     room_problems,
     unused_problems,
 )

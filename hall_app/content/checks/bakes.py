@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...bake.key import bake_key
+from ...bake.places import bake_fault
 from ..files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
 from ..loading import Content, Exhibit
 from ..problems import Problem
@@ -89,8 +90,10 @@ def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
         ]
     named = [path for _, path in exhibit_files(exhibit.file) if path.startswith(BAKED)]
     wanted = dict.fromkeys([BAKED + name for name in NEEDED] + named)
-    return [
+    missing = [
         Problem(exhibit.toml, "garment", f"{name} is missing from the bake", fix)
         for name in wanted
         if not is_there(exhibit.folder / name)
     ]
+    fault = None if missing else bake_fault(exhibit.folder / BAKED)
+    return [Problem(exhibit.toml, "garment", f"{BAKED}{fault[0]} {fault[1]}", fix)] if fault else missing

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..files import walk_files
-from ..glb import read_glb
+from ..glb import GlbError, read_glb
 from ..loading import Content
 from ..problems import Problem
 
@@ -42,7 +42,10 @@ def budget_problems(content: Content) -> list[Problem]:
 
 
 def _model(toml: str, key: str, precision: str, path: Path) -> list[Problem]:
-    info = read_glb(path)
+    try:
+        info = read_glb(path)
+    except (GlbError, OSError):
+        return []  # another check names it
     found = []
     if info.triangles > TRIANGLES[precision]:
         what = f"{info.triangles} triangles, at most {TRIANGLES[precision]}"

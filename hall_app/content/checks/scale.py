@@ -5,7 +5,9 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from ..glb import GlbInfo, read_glb
+from ...bake.places import bake_fault
+from ..files import BAKED
+from ..glb import GlbError, GlbInfo, read_glb
 from ..loading import Content, Exhibit
 from ..problems import Problem
 
@@ -23,10 +25,18 @@ def scale_problems(content: Content) -> list[Problem]:
 
 
 def _model_problems(exhibit: Exhibit, key: str, path: Path) -> list[Problem]:
-    fault = _drawing_fault(path)
-    if fault:
-        return [Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", "export the model again")]
-    info = read_glb(path)
+    fix = "export the model again"
+    if exhibit.file.garment:
+        if bake_fault(exhibit.folder / BAKED):
+            return []  # the check of bakes names it
+        fix = f"run: hall build --exhibit {exhibit.id}"
+    try:
+        fault = _drawing_fault(path)
+        info = read_glb(path)
+    except (GlbError, OSError) as error:
+        fault, info = str(error), None
+    if fault or info is None:
+        return [Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", fix)]
     problems = _height(exhibit, key, info)
     if exhibit.file.models and not problems:  # a garment hangs where its stand holds it
         problems = _origin(exhibit.toml, key, info)

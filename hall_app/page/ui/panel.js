@@ -40,6 +40,7 @@ function createPages(words, { onEnlarge, onSounding }) {
 export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding }) {
   let detail = null;
   let returnTo = null;
+  let watcher = null;
   const answered = new Set();
   const title = el("h2", { id: "panel-title", class: "panel-title", tabindex: -1 });
   const second = el("p", { class: "panel-second" });
@@ -92,12 +93,25 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding })
     detail = next;
     render();
     element.hidden = false;
+    watch();
     if (other) title.focus({ preventScroll: true });
     if (play && pages.film.play()) tabs.select("film");
   }
 
+  /** Chromium keeps every key inside a film's own controls; what it asks to close it lets know (as a back gesture). */
+  function watch() {
+    if (watcher || !window.CloseWatcher) return;
+    watcher = new CloseWatcher();
+    watcher.onclose = () => {
+      watcher = null;
+      if (detail) onClose();
+    };
+  }
+
   function hide() {
     if (!detail) return;
+    watcher?.destroy();
+    watcher = null;
     // A hidden button keeps the focus until the next frame: let go of it now.
     const inside = element.contains(document.activeElement);
     if (inside) document.activeElement.blur();

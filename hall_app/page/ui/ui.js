@@ -226,6 +226,11 @@ function face(parts, overlay, words) {
       caption.hover(id);
       document.documentElement.classList.toggle("hall-hover", Boolean(id));
     },
+    /** Whoever walks is in the hall: a button that was left behind with the focus shall not take Enter. */
+    walks() {
+      const { activeElement } = document;
+      if (activeElement !== parts.stage && overlay.contains(activeElement)) focusStage(parts.stage);
+    },
     toast: parts.toasts.toast,
     connection: parts.connection.set,
     quality: parts.settings.quality,

@@ -1,0 +1,73 @@
+"""One contact at a time: what an impulse between layers takes away, and which gradients of a grid push."""
+
+import numpy as np
+import pytest
+
+from sim_core.cloth import GridSdf
+from sim_core.cloth.contact import collide_samples, collide_vertices
+from sim_core.cloth.repulsion import Shell, repel
+
+THICKNESS = 0.004  # [m]
+SPRING = 1e-9  # so weak that damping and friction are seen alone
+FACE = np.array([[-0.02, 0.0, -0.01], [0.02, 0.0, -0.01], [0.0, 0.0, 0.02]])  # about the origin
+BAR = np.array([[0.0, 0.0, -0.01], [0.0, 0.0, 0.01]])
+
+
+def met(gap: float, velocity: tuple[float, float, float], friction: float, kind: str) -> np.ndarray:
+    """Velocity (3,) [m/s] of a layer relative to the one `gap` [m] below it, after one impulse."""
+    if kind == "vertex on face":
+        x = np.concatenate([[[0.0, gap, 0.0]], FACE])
+        faces, edges = np.array([[1, 2, 3]], np.int32), np.zeros((0, 2), np.int32)
+        points, crossings = np.array([[0, 0]], np.int32), np.zeros((0, 2), np.int32)
+        upper, below = [1.0, 0, 0, 0], [0, 1 / 4, 1 / 4, 1 / 2]
+    else:
+        x = np.concatenate([[[-0.01, gap, 0.0], [0.01, gap, 0.0]], BAR])
+        faces, edges = np.zeros((0, 3), np.int32), np.array([[0, 1], [2, 3]], np.int32)
+        points, crossings = np.zeros((0, 2), np.int32), np.array([[0, 1]], np.int32)
+        upper, below = [0.5, 0.5, 0, 0], [0, 0, 0.5, 0.5]
+    v = np.asarray(upper)[:, None].astype(bool) * np.array(velocity)
+    v = np.ascontiguousarray(v, float)
+    shell = Shell(THICKNESS, 0.001, SPRING, friction, 1)
+    repel(x, v, np.ones(4), faces, edges, points, crossings, shell, 1e-3)
+    weights = np.array(below)
+    return np.asarray(upper) @ v - weights @ v
+
+
+KINDS = pytest.mark.parametrize("kind", ["vertex on face", "edge on edge"])
+
+
+@KINDS
+def test_near_the_surface_the_whole_approach_is_taken_away(kind: str) -> None:
+    """Deeper than three quarters of the shell nothing may come nearer: the pair would lose its side."""
+    assert met(0.2 * THICKNESS, (0.0, -1.0, 0.0), 0.0, kind)[1] == pytest.approx(0.0, abs=1e-6)
+    assert met(0.5 * THICKNESS, (0.0, -1.0, 0.0), 0.0, kind)[1] == pytest.approx(-0.7, abs=1e-6)
+    assert met(1.1 * THICKNESS, (0.0, -1.0, 0.0), 0.0, kind)[1] == -1.0
+
+
+@KINDS
+@pytest.mark.parametrize("friction", [0.0, 0.2, 0.35])
+def test_sliding_loses_friction_times_the_normal_impulse(kind: str, friction: float) -> None:
+    slide = met(0.2 * THICKNESS, (2.0, -1.0, 0.0), friction, kind)[0]
+    assert slide == pytest.approx(2.0 - friction * 1.0, abs=1e-6)
+
+
+@KINDS
+def test_friction_takes_half_of_the_sliding_at_most(kind: str) -> None:
+    assert met(0.2 * THICKNESS, (0.4, -1.0, 0.0), 1.0, kind)[0] == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize(("slope", "pushed"), [(1.0, True), (0.78, True), (0.72, False), (0.0, False)])
+def test_a_grid_pushes_only_where_its_gradient_is_clear(slope: float, pushed: bool) -> None:
+    """Between two surfaces the sampled gradient shrinks; below three quarters it says no direction."""
+    axis = 0.01 * np.arange(5)
+    values = np.broadcast_to(slope * (axis - 0.02)[:, None, None], (5, 5, 5))
+    packed = GridSdf((0.0, 0.0, 0.0), 0.01, np.array(values)).packed()
+    start = np.array([[0.021, 0.012, 0.013], [0.021, 0.014, 0.013], [0.021, 0.012, 0.016]])
+    near = np.repeat(np.arange(3, dtype=np.int32)[:, None], 3, axis=1)
+    x, v = start.copy(), np.zeros((3, 3))
+    collide_vertices(packed, np.ones(3), x, v, near, 0.003, 1e-3, 0.0, 1.0)
+    depth = 0.003 - slope * 0.001
+    assert x[:, 0] - start[:, 0] == pytest.approx(depth if pushed else 0.0, abs=1e-9)
+    x = start.copy()
+    collide_samples(packed, np.ones(3), x, v, np.array([[0, 1, 2]], np.int32), 0.003, 1.0)
+    assert (x[:, 0].mean() - start[:, 0].mean()) == pytest.approx(depth if pushed else 0.0, abs=1e-9)
