@@ -38,7 +38,8 @@ def generated(rng: np.random.Generator) -> Wif:
     return Wif(
         f"draft {rng.integers(1000)}", Harness(threading, tieup, treadling), plan,
         rng.integers(0, top + 1, (colours, 3)), top, rng.integers(1, colours + 1, ends),
-        rng.integers(1, colours + 1, picks), (length(), length()), (length(), length()), (("Author", f"weaver {rng.integers(9)}"),) if rng.random() < 0.5 else (),
+        rng.integers(1, colours + 1, picks), (length(), length()), (length(), length()),
+        (("Author", f"weaver {rng.integers(9)}"),) if rng.random() < 0.5 else (),
         tuple(f"note; {k}" for k in range(rng.integers(0, 3))), other,
     )  # fmt: skip
 

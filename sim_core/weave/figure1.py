@@ -45,24 +45,31 @@ def figure_one(weave: Weave, geometry: YarnGeometry | ParticleCell, *, pixels: i
     """
     systems = strands(weave, geometry)
     lamp = np.array([-0.4, 0.5, 0.77])
-    points, normals, colours = [], [], []
+    points, normals, colours, thin = [], [], [], []
     first: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
     for system in systems:
         for number in range(len(system.place)):
-            axis = _dense(system.points(number), system, 20)
+            times = -(
+                -2 * pixels // system.side.shape[1]
+            )  # half a pixel apart when one repeat fills the picture
+            axis = _dense(system.points(number), system, times)
             surface, normal = _section(axis, system.yarn.width / 2, system.yarn.height / 2)
-            colour = np.repeat(np.repeat(system.colour[number], 20)[:, None], SIDES, axis=1)
+            colour = np.repeat(np.repeat(system.colour[number], times)[:, None], SIDES, axis=1)
             keep = (colour >= 0).ravel()
             first = first or (axis, surface, normal)
             points.append(surface.reshape(-1, 3)[keep])
             normals.append(normal.reshape(-1, 3)[keep])
             colours.append(system.palette[np.maximum(colour.ravel()[keep], 0)])
+            third = np.zeros(colour.shape, bool)
+            third[::3] = True  # enough where three repeats fill the picture
+            thin.append(third.ravel()[keep])
     assert first is not None
     cloud, facing, tint = np.concatenate(points), np.concatenate(normals), np.concatenate(colours)
     width, height = weave.size
     shifts = np.array([[a * width, b * height, 0.0] for a in range(3) for b in range(3)])
-    many = (cloud[None] + shifts[:, None]).reshape(-1, 3)
-    many_facing, many_tint = np.tile(facing, (9, 1)), np.tile(tint, (9, 1))
+    few = np.concatenate(thin)
+    many = (cloud[few][None] + shifts[:, None]).reshape(-1, 3)
+    many_facing, many_tint = np.tile(facing[few], (9, 1)), np.tile(tint[few], (9, 1))
     tilt = np.radians(50)
     turn = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]]).T
     shade = lambda n: 0.2 + 0.8 * np.clip(n @ lamp, 0, 1)  # noqa: E731

@@ -12,6 +12,8 @@ from numba import njit
 
 __all__ = ["contact_forces", "side_forces", "yarn_forces"]
 
+SKIN = 1.06  # norm below which a particle may come to touch before the crossing is looked at as a whole again
+
 
 @njit(cache=True, fastmath=True)
 def yarn_forces(u, z, length, stiffness, tension, fu, fz):
@@ -22,36 +24,44 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
     """
     energy = 0.0
     count = u.shape[1]
+    # directions and inverse lengths of the pieces before particles 0 .. count, then forces of their angles on the
+    # particle before and behind: plain passes over rows, which the compiler turns into vector instructions
+    tl, tu, tz, inverse = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
+    u1, z1, u2, z2 = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
     for yarn in range(u.shape[0]):
-        last = count - 1
-        du, dz = u[yarn, 0] - u[yarn, last], z[yarn, 0] - z[yarn, last]
-        piece = sqrt(length * length + du * du + dz * dz)
-        ty, tu, tz = length / piece, du / piece, dz / piece
+        row, rise = u[yarn], z[yarn]
+        for k in range(1, count):
+            tu[k], tz[k] = row[k] - row[k - 1], rise[k] - rise[k - 1]
+        tu[0], tz[0] = row[0] - row[count - 1], rise[0] - rise[count - 1]
         for k in range(count):
-            after = k + 1 if k < last else 0
-            before = k - 1 if k > 0 else last
-            du2, dz2 = u[yarn, after] - u[yarn, k], z[yarn, after] - z[yarn, k]
-            piece2 = sqrt(length * length + du2 * du2 + dz2 * dz2)
-            ty2, tu2, tz2 = length / piece2, du2 / piece2, dz2 / piece2
-            cosine = ty * ty2 + tu * tu2 + tz * tz2
+            inverse[k] = 1.0 / sqrt(length * length + tu[k] * tu[k] + tz[k] * tz[k])
+            tl[k] = length * inverse[k]
+            tu[k] *= inverse[k]
+            tz[k] *= inverse[k]
+        tl[count], tu[count], tz[count], inverse[count] = tl[0], tu[0], tz[0], inverse[0]
+        for k in range(count):
+            cosine = tl[k] * tl[k + 1] + tu[k] * tu[k + 1] + tz[k] * tz[k + 1]
             turn = 1.0 - cosine
-            mean = 0.5 * (piece + piece2)
-            bend = stiffness * turn * (1.0 + turn / 6.0) / mean
-            slope = stiffness * (1.0 + turn / 3.0) / mean  # -dE/dc
-            shrink = 0.5 * bend / mean  # -dE/d piece
-            a, b = slope / piece, slope / piece2
-            gu1 = -a * (tu2 - cosine * tu) - shrink * tu
-            gz1 = -a * (tz2 - cosine * tz) - shrink * tz
-            gu2 = -b * (tu - cosine * tu2) - shrink * tu2 + tension * tu2
-            gz2 = -b * (tz - cosine * tz2) - shrink * tz2 + tension * tz2
-            fu[yarn, before] += gu1
-            fz[yarn, before] += gz1
-            fu[yarn, k] += gu2 - gu1
-            fz[yarn, k] += gz2 - gz1
-            fu[yarn, after] -= gu2
-            fz[yarn, after] -= gz2
-            energy += bend + tension * piece2
-            piece, ty, tu, tz = piece2, ty2, tu2, tz2
+            # 1 / mean length of the two pieces
+            close = 2.0 * inverse[k] * inverse[k + 1] / (inverse[k] + inverse[k + 1])
+            bend = stiffness * turn * (1.0 + turn / 6.0) * close
+            slope = stiffness * (1.0 + turn / 3.0) * close  # -dE/dc
+            shrink = 0.5 * bend * close  # -dE/d piece
+            a, b = slope * inverse[k], slope * inverse[k + 1]
+            u1[k] = -a * (tu[k + 1] - cosine * tu[k]) - shrink * tu[k]
+            z1[k] = -a * (tz[k + 1] - cosine * tz[k]) - shrink * tz[k]
+            u2[k] = -b * (tu[k] - cosine * tu[k + 1]) - shrink * tu[k + 1] + tension * tu[k + 1]
+            z2[k] = -b * (tz[k] - cosine * tz[k + 1]) - shrink * tz[k + 1] + tension * tz[k + 1]
+            energy += bend + tension / inverse[k + 1]
+        u1[count], z1[count] = u1[0], z1[0]
+        for k in range(count):
+            fu[yarn, k] += u2[k] - u1[k] + u1[k + 1]
+            fz[yarn, k] += z2[k] - z1[k] + z1[k + 1]
+        for k in range(1, count):
+            fu[yarn, k] -= u2[k - 1]
+            fz[yarn, k] -= z2[k - 1]
+        fu[yarn, 0] -= u2[count - 1]
+        fz[yarn, 0] -= z2[count - 1]
     return energy
 
 
@@ -64,14 +74,15 @@ def _touch(
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
     The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
     (dc / wide_c)^2 + (dd / wide_d)^2 + dz^2 is found by Newton. sign: +1 where the point belongs above.
-    Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, and the
-    contact's stiffness along c and z to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
+    Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, the contact's
+    stiffness along c and z, and the norm to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
     count = u2.shape[1]
     s = min(max(c / l2, -reach), reach)
     n1 = base + int(floor(s + 0.5))
     n1 = n1 + count if n1 < 0 else n1 - count if n1 >= count else n1
     dd, dz = (d - u2[yarn2, n1]) / wide_d, z - z2[yarn2, n1]
+    out[6] = 2.0
     if dd * dd >= 1.0 or (dz * sign > 0.0 and dd * dd + dz * dz > 2.2):
         return 0.0
     n0, n2, n3 = 0, 0, 0
@@ -103,11 +114,12 @@ def _touch(
         )  # fmt: skip
         flat = l2 * l2 / (wide_c * wide_c) + su * su / (wide_d * wide_d) + sz * sz
         rise = dc * l2 / (wide_c * wide_c) + dd * su / (wide_d * wide_d) + dz * sz
-        s += rise / flat
+        s += rise / max(flat - dz * bent, 0.2 * flat)
     high = sign * dz
     if high < 0.05:
         high = 0.05
     norm = sqrt(dc * dc / (wide_c * wide_c) + dd * dd / (wide_d * wide_d) + high * high)
+    out[6] = norm
     if norm >= 1.0:
         return 0.0
     press = stiff * (1.0 - norm)
@@ -133,12 +145,14 @@ def _touch(
 
 
 @njit(cache=True, fastmath=True)
-def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-                   stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
+def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y,
+                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
     wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
     pressing: (picks, ends), read as the friction's normal force of the last evaluation, then written.
+    near: (picks, ends, 2 (reach1 + reach2 + 1)) uint8, particles that touch or nearly do: written where `weigh` is
+    set; else only those are looked at.
     wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
     sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
     place as woven.
@@ -146,17 +160,22 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, 
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
     energy, deepest, largest = 0.0, 0.0, 0.0
-    out = np.zeros(6)
+    second = 2 * reach1 + 1 + reach2
+    out = np.zeros(7)
     for i in range(picks):
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
             c1, c2 = i * per, j * per
             total = 0.0
             for a in range(-reach1, reach1 + 1):
+                if not weigh and near[i, j, reach1 + a] == 0:
+                    continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
                 more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_x, wide_y, sign, stiff,
                               gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
+                if weigh:
+                    near[i, j, reach1 + a] = out[6] < SKIN
                 if more == 0.0:
                     continue
                 energy += more
@@ -168,10 +187,14 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, 
                 total += out[3]
                 deepest = max(deepest, out[2])
             for b in range(-reach2, reach2 + 1):
+                if not weigh and near[i, j, second + b] == 0:
+                    continue
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
                 more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_y, wide_x, -sign, stiff,
                               gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
+                if weigh:
+                    near[i, j, second + b] = out[6] < SKIN
                 if more == 0.0:
                     continue
                 energy += more

@@ -79,6 +79,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
     vwu, vwz, vfu, vfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
     base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
     dt, mix, downhill = START, MIX, 0
     residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
@@ -98,8 +99,8 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
             energy += more
             side = max(side, other)
         more, deepest, largest = contact_forces(
-            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2, stiff,
-            friction, slip, weigh, hwu, hwz, hfu, hfz,
+            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y, reach1, reach2,
+            stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
@@ -118,7 +119,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
                     push += force * force / m[y, k]
                     speed += v[y, k] * v[y, k] * m[y, k]
         residual = worst / max(largest, 1e-300)
-        if residual < tolerance:
+        if weigh and residual < tolerance:
             if deepest <= overlap:
                 break
             if step >= checked:  # at rest, but the contact is too soft

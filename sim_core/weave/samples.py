@@ -78,7 +78,9 @@ def tile_of(
         t = at - k
         side, lean = _cubic(system.side, k % n, t, system.length / n)
         height, slope = _cubic(system.height, k % n, t, system.length / n)
-        near = np.rint(at).astype(int) % n
+        near = (
+            np.floor(at + 0.5 + 1e-6).astype(int) % n
+        )  # halfway always the same way, wherever the tile begins
         yarns = len(system.place)
         count = yarns * crosswise
         of = np.arange(count) % yarns

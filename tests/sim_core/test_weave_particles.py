@@ -143,7 +143,8 @@ def test_contact_acts_equally_on_both_yarns():
     wz = 0.4 * np.cos(np.pi * (np.arange(16) / 8 + np.arange(2)[:, None]))
     state = [0.02 * rng.standard_normal(shape), wz, 0.02 * rng.standard_normal(shape), -wz]
     g = [np.zeros(shape) for _ in range(4)]
-    _, deepest, largest = contact_forces(*state, *g, lift, np.zeros((2, 2)), 8, 0.3, 0.3, 1.0, 1.0, 3, 3, 100.0,
+    _, deepest, largest = contact_forces(*state, *g, lift, np.zeros((2, 2)),
+                                         np.ones((2, 2, 14), np.uint8), 8, 0.3, 0.3, 1.0, 1.0, 3, 3, 100.0,
                                          0.0, 0.01, False, *[np.zeros(shape) for _ in range(4)])  # fmt: skip
     assert deepest > 0.05
     assert largest > 0

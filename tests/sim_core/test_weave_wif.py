@@ -222,7 +222,7 @@ def test_a_thousand_generated_files_come_back_identical():
 
 def test_a_thousand_damaged_files_are_answered_in_one_line():
     rng = np.random.default_rng(12)
-    refused = 0
+    answers = []
     for _ in range(1000):
         text = damaged(rng)
         begin = perf_counter()
@@ -230,11 +230,10 @@ def test_a_thousand_damaged_files_are_answered_in_one_line():
             wif = parse_wif(text)
             assert wif.draft.lift.size > 0
         except WeaveError as error:
-            refused += 1
-            assert "\n" not in str(error)
-            assert "[" in str(error) or "line" in str(error)
+            answers.append(str(error))
         assert perf_counter() - begin < 5  # a hang, not a speed
-    assert 100 < refused < 950
+    assert 100 < len(answers) < 950
+    assert not [answer for answer in answers if "\n" in answer or not ("[" in answer or "line" in answer)]
 
 
 def test_wif_values_that_do_not_fit_are_named():
