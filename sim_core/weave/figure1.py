@@ -13,7 +13,17 @@ from sim_core.weave.strands import strands
 
 __all__ = ["FigureOne", "figure_one", "figure_one_picture"]
 
-SIDES = 96
+SIDES = 192
+STEPS = (
+    "axis points",
+    "surface points",
+    "normals",
+    "draw",
+    "translate",
+    "translate repeats",
+    "transform",
+    "light, image",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,8 +141,8 @@ def figure_one_picture(figure: FigureOne) -> np.ndarray:
     n = len(figure.drawn)
     pace = max(1, len(figure.axis) // 60)
     dots = _splat(figure.axis[::pace], np.ones((len(figure.axis[::pace]), 1)), n)
-    cloud = figure.surface[::pace, ::8].reshape(-1, 3)
-    facing = figure.normals[::pace, ::8].reshape(-1, 3)
+    cloud = figure.surface[::pace, ::16].reshape(-1, 3)
+    facing = figure.normals[::pace, ::16].reshape(-1, 3)
     front = facing[:, 2] >= 0
     grey = [
         dots, _splat(cloud[front], np.full((int(front.sum()), 1), 0.8), n),
@@ -143,4 +153,14 @@ def figure_one_picture(figure: FigureOne) -> np.ndarray:
         np.rint(np.nan_to_num(np.broadcast_to(g, (n, n, 3)), nan=0.06) * 255).astype(np.uint8) for g in grey
     ]
     shown.append(figure.lit)
-    return np.vstack([np.hstack(shown[:4]), np.hstack(shown[4:])])
+    return np.asarray(_captioned(np.vstack([np.hstack(shown[:4]), np.hstack(shown[4:])]), n))
+
+
+def _captioned(picture: np.ndarray, n: int):
+    from PIL import Image, ImageDraw, ImageFont
+
+    image = Image.fromarray(picture)
+    pen, font = ImageDraw.Draw(image), ImageFont.load_default(max(10, n // 17))
+    for k, step in enumerate(STEPS):
+        pen.text((k % 4 * n + 4, k // 4 * n + 2), f"{k + 1} {step}", fill=(240, 240, 235), font=font)
+    return image

@@ -12,6 +12,10 @@ from numba import njit
 
 __all__ = ["contact_forces", "side_forces", "yarn_forces"]
 
+NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of the energy where yarns are steep and flat
+# A point in the bowl of a curve that bends round it has two nearest points, and would jump between them. From this
+# share of the focal distance on it is held to the place below it; the curve's own particles touch on both flanks.
+BOWL = 0.6
 SKIN = 1.06  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
@@ -67,13 +71,14 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 @njit(cache=True, fastmath=True)
 def _touch(
-    c, d, z, u2, z2, yarn2, base, l2, reach, wide_c, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out
+    c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out
 ):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
     The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
-    (dc / wide_c)^2 + (dd / wide_d)^2 + dz^2 is found by Newton. sign: +1 where the point belongs above.
+    dc^2 + (dd / wide_d)^2 + dz^2 is found by Newton: a flat section lies on the yarn that it crosses and turns with its
+    slope. sign: +1 where the point belongs above.
     Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, the contact's
     stiffness along c and z, and the norm to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
@@ -88,7 +93,8 @@ def _touch(
     n0, n2, n3 = 0, 0, 0
     w0, w1, w2, w3 = 0.0, 0.0, 0.0, 0.0
     dc = 0.0
-    for step in range(2):
+    moved, middle, hold = 1.0, s, 0.0
+    for step in range(NEWTON + 1):
         s = min(max(s, -reach), reach)
         k = int(floor(s))
         f = s - k
@@ -102,7 +108,7 @@ def _touch(
         dc = c - s * l2
         dd = d - (w0 * u2[yarn2, n0] + w1 * u2[yarn2, n1] + w2 * u2[yarn2, n2] + w3 * u2[yarn2, n3])
         dz = z - (w0 * z2[yarn2, n0] + w1 * z2[yarn2, n1] + w2 * z2[yarn2, n2] + w3 * z2[yarn2, n3])
-        if step == 1:
+        if step == NEWTON or abs(moved) < 1e-4:
             break
         v0, v3 = -0.5 * g * (g - 2 * f), -0.5 * f * (2 * g - f)
         v1, v2 = f * (4.5 * f - 5.0), -g * (4.5 * g - 5.0)
@@ -112,19 +118,22 @@ def _touch(
             (2.0 - 3.0 * f) * z2[yarn2, n0] + (9.0 * f - 5.0) * z2[yarn2, n1]
             + (4.0 - 9.0 * f) * z2[yarn2, n2] + (3.0 * f - 1.0) * z2[yarn2, n3]
         )  # fmt: skip
-        flat = l2 * l2 / (wide_c * wide_c) + su * su / (wide_d * wide_d) + sz * sz
-        rise = dc * l2 / (wide_c * wide_c) + dd * su / (wide_d * wide_d) + dz * sz
-        s += rise / max(flat - dz * bent, 0.2 * flat)
+        flat = l2 * l2 + su * su / (wide_d * wide_d) + sz * sz
+        rise = dc * l2 + dd * su / (wide_d * wide_d) + dz * sz
+        if step == 0:
+            hold = max(dz * bent - BOWL * flat, 0.0)
+        moved = (rise - hold * (s - middle)) / max(flat - dz * bent + hold, 0.2 * flat)
+        s += moved
     high = sign * dz
     if high < 0.05:
         high = 0.05
-    norm = sqrt(dc * dc / (wide_c * wide_c) + dd * dd / (wide_d * wide_d) + high * high)
+    norm = sqrt(dc * dc + dd * dd / (wide_d * wide_d) + high * high)
     out[6] = norm
     if norm >= 1.0:
         return 0.0
     press = stiff * (1.0 - norm)
     along_c, along_d, along_z = (
-        press * dc / (wide_c * wide_c * norm), press * dd / (wide_d * wide_d * norm), press * sign * high / norm
+        press * dc / norm, press * dd / (wide_d * wide_d * norm), press * sign * high / norm
     )  # fmt: skip
     fu2[yarn2, n0] -= w0 * along_d
     fu2[yarn2, n1] -= w1 * along_d
@@ -139,7 +148,7 @@ def _touch(
         for n, w in ((n0, abs(w0)), (n1, abs(w1)), (n2, abs(w2)), (n3, abs(w3))):
             hu2[yarn2, n] += w * stiff_d
             hz2[yarn2, n] += w * stiff_z
-        out[4], out[5] = stiff * (dc / (wide_c * wide_c * norm)) ** 2, stiff_z
+        out[4], out[5] = stiff * (dc / norm) ** 2, stiff_z
     out[0], out[1], out[2], out[3] = along_c, along_z, 1.0 - norm, press * high / norm
     return 0.5 * press * (1.0 - norm)
 
@@ -172,7 +181,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
-                more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_x, wide_y, sign, stiff,
+                more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
                               gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
@@ -191,7 +200,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
-                more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_y, wide_x, -sign, stiff,
+                more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
                               gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN

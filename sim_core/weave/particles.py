@@ -24,12 +24,13 @@ __all__ = ["ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
 OVERLAP = 4e-4  # of D; what is promised is 5e-4
-MOST_STEPS = 12_000
+MOST_STEPS = 20_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
-LONGEST_STEP = 1.2  # x 1 / fastest frequency
-WEIGH, FADE = 10, 0.9  # steps between two weighings of the particles, and how slowly a mass may fall
+LONGEST_STEP = 1.0  # x 1 / fastest frequency
+SHORTER, PATIENCE = 0.7, 400  # of that, after so many steps without gain
+WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
 
@@ -83,6 +84,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
     base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
     dt, mix, downhill = START, MIX, 0
     residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
+    longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
         steps = step + 1
         weigh = step % WEIGH == 0
@@ -108,7 +110,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
             for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
                 for y in range(m.shape[0]):
                     for k in range(m.shape[1]):
-                        m[y, k] = max(base + 2.0 * h[y, k], FADE * m[y, k])
+                        m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
         power, speed, push, worst = 0.0, 0.0, 0.0, 0.0
         for v, g, m in ((vwu, gwu, mwu), (vwz, gwz, mwz), (vfu, gfu, mfu), (vfz, gfz, mfz)):
             for y in range(v.shape[0]):
@@ -119,6 +121,10 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
                     push += force * force / m[y, k]
                     speed += v[y, k] * v[y, k] * m[y, k]
         residual = worst / max(largest, 1e-300)
+        if residual < 0.7 * best:
+            best, since = residual, step
+        elif step - since > PATIENCE:  # some particles flutter between touching and not: smaller steps calm them
+            longest, best, since = max(SHORTER * longest, 0.3), residual, step
         if weigh and residual < tolerance:
             if deepest <= overlap:
                 break
@@ -129,7 +135,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
         if power > 0:
             downhill += 1
             if downhill > 8:
-                dt, mix = min(dt * GROW, LONGEST_STEP), mix * 0.99
+                dt, mix = min(dt * GROW, longest), mix * 0.99
             blend = mix * sqrt(speed / max(push, 1e-300))
         else:
             downhill, mix, blend = 0, MIX, 0.0

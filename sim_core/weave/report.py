@@ -11,7 +11,7 @@ from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
 from sim_core.weave.parameters import cloth_parameters
 from sim_core.weave.particles import ParticleCell
-from sim_core.weave.solve import ground_of
+from sim_core.weave.solve import ground_of, solve
 from sim_core.weave.strands import strands
 
 __all__ = ["measured", "parameters_of", "summary_of"]
@@ -27,7 +27,14 @@ UNITS = {
     "bend_warp": "N m",
     "bend_weft": "N m",
     "friction": "1",
+    "take_up_warp": "1",
+    "take_up_weft": "1",
 }
+TAKE_UP = (
+    "crimp / (1 + crimp): share of the yarn's length that the cloth takes up; band: beams held at their places (stage "
+    "A) and particles free to slide with friction (stage B), since the crimp of floats depends on how the cloth "
+    "was handled"
+)
 
 
 def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
@@ -53,14 +60,34 @@ def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: flo
         "residual": geometry.residual,
         "penetration": deep,
         "seconds": seconds,
-        "parameters": {**_entries(parameters), "yarns_from": origin},
+        "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
     }
+
+
+def _take_up(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict:
+    """Take-up of warp and weft, with the band between both stages where stage B was run."""
+    kinds = [geometry]
+    if isinstance(geometry, ParticleCell):
+        kinds.append(solve(weave))
+    entries = {}
+    for side in ("warp", "weft"):
+        shares = [c / (1 + c) for c in (float(np.mean(getattr(kind, f"{side}_crimp"))) for kind in kinds)]
+        entries[f"take_up_{side}"] = {
+            "value": shares[0],
+            "unit": UNITS[f"take_up_{side}"],
+            "provenance": TAKE_UP,
+        }
+        if len(shares) > 1:
+            entries[f"take_up_{side}"]["band"] = [min(shares), max(shares)]
+    return entries
 
 
 def _entries(parameters: ClothParameters) -> dict:
     values = parameters.to_dict()
     entries = {}
     for key, unit in UNITS.items():
+        if key not in values:
+            continue
         entries[key] = {"value": values[key], "unit": unit, "provenance": parameters.provenance[key]}
         if key in parameters.bounds:
             entries[key]["band"] = list(parameters.bounds[key])

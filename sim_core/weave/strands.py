@@ -15,6 +15,10 @@ from sim_core.weave.yarn import Yarn
 
 __all__ = ["Strands", "strands"]
 
+BENEATH = (
+    0.9  # of a yarn's height: how much lower the hidden yarns of a compound unit lie than the one that shows
+)
+
 
 @dataclass(frozen=True, eq=False)
 class Strands:
@@ -67,11 +71,13 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
     else:
         wz, fz = resampled(geometry.warp_height.T, per), resampled(geometry.weft_height, per)
         paths = np.zeros_like(wz), wz, np.zeros_like(fz), fz
+    if channels.layer is not None:
+        paths = _layered(weave, paths)
     ends_at = np.arange(draft.ends) * weave.end_spacing
     if channels.layer is not None and channels.order is not None:  # a unit's ends share one place
         unit = 1 + int(channels.end_series.max()) if channels.end_series is not None else 1
         own = channels.end_series if channels.end_series is not None else 0
-        ends_at = (channels.order[0] + (unit - 1) / 2 + 0.35 * (own - (unit - 1) / 2)) * weave.end_spacing
+        ends_at = (channels.order[0] + (unit - 1) / 2 + 0.2 * (own - (unit - 1) / 2)) * weave.end_spacing
     pick_step = height / len(main)
     picks_at = np.arange(len(main)) * pick_step
     if channels.layer is not None and channels.pick_series is not None:
@@ -95,6 +101,25 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
     return tuple(made)
 
 
+def _layered(weave: Weave, paths: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
+    """Yarns of a compound unit that do not show lie lower by part of their height, beneath the one that shows."""
+    layer, series = weave.draft.channels.layer, weave.draft.channels.end_series
+    assert layer is not None
+    wu, wz, fu, fz = paths
+    if series is not None:
+        return wu, wz - BENEATH * weave.warp.height * _eased(layer.T, wz.shape[1]), fu, fz
+    return wu, wz, fu, fz - BENEATH * weave.weft.height * _eased(layer, fz.shape[1])
+
+
+def _eased(values: np.ndarray, n: int) -> np.ndarray:
+    """(lines, n) values at the crossings, eased from one to the next."""
+    t = np.arange(n // values.shape[1]) / (n // values.shape[1])
+    ease = t * t * (3 - 2 * t)
+    return (values[..., None] * (1 - ease) + np.roll(values, -1, axis=1)[..., None] * ease).reshape(
+        len(values), -1
+    )
+
+
 def main_picks(weave: Weave) -> np.ndarray:
     """Numbers of the picks that belong to the ground."""
     kind = weave.draft.channels.pick_kind
@@ -109,7 +134,7 @@ def _grouped(series: np.ndarray) -> np.ndarray:
     """Places of picks whose series lie over one another: each group of one pick a series shares a place."""
     count = int(series.max()) + 1
     group = np.arange(series.size) // count
-    return (group + 0.5) * count - 0.5 + 0.35 * (series - (count - 1) / 2)
+    return (group + 0.5) * count - 0.5 + 0.2 * (series - (count - 1) / 2)
 
 
 def _weft_colours(weave: Weave, rows: np.ndarray, colours: int, n: int) -> np.ndarray:

@@ -3,46 +3,65 @@
 python tests/bench/bench_weave.py --sheet docs/pictures/weaves.jpg
 """
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageFont
 
-from sim_core.errors import WeaveError
 from sim_core.weave import ParticleCell, Weave, lit_cloth, solve, surface_maps
 from sim_core.weave.figure1 import figure_one, figure_one_picture
 from sim_core.weave.words import weave_of
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-SIDE, COLUMNS = 300, 4
+SIDE, COLUMNS, FOOT = 330, 4, 34
+WINDOW = 2.6  # [mm] shown of a weave without a figure; of a figured one, its whole repeat
 
 
 def draw(path: Path) -> None:
-    """The lit face of every weave of assets/weaves, its file's name below; beside it figure1 of the paper's route."""
+    """The lit face of every weave of assets/weaves in true proportions, its names below; and Figure 1 beside it."""
     files = sorted(FOLDER.glob("*.toml"))
     rows = -(-len(files) // COLUMNS)
-    sheet = Image.new("RGB", (SIDE * COLUMNS, (SIDE + 18) * rows), (24, 24, 24))
+    sheet = Image.new("RGB", (SIDE * COLUMNS + 8, (SIDE + FOOT) * rows + 8), (24, 24, 24))
     pen = ImageDraw.Draw(sheet)
+    small, large = ImageFont.load_default(13), ImageFont.load_default(15)
     for k, file in enumerate(files):
         weave = Weave.load(file)
-        try:
-            geometry = solve(weave, particles=True)
-        except WeaveError:
-            geometry = solve(weave)
-        stage = "B" if isinstance(geometry, ParticleCell) else "A"
-        maps = surface_maps(weave, geometry, pixels=2 * SIDE)
-        picture = Image.fromarray(lit_cloth(maps)).resize((SIDE, SIDE), Image.Resampling.BOX)
-        x, y = k % COLUMNS * SIDE, k // COLUMNS * (SIDE + 18)
+        title = tomllib.loads(file.read_text("utf-8"))["title"]["en"]
+        geometry = solve(weave, particles=True)
+        stage = "particles" if isinstance(geometry, ParticleCell) else "beams"
+        picture, wide = swatch(weave, geometry)
+        x, y = k % COLUMNS * SIDE + 8, k // COLUMNS * (SIDE + FOOT) + 8
         sheet.paste(picture, (x, y))
-        wide = maps.size[0] * 1e3
+        pen.text((x + 2, y + SIDE - 8), f"{file.stem}: {title}", fill=(235, 235, 230), font=large)
         pen.text(
-            (x + 4, y + SIDE + 3), f"{file.stem}, {wide:.1f} mm across, stage {stage}", fill=(220, 220, 220)
+            (x + 2, y + SIDE + 9),
+            f"{wide:.1f} mm across, relaxed as {stage}",
+            fill=(165, 165, 160),
+            font=small,
         )
     path.parent.mkdir(parents=True, exist_ok=True)
-    sheet.save(path, quality=88)
+    sheet.save(path, quality=90)
     weave, _ = weave_of("twill:2/1")
-    picture = figure_one_picture(figure_one(weave, solve(weave, particles=True)))
-    Image.fromarray(picture).save(path.with_name(f"{path.stem}-figure1{path.suffix}"), quality=88)
+    picture = figure_one_picture(figure_one(weave, solve(weave, particles=True), pixels=300))
+    Image.fromarray(picture).save(path.with_name(f"{path.stem}-figure1{path.suffix}"), quality=90)
+
+
+def swatch(weave: Weave, geometry) -> tuple[Image.Image, float]:
+    """A square piece of the lit cloth, as wide as high on the loom, and how many millimetres that is."""
+    side = SIDE - 8
+    figured = max(weave.draft.lift.shape) > 16
+    window = max(weave.size) * 1e3 if figured else WINDOW
+    repeats = (1, 1) if figured else tuple(max(1, round(WINDOW / 1e3 / size)) for size in weave.size)
+    maps = surface_maps(weave, geometry, pixels=1024, repeats=repeats)
+    scale = side / window / 1e-3  # pixels a metre
+    high, wide = (max(1, round(size * scale)) for size in maps.size[::-1])
+    tile = Image.fromarray(lit_cloth(maps)).resize((wide, high), Image.Resampling.BOX)
+    picture = Image.new("RGB", (side, side))
+    for x in range(0, side, wide):
+        for y in range(side - high, -high, -high):
+            picture.paste(tile, (x, y))
+    return picture, window
 
 
 def plot(found: dict, path: Path) -> None:

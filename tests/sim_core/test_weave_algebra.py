@@ -34,10 +34,11 @@ def test_lift_to_harness_and_back_is_exact_with_the_fewest_shafts(size):
 
 
 def test_several_treadles_and_shafts_lift_together():
-    made = Harness([[1, 0], [0, 1], [1, 1]], [[1, 0, 0], [0, 1, 0]], [[1, 1, 0], [1, 0, 0], [0, 0, 1]])
+    matrices = [[1, 0], [0, 1], [1, 1]], [[1, 0, 0], [0, 1, 0]], [[1, 1, 0], [1, 0, 0], [0, 0, 1]]
+    made = Harness(*(np.array(matrix) for matrix in matrices))
     np.testing.assert_array_equal(made.lift, [[1, 1, 1], [1, 0, 1], [0, 0, 0]])
     with pytest.raises(WeaveError, match="must agree"):
-        Harness([[1, 0, 0]], [[1], [0]], [[1]])
+        Harness(np.array([[1, 0, 0]]), np.array([[1], [0]]), np.array([[1]]))
 
 
 def brute_floats(line):

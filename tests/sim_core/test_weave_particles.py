@@ -1,5 +1,6 @@
 """Stage B against the elastica, its own energy, friction, flattening, jam; leno and laid wefts."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from sim_core.errors import WeaveError
 from sim_core.weave import Draft, Weave, Yarn, plain, satin, twill
 from sim_core.weave.elastica import elastica_crimp, peirce_crimp
+from sim_core.weave.jam import check_jam, jam_limits
 from sim_core.weave.laid import lay_beams
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.particles import relax_particles
@@ -49,8 +51,27 @@ def test_near_jam_the_crimp_is_peirces():
 
 
 def test_beyond_jam_is_refused_with_the_limit():
-    with pytest.raises(WeaveError, match="jammed"):
+    with pytest.raises(
+        WeaveError, match=r"jammed.*jam limit of a square sett is 173 um \(0.866 D\).*at most 56"
+    ):
         relax_particles(cloth(plain(), 1.70))
+
+
+def test_the_limits_of_a_jam_are_the_closest_setts_that_pass():
+    yarn = Yarn(D, 5e-6, 1.6, 1e-9)
+    for draft in (plain(), twill(2, 1), satin(5, 2)):
+        jammed = Weave(draft.name, draft, yarn, yarn, 0.99 / (1.2 * yarn.width), 1 / (1.2 * yarn.width))
+        ends, picks = jam_limits(jammed)
+        for key, most in (("ends_per_m", ends), ("picks_per_m", picks)):
+            check_jam(replace(jammed, **{key: 0.9999 * most}))
+            with pytest.raises(WeaveError, match="jammed"):
+                check_jam(replace(jammed, **{key: 1.0001 * most}))
+
+
+def test_yarns_closer_than_their_height_are_refused_however_open_the_other_system():
+    yarn = Yarn(D, 5e-6, 1.0, 1e-9)
+    with pytest.raises(WeaveError, match="at most 10000 ends_per_m"):
+        check_jam(Weave("x", plain(), yarn, yarn, 10100.0, 1000.0))
 
 
 def test_unequal_stiffness_goes_beyond_the_beams_ratio_as_slopes_grow():
@@ -143,9 +164,27 @@ def test_contact_acts_equally_on_both_yarns():
     wz = 0.4 * np.cos(np.pi * (np.arange(16) / 8 + np.arange(2)[:, None]))
     state = [0.02 * rng.standard_normal(shape), wz, 0.02 * rng.standard_normal(shape), -wz]
     g = [np.zeros(shape) for _ in range(4)]
-    _, deepest, largest = contact_forces(*state, *g, lift, np.zeros((2, 2)),
-                                         np.ones((2, 2, 14), np.uint8), 8, 0.3, 0.3, 1.0, 1.0, 3, 3, 100.0,
-                                         0.0, 0.01, False, *[np.zeros(shape) for _ in range(4)])  # fmt: skip
+    stiffness = [np.zeros(shape) for _ in range(4)]
+    everywhere = np.ones((2, 2, 14), np.uint8)
+    values = (
+        *state,
+        *g,
+        lift,
+        np.zeros((2, 2)),
+        everywhere,
+        8,
+        0.3,
+        0.3,
+        1.0,
+        1.0,
+        3,
+        3,
+        100.0,
+        0.0,
+        0.01,
+        False,
+    )
+    _, deepest, largest = contact_forces(*values, *stiffness)
     assert deepest > 0.05
     assert largest > 0
     assert g[1].sum() == pytest.approx(-g[3].sum(), rel=1e-9)

@@ -158,7 +158,7 @@ def test_yarn_files_open_in_other_programs(relaxed, tmp_path):
     systems = strands(weave, geometry)
     for name in ("y.glb", "y.ply"):
         write_yarns(systems, tmp_path / name)
-    scene = trimesh.load(tmp_path / "y.glb")
+    scene = trimesh.load_scene(tmp_path / "y.glb")
     assert len(scene.geometry) == 1 + 5  # warp and five colours
     lines = (tmp_path / "y.ply").read_text("ascii").splitlines()
     count = int(next(line for line in lines if line.startswith("element vertex")).split()[2])
