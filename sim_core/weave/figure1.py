@@ -61,7 +61,7 @@ def figure_one(weave: Weave, geometry: YarnGeometry | ParticleCell, *, pixels: i
         for number in range(len(system.place)):
             times = -(
                 -2 * pixels // system.side.shape[1]
-            )  # half a pixel apart when one repeat fills the picture
+            )  # a third of a pixel apart when one repeat fills the picture
             axis = _dense(system.points(number), system, times)
             surface, normal = _section(axis, system.yarn.width / 2, system.yarn.height / 2)
             colour = np.repeat(np.repeat(system.colour[number], times)[:, None], SIDES, axis=1)
@@ -97,12 +97,17 @@ def figure_one(weave: Weave, geometry: YarnGeometry | ParticleCell, *, pixels: i
 
 
 def _dense(points: np.ndarray, system, times: int) -> np.ndarray:
-    """Axis points `times` as close, the repeat closed by its own translation."""
-    step = np.zeros(3)
-    step[1 if system.along == "warp" else 0] = system.length
-    closed = np.vstack([points, points[:1] + step])
+    """Axis points `times` as close on a periodic cubic spline, the repeat closed by its own translation."""
+    from scipy.interpolate import CubicSpline
+
+    along = 1 if system.along == "warp" else 0
+    knots = np.arange(len(points) + 1)
     t = np.arange(len(points) * times) / times
-    return np.column_stack([np.interp(t, np.arange(len(closed)), closed[:, k]) for k in range(3)])
+    rest = CubicSpline(knots, np.vstack([points, points[:1]])[:, [1 - along, 2]], bc_type="periodic")(t)
+    made = np.column_stack([rest, rest])
+    made[:, 1 - along], made[:, 2] = rest[:, 0], rest[:, 1]
+    made[:, along] = t / len(points) * system.length
+    return made[:, :3]
 
 
 def _section(axis: np.ndarray, half_width: float, half_height: float) -> tuple[np.ndarray, np.ndarray]:
@@ -150,10 +155,20 @@ def figure_one_picture(figure: FigureOne) -> np.ndarray:
         figure.drawn[..., None], figure.translated[..., None], figure.tiled[..., None], figure.turned[..., None],
     ]  # fmt: skip
     shown = [
-        np.rint(np.nan_to_num(np.broadcast_to(g, (n, n, 3)), nan=0.06) * 255).astype(np.uint8) for g in grey
+        np.rint(np.nan_to_num(np.broadcast_to(_dots(g) if k < 3 else g, (n, n, 3)), nan=0.06) * 255).astype(
+            np.uint8
+        )
+        for k, g in enumerate(grey)
     ]
     shown.append(figure.lit)
     return np.asarray(_captioned(np.vstack([np.hstack(shown[:4]), np.hstack(shown[4:])]), n))
+
+
+def _dots(picture: np.ndarray) -> np.ndarray:
+    """Every point 2 x 2 pixels large."""
+    for axis in (0, 1):
+        picture = np.where(np.isnan(picture), np.roll(picture, 1, axis=axis), picture)
+    return picture
 
 
 def _captioned(picture: np.ndarray, n: int):
@@ -162,5 +177,7 @@ def _captioned(picture: np.ndarray, n: int):
     image = Image.fromarray(picture)
     pen, font = ImageDraw.Draw(image), ImageFont.load_default(max(10, n // 17))
     for k, step in enumerate(STEPS):
-        pen.text((k % 4 * n + 4, k // 4 * n + 2), f"{k + 1} {step}", fill=(240, 240, 235), font=font)
+        corner = k % 4 * n, k // 4 * n
+        pen.rectangle((*corner, corner[0] + n - 1, corner[1] + n // 12), fill=(15, 15, 15))
+        pen.text((corner[0] + 4, corner[1] + 1), f"{k + 1} {step}", fill=(240, 240, 235), font=font)
     return image

@@ -70,9 +70,7 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 
 @njit(cache=True, fastmath=True)
-def _touch(
-    c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out
-):
+def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.

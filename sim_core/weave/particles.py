@@ -123,7 +123,9 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
         residual = worst / max(largest, 1e-300)
         if residual < 0.7 * best:
             best, since = residual, step
-        elif step - since > PATIENCE:  # some particles flutter between touching and not: smaller steps calm them
+        elif (
+            step - since > PATIENCE
+        ):  # some particles flutter between touching and not: smaller steps calm them
             longest, best, since = max(SHORTER * longest, 0.3), residual, step
         if weigh and residual < tolerance:
             if deepest <= overlap:

@@ -85,7 +85,7 @@ def _repeats(weave: Weave, pixels: int) -> tuple[int, int]:
 
 def resolve(samples: Samples, colours: np.ndarray, low: float, high: float, size, repeats) -> SurfaceMaps:
     """Average the samples of each pixel. colours: (n, 3) linear.  low, high: [m] of heights 0 and 255."""
-    streak = 1 + 0.05 * np.random.default_rng(7).standard_normal((256, 48)).astype(np.float32)
+    streak = 1 + 0.07 * np.random.default_rng(7).standard_normal((256, 48)).astype(np.float32)
     rows, columns = (n // SAMPLES for n in samples.height.shape)
     number = np.zeros((rows, columns), np.uint16)
     lit = np.array(
@@ -189,5 +189,8 @@ def lit_cloth(
     diffuse = 0.28 + 0.8 * np.clip(normal @ lamp, 0, 1)
     albedo = (maps.albedo / 255.0) ** 2.2
     cover = maps.opacity[..., None] / 255.0
-    linear = cover * (albedo * diffuse[..., None] + shine[..., None]) + (1 - cover) * backdrop**2.2
+    tint = 0.4 + 0.6 * albedo / np.maximum(
+        albedo.max(axis=2, keepdims=True), 1e-3
+    )  # light that went through the fibre
+    linear = cover * (albedo * diffuse[..., None] + shine[..., None] * tint) + (1 - cover) * backdrop**2.2
     return np.rint(np.clip(linear, 0, 1) ** (1 / 2.2) * 255).astype(np.uint8)

@@ -1,11 +1,12 @@
 """Weaving: time and error together. The references are closed forms, and a dense solver for weaves without one.
 
     python tests/bench/bench_weave.py [--quick] [--json FILE] [--plot FILE.png] [--sheet FILE.png] [--large]
+                                      [--peers]
 
 Plain weave: heights and crossing forces have closed forms (small slope). Twill and satin: the same contact problem is
 solved in dense matrices by scipy's non-negative least squares, to 1e-12, interleaved with ours. Maps: seconds and
-the measured seam. Stage B, fuzz, densities and TexGen (optional: pytexgen in the environment whose Python
-WEAVE_PEERS_PYTHON names) are in weave_particles.py.
+the measured seam. Stage B, fuzz, densities and TexGen (optional: --peers, or
+pytexgen in the environment whose Python WEAVE_PEERS_PYTHON names) are in weave_particles.py.
 """
 
 import argparse
@@ -126,11 +127,14 @@ def main() -> int:
         "--sheet", type=Path, help="draw the contact sheet of all weaves (PNG) and nothing else"
     )
     parser.add_argument("--large", action="store_true", help="also 400 x 400 by stage B, minutes")
+    parser.add_argument(
+        "--peers", action="store_true", help="install tests/bench/peers.txt into .peers and run them"
+    )
     args = parser.parse_args()
     if args.sheet:
         weave_sheet.draw(args.sheet)
         return 0
-    particles = weave_particles.measure(quick=args.quick, large=args.large)
+    particles = weave_particles.measure(quick=args.quick, large=args.large, peers=args.peers)
     drafts = [twill(2, 2), twill(3, 1), satin(5, 2), satin(8, 3)] + ([] if args.quick else [satin(16, 7)])
     closed, dense_results = closed_rows(), dense_rows(drafts)
     maps = map_rows([256] if args.quick else [512, 1024])

@@ -14,7 +14,7 @@ from sim_core.weave.figure1 import figure_one, figure_one_picture
 from sim_core.weave.words import weave_of
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-SIDE, COLUMNS, FOOT = 330, 4, 34
+SIDE, COLUMNS, FOOT = 330, 5, 34
 WINDOW = 2.6  # [mm] shown of a weave without a figure; of a figured one, its whole repeat
 
 
