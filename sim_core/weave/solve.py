@@ -41,7 +41,7 @@ def solve(
         return _woven_leno(weave)
     if ground is weave and not simple:  # ends of a compound unit share their room
         series = max(int(s.max()) + 1 for s in (channels.end_series, channels.pick_series) if s is not None)
-        return relax(weave, share=series, tolerance=1e-6)
+        return relax(weave, share=series, tolerance=1e-8)
     if particles and simple:
         cell = relax_particles(ground, per=per, friction=friction, tolerance=tolerance)
         return _tiled_cell(cell, weave) if ground is not weave else cell

@@ -121,7 +121,7 @@ def measure(*, quick: bool, large: bool, peers: bool) -> dict:
     half = (maps.size[0] / 2, maps.size[1] / 2)
     moved = surface_maps(weave, geometry, pixels=1024, origin=half)
     rolled = np.roll(maps.height, (512, 512), axis=(0, 1)).astype(int)
-    found["maps"] = {
+    found["maps_1024"] = {
         "seconds": seconds,
         "share_beyond_1_255": float((np.abs(rolled - moved.height) > 1).mean()),
     }
