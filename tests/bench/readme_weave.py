@@ -55,7 +55,8 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     made.append(("map set of 1024², all seven", "≤ 1 s", f"{maps['seconds']:.2f} s"))
     value = f"{maps['share_beyond_1_255']:.1e} of the pixels beyond it"
     made.append(("tile drawn half a tile further: difference", "≤ 1/255", value))
-    value = f"{fuzz['files']:,}: {fuzz['refused']:,} refused, {fuzz['not_one_line']} not in one line, slowest {fuzz['slowest_s']:.3f} s"
+    value = f"{fuzz['files']:,}: {fuzz['refused']:,} refused, {fuzz['not_one_line']} not in one line, "
+    value += f"slowest {fuzz['slowest_s']:.2f} s"
     made.append(("WIF files damaged at random", "each ≤ 1 s", value))
     for row in found["density"]:
         value = f"{row['g_m2']:.1f} against {row['catalogue']:g} g/m² ({row['error']:+.1%})"
