@@ -14,7 +14,7 @@ from sim_core.weave.laid import lay_beams
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.particles import relax_particles
 from sim_core.weave.relaxation import beam_stiffness
-from sim_core.weave.solve import solve
+from sim_core.weave.solve import ground_of, solve
 from sim_core.weave.strands import strands
 
 D = 1e-4
@@ -90,6 +90,18 @@ def test_friction_holds_a_twill_in_place():
     held, free = (relax_particles(cloth(twill(2, 2), 2.5), friction=mu, tolerance=2e-4) for mu in (0.3, 0.0))
     assert max(held.skew) <= 0.05 * D
     assert max(free.skew) > 1.5 * max(held.skew)
+
+
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("qi", "anhuaduan")]
+
+
+@pytest.mark.parametrize("name", ["gauze", "juan", "kesi", "ling", "satin", "twill", "zhuanghua", *SLOW])
+def test_shipped_weaves_come_to_rest(name):
+    """Steep and flat yarns under tension too: satin and twill once fluttered between two nearest points for ever."""
+    cell = relax_particles(ground_of(Weave.load(FOLDER / f"{name}.toml")))
+    assert cell.residual <= 1e-3
+    assert cell.penetration <= 5e-4
+    assert cell.force.min() >= 0
 
 
 def test_flattened_yarns_touch_at_their_heights_and_cover_more():

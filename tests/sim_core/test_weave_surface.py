@@ -11,7 +11,7 @@ from sim_core.errors import WeaveError
 from sim_core.weave import Weave, Yarn, plain
 from sim_core.weave.figure1 import figure_one, figure_one_picture
 from sim_core.weave.generators import basket
-from sim_core.weave.report import measured, parameters_of
+from sim_core.weave.report import measured, parameters_of, summary_of
 from sim_core.weave.solve import solve
 from sim_core.weave.strands import strands
 from sim_core.weave.surface import lit_cloth, surface_maps
@@ -206,6 +206,19 @@ def test_areal_density_of_cited_cloths_within_five_per_cent(name):
     weave = Weave(name, draft, yarn(warp), yarn(weft), ends, picks)
     found = measured(weave, solve(weave, particles=True))["areal_density"] * 1e3
     assert found == pytest.approx(wanted, rel=0.05)
+
+
+def test_take_up_is_a_band_between_held_and_sliding_yarns():
+    weave, origin = weave_of("satin:8/3")
+    entries = summary_of(weave, solve(weave, particles=True), 1.0, origin)["parameters"]
+    for side in ("warp", "weft"):
+        entry = entries[f"take_up_{side}"]
+        least, most = entry["band"]
+        assert 0 < least <= entry["value"] <= most < 0.1
+        assert entry["unit"] == "1"
+        least, most = entries[f"stretch_{side}"]["band"]
+        assert least < entries[f"stretch_{side}"]["value"] < most
+    assert "band" not in summary_of(weave, solve(weave), 1.0, origin)["parameters"]["take_up_warp"]
 
 
 def test_density_counts_extra_wefts_only_where_they_are(relaxed):
