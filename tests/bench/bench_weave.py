@@ -67,7 +67,8 @@ def _flexibility(stiffness: np.ndarray) -> np.ndarray:
 
 
 def median_time(*runs):
-    times, results = [[] for _ in runs], [None for _ in runs]
+    times: list[list[float]] = [[] for _ in runs]
+    results: list = [None for _ in runs]
     for _ in range(ROUNDS):
         for k, run in enumerate(runs):
             begin = perf_counter()

@@ -8,6 +8,7 @@ import venv
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter, process_time
+from typing import TypeVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from wif_fuzz import damaged  # noqa: E402
 
 D = 1e-4
+Found = TypeVar("Found")
 # draft, ends and picks per metre, finished tex of warp and weft, flattening (raw silk stays round, finished yarns are
 # taken as 2), catalogue g/m2. Sources: tests/sim_core/test_weave_surface.py; both silk and flax pongees are of the same
 # dictionary of silk cloths (thread 17652) as "derived from plain weave": reeded four a dent, taken as hopsack 2/2. The
@@ -57,14 +59,14 @@ def jacquard(size: int) -> Weave:
     return cloth(damask(np.sin(waves * x) * np.cos(waves * y) > 0.1, satin(8, 3), longest=8), 4.2, 2.0)
 
 
-def timed(run: Callable, times: int = 3):
+def timed(run: Callable[[], Found], times: int = 3) -> tuple[float, Found]:
     """Median CPU seconds of this process (the kernels run on one core), so that a busy machine does not count."""
-    seconds, result = [], None
+    seconds, results = [], []
     for _ in range(times):
         begin = process_time()
-        result = run()
+        results.append(run())
         seconds.append(process_time() - begin)
-    return statistics.median(seconds), result
+    return statistics.median(seconds), results[-1]
 
 
 def measure(*, quick: bool, large: bool, peers: bool) -> dict:

@@ -52,8 +52,8 @@ def swatch(weave: Weave, geometry) -> tuple[Image.Image, float]:
     side = SIDE - 8
     figured = max(weave.draft.lift.shape) > 16
     window = max(weave.size) * 1e3 if figured else WINDOW
-    repeats = (1, 1) if figured else tuple(max(1, round(WINDOW / 1e3 / size)) for size in weave.size)
-    maps = surface_maps(weave, geometry, pixels=1024, repeats=repeats)
+    across, up = (1 if figured else max(1, round(WINDOW / 1e3 / size)) for size in weave.size)
+    maps = surface_maps(weave, geometry, pixels=1024, repeats=(across, up))
     scale = side / window / 1e-3  # pixels a metre
     high, wide = (max(1, round(size * scale)) for size in maps.size[::-1])
     tile = Image.fromarray(lit_cloth(maps)).resize((wide, high), Image.Resampling.BOX)
