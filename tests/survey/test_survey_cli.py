@@ -170,6 +170,8 @@ FAULTY = {
     "one row": ("a,b\n1,2\n", "1 complete answers"),
     "all equal": ("a,b\n3,3\n3,3\n3,3\n", "the same score in all answers"),
     "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "b: infinite"),
+    "absurd": ("a,b\n1,1e308\n2,3\n3,1\n4,4\n", "b: scores beyond"),
+    "underscore": ("a,b\n1,4_0\n2,3\n3,1\n4,4\n", "line 2, b: '4_0' is no number"),
     "no utf-8": (b"a,b\n\xff,2\n", "no CSV in UTF-8"),
 }
 
@@ -218,7 +220,15 @@ def test_a_taken_port_is_one_line(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["fly"], ["export"], ["analyse"], ["analyse", "x.csv", "--factors", "0"], ["serve", "--port", "x"]],
+    [
+        [],
+        ["fly"],
+        ["export"],
+        ["analyse"],
+        ["analyse", "x.csv", "--factors", "0"],
+        ["serve", "--port", "x"],
+        ["analyse", "x.csv", "--factors", "parallel", "--parallel", "0"],
+    ],
 )
 def test_wrong_arguments_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
