@@ -60,7 +60,7 @@ def form_page(
 <noscript><p class="notice">{escape(say["noscript"])}</p></noscript>
 {f'<p class="notice" id="preview">{escape(say["preview"])}</p>' if preview else ""}
 <div class="progress"><div class="track"><div id="bar"></div></div><p id="count" role="status"></p></div>
-<form id="form" novalidate>
+<form id="form" novalidate autocomplete="off">
 <div id="errors" class="notice" tabindex="-1" hidden></div>
 <p id="restored" class="notice quiet" hidden><span>{escape(say["restored"])}</span>
 <button type="button" id="restart" class="plain">{escape(say["restart"])}</button></p>

@@ -94,6 +94,21 @@ def test_a_visitor_answers_and_receives_the_code(visit, site):
     assert stored(site) == []
 
 
+def test_going_back_to_a_sent_form_finds_it_empty(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    form = page.url
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    page.goto(form.replace("/garment", ""))
+    page.go_back()
+    page.wait_for_timeout(500)  # a browser puts a form's old state back after the page's scripts have run
+    # Either the thanks are still there, or a fresh form: never the sent answers, ready to be sent as another's.
+    assert page.locator("#thanks").is_visible() or page.locator("input:checked").count() == 0
+    assert len(stored(site)) == 1
+
+
 def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
