@@ -188,8 +188,9 @@ def _scale_kinds(anchors: list[Text], unseen: Text | None, language: Language) -
 
 def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) -> str:
     kind = "point unseen" if value == "null" else "point"
+    # Prefixed: a control named "hidden" or "elements" would take the place of the form's own property.
     return (
-        f'<label class="{kind}"><input type="radio" name="{item.id}" value="{value}">'
+        f'<label class="{kind}"><input type="radio" name="score-{item.id}" value="{value}">'
         f'<span class="cell"><b>{mark}</b> <i>{escape(anchor.in_language(language))}</i></span></label>'
     )
 
