@@ -62,6 +62,8 @@ def test_a_wrong_database_url_is_one_line(url, capsys):
 def test_reading_makes_no_store(tmp_path, capsys):
     failing(capsys, "export", "--questionnaire", "garment", "--data", tmp_path, *HERE)
     failing(capsys, "analyse", "--questionnaire", "garment", "--db", f"sqlite:///{tmp_path}/typo.db", *HERE)
+    failing(capsys, "token", "--list", "--data", tmp_path / "typo")
+    failing(capsys, "token", "--revoke", "1", "--data", tmp_path / "typo")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -317,6 +319,7 @@ def test_grim_tells_the_impossible_means(capsys):
     out = capsys.readouterr().out
     assert "4.46  IMPOSSIBLE" in out
     assert "4.15  possible" in out
+    assert "smallest n that makes all possible: 13" in out  # 20, which is larger, does not
     assert main(["grim", "4.46", "--n", "20", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["possible"] == {"4.46": False}
     assert "is no mean" in failing(capsys, "grim", "x", "--n", "20")
