@@ -156,21 +156,24 @@ def _is_number(cell: str) -> bool:
         float(cell)
     except ValueError:
         return False
-    return True
+    return "_" not in cell
 
 
 def _numbers(path: Path, line: list[str], columns: list[tuple[str, int]], row: int) -> list[float]:
     try:
-        return [float(line[at]) for _, at in columns]
+        if "_" not in "".join(line):  # Python reads 1_0 as 10
+            return [float(line[at]) for _, at in columns]
     except ValueError:  # a gap, or a slip to name
-        return [_number(path, line[at].strip(), name, row) for name, at in columns]
+        pass
+    return [_number(path, line[at].strip(), name, row) for name, at in columns]
 
 
 def _number(path: Path, cell: str, name: str, line: int) -> float:
-    try:
-        return math.nan if cell in MISSING else float(cell)
-    except ValueError:
-        raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it") from None
+    if cell in MISSING:
+        return math.nan
+    if not _is_number(cell):
+        raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it")
+    return float(cell)
 
 
 def _written(

@@ -32,6 +32,7 @@ class Factored:
 
     n: int
     names: tuple[str, ...]
+    eigenvalues: NDArray[np.float64] | None = None
     adequacy: Adequacy | None = None
     components: Components | None = None
     reliability: Reliability | None = None
@@ -58,11 +59,13 @@ def factor(
     found = step(notes, lambda: correlation_of(table, names, method, pairwise=ready.pairwise))
     if found is not None:
         n = found.n
-    alpha = step(notes, lambda: _alpha(table, names, found, ready.pairwise))
+    pearson = found if method == "pearson" else None
+    alpha = step(notes, lambda: _alpha(table, names, pearson, ready.pairwise))
     _negative(found, names, notes)
-    if found is None or n <= p:
+    if n <= p:
         text = f"{n} answers for {p} items: no KMO, Bartlett or components"
         notes.append(Note("too_few_rows", (), text, {"n": n, "p": p}))
+    if found is None or n <= p:
         return Factored(n, names, reliability=alpha)
     if n == p + 1:
         text = f"{n} answers for {p} items: KMO, Bartlett and the components mean next to nothing here"
@@ -86,16 +89,17 @@ def factor(
         )
     average = minimum_average_partial(found.r)
     _disagreement(found, parallel, average, notes)
-    return Factored(n, names, fit, components, alpha, omega, parallel, average)
+    return Factored(n, names, eigenvalues(found.r), fit, components, alpha, omega, parallel, average)
 
 
 def _alpha(
-    table: NDArray[np.float64], names: tuple[str, ...], found: Correlation | None, pairwise: bool
+    table: NDArray[np.float64], names: tuple[str, ...], pearson: Correlation | None, pairwise: bool
 ) -> Reliability:
-    """Of the raw scores, whatever kind of correlation is factored."""
-    if pairwise and found is not None:
-        return reliability_of(covariance_pairwise(table, found), names)
-    return reliability(table, names)
+    """Of the raw scores, whatever kind of correlation is factored. pearson: theirs, where it is known already."""
+    if not pairwise:
+        return reliability(table, names)
+    own = correlate_pairwise(table, names) if pearson is None else pearson
+    return reliability_of(covariance_pairwise(table, own), names)
 
 
 def _components(
@@ -147,6 +151,10 @@ def correlation_of(
 ) -> Correlation:
     """The matrix of the chosen kind, of scores (n, p)."""
     if method == "polychoric":
+        if np.isnan(table).any():
+            raise AnalysisError(
+                "polychoric correlations need whole answers – leave out those with gaps (listwise)"
+            )
         return polychoric(table, names)
     return correlate_pairwise(table, names) if pairwise else correlate(table, names)
 

@@ -47,7 +47,8 @@ class Analysis:
     """Everything that was computed; a part that could not be is None, and a note says why.
 
     mean, sd, answered: (p,) over all items, from every score that is there. correlation: (p, p) over all items, NaN
-    in the rows of one that does not vary. The rest over the items `factored`, from n answers. table: (n, p) as given.
+    in the rows of one that does not vary. The rest over the items `factored`, from n answers; eigenvalues: (p,)
+    largest first, also where no component can be kept. table: (n, p) as given.
     """
 
     n: int
@@ -58,6 +59,7 @@ class Analysis:
     answered: NDArray[np.int64]
     correlation: Correlation | None
     factored: tuple[str, ...]
+    eigenvalues: NDArray[np.float64] | None
     adequacy: Adequacy | None
     components: Components | None
     reliability: Reliability | None
@@ -97,9 +99,9 @@ def analyse(
     flags, more = flagged(ready.table, seconds)
     mean, sd, answered = _descriptives(ready.table)
     return Analysis(
-        part.n, ready.names, ready.dropped, mean, sd, answered, correlation, part.names, part.adequacy,
-        part.components, part.reliability, part.omega, part.parallel, part.average, resampled, flags,
-        (*notes, *more), chosen, ready.table,
+        part.n, ready.names, ready.dropped, mean, sd, answered, correlation, part.names,
+        part.eigenvalues, part.adequacy, part.components, part.reliability, part.omega, part.parallel, part.average,
+        resampled, flags, (*notes, *more), chosen, ready.table,
     )  # fmt: skip
 
 

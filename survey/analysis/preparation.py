@@ -15,6 +15,7 @@ from survey.analysis.flags import duplicates, hasty, straight_liners
 __all__ = ["Flags", "Note", "Prepared", "flagged", "named", "prepare"]
 
 SHOWN = 12  # numbers of answers that a note spells out
+LARGEST, SMALLEST = 1e100, 1e-100  # squares and their sums beyond leave what a float64 holds
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,8 @@ def prepare(
 ) -> tuple[Prepared, list[Note]]:
     """Check a table (n, p), NaN a missing score.
 
-    Raises NotFinite for infinite scores or a kept item without any, TooFewRows below two usable answers, AllEqual
-    when nothing varies, AnalysisError for an unknown item in `drop`.
+    Raises NotFinite for infinite or absurd scores or a kept item without any, TooFewRows below two usable answers,
+    AllEqual when nothing varies, AnalysisError for an unknown item in `drop`.
     """
     table = np.asarray(scores, dtype=np.float64)
     _, names = finite_scores(np.nan_to_num(table, nan=0.0, posinf=0.0, neginf=0.0), items, rows=0)
@@ -77,6 +78,10 @@ def prepare(
     infinite = named(names, any_row(np.isinf(table)))
     if infinite:
         raise NotFinite(f"{', '.join(infinite)}: infinite scores – correct them", infinite)
+    size = np.abs(np.nan_to_num(table, nan=0.0)).max(axis=0, initial=0.0)
+    beyond = named(names, (size > LARGEST) | ((size > 0.0) & (size < SMALLEST)))
+    if beyond:
+        raise NotFinite(f"{', '.join(beyond)}: scores beyond 1e±100 – correct them", beyond)
     wanted = ~np.isin(names, list(drop))
     hollow = ~any_row(~np.isnan(table)) if len(table) else np.zeros(len(names), dtype=np.bool_)
     if (hollow & wanted).any():

@@ -64,12 +64,13 @@ def _adequacy(items: Sequence[str], fit: Adequacy | None) -> dict[str, Any]:
 
 def _components(analysis: Analysis) -> dict[str, Any]:
     found, items = analysis.components, analysis.factored
+    values = None if analysis.eigenvalues is None else analysis.eigenvalues.tolist()
     if found is None:
-        return {"eigenvalues": None, "variance": None, "loadings": None, "rotation": None}
+        return {"eigenvalues": values, "variance": None, "loadings": None, "rotation": None}
     order = found.sorted_items()
     columns = column_names(found)
     return {
-        "eigenvalues": found.eigenvalues.tolist(),
+        "eigenvalues": values,
         "variance": {
             "initial": _variance(found.eigenvalues, len(items)),
             "rotated": _variance(found.rotated, len(items)),

@@ -16,7 +16,7 @@ from survey.api.limit import Limit
 from survey.api.replies import ExplainingRoute, PlainRoute, Receipt, Refusal, Submission
 from survey.api.research import add_research
 from survey.api.schema import UUID_PATTERN, submission_schema
-from survey.errors import AnswerError
+from survey.errors import AnswerError, StoreError
 from survey.questionnaire import Questionnaire
 from survey.results import public_results
 from survey.store import Store
@@ -118,7 +118,13 @@ def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnai
             answer = _as_then(questionnaire, data, refusal)
         else:
             taken = await _within(limit, request, store, answer)
-        receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
+        try:
+            receipt = await asyncio.wrap_future(store.enqueue(questionnaire, answer))
+        except StoreError:
+            # It will be sent again, by everybody who was here: a full disk must not use up what a class may give.
+            if taken:
+                limit.give_back(_address(request))
+            raise
         if receipt.replayed and taken:
             limit.give_back(_address(request))
         body = {"id": receipt.id, "questionnaire": key, "version": questionnaire.version}

@@ -92,6 +92,8 @@ def _run(args: argparse.Namespace) -> int:
         return _list_demonstrations()
     if args.file is None and args.questionnaire is None and args.demo is None:
         args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers, or a --demo")
+    if args.factors == "parallel" and not args.parallel:
+        args.parser.error("--factors parallel needs the samples that --parallel 0 leaves out")
     if args.demo is not None:
         table = _demonstration(args)
     else:

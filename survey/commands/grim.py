@@ -39,5 +39,5 @@ def _run(args: argparse.Namespace) -> int:
         return 0
     for mean, fine in possible.items():
         print(f"{mean}  {'possible' if fine else 'IMPOSSIBLE'} with n = {args.n}")
-    print(f"all of them are possible from n = {least} on" if least else "no n up to 10000 makes all possible")
+    print(f"smallest n that makes all possible: {least}" if least else "no n up to 10000 makes all possible")
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from contextlib import closing
 
-from survey.commands.options import add_store, declare, positive, where
+from survey.commands.options import add_store, declare, existing_store, positive, where
 from survey.errors import SurveyError
 
 __all__ = ["add"]
@@ -36,8 +36,9 @@ def _label(text: str) -> str:
 def _run(args: argparse.Namespace) -> int:
     from survey.store import Store
 
-    # Unlike a command that reads, this one may come before the first answer.
-    with closing(Store(where(args))) as store:
+    # A token may come before the first answer; a list of them, or an end to one, may not.
+    new = not args.list and args.revoke is None
+    with closing(Store(where(args)) if new else existing_store(args)) as store:
         if args.list:
             for token in store.tokens.all():
                 print(f"{token.id}\t{token.made:%Y-%m-%d %H:%M}\t{token.label}")

@@ -16,6 +16,11 @@ let timer = 0;
 
 function byId(id) { return document.getElementById(id); }
 
+// Items and modules may be called as JavaScript's own properties are: "constructor", "length".
+function has(table, key) { return Object.prototype.hasOwnProperty.call(table, key); }
+
+function radios(item) { return form.querySelectorAll(`input[name="score-${item}"]`); }
+
 function say(key, values = {}) {
   return words[key].replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
 }
@@ -61,16 +66,19 @@ const items = [...form.querySelectorAll(".item")].map((element) => element.datas
 
 function fillIn() {
   for (const item of items) {
-    const value = item in draft.scores ? String(draft.scores[item]) : null;
-    for (const input of form.elements[item]) input.checked = input.value === value;
+    const value = has(draft.scores, item) ? String(draft.scores[item]) : null;
+    for (const input of radios(item)) input.checked = input.value === value;
   }
-  for (const field of form.querySelectorAll("textarea")) field.value = draft.suggestions[field.dataset.module] ?? "";
+  for (const field of form.querySelectorAll("textarea")) {
+    const module = field.dataset.module;
+    field.value = has(draft.suggestions, module) ? draft.suggestions[module] : "";
+  }
   showProgress();
 }
 
 function readOut() {
   for (const item of items) {
-    const chosen = form.querySelector(`input[name="${item}"]:checked`);
+    const chosen = [...radios(item)].find((input) => input.checked);
     if (chosen) draft.scores[item] = chosen.value === "null" ? null : Number(chosen.value);
   }
   for (const field of form.querySelectorAll("textarea")) {
@@ -80,7 +88,7 @@ function readOut() {
 }
 
 function showProgress() {
-  const done = items.filter((item) => item in draft.scores).length;
+  const done = items.filter((item) => has(draft.scores, item)).length;
   byId("bar").style.width = `${(100 * done) / items.length}%`;
   const text = say("progress", { done, all: items.length });
   if (byId("count").textContent !== text) byId("count").textContent = text;
@@ -92,7 +100,7 @@ function mark(element, wrong, lacking) {
 }
 
 function lacking() {
-  const missing = settings.required.filter((item) => !(item in draft.scores));
+  const missing = settings.required.filter((item) => !has(draft.scores, item));
   return byId("consent").checked ? missing : [...missing, "consent"];
 }
 
@@ -106,7 +114,7 @@ function showMissing(missing) {
   const list = document.createElement("ul");
   for (const key of missing) {
     const link = document.createElement("a");
-    const input = key === "consent" ? byId("consent") : form.elements[key][0];
+    const input = key === "consent" ? byId("consent") : radios(key)[0];
     link.href = key === "consent" ? "#consent-box" : `#item-${key}`;
     link.textContent = key === "consent" ? words.consent_title : labelOf(key);
     link.addEventListener("click", (event) => { event.preventDefault(); goTo(input); });
@@ -152,7 +160,7 @@ form.addEventListener("submit", (event) => {
   if (settings.preview) return showState(words.preview_done, []);
   draft.pending = {
     id: draft.id, version: settings.version, language: settings.language, consent: true,
-    scores: Object.fromEntries(items.filter((item) => item in draft.scores).map((item) => [item, draft.scores[item]])),
+    scores: Object.fromEntries(items.filter((item) => has(draft.scores, item)).map((item) => [item, draft.scores[item]])),
     suggestions: draft.suggestions,
     ...(settings.exhibit ? { exhibit: settings.exhibit } : {}),
   };

@@ -60,7 +60,7 @@ def form_page(
 <noscript><p class="notice">{escape(say["noscript"])}</p></noscript>
 {f'<p class="notice" id="preview">{escape(say["preview"])}</p>' if preview else ""}
 <div class="progress"><div class="track"><div id="bar"></div></div><p id="count" role="status"></p></div>
-<form id="form" novalidate>
+<form id="form" novalidate autocomplete="off">
 <div id="errors" class="notice" tabindex="-1" hidden></div>
 <p id="restored" class="notice quiet" hidden><span>{escape(say["restored"])}</span>
 <button type="button" id="restart" class="plain">{escape(say["restart"])}</button></p>
@@ -188,8 +188,9 @@ def _scale_kinds(anchors: list[Text], unseen: Text | None, language: Language) -
 
 def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) -> str:
     kind = "point unseen" if value == "null" else "point"
+    # Prefixed: a control named "hidden" or "elements" would take the place of the form's own property.
     return (
-        f'<label class="{kind}"><input type="radio" name="{item.id}" value="{value}">'
+        f'<label class="{kind}"><input type="radio" name="score-{item.id}" value="{value}">'
         f'<span class="cell"><b>{mark}</b> <i>{escape(anchor.in_language(language))}</i></span></label>'
     )
 

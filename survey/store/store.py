@@ -108,7 +108,10 @@ class Store:
         table = tables.submission
         with self._write() as connection:
             mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
-            found = connection.execute(select(table.c.withdrawn, table.c.frozen).where(*mine)).first()
+            # Held until the commit: another process must not freeze between this look and the erasure. SQLite's
+            # writing transaction holds everything already.
+            asked = select(table.c.withdrawn, table.c.frozen).where(*mine).with_for_update()
+            found = connection.execute(asked).first()
             if found is None:
                 return False
             if found.withdrawn is None:

@@ -267,12 +267,21 @@ def test_an_empty_or_infinite_column_is_named(value, says):
         analyse(table)
 
 
+@pytest.mark.parametrize("factor", [1e300, 1e-300])
+def test_scores_that_no_scale_has_are_named_before_they_overflow(factor):
+    table = likert_sample(30, 2)
+    table[:, 5] *= factor
+    with pytest.raises(NotFinite, match="item_6: scores beyond"):
+        analyse(table)
+
+
 def test_items_without_any_correlation_have_no_component():
     table = np.array([[a, b, c] for a in (1, 5) for b in (1, 5) for c in (1, 5)], dtype=float)
     with pytest.raises(AnalysisError, match="no eigenvalue above 1"):
         principal_components(correlate(table).r)
     found = as_strict_json(analyse(table))
     assert found["loadings"] is None
+    assert found["eigenvalues"] == pytest.approx([1.0, 1.0, 1.0])
     assert found["alpha"] == pytest.approx(0.0, abs=1e-12)
 
 

@@ -7,6 +7,7 @@ import io
 import json
 import sqlite3
 import uuid
+from concurrent.futures import Future
 
 import pytest
 from fastapi import FastAPI
@@ -16,6 +17,7 @@ from survey_samples import looked_up, submission
 import survey
 from survey.answer import TEXT_LIMIT
 from survey.api import Limit
+from survey.errors import StoreError
 
 BASE = "/api/v1/questionnaires"
 
@@ -362,6 +364,18 @@ def test_too_many_new_answers_from_one_address_wait_and_replays_do_not(hall):
             client.post(hall.url, json=bodies[3]).status_code == 429
         )  # replays do not fill the bucket either
     assert count(hall) == 3
+
+
+def test_what_the_store_refuses_does_not_count_against_the_address(hall, monkeypatch):
+    app, full = FastAPI(), Future()
+    full.set_exception(StoreError("the disk is full"))
+    app.include_router(survey.router(hall.store, hall.mounted.questionnaires, Limit(3)))
+    with TestClient(app) as client:
+        bodies = [submission(hall.garment) for _ in range(3)]
+        with monkeypatch.context() as broken:
+            broken.setattr(hall.store, "enqueue", lambda *_: full)
+            assert [client.post(hall.url, json=body).status_code for body in bodies * 2] == [503] * 6
+        assert [client.post(hall.url, json=body).status_code for body in bodies] == [201] * 3
 
 
 def test_replays_leave_the_new_answers_of_an_address_their_room(hall):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 import time
 
@@ -28,7 +29,9 @@ def site(tmp_path):
     clips = {
         "pibo": survey.Clip((("/drape.webm", "video/webm"),), {"zh": "披帛垂落", "en": "The scarf falls"})
     }
-    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data", clip_of=clips.get)
+    content = tmp_path / "content"
+    shutil.copytree(ASSETS / "questionnaires", content / "questionnaires")
+    mounted = survey.mount(app, content=content, data=tmp_path / "data", clip_of=clips.get)
     app.get("/drape.webm")(lambda: FileResponse(FILM))
     app.get("/hall", response_class=HTMLResponse)(lambda: FRAME)
     server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", access_log=False))
@@ -94,6 +97,54 @@ def test_a_visitor_answers_and_receives_the_code(visit, site):
     assert stored(site) == []
 
 
+ODD_KEYS = ("constructor", "length", "item", "hidden", "inert", "elements", "submit", "reset")
+
+
+def test_items_may_be_called_as_the_page_s_own_properties_are(visit, site):
+    def text(words):
+        return f'{{ zh = "{words}", en = "{words}" }}'
+
+    def part(table, key, named):
+        return f'[[{table}]]\nid = "{key}"\n{named} = {text(key)}\n'
+
+    head = 'id = "odd"\nversion = 1\n' + "".join(
+        f"{key} = {text(key)}\n" for key in ("title", "intro", "consent")
+    )
+    scale = f"[scale]\nanchors = [{', '.join([text('point')] * 3)}]\n"
+    module = part("module", "constructor", "title") + f"suggestion = {text('more')}\n"
+    items = "".join(part("module.item", key, "label") for key in ODD_KEYS)
+    (site[1].questionnaires.folder / "odd.toml").write_text(head + scale + module + items, "utf-8")
+    time.sleep(0.5)  # until a new file shows
+    page = visit("/questionnaires/odd?lang=en")
+    assert page.locator("#count").inner_text() == f"0 of {len(ODD_KEYS)} answered"
+    assert page.locator("textarea").input_value() == ""
+    page.locator("#send").click()
+    assert page.locator("#errors li").count() == len(ODD_KEYS) + 1  # all of them, and the consent
+    answer_all(page, 2)
+    page.reload()
+    assert page.locator("input:checked").count() == len(ODD_KEYS)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site, "odd")
+    assert dict(answer.scores) == dict.fromkeys(ODD_KEYS, 2)
+
+
+def test_going_back_to_a_sent_form_finds_it_empty(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    form = page.url
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    page.goto(form.replace("/garment", ""))
+    page.go_back()
+    page.wait_for_timeout(500)  # a browser puts a form's old state back after the page's scripts have run
+    # Either the thanks are still there, or a fresh form: never the sent answers, ready to be sent as another's.
+    assert page.locator("#thanks").is_visible() or page.locator("input:checked").count() == 0
+    assert len(stored(site)) == 1
+
+
 def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
@@ -137,7 +188,7 @@ def test_a_reload_and_another_language_keep_what_was_chosen(visit, site):
     assert page.locator("textarea").nth(1).input_value() == "下摆"
     page.reload()
     assert page.locator("#restored").is_visible()
-    assert page.locator('input[name="pleat"][value="2"]').is_checked()
+    assert page.locator('input[name="score-pleat"][value="2"]').is_checked()
     page.locator("#restart").click()
     assert page.locator("input:checked").count() == 0
     page.reload()

@@ -62,6 +62,8 @@ def test_a_wrong_database_url_is_one_line(url, capsys):
 def test_reading_makes_no_store(tmp_path, capsys):
     failing(capsys, "export", "--questionnaire", "garment", "--data", tmp_path, *HERE)
     failing(capsys, "analyse", "--questionnaire", "garment", "--db", f"sqlite:///{tmp_path}/typo.db", *HERE)
+    failing(capsys, "token", "--list", "--data", tmp_path / "typo")
+    failing(capsys, "token", "--revoke", "1", "--data", tmp_path / "typo")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -170,6 +172,8 @@ FAULTY = {
     "one row": ("a,b\n1,2\n", "1 complete answers"),
     "all equal": ("a,b\n3,3\n3,3\n3,3\n", "the same score in all answers"),
     "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "b: infinite"),
+    "absurd": ("a,b\n1,1e308\n2,3\n3,1\n4,4\n", "b: scores beyond"),
+    "underscore": ("a,b\n1,4_0\n2,3\n3,1\n4,4\n", "line 2, b: '4_0' is no number"),
     "no utf-8": (b"a,b\n\xff,2\n", "no CSV in UTF-8"),
 }
 
@@ -218,7 +222,15 @@ def test_a_taken_port_is_one_line(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["fly"], ["export"], ["analyse"], ["analyse", "x.csv", "--factors", "0"], ["serve", "--port", "x"]],
+    [
+        [],
+        ["fly"],
+        ["export"],
+        ["analyse"],
+        ["analyse", "x.csv", "--factors", "0"],
+        ["serve", "--port", "x"],
+        ["analyse", "x.csv", "--factors", "parallel", "--parallel", "0"],
+    ],
 )
 def test_wrong_arguments_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
@@ -307,6 +319,7 @@ def test_grim_tells_the_impossible_means(capsys):
     out = capsys.readouterr().out
     assert "4.46  IMPOSSIBLE" in out
     assert "4.15  possible" in out
+    assert "smallest n that makes all possible: 13" in out  # 20, which is larger, does not
     assert main(["grim", "4.46", "--n", "20", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["possible"] == {"4.46": False}
     assert "is no mean" in failing(capsys, "grim", "x", "--n", "20")

@@ -51,7 +51,7 @@ def test_every_item_has_a_named_group_with_all_points_and_unique_ids(hall, key, 
         f"label-{item}" for item in questionnaire.item_ids
     ]
     for item in questionnaire.item_ids:
-        values = [one["value"] for one in page.of("input") if one.get("name") == item]
+        values = [one["value"] for one in page.of("input") if one.get("name") == f"score-{item}"]
         assert values == ["1", "2", "3", "4", "5", "null"]
     labelled = {label["for"] for label in page.of("label") if "for" in label}
     assert {area["id"] for area in page.of("textarea")} <= labelled

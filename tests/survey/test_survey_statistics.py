@@ -313,6 +313,38 @@ def test_pairwise_uses_every_pair_and_is_pearson_without_gaps():
     assert holes.p[0, 1] == pytest.approx(p, rel=1e-9)
 
 
+def test_alpha_is_of_the_raw_scores_whatever_is_factored():
+    table = likert_sample(80, 4)
+    plain = given(analyse(table).reliability).alpha
+    for missing in ("listwise", "pairwise"):
+        found = analyse(table, settings=Settings(method="polychoric", missing=missing))
+        assert given(found.reliability).alpha == pytest.approx(plain, abs=1e-12)
+
+
+def test_polychoric_with_gaps_asks_for_whole_answers_and_says_nothing_false():
+    table = likert_sample(80, 4)
+    table[::9, 2] = np.nan
+    found = analyse(table, settings=Settings(method="polychoric", missing="pairwise"))
+    (told,) = [
+        note for note in found.notes if note.code not in ("missing", "straight_line", "duplicate_answer")
+    ]
+    assert told.code == "analysis"
+    assert "listwise" in told.message
+    assert found.components is None
+    assert (
+        given(found.reliability).alpha
+        == given(analyse(table, settings=Settings(missing="pairwise")).reliability).alpha
+    )
+
+
+def test_a_step_that_fails_with_answers_enough_does_not_tell_of_too_few():
+    table = rng(3).normal(
+        size=(100, 5)
+    )  # a hundred different scores are no scale for polychoric correlations
+    found = analyse(table, settings=Settings(method="polychoric"))
+    assert [note.code for note in found.notes] == ["analysis"]
+
+
 def test_pairs_without_common_answers_or_variation_are_named():
     table = likert_sample(20, 9)[:, :3]
     table[:10, 0] = np.nan

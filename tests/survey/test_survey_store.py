@@ -10,12 +10,14 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from sqlalchemy import update
 from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
 from survey.questionnaire import Questionnaire
-from survey.store import Receipt, Store, schema
+from survey.store import Receipt, Store, schema, tables
+from survey.store.committing import now
 from survey.store.writer import MOST, Writer
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
@@ -102,6 +104,29 @@ def test_what_is_withdrawn_stays_a_tombstone_without_answers(store, tmp_path):
         assert (digest, exhibit) == ("", None)
         for table in ("answer", "suggestion"):
             assert database.execute(f"SELECT count(*) FROM {table}").fetchone() == (0,)
+
+
+@pytest.mark.slow
+def test_an_answer_that_another_process_is_freezing_is_not_erased(postgres):
+    url, answer = postgres(), an_answer()
+    with closing(Store(url)) as store, closing(Store(url)) as other:
+        store.submit(GARMENT, answer)
+        refusals = []
+
+        def withdraw():
+            with pytest.raises(AnswerError) as refused:
+                store.withdraw("garment", answer.id)
+            refusals.append(refused.value.status)
+
+        taking_back = threading.Thread(target=withdraw)
+        with other._write() as connection:
+            connection.execute(update(tables.submission).values(frozen=now()))
+            taking_back.start()
+            taking_back.join(1.0)  # it waits for the freeze
+            assert taking_back.is_alive()
+        taking_back.join()
+        assert refusals == [409]
+        assert store.rows(GARMENT)[0].answer == answer
 
 
 def test_purging_erases_frozen_answers_too(store):
