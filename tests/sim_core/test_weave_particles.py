@@ -247,7 +247,7 @@ def test_brocade_lies_on_its_ground():
     shown = extra.height[extra.colour >= 0]
     assert np.median(shown) > warp.height.max() * 0.5
     assert (
-        shown.max() < warp.height.max() + 3 * weave.extra.height
+        shown.max() < warp.height.max() + 3 * extra.yarn.height
     )  # floats lie on the ground, no arches over it
     assert extra.colour.max() <= 3
 
@@ -278,7 +278,7 @@ def test_a_leno_too_large_for_its_dense_problem_is_named():
 def test_between_particles_the_curves_come_closer_by_little(draft, per, most):
     """Every warp curve against every weft curve: what the overlap at the particles does not tell."""
     from scipy.interpolate import CubicSpline
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     weave = cloth(draft, 4)
     warp, weft = strands(weave, relax_particles(weave, per=per))[:2]
@@ -295,7 +295,7 @@ def test_between_particles_the_curves_come_closer_by_little(draft, per, most):
     size = np.array([*weave.size, 0.0])
     wefts = np.concatenate([curve(weft, k) for k in range(draft.picks)])
     copies = [wefts + size * (a, b, 0) for a in (-1, 0, 1) for b in (-1, 0, 1)]
-    near, _ = cKDTree(np.concatenate(copies)).query(
+    near, _ = KDTree(np.concatenate(copies)).query(
         np.concatenate([curve(warp, k) for k in range(draft.ends)])
     )
     assert near.min() >= D * (1 - most)
