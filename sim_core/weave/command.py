@@ -69,6 +69,10 @@ def run(args: argparse.Namespace) -> int:
     for path in (args.yarns, args.wif):  # refused before the work, not after it
         if path is not None and not path.parent.is_dir():
             raise NotADirectoryError(f"{path}: no such folder – make {path.parent} first")
+        if path is not None and path.is_dir():
+            raise IsADirectoryError(f"{path}: a folder – give the name of a file")
+    if args.maps and any(place.exists() and not place.is_dir() for place in (args.maps, *args.maps.parents)):
+        raise NotADirectoryError(f"{args.maps}: a file is in the way – give the name of a folder")
     weave, origin = weave_of(args.source)
     if args.maps:
         args.maps.mkdir(parents=True, exist_ok=True)

@@ -78,6 +78,17 @@ class Draft:
         object.__setattr__(self, "lift", lift)
         made = {name: self._channel(name, values) for name, values in self.channels.items()}
         object.__setattr__(self, "channels", Channels(**made))
+        self._check_channels()
+
+    def _check_channels(self) -> None:
+        """Channels that need one another, and cloths without a weft; raises WeaveError."""
+        c = self.channels
+        if c.layer is not None and c.end_series is None and c.pick_series is None:
+            raise WeaveError(f"draft {self.name}: layer without series – add end_series or pick_series")
+        if c.region is not None and c.region.max() < 0:
+            raise WeaveError(f"draft {self.name}: region is -1 everywhere – give the weft a colour somewhere")
+        if c.pick_kind is not None and (c.pick_kind == KINDS.index("extra")).all():
+            raise WeaveError(f"draft {self.name}: every pick is extra – a cloth needs picks of its ground")
 
     def _channel(self, name: str, values) -> np.ndarray:
         values = np.array(values)
@@ -134,11 +145,18 @@ class Draft:
         return ends, picks
 
     def loose(self) -> str | None:
-        """The first yarn that never changes side, such as "end 3", or None; it would fall out of a simple cloth."""
-        for axis, kind in ((0, "end"), (1, "pick")):
-            loose = np.flatnonzero(self.lift.all(axis=axis) | ~self.lift.any(axis=axis))
+        """The first yarn of the ground that never changes side, such as "end 3", or None; it would fall out.
+
+        Ends of a leno may stay on one side: their crossings hold them.
+        """
+        kind = self.channels.pick_kind
+        ground = np.arange(self.picks) if kind is None else np.flatnonzero(kind != KINDS.index("extra"))
+        lift = self.lift[ground]
+        systems = [(0, "end", np.arange(self.ends)), (1, "pick", ground)]
+        for axis, name, numbers in systems[self.channels.order is not None and self.channels.layer is None :]:
+            loose = np.flatnonzero(lift.all(axis=axis) | ~lift.any(axis=axis))
             if loose.size:
-                return f"{kind} {loose[0]}"
+                return f"{name} {numbers[loose[0]]}"
         return None
 
     def repeat(self) -> Draft:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import nnls
 
+from sim_core.errors import WeaveError
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.relaxation import beam_stiffness
@@ -14,7 +15,9 @@ from sim_core.weave.relaxation import beam_stiffness
 if TYPE_CHECKING:
     from sim_core.weave.strands import Strands
 
-__all__ = ["brocade_heights", "lay_beams", "leno_paths"]
+__all__ = ["brocade_heights", "lay_beams", "leno_paths", "leno_rest"]
+
+MOST_CROSSINGS = 512  # of the repeat of a leno, whose contacts are solved densely
 
 
 def leno_paths(weave: Weave, per: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -24,8 +27,24 @@ def leno_paths(weave: Weave, per: int) -> tuple[np.ndarray, np.ndarray, np.ndarr
     bending energy under all these contacts at once. Sideways: where two ends cross before and after a pick they lie
     close together, width beside width; where the partners differ, midway.
     """
+    warp, weft, _, _ = leno_rest(weave)
+    fz = resampled(weft, per)
+    return _leno_side(weave, _crossings(weave.draft), per), resampled(warp, per // 2), np.zeros_like(fz), fz
+
+
+def leno_rest(weave: Weave) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Heights of a leno: warp (ends, 2 picks) [m] at picks and midway, weft (picks, ends) [m]; force (picks, ends) [N]
+    that presses at each crossing; largest net force / largest contact force.
+
+    Raises WeaveError for a repeat of more crossings than the dense problem can hold.
+    """
     draft = weave.draft
     picks, ends = draft.lift.shape
+    if picks * ends > MOST_CROSSINGS:
+        raise WeaveError(
+            f"weave {weave.name}: a leno of {ends} ends x {picks} picks – give a repeat of at most {MOST_CROSSINGS} "
+            "crossings"
+        )
     pairs = _crossings(draft)
     p1, p2 = weave.end_spacing, weave.pick_spacing
     warp_k = _circulant(beam_stiffness(2 * picks, p2 / 2, weave.warp.stiffness, weave.warp.tension))
@@ -52,21 +71,24 @@ def leno_paths(weave: Weave, per: int) -> tuple[np.ndarray, np.ndarray, np.ndarr
             row[(2 * i + 1) * ends + other], row[(2 * i + 1) * ends + doup] = 1.0, -1.0
             rows.append(row)
             gaps.append(weave.warp.height)
-    z = _least_energy(stiff / unit, np.array(rows), np.array(gaps))
+    contacts = np.array(rows)
+    z, force = _least_energy(stiff / unit, contacts, np.array(gaps))
+    net = np.abs(stiff / unit @ z - contacts.T @ force).max() / max(force.max(), 1e-300)
     warp = z[: 2 * picks * ends].reshape(2 * picks, ends).T
     weft = z[2 * picks * ends :].reshape(picks, ends)
-    fz = resampled(weft, per)
-    return _leno_side(weave, pairs, per), resampled(warp, per // 2), np.zeros_like(fz), fz
+    at_picks = np.array([i * ends + sum(map(len, pairs[:i])) for i in range(picks)])
+    return warp, weft, force[at_picks[:, None] + np.arange(ends)] * unit, float(net)
 
 
-def _least_energy(stiff: np.ndarray, rows: np.ndarray, gaps: np.ndarray) -> np.ndarray:
-    """min 1/2 z K z with rows z >= gaps, by non-negative least squares on the contact forces."""
+def _least_energy(stiff: np.ndarray, rows: np.ndarray, gaps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """z and contact forces of min 1/2 z K z with rows z >= gaps, by non-negative least squares on the forces."""
     inverse = np.linalg.inv(stiff + 1e-7 * np.eye(len(stiff)))
     answer = rows @ inverse @ rows.T
     scale, thick = float(np.abs(answer).max()), float(gaps.max())
     root = np.linalg.cholesky(answer / scale + 1e-10 * np.eye(len(answer))).T
     force, _ = nnls(root, np.linalg.solve(root.T, gaps / thick), maxiter=10_000)
-    return inverse @ rows.T @ force * thick / scale
+    force = force * thick / scale
+    return inverse @ rows.T @ force, force
 
 
 def _crossings(draft) -> list[list[tuple[int, int, int]]]:

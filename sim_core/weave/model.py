@@ -21,7 +21,7 @@ class Weave:
     ends_per_m, picks_per_m: [1/m].  friction: coefficient between two layers of the cloth.
     extra: yarn of the supplementary wefts of a brocade, None where there are none.
     warp_colours: sRGB of the warp series, weft_colours: of the weft regions or series; empty: the yarns' own colours.
-    Raises WeaveError where the sett is not positive, or a yarn of a simple cloth never interlaces.
+    Raises WeaveError where the sett is not positive, or a yarn of the ground never interlaces.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Weave:
                 raise WeaveError(
                     f"weave {self.name}: {key} is {value} – give 1 to {MOST_PER_METRE:g} yarns per metre"
                 )
-        loose = None if self.draft.channels.items() else self.draft.loose()
+        loose = self.draft.loose()
         if loose:
             raise WeaveError(
                 f"draft {self.draft.name}: {loose} never interlaces – it needs both warp and weft points"

@@ -41,7 +41,8 @@ class ParticleCell:
     warp_side, warp_height: (ends, picks * per) [m], sideways from the end's place and above the middle plane.
     weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
     warp_crimp: (ends,), weft_crimp: (picks,), from arc lengths.  residual: largest net force on a particle / largest
-    crossing force.  penetration: deepest overlap in units of D, the mean height of warp and weft.
+    crossing force.  penetration: deepest overlap of a particle with a curve in units of D, the mean height of warp and
+    weft; between the particles two curves may come closer, see the README.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 

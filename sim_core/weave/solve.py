@@ -73,10 +73,11 @@ def _tiled_cell(c: ParticleCell, weave: Weave) -> ParticleCell:
 
 def _woven_leno(weave: Weave) -> YarnGeometry:
     """A leno's heights at the picks, and its crimps from the whole paths."""
-    from sim_core.weave.laid import leno_paths
+    from sim_core.weave.laid import leno_paths, leno_rest
 
     per = 16
     side, height, _, weft = leno_paths(weave, per)
+    _, _, force, residual = leno_rest(weave)
     lengths = []
     for u, z, step in (
         (side, height, weave.pick_spacing / per),
@@ -86,6 +87,6 @@ def _woven_leno(weave: Weave) -> YarnGeometry:
         lengths.append(pieces.mean(axis=1) / step - 1)
     at, ft = height[:, ::per].T, weft[:, ::per]
     gap = np.where(weave.draft.lift, 1, -1) * (at - ft) - (weave.warp.height + weave.weft.height) / 2
-    return YarnGeometry(
-        at, ft, np.zeros_like(at), lengths[0], lengths[1], 0.0, float(max(0.0, -gap.min())), 0.0, 1
-    )
+    complementarity = float(np.abs(force * gap).max() / max(force.max(), 1e-300))
+    deepest = float(max(0.0, -gap.min()))
+    return YarnGeometry(at, ft, force, lengths[0], lengths[1], residual, deepest, complementarity, 1)

@@ -15,7 +15,7 @@ from sim_core.weave.algebra import Harness, harness
 from sim_core.weave.draft import Draft
 from sim_core.weave.model import Weave, draft_from_dict, draft_to_dict
 
-__all__ = ["PRIVATE", "Wif", "plain_title", "wif_of"]
+__all__ = ["PRIVATE", "Wif", "centimetres", "plain_title", "tidy", "wif_of"]
 
 PRIVATE = "PRIVATE HALL WEAVE"
 MOST_TREADLES = 64  # beyond, the file has a lift plan instead of tie-up and treadling
@@ -111,8 +111,8 @@ def wif_of(cloth: Weave | Draft) -> Wif:
     return replace(
         value,
         palette=palette,
-        spacing=(_tidy(weave.end_spacing), _tidy(weave.pick_spacing)),
-        thickness=(_tidy(weave.warp.width), _tidy(weave.weft.width)),
+        spacing=(tidy(weave.end_spacing), tidy(weave.pick_spacing)),
+        thickness=(tidy(weave.warp.width), tidy(weave.weft.width)),
     )
 
 
@@ -128,6 +128,11 @@ def plain_title(text: str) -> str:
     return " ".join("".join(c if " " <= c <= "~" else "?" for c in text).split())
 
 
-def _tidy(metres: float) -> float:
-    """What nine decimals of a centimetre can hold, so that writing and reading it is the identity."""
-    return float(f"{metres * 100:.9f}") / 100
+def tidy(metres: float) -> float:
+    """What fourteen digits of centimetres can hold, so that writing and reading it is the identity."""
+    return float(centimetres(metres)) / 100
+
+
+def centimetres(metres: float) -> str:
+    """A length in centimetres, fourteen digits without an exponent."""
+    return np.format_float_positional(float(f"{metres * 100:.14g}"), trim="-")

@@ -3,7 +3,8 @@
 Known traps, each of them with a file in the tests: absent colour lines mean the default colour; palettes of 0-999; any
 Date; blanks round "="; yes/true/on/1; keys and sections in any case; CR, LF and CRLF; comments; thread numbers beyond
 what was announced; sinking sheds; several shafts an end and several treadles a pick; lift plan beside treadling; no
-[CONTENTS]; treadles that nothing is tied to.
+[CONTENTS]; treadles that nothing is tied to; decimal commas and exponents; lengths a thread in the units of their side;
+notes that go on without a number.
 """
 
 from __future__ import annotations
@@ -18,19 +19,16 @@ from sim_core.errors import FileProblem, WeaveError
 from sim_core.reading import shown
 from sim_core.weave.algebra import Harness, lift_plan
 from sim_core.weave.draft import MOST
-from sim_core.weave.wif import PRIVATE, Wif
+from sim_core.weave.wif import PRIVATE, Wif, centimetres, tidy
+from sim_core.weave.wif_sections import KNOWN, Section, decoded, sections_of
 
 __all__ = ["parse_wif", "read_wif"]
 
 LARGEST = 8_000_000  # bytes
 TRUE, FALSE = {"true", "yes", "on", "1", "t", "y"}, {"false", "no", "off", "0", "f", "n"}
+LONGEST = 1e5  # of a length, in the file's unit
+PER_THREAD = {f"{side} {what}" for side in ("WARP", "WEFT") for what in ("SPACING", "THICKNESS")}
 METRES = {"decipoints": 0.0254 / 720, "inches": 0.0254, "centimeters": 0.01}
-KNOWN = {
-    "WIF", "CONTENTS", "COLOR PALETTE", "TEXT", "WEAVING", "WARP", "WEFT", "NOTES", "COLOR TABLE", "THREADING", "TIEUP",
-    "TREADLING", "LIFTPLAN", "WARP COLORS", "WEFT COLORS", PRIVATE,
-}  # fmt: skip
-VERBATIM = {"TEXT", "NOTES"}  # sections in which ";" is no comment
-Section = dict[str, tuple[str, str]]  # lower-case key -> key as written, value
 
 
 def read_wif(path: str | Path) -> Wif:
@@ -46,14 +44,14 @@ def read_wif(path: str | Path) -> Wif:
     if len(data) > LARGEST:
         raise FileProblem(f"{path}: larger than {LARGEST // 1_000_000} MB – give a WIF file")
     try:
-        return parse_wif(_decoded(data))
+        return parse_wif(decoded(data))
     except WeaveError as error:
         raise WeaveError(f"{path}: {error}") from error
 
 
 def parse_wif(text: str) -> Wif:
     """The value of a WIF text; raises WeaveError that begins with section and key."""
-    sections = _sections(text)
+    sections = sections_of(text)
     if "WIF" not in sections:
         raise WeaveError("[WIF]: missing – every WIF file begins with it")
     version = sections["WIF"].get("version", ("", "1.1"))[1]
@@ -76,7 +74,7 @@ def parse_wif(text: str) -> Wif:
         thickness=(_length(sections, "WARP", "Thickness"), _length(sections, "WEFT", "Thickness")),
         text=tuple((key, value) for key, value in text_lines if key.lower() != "title"),
         notes=tuple(value for _, value in sections.get("NOTES", {}).values()),
-        other=tuple((name, tuple(lines.values())) for name, lines in sections.items() if name not in KNOWN),
+        other=tuple((name, _kept(sections, name)) for name in sections if name not in KNOWN),
         private=_private(sections),
         remarks=tuple(remarks),
     )
@@ -85,44 +83,6 @@ def parse_wif(text: str) -> Wif:
     except WeaveError as error:
         raise WeaveError(f"[{PRIVATE}] 1: {error}") from error
     return wif
-
-
-def _decoded(data: bytes) -> str:
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", errors="replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("cp1252", errors="replace")  # what Windows programs of 1997 wrote
-
-
-def _sections(text: str) -> dict[str, Section]:
-    sections: dict[str, Section] = {}
-    current: Section | None = None
-    name = ""
-    for number, raw in enumerate(re.split(r"\r\n|\r|\n", text), 1):
-        line = raw.strip().strip("\x00\x1a")
-        if not line or line[0] in ";#":
-            continue
-        if line[0] == "[":
-            name, bracket, _ = line[1:].partition("]")
-            if not bracket:
-                raise WeaveError(f"line {number}: {shown(line, 30)} – close the section with ]")
-            name = " ".join(name.split()).upper()
-            current = sections.setdefault(name, {})
-            continue
-        key, equals, value = line.partition("=")
-        if not equals:
-            if current is None:
-                raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
-            raise WeaveError(f"[{name}] line {number}: {shown(line, 30)} – write key=value")
-        if current is None:
-            raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
-        if name not in VERBATIM and not name.startswith("PRIVATE"):
-            value = value.partition(";")[0]
-        key = key.strip()
-        current[key.lower()] = (key, value.strip())
-    return sections
 
 
 def _harness(sections: dict[str, Section], remarks: list[str]) -> tuple[Harness, bool]:
@@ -268,16 +228,31 @@ def _colour(value: str, section: str, key: str, most: int) -> int:
 
 
 def _length(sections: dict[str, Section], side: str, key: str) -> float | None:
-    section = sections.get(side, {})
-    if key.lower() not in section:
-        return None
-    written, value = section[key.lower()]
-    unit = section.get("units", ("Units", "centimeters"))[1].lower()
+    written, value = sections.get(side, {}).get(key.lower(), (key, ""))
+    return tidy(_metres(sections, side, side, written, value)) if value else None
+
+
+def _kept(sections: dict[str, Section], name: str) -> tuple[tuple[str, str], ...]:
+    """Lines of a section that is kept; lengths a thread in centimetres, as the writer announces them."""
+    lines = tuple(sections[name].values())
+    if name not in PER_THREAD:
+        return lines
+    side = name.split()[0]
+    return tuple(
+        (key, centimetres(_metres(sections, side, name, key, value)) if value else "") for key, value in lines
+    )
+
+
+def _metres(sections: dict[str, Section], side: str, section: str, key: str, value: str) -> float:
+    unit = sections.get(side, {}).get("units", ("Units", "centimeters"))[1].lower() or "centimeters"
     if unit not in METRES:
         raise WeaveError(f"[{side}] Units: {shown(unit, 30)} – Decipoints, Inches or Centimeters")
-    if not re.fullmatch(r"\+?(\d{1,9}(\.\d{0,20})?|\.\d{1,20})", value, re.ASCII):
-        raise WeaveError(f"[{side}] {written}: {shown(value, 30)} is not a length – give a number")
-    return float(value) / 100 if unit == "centimeters" else float(value) * METRES[unit]
+    if not re.fullmatch(r"\+?(\d{1,9}([.,]\d{0,20})?|[.,]\d{1,20})(e[+-]?\d{1,2})?", value, re.ASCII | re.I):
+        raise WeaveError(f"[{section}] {key}: {shown(value, 30)} is not a length – give a number")
+    number = float(value.replace(",", "."))  # some programs write the comma of their country
+    if number > LONGEST:
+        raise WeaveError(f"[{section}] {key}: {shown(value, 30)} – give at most {LONGEST:g} {unit}")
+    return number / 100 if unit == "centimeters" else number * METRES[unit]
 
 
 def _private(sections: dict[str, Section]) -> dict | None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.wif import PRIVATE, Wif, plain_title
+from sim_core.weave.wif import PRIVATE, Wif, centimetres
+from sim_core.weave.wif_sections import escaped
 
 __all__ = ["wif_text", "write_wif"]
 
@@ -25,8 +26,13 @@ def wif_text(wif: Wif) -> str:
     contents = ("CONTENTS", tuple((name, "true") for name, _ in sections[1:]))
     parts = []
     for name, lines in [sections[0], contents, *sections[1:]]:
-        parts += [f"[{name}]", *(f"{key}={value}" for key, value in lines), ""]
+        parts += [f"[{name}]", *_lines(name, lines), ""]
     return "\r\n".join(parts)
+
+
+def _lines(name: str, lines) -> list[str]:
+    keep = str if name == PRIVATE else escaped
+    return [f"{keep(key)}={keep(value)}" for key, value in lines]
 
 
 def write_wif(wif: Wif, path: str | Path) -> None:
@@ -34,13 +40,13 @@ def write_wif(wif: Wif, path: str | Path) -> None:
     path = Path(path)
     if not path.parent.is_dir():
         raise WeaveError(f"{path}: no such folder – make {path.parent} first")
-    path.write_bytes(wif_text(wif).encode("ascii", "xmlcharrefreplace"))
+    path.write_bytes(wif_text(wif).encode("ascii"))
 
 
 def _body(wif: Wif):
     harness = wif.harness
     yield "COLOR PALETTE", (("Entries", str(len(wif.palette))), ("Form", "RGB"), ("Range", f"0,{wif.top}"))
-    title = (("Title", plain_title(wif.title)),) if wif.title else ()
+    title = (("Title", wif.title),) if wif.title else ()
     if title or wif.text:
         yield "TEXT", (*title, *wif.text)
     shafts, treadles = harness.tieup.shape
@@ -81,7 +87,7 @@ def _side(wif: Wif, side: int, threads: int, colours: np.ndarray):
     for key, values in (("Spacing", wif.spacing), ("Thickness", wif.thickness)):
         value = values[side]
         if value is not None:
-            lines.append((key, f"{value * 100:.9f}"))
+            lines.append((key, centimetres(value)))
     return tuple(lines)
 
 

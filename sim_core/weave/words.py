@@ -124,6 +124,18 @@ def _from_wif(path: Path) -> tuple[Weave, str]:
     return made, ASSUMED
 
 
+def _grey(picture) -> np.ndarray:
+    """(rows, columns) brightness; what is transparent counts as white paper, 16 bits keep their range."""
+    from PIL import Image
+
+    if picture.mode.startswith(("I", "F")):
+        return np.asarray(picture)
+    if picture.mode in ("LA", "La", "PA", "RGBA", "RGBa") or "transparency" in picture.info:
+        drawn = picture.convert("RGBA")
+        picture = Image.alpha_composite(Image.new("RGBA", drawn.size, "white"), drawn)
+    return np.asarray(picture.convert("L"))
+
+
 def _motif_of(path: Path) -> np.ndarray:
     """(picks, ends) bool, dark where the figure is; one pixel a crossing, the lowest row the first pick."""
     from PIL import Image, UnidentifiedImageError
@@ -134,13 +146,13 @@ def _motif_of(path: Path) -> np.ndarray:
                 raise WeaveError(
                     f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST}"
                 )
-            grey = np.asarray(picture.convert("L"))
+            grey = _grey(picture)
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         if isinstance(error, WeaveError):
             raise
         reason = getattr(error, "strerror", None) or "not a picture"
         raise FileProblem(f"{path}: {reason} – give a picture of the motif, one pixel a crossing") from error
-    dark = grey < (int(grey.min()) + int(grey.max()) + 1) / 2
+    dark = grey < (float(grey.min()) + float(grey.max()) + 1) / 2
     if dark.all() or not dark.any():
         raise WeaveError(f"{path}: one tone only – paint the figure dark on a light ground")
     return dark[::-1]

@@ -28,7 +28,11 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     deepest = max(r["penetration"] for r in found["plain"] + found["per"])
     rest = max(r["residual"] for r in found["plain"])
     made.append(
-        ("stage B: deepest penetration, largest residual", "5e-4 D, 1e-3", f"{deepest:.1e} D, {rest:.1e}")
+        (
+            "stage B: deepest penetration (at particles), largest residual",
+            "5e-4 D, 1e-3",
+            f"{deepest:.1e} D, {rest:.1e}",
+        )
     )
     for flattening in (1.0, 2.0):
         of = {r["per"]: r for r in found["per"] if r["flattening"] == flattening}

@@ -17,7 +17,7 @@ from sim_core.weave.generators import (
     weft_faced,
 )
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.words import draft_of_words
+from sim_core.weave.words import _motif_of, draft_of_words, dressed
 
 RNG = np.random.default_rng(5)
 
@@ -214,3 +214,40 @@ def test_channels_of_the_wrong_shape_are_named():
     ):
         with pytest.raises(WeaveError, match="draft x"):
             Draft("x", plain().lift, channels)
+
+
+@pytest.mark.parametrize(
+    ("channels", "message"),
+    [
+        ({"layer": [[0, 1], [0, 1]]}, "layer without series"),
+        ({"region": [[-1, -1], [-1, -1]]}, "region is -1 everywhere"),
+        ({"pick_kind": [2, 2]}, "every pick is extra"),
+    ],
+)
+def test_channels_that_make_no_cloth_are_named(channels, message):
+    with pytest.raises(WeaveError, match=message):
+        Draft("x", plain().lift, Channels(**{name: np.array(v) for name, v in channels.items()}))
+
+
+def test_a_channel_does_not_excuse_a_loose_yarn_but_crossings_do():
+    loose = np.array([[1, 1], [0, 0]])
+    assert Draft("x", loose, Channels(end_series=np.array([0, 0]))).loose() == "pick 0"
+    assert Draft("x", loose.T, Channels(end_series=np.array([0, 1]))).loose() == "end 0"
+    assert gauze().loose() is None
+    with pytest.raises(WeaveError, match="pick 0 never interlaces"):
+        dressed(Draft("x", loose, Channels(end_series=np.array([0, 0]))))
+
+
+@pytest.mark.parametrize("mode", ["L", "RGBA", "I;16"])
+def test_a_motif_is_dark_on_light_in_any_kind_of_picture(mode, tmp_path):
+    from PIL import Image
+
+    grey = np.full((20, 20), 255, np.uint8)
+    grey[5:15, 5:10] = 20
+    if mode == "RGBA":  # drawn on nothing, whose colour is black
+        picture = Image.fromarray(np.dstack([np.zeros((20, 20, 3), np.uint8), 255 - grey]))
+    else:
+        picture = Image.fromarray(grey if mode == "L" else grey.astype(np.uint16) * 200 + 3000)
+    picture.save(tmp_path / "motif.png")
+    dark = _motif_of(tmp_path / "motif.png")
+    assert np.array_equal(dark, (grey < 128)[::-1])

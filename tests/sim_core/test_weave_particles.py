@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Draft, Weave, Yarn, plain, satin, twill
+from sim_core.weave import Channels, Draft, Weave, Yarn, plain, satin, twill
 from sim_core.weave.elastica import elastica_crimp, peirce_crimp
 from sim_core.weave.jam import check_jam, jam_limits
 from sim_core.weave.laid import lay_beams
@@ -16,6 +16,7 @@ from sim_core.weave.particles import relax_particles
 from sim_core.weave.relaxation import beam_stiffness
 from sim_core.weave.solve import ground_of, solve
 from sim_core.weave.strands import strands
+from sim_core.weave.structures import gauze
 
 D = 1e-4
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
@@ -245,4 +246,56 @@ def test_brocade_lies_on_its_ground():
     warp, _, extra = strands(weave, solve(weave))
     shown = extra.height[extra.colour >= 0]
     assert np.median(shown) > warp.height.max() * 0.5
+    assert (
+        shown.max() < warp.height.max() + 3 * extra.yarn.height
+    )  # floats lie on the ground, no arches over it
     assert extra.colour.max() <= 3
+
+
+@pytest.mark.parametrize("name", ["sha", "luo"])
+def test_a_leno_is_in_balance_and_says_how_well(name):
+    weave = Weave.load(FOLDER / f"{name}.toml")
+    made = solve(weave)
+    assert 0 < made.residual < 1e-3
+    assert made.force.min() >= 0
+    assert made.force.max() > 0
+    # each pick is pressed up by its ground ends as much as down by its doups
+    signed = np.where(weave.draft.lift, -1, 1) * made.force
+    assert np.abs(signed.sum(axis=1)).max() <= 1e-3 * made.force.max()
+
+
+def test_a_leno_too_large_for_its_dense_problem_is_named():
+    one = gauze(64)
+    channels = {name: np.vstack([v] * 5) if v.ndim == 2 else v for name, v in one.channels.items()}
+    draft = Draft("wide", np.vstack([one.lift] * 5), Channels(**channels))
+    weave = replace(Weave.load(FOLDER / "sha.toml"), draft=draft)
+    with pytest.raises(WeaveError, match="at most 512 crossings"):
+        solve(weave)
+
+
+@pytest.mark.parametrize(("per", "most"), [(8, 2.5e-2), (16, 8e-3)])
+@pytest.mark.parametrize("draft", [twill(2, 2), satin(8, 3)], ids=["twill", "satin"])
+def test_between_particles_the_curves_come_closer_by_little(draft, per, most):
+    """Every warp curve against every weft curve: what the overlap at the particles does not tell."""
+    from scipy.interpolate import CubicSpline
+    from scipy.spatial import KDTree
+
+    weave = cloth(draft, 4)
+    warp, weft = strands(weave, relax_particles(weave, per=per))[:2]
+
+    def curve(system, number):
+        points, axis = system.points(number), 1 if system.along == "warp" else 0
+        n = len(points)
+        points[:, axis] = 0.0
+        t = np.linspace(0, n, 24 * n, endpoint=False)
+        made = CubicSpline(np.arange(n + 1), np.vstack([points, points[:1]]), bc_type="periodic")(t)
+        made[:, axis] = t / n * system.length
+        return made
+
+    size = np.array([*weave.size, 0.0])
+    wefts = np.concatenate([curve(weft, k) for k in range(draft.picks)])
+    copies = [wefts + size * (a, b, 0) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    near, _ = KDTree(np.concatenate(copies)).query(
+        np.concatenate([curve(warp, k) for k in range(draft.ends)])
+    )
+    assert near.min() >= D * (1 - most)

@@ -14,6 +14,7 @@ from sim_core.weave.algebra import Harness
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
 from sim_core.weave.wif import PRIVATE, Wif, wif_of
 from sim_core.weave.wif_read import parse_wif, read_wif
+from sim_core.weave.wif_sections import decoded
 from sim_core.weave.wif_write import wif_text, write_wif
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
@@ -124,12 +125,43 @@ def test_units(unit, metres):
 
 def test_old_windows_letters():
     data = BASE.replace("[WEAVING]", "[TEXT]\nTitle=Köper\n[WEAVING]").encode("cp1252")
-    from sim_core.weave.wif_read import _decoded
+    assert parse_wif(decoded(data)).title == "Köper"
 
-    assert parse_wif(_decoded(data)).title == "Köper"
+
+UNITS = BASE.replace("[WARP]\n", "[WARP]\nUnits={unit}\nSpacing={length}\n")
+
+
+@pytest.mark.parametrize(
+    ("unit", "length"), [("Inches", ".05"), ("decipoints", "29"), ("Centimeters", "0.21200001234567")]
+)
+def test_lengths_survive_whatever_their_unit(unit, length):
+    wif = parse_wif(UNITS.format(unit=unit, length=length) + f"[WARP SPACING]\n2={length}\n")
+    again = parse_wif(wif_text(wif))
+    assert again == wif
+    (_, ((key, value),)) = again.other[0]  # written beside Units=Centimeters
+    assert key == "2"
+    assert float(value) / 100 == pytest.approx(wif.spacing[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(("text", "metres"), [("0,212", 0.00212), ("2.5E-02", 0.00025), ("", None)])
+def test_lengths_as_programs_of_other_countries_write_them(text, metres):
+    spacing = parse_wif(UNITS.format(unit="Centimeters", length=text)).spacing[0]
+    assert spacing == (metres if metres is None else pytest.approx(metres, rel=1e-12))
+
+
+def test_letters_beyond_ascii_come_back_and_the_file_stays_ascii():
+    notes = "[NOTES]\n1=Größe &#38; &#10; Maß\ngoes on\n[TEXT]\nTitle=四经绞罗\nAuthor=Müller\n"
+    wif = parse_wif(BASE + notes + "[PRIVATE OTHER]\nfree words\nschön=wörtlich\n")
+    assert wif.title == "四经绞罗"
+    assert wif.notes == ("Größe & &#10; Maß", "goes on")
+    assert wif.other == (("PRIVATE OTHER", (("schön", "wörtlich"),)),)
+    assert wif_text(wif).isascii()
+    assert parse_wif(wif_text(wif)) == wif
 
 
 BAD = {
+    r"\[WARP\] Spacing: '9e9'": UNITS.format(unit="Inches", length="9e9"),
+    r"\[WARP SPACING\] 1: 'x'": BASE + "[WARP SPACING]\n1=x\n",
     r"\[WIF\]: missing": BASE.replace("[WIF]", "[WAF]"),
     r"\[WIF\] Version: '2.0'": BASE.replace("1.1", "2.0"),
     r"line 1: .*begins with \[WIF\]": "hello\n",
