@@ -13,7 +13,8 @@ __all__ = ["Rim", "sampled_contours", "sampled_rim"]
 SPLITTING_PASSES = 12
 FINEST = 32
 DEVIATION = 0.045  # of the edge: a step that leaves the given line by more is halved
-PARTS = 256  # of a chain between corners over which edge lengths of a size field are summed
+PARTS = 256  # of a chain between corners, at least, over which edge lengths of a size field are summed
+MOST_PARTS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +139,8 @@ def _even(
             if not _strays(_Chain(points[inner], arc[inner], at, False), DEVIATION * edge).any():
                 return at[:-1]
         return np.linspace(begin, end, fewest + 1)[:-1]
-    fine = np.linspace(begin, end, PARTS + 1)
+    parts = int(np.clip(2 * (end - begin) / sizes.sizes.min(), PARTS, MOST_PARTS))
+    fine = np.linspace(begin, end, parts + 1)
     middle = (fine[:-1] + fine[1:]) / 2
     places = np.column_stack([np.interp(middle, arc, points[:, axis]) for axis in range(2)])
     count = np.concatenate([[0.0], np.cumsum(np.diff(fine) / sizes.at(places, edge))])
