@@ -19,6 +19,7 @@ METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 1
 NEAR = 1e-6  # of the drawing's extent: ends this near are joined
 ROUND = 128  # pieces of a full circle
 PIECES = 64  # of a spline between knots
+IN_ENTITY_AXES = ("LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE")  # the others are given in the drawing's own
 
 Entity = tuple[str, list[tuple[int, str]]]
 
@@ -36,7 +37,8 @@ def read_dxf(path: Path) -> list[tuple[np.ndarray, bool]]:
     if not any(pair == (0, "SECTION") for pair in pairs):
         raise FileProblem(f"{path}: no section in it – give an outline drawn as text DXF")
     try:
-        drawn = [line for entity in _entities(pairs) for line in _line(entity)]
+        with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
+            drawn = [_seen(entity, line) for entity in _entities(pairs) for line in _line(entity)]
         scale = METRES.get(_unit(pairs))
     except (ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
         raise FileProblem(f"{path}: an entity cannot be read ({error}) – draw it as polylines") from error
@@ -72,6 +74,13 @@ def _entities(pairs: list[tuple[int, str]]) -> list[Entity]:
         elif inside and found:
             found[-1][1].append((code, value))
     return found
+
+
+def _seen(entity: Entity, line: tuple[np.ndarray, bool]) -> tuple[np.ndarray, bool]:
+    """A line as the drawing shows it: an extrusion towards -z (group 230) mirrors what is given in entity axes."""
+    kind, tags = entity
+    mirrored = kind in IN_ENTITY_AXES and any(code == 230 and float(text) < 0 for code, text in tags)
+    return (line[0] * (-1.0, 1.0), line[1]) if mirrored else line
 
 
 def _line(entity: Entity) -> list[tuple[np.ndarray, bool]]:

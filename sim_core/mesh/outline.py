@@ -11,6 +11,7 @@ from sim_core.mesh.merging import merged
 
 __all__ = [
     "CORNER_DEGREES",
+    "LARGEST",
     "check_count",
     "check_edge",
     "clean_contour",

@@ -8,7 +8,7 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.dxf import read_dxf
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import signed_area
+from sim_core.mesh.outline import LARGEST, signed_area
 from sim_core.mesh.svg import read_svg
 from sim_core.reading import read_json, shown
 
@@ -47,6 +47,11 @@ def read_outline(path: Path) -> Drawing:
 
 
 def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
+    for points, _ in lines:
+        if not (np.abs(points) <= LARGEST).all():  # false for NaN too
+            raise FileProblem(
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+            )
     closed = [points for points, round_ in lines if round_]
     if not closed:
         raise FileProblem(f"{path}: no closed line in it – close the outline")
