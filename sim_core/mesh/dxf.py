@@ -8,6 +8,7 @@ from math import radians
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.curves import bulge_points
@@ -183,34 +184,47 @@ def _spline(tags: list[tuple[int, str]]) -> tuple[np.ndarray, bool]:
 
 
 def _joined(drawn: list[tuple[np.ndarray, bool]]) -> list[tuple[np.ndarray, bool]]:
-    """Open lines joined end to end where only two ends meet; what comes back to its start is closed."""
-    if not drawn:
-        return []
+    """Open lines joined end to end where only two ends meet; what comes back to its start is closed.
+
+    A line that hangs free at its other end does not count where it meets a joint: it is an inner line.
+    """
+    if not drawn or not all(np.isfinite(points).all() for points, _ in drawn):
+        return drawn
     near = NEAR * float(np.ptp(np.concatenate([points for points, _ in drawn]), axis=0).max())
     found = [line for line in drawn if line[1]]
-    rest = [points for points, closed in drawn if not closed]
-    while rest:
-        line = rest.pop()
-        grown = True
-        while grown and np.hypot(*(line[0] - line[-1])) > near:
-            grown = False
-            for end in (-1, 0):
-                touching = [
-                    (k, tip)
-                    for k, other in enumerate(rest)
-                    for tip in (0, -1)
-                    if np.hypot(*(other[tip] - line[end])) <= near
-                ]
-                if len(touching) != 1:
-                    continue
-                k, tip = touching[0]
-                other = rest.pop(k)
-                if end == -1:
-                    line = np.vstack([line, (other if tip == 0 else other[::-1])[1:]])
-                else:
-                    line = np.vstack([(other if tip == -1 else other[::-1])[:-1], line])
-                grown = True
-                break
+    rest = [points for points, closed in drawn if not closed and np.ptp(points, axis=0).max() > near]
+    mate = _mates(rest, near)
+    done: set[int] = set()
+    for k in range(len(rest)):
+        if k in done:
+            continue
+        begin = 2 * k  # ends are numbered 2 k and 2 k + 1: back to where this chain begins, or once around
+        while mate[begin] >= 0 and mate[begin] ^ 1 != 2 * k:
+            begin = mate[begin] ^ 1
+        parts, end = [], begin
+        while end >= 0 and end // 2 not in done:
+            done.add(end // 2)
+            part = rest[end // 2][:: -1 if end % 2 else 1]
+            parts.append(part[1:] if parts else part)
+            end = mate[end ^ 1]
+        line = np.vstack(parts)
         closed = len(line) > 3 and bool(np.hypot(*(line[0] - line[-1])) <= near)
         found.append((line[:-1] if closed else line, closed))
     return found
+
+
+def _mates(lines: list[np.ndarray], near: float) -> list[int]:
+    """For both ends of each line the one other end that it meets, or -1."""
+    if not lines:
+        return []
+    ends = np.array([line[k] for line in lines for k in (0, -1)])
+    pairs = KDTree(ends).query_pairs(near, output_type="ndarray")
+    meets = np.bincount(pairs.ravel(), minlength=len(ends))
+    other = np.arange(len(ends)) ^ 1
+    hangs = (meets > 1) & (meets[other] == 0)
+    pairs = pairs[~hangs[pairs].any(axis=1)]
+    meets = np.bincount(pairs.ravel(), minlength=len(ends))
+    pairs = pairs[(meets[pairs] == 1).all(axis=1)]
+    mate = np.full(len(ends), -1)
+    mate[pairs] = pairs[:, ::-1]
+    return mate.tolist()

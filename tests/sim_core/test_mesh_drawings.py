@@ -132,6 +132,31 @@ def test_dxf_shapes_have_their_area(tmp_path, entities):
     assert area(dxf(tmp_path, entities).outline) == pytest.approx(DRAWN[entities], rel=1e-3)
 
 
+def test_dxf_joins_thousands_of_lines_in_any_order_and_direction(tmp_path):
+    rng = np.random.default_rng(3)
+    t = np.arange(8001) * 2 * np.pi / 8000
+    places = [f"{50 * np.cos(a):.9f} {50 * np.sin(a):.9f}".split() for a in t % (2 * np.pi)]
+    lines = []
+    for k in rng.permutation(8000):
+        (ax, ay), (bx, by) = (places[k + i] for i in (rng.permutation(2)))
+        lines.append(f"0 LINE 10 {ax} 20 {ay} 11 {bx} 21 {by}")
+    drawing = dxf(tmp_path, " ".join(lines))
+    assert len(drawing.outline) == 8000
+    assert area(drawing.outline) == pytest.approx(CIRCLE, rel=1e-5)
+
+
+@pytest.mark.parametrize("place", range(5))
+def test_dxf_line_that_ends_at_a_corner_is_an_inner_line(tmp_path, place):
+    sides = ["0 0 9 0", "9 0 9 9", "9 9 0 9", "0 9 0 0"]
+    sides.insert(place, "9 9 4 4")
+    drawn = ("0 LINE 10 {} 20 {} 11 {} 21 {}".format(*side.split()) for side in sides)
+    drawing = dxf(tmp_path, " ".join(drawn))
+    assert area(drawing.outline) == pytest.approx(81e-6)
+    assert [np.round(line, 9).tolist() for line in drawing.constraints] == [
+        [[0.009, -0.009], [0.004, -0.004]]
+    ]
+
+
 def test_dxf_spline_passes_its_ends_and_y_is_turned(tmp_path):
     spline = "0 SPLINE 70 8 71 3 " + " ".join(f"40 {k}" for k in (0, 0, 0, 0, 1, 1, 1, 1))
     spline += " 10 0 20 0 10 0 20 40 10 100 20 40 10 100 20 0"
