@@ -17,10 +17,12 @@ __all__ = [
     "clean_contour",
     "clean_contours",
     "clean_points",
+    "crossed_steps",
     "outline_samples",
     "outline_turning",
     "sharpest_corner",
     "signed_area",
+    "swept_area",
 ]
 
 CORNER_DEGREES = 20.0
@@ -35,8 +37,12 @@ def signed_area(contour: np.ndarray) -> float:
     Every product is split into two floats without error and all are summed exactly, so that a thin strip far from the
     origin has its area to the last bit.
     """
-    x, y = contour[:, 0], -contour[:, 1]
-    terms = [*_product(x, np.roll(y, -1)), *_product(-np.roll(x, -1), y)]
+    return swept_area(contour, np.roll(contour, -1, axis=0))
+
+
+def swept_area(a: np.ndarray, b: np.ndarray) -> float:
+    """Area [m2] between the origin and directed edges a -> b (n, 2) each, y down, summed exactly."""
+    terms = [*_product(a[:, 0], -b[:, 1]), *_product(b[:, 0], a[:, 1])]
     return 0.5 * fsum(np.concatenate(terms).tolist())
 
 
@@ -201,6 +207,38 @@ def _first_crossing(points, following, order):
             if meet:
                 return i, j
     return -1, -1
+
+
+def crossed_steps(lines: list[np.ndarray]) -> list[np.ndarray]:
+    """Per step of open or closed lines (n, 2) [m] whether it meets a step it shares no end with. (n - 1,) bool each."""
+    a, b = (np.concatenate([line[k : len(line) - 1 + k] for line in lines]) for k in (0, 1))
+    order = np.argsort(np.minimum(a[:, 0], b[:, 0]), kind="stable")
+    crossed = _crossed(np.concatenate([a, b]), order)
+    return np.split(crossed, np.cumsum([len(line) - 1 for line in lines])[:-1])
+
+
+@njit(cache=True)
+def _crossed(points, order):
+    """Segments k -> k + n of points (2 n, 2) that meet another without a common end. Sweep over the left ends."""
+    n = order.size
+    crossed = np.zeros(n, np.bool_)
+    for s in range(n):
+        i = order[s]
+        right = max(points[i, 0], points[i + n, 0])
+        low, high = min(points[i, 1], points[i + n, 1]), max(points[i, 1], points[i + n, 1])
+        for t in range(s + 1, n):
+            j = order[t]
+            if min(points[j, 0], points[j + n, 0]) > right:
+                break
+            if min(points[j, 1], points[j + n, 1]) > high or max(points[j, 1], points[j + n, 1]) < low:
+                continue
+            common = False
+            for p in (i, i + n):
+                for q in (j, j + n):
+                    common |= points[p, 0] == points[q, 0] and points[p, 1] == points[q, 1]
+            if not common and _meet(points, i, i + n, j, j + n):
+                crossed[i] = crossed[j] = True
+    return crossed
 
 
 @njit(cache=True)

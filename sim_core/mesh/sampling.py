@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
+from sim_core.mesh.outline import CORNER_DEGREES, crossed_steps, outline_turning
 from sim_core.mesh.sizes import SizeField
 
 __all__ = ["Rim", "sampled_contours", "sampled_rim"]
@@ -66,6 +66,11 @@ class _Chain:
         at = np.insert(self.at, np.flatnonzero(split) + 1, middle[split])
         return _Chain(self.points, self.arc, at, self.closed)
 
+    def as_given(self, steps: np.ndarray) -> "_Chain":
+        """The chain with all its given points in the marked steps (bool)."""
+        step = np.clip(np.searchsorted(self.at, self.arc, side="right") - 1, 0, len(steps) - 1)
+        return _Chain(self.points, self.arc, np.union1d(self.at, self.arc[steps[step]]), self.closed)
+
 
 def sampled_contours(contours: list[np.ndarray], edge: float) -> list[np.ndarray]:
     """Samples (m, 2) [m] of each contour (n, 2) [m]: `sampled_rim` without inner lines."""
@@ -87,7 +92,8 @@ def sampled_rim(
     sizes: shorter steps by place.
     A step is halved, along the given line, where it leaves that line by more than 0.045 edge, and while a sample that
     is no neighbour lies in the circle over it as diameter: then it is a Delaunay edge, and growth follows it without
-    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32.
+    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32. Steps that cross each other,
+    where bent lines run closer than that, follow the given line point by point, which crosses nothing.
     """
     corners = {tuple(point) for line in lines for point in line[[0, -1]]}
     corners |= {tuple(point) for point in (() if kept is None else kept)}
@@ -103,6 +109,11 @@ def sampled_rim(
         if not any(mark.any() for mark in split):
             break
         chains = [chain.halved(mark) for chain, mark in zip(chains, split, strict=True)]
+    for _ in range(SPLITTING_PASSES):
+        crossed = crossed_steps([chain.sampled() for chain in chains])
+        if not any(mark.any() for mark in crossed):
+            break
+        chains = [chain.as_given(mark) for chain, mark in zip(chains, crossed, strict=True)]
     return _joined(chains)
 
 

@@ -268,3 +268,27 @@ def test_best_keeps_every_angle_above_38_degrees_where_corners_are_wide(block):
 def test_best_beats_fair_in_mean_quality():
     fair, best = (panel_mesh(RECTANGLE, edge=0.02, quality=kind) for kind in ("fair", "best"))
     assert quality(best.vertices, best.faces).shape.mean() > quality(fair.vertices, fair.faces).shape.mean()
+
+
+def arc(radius: float, begin: float, end: float, count: int) -> np.ndarray:
+    t = np.linspace(begin, end, count)
+    return radius * np.column_stack([np.cos(t), np.sin(t)])
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("gap", [1e-4, 1e-5, 1e-6])
+def test_bends_that_nearly_touch_do_not_cross_once_sampled(gap, kind):
+    """Nearer to each other than sampling may leave them: there the given points are taken."""
+    outer = arc(1, 0, 2 * np.pi, 301)[:-1]
+    moved = (0.1, -0.2)  # so that samples of both do not fall side by side
+    hole = 0.5 * arc(1, 0.1, 2 * np.pi + 0.1, 251)[:-1]
+    hole += (1 - 0.5 - gap - 1e-4, 0)
+    mesh = panel_mesh(outer + moved, edge=0.3, holes=[hole + moved], quality=kind)
+    assert_sound(mesh)
+    assert len(mesh.boundary) == 2
+    line = arc(1 - gap - 2e-4, 0.4, 2.9, 700)
+    mesh = panel_mesh(outer + moved, edge=0.3, constraints=[line + moved], quality=kind)
+    assert_sound(mesh)
+    sleeve = np.vstack([arc(1, 0, 4, 90), arc(1 - 7e-4 - gap, 4, 0, 90)])
+    mesh = panel_mesh(sleeve, edge=0.3, quality=kind)
+    assert_sound(mesh)
