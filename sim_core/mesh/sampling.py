@@ -12,6 +12,7 @@ __all__ = ["Rim", "sampled_contours", "sampled_rim"]
 
 SPLITTING_PASSES = 12
 FINEST = 32
+SAME = 1e-9  # of a chain's length: places nearer to each other are one
 DEVIATION = 0.045  # of the edge: a step that leaves the given line by more is halved
 PARTS = 256  # of a chain between corners, at least, over which edge lengths of a size field are summed
 MOST_PARTS = 1_000_000
@@ -69,7 +70,10 @@ class _Chain:
     def as_given(self, steps: np.ndarray) -> "_Chain":
         """The chain with all its given points in the marked steps (bool)."""
         step = np.clip(np.searchsorted(self.at, self.arc, side="right") - 1, 0, len(steps) - 1)
-        return _Chain(self.points, self.arc, np.union1d(self.at, self.arc[steps[step]]), self.closed)
+        given = self.arc[steps[step]]
+        gap = np.abs(self.at[:, None] - given).min(axis=1, initial=np.inf)
+        kept = self.at[(gap == 0) | (gap > SAME * self.arc[-1])]  # no sample within rounding of a given point
+        return _Chain(self.points, self.arc, np.union1d(kept, given), self.closed)
 
 
 def sampled_contours(contours: list[np.ndarray], edge: float) -> list[np.ndarray]:

@@ -276,6 +276,18 @@ def arc(radius: float, begin: float, end: float, count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("gap", [1e-4, 1e-5])
+def test_a_line_close_under_bends_far_from_the_origin_is_followed(gap, kind):
+    """Given points and samples fall together but for rounding there."""
+    outer = arc(1, 0, 2 * np.pi, 151)[:-1]
+    hole = (1 - gap) * outer[::-1]
+    mesh = panel_mesh(outer + 1e3, edge=0.1, holes=[hole + 1e3], quality=kind)
+    assert_sound(mesh)
+    line = arc((1 - gap) * np.cos(np.pi / 150), 0.3, 3, 150)
+    assert_sound(panel_mesh(outer + 1e3, edge=0.03, constraints=[line + 1e3], quality=kind))
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
 @pytest.mark.parametrize("gap", [1e-4, 1e-5, 1e-6])
 def test_bends_that_nearly_touch_do_not_cross_once_sampled(gap, kind):
     """Nearer to each other than sampling may leave them: there the given points are taken."""
