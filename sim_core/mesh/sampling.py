@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.mesh.outline import CORNER_DEGREES, crossed_steps, outline_turning
+from sim_core.mesh.crossings import crossed_steps
+from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
 from sim_core.mesh.sizes import SizeField
 
 __all__ = ["Rim", "sampled_contours", "sampled_rim"]
