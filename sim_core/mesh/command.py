@@ -82,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
 
     drawing = read_outline(args.file)
     sizes = read_size_field(args.size_field) if args.size_field else None
-    compile_seconds = _warm_up(args.quality)
+    compile_seconds = _warm_up(args.quality, graded=sizes is not None)
     from sim_core.mesh import panel_mesh
 
     try:
@@ -110,16 +110,17 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _warm_up(quality: str) -> float:
+def _warm_up(quality: str, *, graded: bool) -> float:
     """Load or compile every kernel on a small panel, so that `seconds` is the work alone."""
     begin = perf_counter()
     import numpy as np
 
-    from sim_core.mesh import panel_mesh
+    from sim_core.mesh import SizeField, panel_mesh
 
     square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
     line = [[0.2, 0.1], [0.2, 0.9]]
-    panel_mesh(square, edge=0.1, holes=[square / 3 + 0.4], constraints=[line], quality=quality)
+    field = SizeField(np.zeros((1, 2)), np.array([0.05])) if graded else None
+    panel_mesh(square, edge=0.1, holes=[square / 3 + 0.4], constraints=[line], quality=quality, sizes=field)
     return perf_counter() - begin
 
 

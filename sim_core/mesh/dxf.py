@@ -8,6 +8,7 @@ from math import radians
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.curves import bulge_points
@@ -19,6 +20,7 @@ METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 1
 NEAR = 1e-6  # of the drawing's extent: ends this near are joined
 ROUND = 128  # pieces of a full circle
 PIECES = 64  # of a spline between knots
+IN_ENTITY_AXES = ("LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE")  # the others are given in the drawing's own
 
 Entity = tuple[str, list[tuple[int, str]]]
 
@@ -36,7 +38,8 @@ def read_dxf(path: Path) -> list[tuple[np.ndarray, bool]]:
     if not any(pair == (0, "SECTION") for pair in pairs):
         raise FileProblem(f"{path}: no section in it – give an outline drawn as text DXF")
     try:
-        drawn = [line for entity in _entities(pairs) for line in _line(entity)]
+        with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
+            drawn = [_seen(entity, line) for entity in _entities(pairs) for line in _line(entity)]
         scale = METRES.get(_unit(pairs))
     except (ValueError, IndexError, ZeroDivisionError, OverflowError) as error:
         raise FileProblem(f"{path}: an entity cannot be read ({error}) – draw it as polylines") from error
@@ -72,6 +75,13 @@ def _entities(pairs: list[tuple[int, str]]) -> list[Entity]:
         elif inside and found:
             found[-1][1].append((code, value))
     return found
+
+
+def _seen(entity: Entity, line: tuple[np.ndarray, bool]) -> tuple[np.ndarray, bool]:
+    """A line as the drawing shows it: an extrusion towards -z (group 230) mirrors what is given in entity axes."""
+    kind, tags = entity
+    mirrored = kind in IN_ENTITY_AXES and any(code == 230 and float(text) < 0 for code, text in tags)
+    return (line[0] * (-1.0, 1.0), line[1]) if mirrored else line
 
 
 def _line(entity: Entity) -> list[tuple[np.ndarray, bool]]:
@@ -174,34 +184,47 @@ def _spline(tags: list[tuple[int, str]]) -> tuple[np.ndarray, bool]:
 
 
 def _joined(drawn: list[tuple[np.ndarray, bool]]) -> list[tuple[np.ndarray, bool]]:
-    """Open lines joined end to end where only two ends meet; what comes back to its start is closed."""
-    if not drawn:
-        return []
+    """Open lines joined end to end where only two ends meet; what comes back to its start is closed.
+
+    A line that hangs free at its other end does not count where it meets a joint: it is an inner line.
+    """
+    if not drawn or not all(np.isfinite(points).all() for points, _ in drawn):
+        return drawn
     near = NEAR * float(np.ptp(np.concatenate([points for points, _ in drawn]), axis=0).max())
     found = [line for line in drawn if line[1]]
-    rest = [points for points, closed in drawn if not closed]
-    while rest:
-        line = rest.pop()
-        grown = True
-        while grown and np.hypot(*(line[0] - line[-1])) > near:
-            grown = False
-            for end in (-1, 0):
-                touching = [
-                    (k, tip)
-                    for k, other in enumerate(rest)
-                    for tip in (0, -1)
-                    if np.hypot(*(other[tip] - line[end])) <= near
-                ]
-                if len(touching) != 1:
-                    continue
-                k, tip = touching[0]
-                other = rest.pop(k)
-                if end == -1:
-                    line = np.vstack([line, (other if tip == 0 else other[::-1])[1:]])
-                else:
-                    line = np.vstack([(other if tip == -1 else other[::-1])[:-1], line])
-                grown = True
-                break
+    rest = [points for points, closed in drawn if not closed and np.ptp(points, axis=0).max() > near]
+    mate = _mates(rest, near)
+    done: set[int] = set()
+    for k in range(len(rest)):
+        if k in done:
+            continue
+        begin = 2 * k  # ends are numbered 2 k and 2 k + 1: back to where this chain begins, or once around
+        while mate[begin] >= 0 and mate[begin] ^ 1 != 2 * k:
+            begin = mate[begin] ^ 1
+        parts, end = [], begin
+        while end >= 0 and end // 2 not in done:
+            done.add(end // 2)
+            part = rest[end // 2][:: -1 if end % 2 else 1]
+            parts.append(part[1:] if parts else part)
+            end = mate[end ^ 1]
+        line = np.vstack(parts)
         closed = len(line) > 3 and bool(np.hypot(*(line[0] - line[-1])) <= near)
         found.append((line[:-1] if closed else line, closed))
     return found
+
+
+def _mates(lines: list[np.ndarray], near: float) -> list[int]:
+    """For both ends of each line the one other end that it meets, or -1."""
+    if not lines:
+        return []
+    ends = np.array([line[k] for line in lines for k in (0, -1)])
+    pairs = KDTree(ends).query_pairs(near, output_type="ndarray")
+    meets = np.bincount(pairs.ravel(), minlength=len(ends))
+    other = np.arange(len(ends)) ^ 1
+    hangs = (meets > 1) & (meets[other] == 0)
+    pairs = pairs[~hangs[pairs].any(axis=1)]
+    meets = np.bincount(pairs.ravel(), minlength=len(ends))
+    pairs = pairs[(meets[pairs] == 1).all(axis=1)]
+    mate = np.full(len(ends), -1)
+    mate[pairs] = pairs[:, ::-1]
+    return mate.tolist()

@@ -46,6 +46,8 @@ def merged(named: list[tuple[str, np.ndarray]], edge: float) -> list[tuple[str, 
         for k, hole in enumerate(holes)
     ]
     left = cloth.difference(unary_union(wider))
+    if left.is_empty:
+        raise OutlineError(f"{names}: leaves no cloth – holes belong inside the outline")
     if not isinstance(left, Polygon):
         raise OutlineError(f"{names}: cuts the panel into parts – give each part an outline of its own")
     warnings.warn(

@@ -7,7 +7,7 @@ from sim_core.mesh.model import MeshReport
 from sim_core.mesh.quality import quality
 from sim_core.mesh.verify import area_error, conformity
 
-__all__ = ["measured"]
+__all__ = ["deviation", "measured"]
 
 
 def measured(vertices, faces, boundary, contours, free, seconds: float) -> MeshReport:
@@ -23,12 +23,12 @@ def measured(vertices, faces, boundary, contours, free, seconds: float) -> MeshR
         area_error=area_error(vertices, faces, boundary),
         conformity=conformity(free, boundary, len(vertices)),
         outline_deviation=max(
-            _deviation(contour, vertices[loop]) for contour, loop in zip(contours, boundary, strict=True)
+            deviation(contour, vertices[loop]) for contour, loop in zip(contours, boundary, strict=True)
         ),
     )
 
 
-def _deviation(contour: np.ndarray, loop: np.ndarray) -> float:
+def deviation(contour: np.ndarray, loop: np.ndarray) -> float:
     """Hausdorff distance [m] between a given contour and the meshed one, from the points and middles of their steps."""
     return max(_farthest(contour, loop), _farthest(loop, contour))
 

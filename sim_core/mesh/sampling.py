@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from sim_core.mesh.crossings import crossed_steps
 from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
 from sim_core.mesh.sizes import SizeField
 
@@ -12,8 +13,10 @@ __all__ = ["Rim", "sampled_contours", "sampled_rim"]
 
 SPLITTING_PASSES = 12
 FINEST = 32
+SAME = 1e-9  # of a chain's length: places nearer to each other are one
 DEVIATION = 0.045  # of the edge: a step that leaves the given line by more is halved
-PARTS = 256  # of a chain between corners over which edge lengths of a size field are summed
+PARTS = 256  # of a chain between corners, at least, over which edge lengths of a size field are summed
+MOST_PARTS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,14 @@ class _Chain:
         at = np.insert(self.at, np.flatnonzero(split) + 1, middle[split])
         return _Chain(self.points, self.arc, at, self.closed)
 
+    def as_given(self, steps: np.ndarray) -> "_Chain":
+        """The chain with all its given points in the marked steps (bool)."""
+        step = np.clip(np.searchsorted(self.at, self.arc, side="right") - 1, 0, len(steps) - 1)
+        given = self.arc[steps[step]]
+        gap = np.abs(self.at[:, None] - given).min(axis=1, initial=np.inf)
+        kept = self.at[(gap == 0) | (gap > SAME * self.arc[-1])]  # no sample within rounding of a given point
+        return _Chain(self.points, self.arc, np.union1d(kept, given), self.closed)
+
 
 def sampled_contours(contours: list[np.ndarray], edge: float) -> list[np.ndarray]:
     """Samples (m, 2) [m] of each contour (n, 2) [m]: `sampled_rim` without inner lines."""
@@ -86,7 +97,8 @@ def sampled_rim(
     sizes: shorter steps by place.
     A step is halved, along the given line, where it leaves that line by more than 0.045 edge, and while a sample that
     is no neighbour lies in the circle over it as diameter: then it is a Delaunay edge, and growth follows it without
-    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32.
+    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32. Steps that cross each other,
+    where bent lines run closer than that, follow the given line point by point, which crosses nothing.
     """
     corners = {tuple(point) for line in lines for point in line[[0, -1]]}
     corners |= {tuple(point) for point in (() if kept is None else kept)}
@@ -102,6 +114,11 @@ def sampled_rim(
         if not any(mark.any() for mark in split):
             break
         chains = [chain.halved(mark) for chain, mark in zip(chains, split, strict=True)]
+    for _ in range(SPLITTING_PASSES):
+        crossed = crossed_steps([chain.sampled() for chain in chains])
+        if not any(mark.any() for mark in crossed):
+            break
+        chains = [chain.as_given(mark) for chain, mark in zip(chains, crossed, strict=True)]
     return _joined(chains)
 
 
@@ -138,7 +155,8 @@ def _even(
             if not _strays(_Chain(points[inner], arc[inner], at, False), DEVIATION * edge).any():
                 return at[:-1]
         return np.linspace(begin, end, fewest + 1)[:-1]
-    fine = np.linspace(begin, end, PARTS + 1)
+    parts = int(np.clip(2 * (end - begin) / sizes.sizes.min(), PARTS, MOST_PARTS))
+    fine = np.linspace(begin, end, parts + 1)
     middle = (fine[:-1] + fine[1:]) / 2
     places = np.column_stack([np.interp(middle, arc, points[:, axis]) for axis in range(2)])
     count = np.concatenate([[0.0], np.cumsum(np.diff(fine) / sizes.at(places, edge))])

@@ -4,7 +4,7 @@ A side is a stretch of a panel's outline from one of its points to another. Both
 fractions of their length: N = max(1, round(longer / edge)) steps in all, corners and notches of either side kept.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from sim_core.errors import OutlineError
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.outline import CORNER_DEGREES, clean_contour, outline_samples, outline_turning, signed_area
 from sim_core.mesh.panel import panel_mesh
+from sim_core.mesh.report import deviation
 
 __all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
 
@@ -60,7 +61,8 @@ def sewn_meshes(
     """Mesh panels whose seams match vertex for vertex.
 
     outlines: (N, 2) [m] each, y down.  seams: see `Seam`; the sides of one outline do not overlap.  edge: [m].
-    Returns one mesh a panel and one fit a seam. Raises OutlineError naming the panel or seam that cannot be.
+    Returns one mesh a panel, its `outline_deviation` from the outline given, and one fit a seam.
+    Raises OutlineError naming the panel or seam that cannot be.
     """
     contours = [clean_contour(outline, f"panel {k}") for k, outline in enumerate(outlines)]
     for k, (outline, contour) in enumerate(zip(outlines, contours, strict=True)):
@@ -88,7 +90,9 @@ def sewn_meshes(
         loop = mesh.vertices[mesh.boundary[0]]
         if not np.array_equal(loop, samples[::-1] if turned else samples):
             raise OutlineError(f"panel {k}: samples fall together – give a larger seam or a smaller edge")
-        meshes.append(mesh)
+        given = contour if (signed_area(contour) < 0) == turned else contour[::-1]
+        report = replace(mesh.report, outline_deviation=deviation(given, loop))
+        meshes.append(replace(mesh, report=report))
         places.append(
             {tuple(point): int(v) for v, point in zip(mesh.boundary[0], loop.tolist(), strict=True)}
         )

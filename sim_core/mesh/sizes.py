@@ -12,6 +12,7 @@ from sim_core.reading import read_json, shown
 __all__ = ["SizeField", "read_size_field"]
 
 SHORTEST = 64  # a point's edge is at least edge / SHORTEST
+LARGEST = 1e6  # [m] sizes and places beyond this are no metres
 BLOCK = 4_000_000  # distances held at a time
 
 
@@ -31,9 +32,11 @@ class SizeField:
             raise OutlineError(f"size field: points of shape {self.points.shape} – give (k, 2), at least one")
         if self.sizes.shape != (len(self.points),):
             raise OutlineError(f"size field: {self.sizes.shape} sizes for {len(self.points)} points")
-        if not np.isfinite(self.points).all() or not (np.isfinite(self.sizes) & (self.sizes > 0)).all():
+        near = (np.abs(self.points) <= LARGEST).all()  # false for NaN too
+        if not near or not ((self.sizes > 0) & (self.sizes <= LARGEST)).all():
             raise OutlineError(
-                "size field: not finite, or a size that is not positive – give [x, y, size] in metres"
+                "size field: not finite, or a size that is not positive – give [x, y, size] in metres, "
+                f"at most {LARGEST:g}"
             )
         if not (isfinite(self.gradation) and 0 < self.gradation <= 1):
             raise OutlineError(f"size field: gradation {self.gradation} – give a number above 0, at most 1")

@@ -1,6 +1,7 @@
 """Outlines from SVG: paths, polygons, polylines, rectangles, circles and ellipses, with transforms and units.
 
-Closed shapes are contours (the largest is the outline, the others are holes), open ones are inner lines. Lengths are
+Closed shapes are contours (the largest is the outline, the others are holes), open ones are inner lines; a path or
+polyline that ends where it began is closed too. Lengths are
 millimetres unless width and viewBox say otherwise; user units without them are CSS pixels (96 to the inch).
 """
 
@@ -29,6 +30,7 @@ UNITS = {
     "": 0.0254 / 96,
 }
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+FLAGS = re.compile(r"\s*,?\s*([01])\s*,?\s*([01])")  # of an arc; they may stand without a space between
 TOKENS = re.compile(r"[MmLlHhVvCcSsQqTtAaZz]|[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7}
 HIDDEN = {"defs", "symbol", "clipPath", "mask", "pattern", "marker"}
@@ -37,8 +39,8 @@ HIDDEN = {"defs", "symbol", "clipPath", "mask", "pattern", "marker"}
 def read_svg(path: Path) -> list[tuple[np.ndarray, bool]]:
     """The shapes of an SVG file as (points (n, 2) [m], closed). Raises FileProblem."""
     text = read_text(path, "an outline drawn as SVG")
-    if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise FileProblem(f"{path}: has a document type – save it as plain SVG without entities")
+    if "<!ENTITY" in text:
+        raise FileProblem(f"{path}: declares entities – save it as plain SVG without them")
     try:
         root = ElementTree.fromstring(text)
     except (ElementTree.ParseError, ValueError) as error:
@@ -47,7 +49,10 @@ def read_svg(path: Path) -> list[tuple[np.ndarray, bool]]:
         raise FileProblem(f"{path}: its root is <{_tag(root)[:40]}> – give an outline drawn as SVG")
     try:
         scale = _scale(root)
-        return [(points * scale, closed) for points, closed in _shapes(root, np.eye(3))]
+        with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
+            return [(points * scale, closed) for points, closed in _shapes(root, np.eye(3))]
+    except RecursionError as error:
+        raise FileProblem(f"{path}: groups nested too deep – take shapes out of their groups") from error
     except (ValueError, IndexError, OverflowError) as error:
         raise FileProblem(f"{path}: {error} – give paths, polygons, rectangles or circles") from error
 
@@ -69,7 +74,9 @@ def _scale(root) -> float:
     box = [float(v) for v in NUMBER.findall(root.get("viewBox", ""))]
     width = root.get("width", "")
     if len(box) == 4 and box[2] > 0 and width and not width.strip().endswith("%"):
-        return _length(width) / box[2]
+        if (metres := _length(width)) <= 0:
+            raise ValueError(f"width {width[:30]!r} is not positive")
+        return metres / box[2]
     return UNITS["px"]
 
 
@@ -80,6 +87,8 @@ def _shapes(element, frame: np.ndarray) -> Iterator[tuple[np.ndarray, bool]]:
     frame = frame @ _transform(element.get("transform", ""))
     for points, closed in _drawn(element, tag):
         if len(points) > 1:
+            if len(points) > 3 and np.array_equal(points[0], points[-1]):
+                points, closed = points[:-1], True
             yield points @ frame[:2, :2].T + frame[:2, 2], closed
     for child in element:
         yield from _shapes(child, frame)
@@ -99,12 +108,26 @@ def _drawn(element, tag: str) -> list[tuple[np.ndarray, bool]]:
         return [(np.array([[value("x1"), value("y1")], [value("x2"), value("y2")]]), False)]
     if tag == "rect":
         x, y, w, h = (value(name) for name in ("x", "y", "width", "height"))
-        return [(np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]]), True)]
+        rx, ry = (value(name if element.get(name) else other) for name, other in (("rx", "ry"), ("ry", "rx")))
+        return [(_rectangle(x, y, w, h, min(rx, w / 2), min(ry, h / 2)), True)]
     if tag in ("circle", "ellipse"):
         rx, ry = (value("r"),) * 2 if tag == "circle" else (value("rx"), value("ry"))
         turn = np.arange(256) * 2 * np.pi / 256
         return [(np.column_stack([value("cx") + rx * np.cos(turn), value("cy") + ry * np.sin(turn)]), True)]
     return []
+
+
+def _rectangle(x: float, y: float, w: float, h: float, rx: float, ry: float) -> np.ndarray:
+    """Corners of a rectangle, rounded by quarters of an ellipse where both radii are positive."""
+    if rx <= 0 or ry <= 0:
+        return np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]])
+    found = []
+    for turn, (cx, cy) in enumerate(
+        ((x + w - rx, y + ry), (x + w - rx, y + h - ry), (x + rx, y + h - ry), (x + rx, y + ry))
+    ):
+        t = (np.linspace(0, 1, 33) + turn - 1) * np.pi / 2
+        found.append(np.column_stack([cx + rx * np.cos(t), cy + ry * np.sin(t)]))
+    return np.concatenate(found)
 
 
 def _transform(text: str) -> np.ndarray:
@@ -130,9 +153,27 @@ def _transform(text: str) -> np.ndarray:
     return frame
 
 
+def _tokens(text: str) -> list[str]:
+    """Command letters and numbers of path data; the flags of an arc are single digits, however close they stand."""
+    found: list[str] = []
+    at, kind, count = 0, "", 0
+    while at < len(text):
+        if kind == "A" and count % 7 == 3 and (flags := FLAGS.match(text, at)):
+            found += flags.groups()
+            at, count = flags.end(), count + 2
+            continue
+        match = TOKENS.search(text, at)
+        if match is None:
+            break
+        found.append(match[0])
+        at = match.end()
+        kind, count = (match[0].upper(), 0) if match[0].isalpha() else (kind, count + 1)
+    return found
+
+
 def _path(text: str) -> list[tuple[np.ndarray, bool]]:
     """The subpaths of path data as polylines, curves in short steps."""
-    tokens = TOKENS.findall(text)
+    tokens = _tokens(text)
     found: list[tuple[np.ndarray, bool]] = []
     points: list[np.ndarray] = []
     here, before, command, k = np.zeros(2), None, "", 0

@@ -1,14 +1,14 @@
 """Readers and writers of the mesh room: outlines from JSON, SVG and DXF in; npz, PLY, OBJ out."""
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.dxf import read_dxf
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import signed_area
+from sim_core.mesh.outline import LARGEST, signed_area
 from sim_core.mesh.svg import read_svg
 from sim_core.reading import read_json, shown
 
@@ -47,6 +47,11 @@ def read_outline(path: Path) -> Drawing:
 
 
 def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
+    for points, _ in lines:
+        if not (np.abs(points) <= LARGEST).all():  # false for NaN too
+            raise FileProblem(
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+            )
     closed = [points for points, round_ in lines if round_]
     if not closed:
         raise FileProblem(f"{path}: no closed line in it – close the outline")
@@ -55,18 +60,26 @@ def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
-    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise."""
+    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise.
+
+    It is written beside `path` and renamed over: an interrupt leaves the old file or the new one.
+    """
     writers = {".npz": _write_npz, ".ply": _write_ply, ".obj": _write_obj}
     if path.suffix.lower() not in writers:
         raise FileProblem(f"{path}: unknown kind of file – end the name with .npz, .ply or .obj")
     path.parent.mkdir(parents=True, exist_ok=True)
-    writers[path.suffix.lower()](path, mesh)
+    beside = path.with_name(path.name + ".part")
+    try:
+        with beside.open("wb") as stream:
+            writers[path.suffix.lower()](stream, mesh)
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
 
 
-def _write_npz(path: Path, mesh: PanelMesh) -> None:
+def _write_npz(stream: IO[bytes], mesh: PanelMesh) -> None:
     np.savez_compressed(
-        path,
-        allow_pickle=False,
+        stream,
         vertices=mesh.vertices,
         faces=mesh.faces,
         boundary=np.concatenate(mesh.boundary),
@@ -85,7 +98,7 @@ def _upright(mesh: PanelMesh) -> np.ndarray:
     return np.column_stack([mesh.vertices[:, 0], -mesh.vertices[:, 1], np.zeros(len(mesh.vertices))])
 
 
-def _write_ply(path: Path, mesh: PanelMesh) -> None:
+def _write_ply(stream: IO[bytes], mesh: PanelMesh) -> None:
     head = (
         "ply\nformat binary_little_endian 1.0\n"
         f"element vertex {len(mesh.vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -93,10 +106,10 @@ def _write_ply(path: Path, mesh: PanelMesh) -> None:
     )
     faces = np.zeros(len(mesh.faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, mesh.faces
-    path.write_bytes(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
+    stream.write(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
 
 
-def _write_obj(path: Path, mesh: PanelMesh) -> None:
+def _write_obj(stream: IO[bytes], mesh: PanelMesh) -> None:
     lines = [f"v {x:.9g} {y:.9g} 0" for x, y, _ in _upright(mesh)]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces]
-    path.write_text("\n".join(lines) + "\n", "utf-8")
+    stream.write(("\n".join(lines) + "\n").encode())

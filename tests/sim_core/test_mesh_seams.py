@@ -61,6 +61,17 @@ def test_ease_notches_and_corners_of_a_curved_side():
     assert corner.sum() == 1  # the corner between the straight and the curve is a vertex of the seam
 
 
+def test_deviation_is_told_from_the_outline_that_was_given():
+    bend = np.array([[0, 0], [1, 0], *(0.5 + 0.5 * np.column_stack([np.cos(T), np.sin(T)])), [0.0, 1]])
+    seam = Seam(SeamSide(0, 1, len(bend) - 2), SeamSide(1, 0, 1))
+    for outline in (bend, bend[::-1]):
+        side = seam.a if outline is bend else SeamSide(0, 1, len(bend) - 2)
+        meshes, _ = sewn_meshes([outline, SQUARE], [Seam(side, seam.b)], edge=0.25)
+        sag = 0.5 * (1 - np.cos(np.pi / 4 / 4))  # of four steps over the quarter circle
+        assert 0.5 * sag < meshes[0].report.outline_deviation < 2 * sag
+        assert meshes[1].report.outline_deviation < 1e-12
+
+
 def test_a_panel_sewn_on_two_sides_to_two_others():
     seams = [
         Seam(SeamSide(0, 1, 2), SeamSide(1, 0, 3, backward=True)),
