@@ -1,19 +1,20 @@
 """A size field: shorter edges around given points, growing outward no faster than a bounded gradation."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError
+from sim_core.mesh.nearest import SizeBoxes, least_sizes, size_boxes
 from sim_core.reading import read_json, shown
 
 __all__ = ["SizeField", "read_size_field"]
 
 SHORTEST = 64  # a point's edge is at least edge / SHORTEST
 LARGEST = 1e6  # [m] sizes and places beyond this are no metres
-BLOCK = 4_000_000  # distances held at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +44,12 @@ class SizeField:
 
     def at(self, points: np.ndarray, edge: float) -> np.ndarray:
         """Edge lengths (n,) [m] at points (n, 2) [m]; `edge` [m] is the longest."""
-        found = np.full(len(points), edge)
-        for block in np.array_split(np.arange(len(points)), max(1, len(points) * len(self.points) // BLOCK)):
-            gap = np.sqrt(((points[block, None] - self.points) ** 2).sum(axis=2))
-            found[block] = np.minimum(edge, (self.sizes + self.gradation * gap).min(axis=1))
-        return found
+        places = np.ascontiguousarray(points, dtype=np.float64)
+        return least_sizes(places, float(edge), float(self.gradation), *self._boxes)
+
+    @cached_property
+    def _boxes(self) -> SizeBoxes:
+        return size_boxes(np.asarray(self.points, dtype=np.float64), np.asarray(self.sizes, dtype=np.float64))
 
     def check(self, edge: float) -> None:
         """Raise OutlineError where a size is far below the edge."""
