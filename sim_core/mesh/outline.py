@@ -16,6 +16,7 @@ __all__ = [
     "clean_contour",
     "clean_contours",
     "clean_points",
+    "cleaned_contours",
     "outline_samples",
     "outline_turning",
     "sharpest_corner",
@@ -137,12 +138,20 @@ def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndar
     edge: [m]; with it, holes that touch the outline or each other are merged (`merging.py`), with an OutlineWarning.
     Raises OutlineError for crossing contours (naming the segments), zero area, and holes outside.
     """
+    return cleaned_contours(outline, holes, edge=edge)[0]
+
+
+def cleaned_contours(
+    outline, holes, *, edge: float | None = None
+) -> tuple[list[np.ndarray], list[np.ndarray] | None]:
+    """`clean_contours`, and the rim of the cloth as it was given where holes were merged (None elsewhere)."""
     named = [("outline", clean_contour(outline, "outline"))]
     named += [(f"hole {k}", clean_contour(hole, f"hole {k}")) for k, hole in enumerate(holes)]
     for name, contour in named:
         _check_crossings([(name, contour)])
+    given = None
     if edge is not None and len(named) > 1:
-        named = merged(named, edge)
+        named, given = merged(named, edge)
     _check_crossings(named)
     contours = []
     for name, contour in named:
@@ -152,7 +161,7 @@ def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndar
         outer = not contours
         contours.append(contour if (area > 0) == outer else contour[::-1].copy())
     _check_nesting([name for name, _ in named], contours)
-    return contours
+    return contours, given
 
 
 def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:

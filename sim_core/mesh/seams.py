@@ -91,7 +91,7 @@ def sewn_meshes(
         if not np.array_equal(loop, samples[::-1] if turned else samples):
             raise OutlineError(f"panel {k}: samples fall together – give a larger seam or a smaller edge")
         given = contour if (signed_area(contour) < 0) == turned else contour[::-1]
-        report = replace(mesh.report, outline_deviation=deviation(given, loop))
+        report = replace(mesh.report, outline_deviation=deviation([given], [loop]))
         meshes.append(replace(mesh, report=report))
         places.append(
             {tuple(point): int(v) for v, point in zip(mesh.boundary[0], loop.tolist(), strict=True)}

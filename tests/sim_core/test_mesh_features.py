@@ -191,6 +191,16 @@ def test_holes_that_touch_are_merged_with_a_warning(name, kind):
         assert clean_area(mesh) == pytest.approx(cloth, abs=0.001)
 
 
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("name", TOUCHING)
+def test_deviation_of_merged_holes_is_told_from_the_contours_given(name, kind):
+    """The widening by 0.02 of the edge is one, and so is the mouth that a round hole gets where it touches."""
+    mouth = np.sqrt(2 * 0.1 * 0.02 * 0.04) if "circle" in name else 0.0  # half of the chord that is cut off
+    with pytest.warns(OutlineWarning, match="merged"):
+        mesh = panel_mesh(RECTANGLE, edge=0.04, holes=TOUCHING[name][0], quality=kind)
+    assert max(0.9 * mouth, 0.0007) < mesh.report.outline_deviation < max(1.1 * mouth, 0.0045)
+
+
 @pytest.mark.parametrize("off", [0.0, 1e-10])
 def test_a_hole_that_leaves_no_cloth_is_named(off):
     with pytest.raises(OutlineError, match="hole 0: leaves no cloth"):
