@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 __all__ = ["SizeBoxes", "least_sizes", "size_boxes"]
 
@@ -26,7 +26,7 @@ class SizeBoxes(NamedTuple):
 
 def size_boxes(points: np.ndarray, sizes: np.ndarray) -> SizeBoxes:
     """The boxes over points (k, 2) [m] with sizes (k,) [m], k > 0."""
-    order = cKDTree(points, leafsize=FANOUT).indices
+    order = KDTree(points, leafsize=FANOUT).indices
     points, sizes = np.ascontiguousarray(points[order]), np.ascontiguousarray(sizes[order])
     level = np.column_stack([points, points, sizes])
     levels = []
