@@ -9,6 +9,7 @@ import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.nearest import SizeBoxes, least_sizes, size_boxes
+from sim_core.mesh.numbers import check_numbers
 from sim_core.reading import read_json, shown
 
 __all__ = ["SizeField", "read_size_field"]
@@ -73,6 +74,7 @@ def read_size_field(path: Path) -> SizeField:
     gradation = values.get("gradation", 0.2)
     if isinstance(gradation, bool) or not isinstance(gradation, int | float):
         raise FileProblem(f"{path}: gradation: {shown(gradation)} – give a number above 0, at most 1")
+    check_numbers(path, "points", values["points"], "[x, y, size] in metres")
     try:
         rows = np.array(values["points"], dtype=float)
     except (TypeError, ValueError, OverflowError, RecursionError) as error:

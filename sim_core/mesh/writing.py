@@ -1,5 +1,7 @@
 """Readers and writers of the mesh room: outlines from JSON, SVG and DXF in; npz, PLY, OBJ out."""
 
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -8,11 +10,12 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.dxf import read_dxf
 from sim_core.mesh.model import PanelMesh
+from sim_core.mesh.numbers import check_numbers
 from sim_core.mesh.outline import LARGEST, signed_area
 from sim_core.mesh.svg import read_svg
 from sim_core.reading import read_json, shown
 
-__all__ = ["Drawing", "read_outline", "write_mesh"]
+__all__ = ["Drawing", "read_outline", "write_mesh", "write_picture"]
 
 
 class Drawing(NamedTuple):
@@ -43,6 +46,10 @@ def read_outline(path: Path) -> Drawing:
     for name in ("holes", "constraints"):
         if not isinstance(values.get(name, []), list):
             raise FileProblem(f"{path}: {name}: {shown(values[name])} – give a list of lists of [x, y]")
+    check_numbers(path, "outline", values["outline"], "[x, y] in metres")
+    for name, kind in (("holes", "hole"), ("constraints", "constraint")):
+        for k, rows in enumerate(values.get(name, [])):
+            check_numbers(path, f"{kind} {k}", rows, "[x, y] in metres")
     return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
 
 
@@ -60,21 +67,43 @@ def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
-    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise.
+    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0).
 
+    Raises FileProblem for another kind of file, or one that cannot be written.
     It is written beside `path` and renamed over: an interrupt leaves the old file or the new one.
     """
     writers = {".npz": _write_npz, ".ply": _write_ply, ".obj": _write_obj}
     if path.suffix.lower() not in writers:
         raise FileProblem(f"{path}: unknown kind of file – end the name with .npz, .ply or .obj")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    _replaced(path, lambda stream: writers[path.suffix.lower()](stream, mesh))
+
+
+def write_picture(path: Path, picture: np.ndarray) -> None:
+    """Write a picture (n, m, 3) uint8 as .png, as `write_mesh` writes; raises FileProblem."""
+    from PIL import Image
+
+    _replaced(path, lambda stream: Image.fromarray(picture).save(stream, format="png"))
+
+
+def _replaced(path: Path, write: Callable[[IO[bytes]], None]) -> None:
+    """Write beside a path and rename over it; raises FileProblem with the path and a remedy."""
     beside = path.with_name(path.name + ".part")
     try:
-        with beside.open("wb") as stream:
-            writers[path.suffix.lower()](stream, mesh)
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with beside.open("wb") as stream:
+                write(stream)
+            beside.replace(path)
+        finally:
+            with suppress(
+                OSError
+            ):  # what could not be made cannot be removed; the first error is the one to tell
+                beside.unlink(missing_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise FileProblem(
+            f"{path}: cannot be written ({reason}) – give a file in a folder that can be"
+        ) from error
 
 
 def _write_npz(stream: IO[bytes], mesh: PanelMesh) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from exact_delaunay import delaunay_faults
 
+from sim_core import cli
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh
 from sim_core.mesh.outline import signed_area
@@ -211,3 +212,19 @@ def test_a_failed_write_leaves_the_old_file_alone(tmp_path, ending):
         write_mesh(path, replace(mesh, faces="none", boundary=()))
     assert path.read_bytes() == before
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("option", ["--out", "--picture"])
+def test_an_output_that_cannot_be_written_is_one_line_with_a_remedy(tmp_path, capsys, option):
+    outline = tmp_path / "panel.json"
+    outline.write_text('{"outline": [[0, 0], [1, 0], [1, 1]]}')
+    name = "mesh.ply" if option == "--out" else "mesh.png"
+    for place in (outline / name, tmp_path / name):  # a file where a folder should be; a folder of that name
+        if place.parent == tmp_path:
+            place.mkdir()
+        assert cli.main(["mesh", str(outline), "--edge", "0.3", option, str(place)]) == 1
+        told = capsys.readouterr().err
+        assert f"{place}: cannot be written (" in told
+        assert "– give" in told
+        assert told.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "panel.json"])
