@@ -102,7 +102,7 @@ def test_size_field_has_bounded_gradation():
     [
         ("[]", "points: missing"),
         ('{"points": [[0, 0]]}', "shape"),
-        ('{"points": [[0, 0, "a"]]}', "not a list"),
+        ('{"points": [[0, 0, "a"]]}', "give numbers"),
         ('{"points": [[0, 0, -1]]}', "positive"),
         ('{"points": [[0, 0, 1e300]]}', "at most 1e"),
         ('{"points": [[1e300, 0, 0.1]]}', "at most 1e"),
