@@ -87,7 +87,7 @@ def analyse(
     settings: see `Settings`; drop: shorthand for settings.drop. seconds: (n,) spent on each answer, NaN unknown.
     progress: called with the number of resamples just done.
     Raises NotFinite for infinite scores or an item without any, TooFewRows below two usable answers, AllEqual when
-    nothing varies, AnalysisError for an unknown item in `drop`. What stops a single step only (a constant item,
+    nothing varies, UnknownItem in `drop`. What stops a single step only (a constant item,
     dependent items, n ≤ p) becomes a note and leaves that step None.
     """
     chosen = settings or Settings(drop=tuple(drop))
