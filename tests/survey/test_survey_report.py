@@ -266,12 +266,14 @@ def test_the_chinese_report_says_its_notes_in_chinese():
     scores[2] = 5
     scores[7] = scores[9]
     scores[rng.random(scores.shape) < 0.02] = np.nan
+    scores[11, 0], scores[12, 1] = 55, 9
     for settings in (
         Settings(bootstrap=50),
         Settings(bootstrap=50, missing="pairwise"),
         Settings(drop=(GARMENT.item_ids[3],), draws=0),
     ):
-        found = analyse(scores, GARMENT.item_ids, settings=settings)
+        found = analyse(scores, GARMENT.item_ids, settings=settings, points=GARMENT.points)
+        assert [note.form for note in found.notes if note.code == "off_scale"] == ["", "unseen"]
         say = Words("zh", GARMENT)
         for note in found.notes:
             told = say.note(note)
