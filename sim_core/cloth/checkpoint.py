@@ -13,12 +13,12 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.reading import read_npz
 
-_ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film")
+_ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
 
 
 @dataclass
 class RunState:
-    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety."""
+    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety, mode."""
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -29,6 +29,7 @@ class RunState:
     substeps: int = 0
     trace: list[tuple[float, float]] = field(default_factory=list)  # displacement p99, max per frame [m]
     film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
+    mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
 
 
 def run_key(parts: Iterable[object]) -> str:
@@ -53,6 +54,7 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
             velocities=state.velocities,
             numbers=numbers,
             trace=np.array(state.trace, float).reshape(-1, 2),
+            mode=state.mode,
             film=np.array(state.film, np.float32).reshape(-1, *state.positions.shape),
         )
         stream.flush()
@@ -77,6 +79,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
             substeps=int(substeps),
             trace=[(float(p), float(m)) for p, m in data["trace"]],
             film=list(data["film"]),
+            mode=data["mode"],
         )
     except (FileProblem, ValueError, TypeError, OverflowError):
         return None

@@ -15,18 +15,23 @@ from sim_core.cloth.distance import signed_distance
 
 
 @njit(cache=True, error_model="numpy")
-def near_samples(packed, x, samples, reach):
-    """Those of the samples (S, 3) int32 that are nearer than `reach` [m]: (i, j, i) midpoint, (i, i, i) vertex."""
-    flag = np.zeros(len(samples), np.bool_)
+def near_samples(packed, x, samples, reach, near):
+    """Those of the samples (S, 3) int32 that are nearer than `reach` [m]: (i, j, i) midpoint, (i, i, i) vertex.
+
+    near: (S, 3) int32, room for them; the answer is its front part.
+    """
+    count = 0
     for s in range(len(samples)):
-        i, j, k = samples[s]
+        i, j, k = samples[s, 0], samples[s, 1], samples[s, 2]
         w = 0.0 if i == k else 1.0 / 3.0  # a midpoint is (i, j, i): see collide_samples
         u = 0.5 * (1.0 - w)
         px = u * (x[i, 0] + x[j, 0]) + w * x[k, 0]
         py = u * (x[i, 1] + x[j, 1]) + w * x[k, 1]
         pz = u * (x[i, 2] + x[j, 2]) + w * x[k, 2]
-        flag[s] = signed_distance(packed, px, py, pz)[0] < reach
-    return samples[flag]
+        if signed_distance(packed, px, py, pz)[0] < reach:
+            near[count, 0], near[count, 1], near[count, 2] = i, j, k
+            count += 1
+    return near[:count]
 
 
 @njit(cache=True, error_model="numpy")
