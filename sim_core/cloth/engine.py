@@ -23,7 +23,7 @@ from sim_core.errors import SimCoreError
 
 COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
 SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
-_NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2)))
+_NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
 _NO_PULL = (np.zeros(0, np.int64), np.zeros((0, 3)))
 
 

@@ -21,11 +21,12 @@ from sim_core.cloth.banded import (
     band_tensions,
 )
 from sim_core.cloth.collider import MOVING
-from sim_core.cloth.contact import collide_samples, collide_vertices, near_samples
+from sim_core.cloth.contact import (
+    collide_due_samples,
+    collide_due_vertices,
+)
 from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
-
-CONTACT_REACH = 0.02  # [m] samples further away than this are left out until the cloth has moved half of it
 
 SAMPLES_EVERY = 4  # substeps between two looks at midpoints and centroids (and always the last of a frame)
 AIR_EVERY = 4  # substeps between two looks at the air
@@ -67,30 +68,27 @@ class Room(NamedTuple):
     force: np.ndarray
     air: np.ndarray
     face: np.ndarray
-    mark_solid: np.ndarray
-    mark_layer: np.ndarray
-    near_vertices: np.ndarray
-    near_middles: np.ndarray
+    mark: np.ndarray
+    wake_vertices: np.ndarray
+    wake_middles: np.ndarray
 
 
 def room_of(edges: int, vertices: int, longest: int, samples: tuple[int, int]) -> Room:
     """Room for E edges, V vertices, runs of `longest` faces and so many vertex and middle samples."""
     lines = [np.zeros(n) for n in (edges, edges, edges + vertices, edges + vertices)]
-    fields = [np.zeros((3, n)) for n in (vertices, vertices, max(longest, 1), vertices, vertices)]
-    lists = [np.zeros((n, 3), np.int32) for n in samples]
-    return Room(*lines, *fields, *lists)
+    fields = [np.zeros((3, n)) for n in (vertices, vertices, max(longest, 1), vertices)]
+    return Room(*lines, *fields, *(np.zeros(n, np.int32) for n in samples))
 
 
 @njit(cache=True, error_model="numpy")
-def _travel(x, v, mark, off_mean):
-    """How far (V, 3) x has come from its mark and how fast it goes, at most; of the cloth's mean if asked."""
+def _travel(x, v, mark):
+    """How far (V, 3) x has come from its mark and how fast it goes, at most, off the cloth's mean."""
     dx = dy = dz = vx = vy = vz = 0.0
-    if off_mean:
-        for i in range(len(x)):
-            dx, dy, dz = dx + x[i, 0] - mark[i, 0], dy + x[i, 1] - mark[i, 1], dz + x[i, 2] - mark[i, 2]
-            vx, vy, vz = vx + v[i, 0], vy + v[i, 1], vz + v[i, 2]
-        share = 1.0 / len(x)
-        dx, dy, dz, vx, vy, vz = share * dx, share * dy, share * dz, share * vx, share * vy, share * vz
+    for i in range(len(x)):
+        dx, dy, dz = dx + x[i, 0] - mark[i, 0], dy + x[i, 1] - mark[i, 1], dz + x[i, 2] - mark[i, 2]
+        vx, vy, vz = vx + v[i, 0], vy + v[i, 1], vz + v[i, 2]
+    share = 1.0 / len(x)
+    dx, dy, dz, vx, vy, vz = share * dx, share * dy, share * dz, share * vx, share * vy, share * vz
     far = fast = 0.0
     for i in range(len(x)):
         a, b, c = x[i, 0] - mark[i, 0] - dx, x[i, 1] - mark[i, 1] - dy, x[i, 2] - mark[i, 2] - dz
@@ -137,10 +135,15 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
 
 
 @njit(cache=True, error_model="numpy")
-def _against_solids(packed, inverse, around, near_v, near_m, x, v, dt, middles_now):
-    if middles_now:
-        collide_samples(packed, inverse, x, v, near_m, around.sample_clearance, around.cap)
-    collide_vertices(packed, inverse, x, v, near_v, around.clearance, dt, around.friction, around.cap)
+def _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, last):
+    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
+    r, c, cap = around.sample_clearance, around.clearance, around.cap
+    moving = packed.kind[0] == MOVING  # comes nearer on its own: nobody sleeps
+    if step % SAMPLES_EVERY == 0 or last:
+        awake = moving or last
+        collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
+    wake = room.wake_vertices
+    collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
 
 
 @njit(cache=True, error_model="numpy")
@@ -165,14 +168,15 @@ def advance(
 ):
     """Simulates `substeps` steps of dt [s]; xs, vs (3, V) change in place; returns how often pairs were looked for.
 
-    v lives half a step behind x; `last` is the previous step (0 at the start). Lists are renewed before the cloth
-    has moved half their margin (for pairs: off its mean).
+    v lives half a step behind x; `last` is the previous step (0 at the start). Lists of pairs are renewed before
+    the cloth has moved half their margin off its mean.
     """
-    x, v, marks, markl = xs.T, vs.T, room.mark_solid.T, room.mark_layer.T
+    x, v, mark = xs.T, vs.T, room.mark.T
     solids, layers = len(packed.kind) > 0, shell.thickness > 0.0
-    near_v, near_m = room.near_vertices[:0], room.near_middles[:0]
+    room.wake_vertices[:] = 0
+    room.wake_middles[:] = 0
     points, crossings = np.zeros((0, 2), np.int32), np.zeros((0, 2), np.int32)
-    look_solid, look_layer, searches = -1, -1, 0
+    look_layer, searches = -1, 0
     push = around.cap if solids else 0.0
     g = around.gravity
     if around.beta > 0.0:
@@ -189,13 +193,13 @@ def advance(
         last = dt
         if layers and step % shell.every == 0:
             if step >= look_layer:
-                far, fast = _travel(x, v, markl, True) if look_layer >= 0 else (np.inf, 0.0)
+                far, fast = _travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
                 if far > 0.3 * shell.skin:
                     points, crossings = candidate_pairs(
                         x, rest, faces, edges, bands.length2, holds.same, shell
                     )
-                    room.mark_layer[:], searches = xs, searches + 1
-                    far, fast = _travel(x, v, markl, True)
+                    room.mark[:], searches = xs, searches + 1
+                    far, fast = _travel(x, v, mark)
                 look_layer = step + 1 + _patience(0.5 * shell.skin - far, fast, dt, push)
             repel(x, v, inverse, faces, edges, points, crossings, shell, dt * shell.every)
         if around.speed_limit < FREE:
@@ -210,17 +214,8 @@ def advance(
                 early, late = around.body
                 packed.blend[0] = early + (late - early) * (step + 1) / substeps
                 packed.blend[1] = (late - early) / (substeps * dt)
-            if step >= look_solid:
-                far, fast = _travel(x, v, marks, False) if look_solid >= 0 else (np.inf, 0.0)
-                if far > 0.3 * CONTACT_REACH:
-                    reach = around.clearance + CONTACT_REACH
-                    near_v = near_samples(packed, x, vertices, reach, room.near_vertices)
-                    near_m = near_samples(packed, x, middles, reach, room.near_middles)
-                    room.mark_solid[:] = xs
-                    far, fast = _travel(x, v, marks, False)
-                look_solid = step + 1 + _patience(0.5 * CONTACT_REACH - far, fast, dt, push)
-            now = step % SAMPLES_EVERY == 0 or step == substeps - 1
-            _against_solids(packed, inverse, around, near_v, near_m, x, v, dt, now)
+            end = step == substeps - 1
+            _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, end)
         bound(holds, x, v)
         mirror(holds, x, v)
     return searches
