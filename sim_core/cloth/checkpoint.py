@@ -27,7 +27,10 @@ class RunState:
     safety: float = 1.0
     rollbacks: int = 0
     substeps: int = 0
+    fallbacks: int = 0
+    stretch: float = 1.0  # the longest an edge has been, as a share of its rest length
     trace: list[tuple[float, float]] = field(default_factory=list)  # displacement p99, max per frame [m]
+    seconds: list[float] = field(default_factory=list)  # per frame of this process; not kept
     film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
     mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
 
@@ -45,7 +48,8 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
     """Writes the state beside `path` and renames it over: an interrupt leaves the old or the new one."""
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
-    numbers = np.array([state.frame, state.last_step, state.safety, state.rollbacks, state.substeps], float)
+    counters = (state.rollbacks, state.substeps, state.fallbacks, state.stretch)
+    numbers = np.array([state.frame, state.last_step, state.safety, *counters], float)
     with beside.open("wb") as stream:
         np.savez(
             stream,
@@ -68,7 +72,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
         data = read_npz(path, _ARRAYS, "a checkpoint", "the run begins anew")
         if str(data["key"]) != key:
             return None
-        frame, last, safety, rollbacks, substeps = data["numbers"]
+        frame, last, safety, rollbacks, substeps, fallbacks, stretch = data["numbers"]
         return RunState(
             positions=data["positions"],
             velocities=data["velocities"],
@@ -77,6 +81,8 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
             safety=float(safety),
             rollbacks=int(rollbacks),
             substeps=int(substeps),
+            fallbacks=int(fallbacks),
+            stretch=float(stretch),
             trace=[(float(p), float(m)) for p, m in data["trace"]],
             film=list(data["film"]),
             mode=data["mode"],

@@ -41,6 +41,11 @@ class Drape:
     rest_p99: float
     rest_max: float
     trace: tuple[tuple[float, float], ...] = field(repr=False)
+    fallbacks: int = 0  # frames that were rolled back and done by the implicit scheme
+    worst_stretch: float = (
+        1.0  # longest an edge has been at the end of a frame, as a share of its rest length
+    )
+    frame_seconds: tuple[float, ...] = field(default=(), repr=False)  # what each frame of this process took
 
 
 def drape(
@@ -55,6 +60,7 @@ def drape(
     air: Air | None = None,
     down: Sequence[float] = (0.0, -1.0, 0.0),
     substeps: int | None = None,
+    integrator: str = "auto",
     velocities: np.ndarray | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
@@ -65,6 +71,9 @@ def drape(
     """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
 
     substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
+    integrator: "explicit", "implicit" (backward Euler, substeps steps a frame or 8), or "auto": explicit, with the
+    implicit scheme for frames that would blow up.
+    air: what blows, and brakes; None costs nothing.
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
     it behind, finished, for a caller who has more to do.
@@ -82,6 +91,7 @@ def drape(
         air=air,
         down=np.asarray(down, float),
         substeps=substeps,
+        integrator=integrator,
     )
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
@@ -151,6 +161,9 @@ def _result(state: RunState, seconds: float) -> Drape:
         p99,
         most,
         tuple(state.trace),
+        state.fallbacks,
+        state.stretch,
+        tuple(state.seconds),
     )
 
 

@@ -10,19 +10,22 @@ import numpy as np
 from sim_core.cloth.air import Air
 from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
-from sim_core.cloth.contact import contact_samples
+from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.forces import energies
-from sim_core.cloth.holding import Holds
+from sim_core.cloth.holding import Holds, bound, draw_together, mirror
+from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
-from sim_core.cloth.stepping import Surroundings, advance, room_of
+from sim_core.cloth.stepping import FREE, Surroundings, advance, room_of
 from sim_core.errors import SimCoreError
 
 COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
 SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
+IMPLICIT_STEPS = 8  # a frame by backward Euler
+IMPLICIT_PASSES = 4  # over the contacts after each of them
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
 _NO_PULL = (np.zeros(0, np.int64), np.zeros((0, 3)))
 
@@ -83,6 +86,7 @@ class Engine:
         samples = (len(self.vertices), len(self.middles))
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         free = self.sheet.stencil.inverse_mass
+        self.implicit = Implicit(self.sheet, self.bands, self.room)
         self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
         self._inverse: dict[tuple[int, ...], np.ndarray] = {(): free}
 
@@ -151,15 +155,76 @@ class Engine:
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room)
         advance(*fixed, *touch, x, v, last, dt, count)
 
+    def advance_implicit(
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        count: int = IMPLICIT_STEPS,
+        newtons: int | None = None,
+    ) -> None:
+        """Moves x, v (3, V) through one frame by `count` steps of backward Euler; layers do not feel each other.
+
+        newtons: Newton steps in each (None: one where the steps are short, five where they are long).
+        """
+        newtons = newtons or (1 if count >= IMPLICIT_STEPS else 5)
+        material, h, inverse = self.sheet.material, FRAME / count, self.inverse_mass(pins)
+        v[:, inverse == 0.0] = 0.0
+        wind = np.zeros((2, 3)) if under.wind is None else under.wind
+        pulled, pull = self.number[under.pulls[0]], under.pulls[1]
+        for step in range(count):
+            now = wind[0] + (step + 0.5) / count * (wind[1] - wind[0])
+            load = Load(
+                np.asarray(under.gravity, float),
+                float(under.damping),
+                float(material.stiffness_damping),
+                now,
+                float(under.press),
+                pulled,
+                pull,
+            )
+            there = self.implicit.step(x, v, inverse, h, load, newtons)
+            v[:], x[:] = (there - x) / h, there
+            if under.speed_limit < FREE:
+                speed = np.sqrt((v * v).sum(0))
+                v *= np.minimum(1.0, under.speed_limit / np.maximum(speed, 1e-30))
+            self._held(under, inverse, x.T, v.T, (step + 1) / count, h)
+
+    def _held(
+        self, under: Conditions, inverse: np.ndarray, x: np.ndarray, v: np.ndarray, part: float, h: float
+    ) -> None:
+        """Seams, solids, bounds and images after an implicit step."""
+        if len(self.holds.pairs):
+            early, late = under.sewing
+            draw_together(self.holds, inverse, x, v, early + (late - early) * part, (early - late) / FRAME)
+        packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
+        if len(packed.kind):
+            if self.moving:
+                packed.blend[:] = body[0] + (body[1] - body[0]) * part, (body[1] - body[0]) / FRAME
+            c, cap = self.contact, self.contact.clearance
+            for _ in range(IMPLICIT_PASSES):
+                collide_samples(packed, inverse, x, v, self.middles, c.sample_clearance, cap)
+                collide_vertices(packed, inverse, x, v, self.vertices, c.clearance, h, under.friction, cap)
+        bound(self.holds, x, v)
+        mirror(self.holds, x, v)
+
     def forget(self) -> None:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
 
+    def stretch(self, x: np.ndarray) -> float:
+        """The longest an edge is at x (3, V), as a share of its rest length."""
+        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
+        return float(np.sqrt((((x[:, ends[:, 0]] - x[:, ends[:, 1]]) ** 2).sum(0) / rest2).max()))
+
     def energy(self, x: np.ndarray, v: np.ndarray, gravity: np.ndarray) -> tuple[float, float]:
         """Stored and kinetic energy, and that of height [J], of x, v (3, V)."""
         stored = sum(energies(self.sheet.stencil, x.T, v.T))
-        return stored, -float(self.sheet.mass @ (x.T @ gravity))
+        # Sums, not products of matrices: those start threads, and add up in an order of their own.
+        along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
+        return stored, -float((self.sheet.mass * along).sum())
 
     def healthy(
         self, under: Conditions, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
@@ -171,7 +236,7 @@ class Engine:
         if not all(np.isfinite(a).all() for a in after):
             return False
         if not under.quiet:
-            return self._whole(before[0], after[0])
+            return self.whole(before[0], after[0])
         (stored, height), (stored_after, height_after) = (
             self.energy(*state, under.gravity) for state in (before, after)
         )
@@ -180,8 +245,10 @@ class Engine:
         allowed = (0.02 if touches else 0.001) * weight
         return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + allowed
 
-    def _whole(self, before: np.ndarray, after: np.ndarray) -> bool:
-        """No edge is twice its length that was not so, or nearly so, already."""
+    def whole(self, before: np.ndarray, after: np.ndarray) -> bool:
+        """Finite, and no edge is twice its length, nor twice what it was, if that was longer."""
+        if not np.isfinite(after).all():
+            return False
         ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
         longer = ((after[:, ends[:, 0]] - after[:, ends[:, 1]]) ** 2).sum(0) / rest2
         earlier = ((before[:, ends[:, 0]] - before[:, ends[:, 1]]) ** 2).sum(0) / rest2

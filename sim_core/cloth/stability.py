@@ -20,11 +20,16 @@ FIRST_ROUNDS, NEXT_ROUNDS = 40, 8
 
 
 @njit(cache=True, error_model="numpy")
-def stiffness_times(bands, room, x, p, out):
-    """out = -K p (3, V) for the tangent at x, whose tensions lie in room.tension: the derivative of the force."""
+def stiffness_times(bands, room, x, p, out, stiffer=1.0):
+    """out = -K p (3, V) for the tangent at x, whose tensions lie in room.tension: the derivative of the force.
+
+    stiffer: what the elastic part is multiplied with (an implicit step's damping).
+    """
     g, c = room.air, bands.coupling
     band_strain_changes(bands.edge_runs, x[0], x[1], x[2], p[0], p[1], p[2], room.strain)
     band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.change)
+    if stiffer != 1.0:
+        room.change[:] *= stiffer
     band_pulls(bands.vertex_runs, room.change, x[0], x[1], x[2], out[0], out[1], out[2])
     band_pulls(bands.vertex_runs, room.tension, p[0], p[1], p[2], g[0], g[1], g[2])
     band_add(out[0], out[1], out[2], g[0], g[1], g[2])

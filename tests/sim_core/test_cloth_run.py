@@ -59,13 +59,20 @@ def test_watchdog_rolls_back_a_frame_that_blows_up(monkeypatch: pytest.MonkeyPat
     scene = hang_edge(0.1, seconds=0.08)
     true_step = engine.stable_step
     monkeypatch.setattr(engine, "stable_step", lambda *a, **k: 3.0 * true_step(*a, **k))
-    end = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+    end = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins, integrator="explicit")
     assert end.rollbacks >= 1
+    assert end.fallbacks == 0
     assert np.isfinite(end.positions).all()
     assert end.positions[:, 1].min() > -0.2
     monkeypatch.setattr(engine, "stable_step", lambda *a, **k: 1e4 * true_step(*a, **k))
     with pytest.raises(SimCoreError, match="unstable"):
-        drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+        drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins, integrator="explicit")
+    saved = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+    assert saved.fallbacks >= 1
+    monkeypatch.undo()
+    true = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins)
+    assert true.fallbacks == 0
+    assert np.abs(saved.positions - true.positions).max() < 0.01
 
 
 def test_same_input_same_bits() -> None:
