@@ -4,6 +4,7 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 from sim_core.cloth.draping import Contact, Drape, Phase, drape
 from sim_core.cloth.holding import Holds
+from sim_core.cloth.live import Live
 from sim_core.cloth.material import Material
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.sheet import Sheet
@@ -18,6 +19,7 @@ __all__ = [
     "GridSdf",
     "HalfSpace",
     "Holds",
+    "Live",
     "Material",
     "MovingGrid",
     "Phase",

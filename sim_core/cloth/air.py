@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +42,10 @@ class Air:
     def press(self) -> float:
         """density Cd / 12 [kg/m3]: what the compiled loop takes."""
         return self.density * self.drag / 12
+
+    def blowing(self, wind: Sequence[float]) -> Air:
+        """The same air with another wind (x, y, z) [m/s]."""
+        return replace(self, wind=(float(wind[0]), float(wind[1]), float(wind[2])))
 
     def at(self, seconds: float) -> np.ndarray:
         """The wind (3,) [m/s] at a time [s]."""

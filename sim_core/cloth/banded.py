@@ -140,6 +140,14 @@ def band_air(runs, x, y, z, u, v, w, ux, uy, uz, press, fx, fy, fz, hx, hy, hz):
 
 
 @distinct
+def band_ahead(now, past, ahead, out):
+    """out = now + ahead (now - past), each (V,); then past = now."""
+    for i in range(len(now)):
+        out[i] = now[i] + ahead * (now[i] - past[i])
+        past[i] = now[i]
+
+
+@distinct
 def band_add(fx, fy, fz, gx, gy, gz):
     """(fx, fy, fz) += (gx, gy, gz), each (V,)."""
     for i in range(len(fx)):

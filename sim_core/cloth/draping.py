@@ -15,9 +15,8 @@ from sim_core.cloth.collider import Solid
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, schedule
-from sim_core.cloth.running import Run
+from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
-from sim_core.errors import SimCoreError
 
 __all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
@@ -80,7 +79,7 @@ def drape(
     Raises SimCoreError on bad input or when the step had to be halved 8 times in one frame.
     """
     start = time.perf_counter()
-    x, v = _checked_state(sheet, positions, velocities)
+    x, v = checked_state(sheet, positions, velocities)
     run = Run(
         sheet,
         phases,
@@ -171,17 +170,3 @@ def _end_of(moments: list[Moment], frame: int, phase: Phase) -> int:
     while frame < len(moments) and moments[frame].phase is phase:
         frame += 1
     return frame
-
-
-def _checked_state(sheet: Sheet, x: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    shape = (len(sheet.rest), 3)
-    x = np.array(x, float, order="C")
-    v = np.zeros(shape) if v is None else np.array(v, float, order="C")
-    for name, array in (("positions", x), ("velocities", v)):
-        if array.shape != shape:
-            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
-        if not np.isfinite(array).all():
-            raise SimCoreError(
-                f"{name}: vertex {np.flatnonzero(~np.isfinite(array).all(1))[0]} is not finite"
-            )
-    return x, v

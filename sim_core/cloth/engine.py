@@ -34,7 +34,8 @@ _NO_PULL = (np.zeros(0, np.int64), np.zeros((0, 3)))
 class Conditions:
     """What one frame is under: gravity (3,) [m/s2], damping [1/s], friction, speed limit [m/s], sewing, body, wind.
 
-    pulled (P,) vertices take the forces pull (P, 3) [N]; wind (2, 3) [m/s] at the frame's begin and end.
+    pulls: vertices (P,) and the forces (P, 3) [N] on them; led: pinned vertices (L,) and where they are by the frame's
+    end (L, 3) [m]; wind (2, 3) [m/s] at its begin and end.
     """
 
     gravity: np.ndarray
@@ -46,12 +47,18 @@ class Conditions:
     wind: np.ndarray | None = None
     press: float = 0.0
     pulls: tuple[np.ndarray, np.ndarray] = _NO_PULL
+    led: tuple[np.ndarray, np.ndarray] = _NO_PULL
 
     @property
     def quiet(self) -> bool:
         """Nothing from outside does work on the cloth but gravity and a wind that only brakes."""
         still = self.sewing[0] == self.sewing[1] and self.body[0] == self.body[1]
-        return still and len(self.pulls[0]) == 0 and (self.press == 0.0 or not np.any(self.wind))
+        return (
+            still
+            and not len(self.pulls[0])
+            and not len(self.led[0])
+            and (self.press == 0.0 or not np.any(self.wind))
+        )
 
 
 class Engine:
@@ -131,7 +138,7 @@ class Engine:
     ) -> None:
         """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it."""
         material, c, dt = self.sheet.material, self.contact, FRAME / count
-        v[:, self.inverse_mass(pins) == 0.0] = 0.0
+        self._lead(under, pins, x, v)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
             np.asarray(under.gravity, float),
@@ -155,6 +162,12 @@ class Engine:
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room)
         advance(*fixed, *touch, x, v, last, dt, count)
 
+    def _lead(self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> None:
+        """What is pinned rests, or has the speed that brings it where it is led within the frame."""
+        v[:, self.inverse_mass(pins) == 0.0] = 0.0
+        index, there = self.number[under.led[0]], under.led[1]
+        v[:, index] = (there.T - x[:, index]) / FRAME
+
     def advance_implicit(
         self,
         under: Conditions,
@@ -166,11 +179,11 @@ class Engine:
     ) -> None:
         """Moves x, v (3, V) through one frame by `count` steps of backward Euler; layers do not feel each other.
 
-        newtons: Newton steps in each (None: one where the steps are short, five where they are long).
+        newtons: Newton steps in each (None: one where the steps are short, three where they are long).
         """
-        newtons = newtons or (1 if count >= IMPLICIT_STEPS else 5)
+        newtons = newtons or (1 if count >= IMPLICIT_STEPS // 2 else 3)
         material, h, inverse = self.sheet.material, FRAME / count, self.inverse_mass(pins)
-        v[:, inverse == 0.0] = 0.0
+        self._lead(under, pins, x, v)
         wind = np.zeros((2, 3)) if under.wind is None else under.wind
         pulled, pull = self.number[under.pulls[0]], under.pulls[1]
         for step in range(count):

@@ -71,14 +71,17 @@ class Run:
         If it blows up it is rolled back and done with half the step, then by the implicit scheme; where layers touch
         or that does not help either, with half the step again and again.
         """
-        engine, pins = self.engine, self._pinned(now.phase)
+        self.frame_under(state, self._conditions(now, state.frame), self._pinned(now.phase))
+
+    def frame_under(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
+        """One frame under the given conditions."""
+        engine = self.engine
         begin = engine.inward(state.positions), engine.inward(state.velocities)
-        under = self._conditions(now, state.frame)
         start = time.perf_counter()
         if self.integrator == "implicit":
             count = self.fixed or IMPLICIT_STEPS
             x, v = self._implicit(under, pins, begin, count)
-            if not engine.whole(begin[0], x):
+            if not np.isfinite(x).all():
                 raise SimCoreError(
                     f"frame {state.frame}: the implicit scheme found no way on – use the explicit"
                 )
@@ -150,3 +153,19 @@ class Run:
             wind=wind,
             press=press,
         )
+
+
+def checked_state(
+    sheet: Sheet, positions: np.ndarray, velocities: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
+    shape = (len(sheet.rest), 3)
+    x = np.array(positions, float, order="C")
+    v = np.zeros(shape) if velocities is None else np.array(velocities, float, order="C")
+    for name, array in (("positions", x), ("velocities", v)):
+        if array.shape != shape:
+            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
+        if not np.isfinite(array).all():
+            wrong = np.flatnonzero(~np.isfinite(array).all(1))[0]
+            raise SimCoreError(f"{name}: vertex {wrong} is not finite")
+    return x, v

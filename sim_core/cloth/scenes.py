@@ -114,7 +114,7 @@ def _flag(values: dict[str, Any], width: float, height: float, count: int, cloth
     sheet = _sheet(width, height, count, cloth)
     positions = np.column_stack([sheet.rest[:, 0], -sheet.rest[:, 1], np.zeros(len(sheet.rest))])
     pins = tuple(int(i) for i in np.flatnonzero(sheet.rest[:, 0] < 1e-9))
-    air = Air(tuple(float(c) for c in values["wind"]))  # type: ignore[arg-type]
+    air = Air().blowing(values["wind"])
     return Scene("flag", sheet, positions, (Phase(1.0, label="flag"),), pins, air=air)
 
 

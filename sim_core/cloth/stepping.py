@@ -9,6 +9,7 @@ from numba import njit
 
 from sim_core.cloth.banded import (
     band_add,
+    band_ahead,
     band_air,
     band_bends,
     band_damped_strains,
@@ -29,7 +30,7 @@ from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 SAMPLES_EVERY = 4  # substeps between two looks at midpoints and centroids (and always the last of a frame)
-AIR_EVERY = 4  # substeps between two looks at the air
+AIR_EVERY = 2  # substeps between two looks at the air
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 FREE = 1e3  # [m/s] a speed limit from here on is none
 
@@ -67,6 +68,8 @@ class Room(NamedTuple):
     change: np.ndarray
     force: np.ndarray
     air: np.ndarray
+    air_now: np.ndarray
+    air_past: np.ndarray
     face: np.ndarray
     mark: np.ndarray
     wake_vertices: np.ndarray
@@ -76,7 +79,7 @@ class Room(NamedTuple):
 def room_of(edges: int, vertices: int, longest: int, samples: tuple[int, int]) -> Room:
     """Room for E edges, V vertices, runs of `longest` faces and so many vertex and middle samples."""
     lines = [np.zeros(n) for n in (edges, edges, edges + vertices, edges + vertices)]
-    fields = [np.zeros((3, n)) for n in (vertices, vertices, max(longest, 1), vertices)]
+    fields = [np.zeros((3, n)) for n in (vertices, vertices, vertices, vertices, max(longest, 1), vertices)]
     return Room(*lines, *fields, *(np.zeros(n, np.int32) for n in samples))
 
 
@@ -126,8 +129,13 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
             wx = wind[0, 0] + part * (wind[1, 0] - wind[0, 0])
             wy = wind[0, 1] + part * (wind[1, 1] - wind[0, 1])
             wz = wind[0, 2] + part * (wind[1, 2] - wind[0, 2])
-            ends = (air[0], air[1], air[2], h[0], h[1], h[2])
+            raw, past = room.air_now, room.air_past
+            ends = (raw[0], raw[1], raw[2], h[0], h[1], h[2])
             band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], wx, wy, wz, u, *ends)
+            # Held for the next steps, it acts on average half an interval later: that far it is carried on.
+            ahead = 0.5 if part > 0.0 else 0.0
+            for k in range(3):
+                band_ahead(raw[k], past[k], ahead, air[k])
         band_add(f[0], f[1], f[2], air[0], air[1], air[2])
     for k in range(len(around.pulled)):
         for axis in range(3):
