@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from sim_core.cloth import Air, Contact, Cylinder, Material, Phase, Sheet, drape
 from sim_core.cloth.engine import Engine
-from sim_core.cloth.forces import energies
+from sim_core.cloth.forces import edge_tensions, energies, vertex_forces
 from sim_core.cloth.live import Live
 from sim_core.cloth.scenes import drape_coefficient, equilateral_sheet, scene
 from sim_core.cloth.stability import first_mode
@@ -43,7 +43,7 @@ def test_hanging_chain_is_the_catenary(edges: int) -> None:
     start = np.column_stack([span * s / length, -0.25 * (1 - (2 * s / length) ** 2), sheet.rest[:, 1]])
     ends = np.flatnonzero(np.abs(np.abs(s) - length / 2) < 1e-9)
     start[ends] = exact[ends]
-    end = drape(sheet, start, [Phase(1.0, damping=10.0), Phase(0.6, damping=20.0)], pins=ends.tolist())
+    end = drape(sheet, start, [Phase(2.4, damping=8.0)], pins=ends.tolist())
     off = np.linalg.norm(end.positions - exact, axis=1)[:, None]
     assert end.rest_max < 2e-4
     assert off.max() < (0.005 if edges >= 50 else 0.02) * length
@@ -82,16 +82,15 @@ def test_cantilever_bends_as_the_heavy_elastica(load: float) -> None:
     first = np.sort(np.unique(np.round(sheet.rest[:, 0], 9)))[:2]
     held = np.flatnonzero(sheet.rest[:, 0] <= first[1] + 1e-9)
     start[held] = np.column_stack([sheet.rest[held, 0], np.zeros(len(held)), sheet.rest[held, 1]])
-    end = drape(sheet, start, [Phase(0.4, damping=20.0), Phase(0.4, damping=60.0)], pins=held.tolist())
-    # The clamp holds the first row's slope: the free part begins half an edge behind it.
+    end = drape(sheet, start, [Phase(1.4, damping=25.0)], pins=held.tolist())
+    # Two rows are held: the slope between them is that of the clamp in their middle.
     rows, line = middle_line(sheet, end.positions)
-    free = elastica(b, rho, length - first[1])
-    s = np.linspace(0, length - first[1], 401)
-    expected = np.column_stack([np.interp(rows[1:] - first[1], s, free[:, k]) for k in (0, 1)]) + [
-        first[1],
-        0,
-    ]
-    assert end.rest_max < 2e-4
+    clamp = first[1] / 2
+    free = elastica(b, rho, length - clamp)
+    s = np.linspace(0, length - clamp, 401)
+    expected = np.column_stack([np.interp(rows[1:] - clamp, s, free[:, k]) for k in (0, 1)])
+    expected += [clamp, 0]
+    assert end.rest_max < 1e-5
     assert np.linalg.norm(line[1:, :2] - expected, axis=1).max() < 0.02 * length
 
 
@@ -130,7 +129,7 @@ def test_a_taut_string_sounds_its_note() -> None:
 
 
 def test_energy_stays_over_ten_thousand_periods() -> None:
-    """36 vertices, no damping, no gravity: the drift of the mean energy is below 1e-3."""
+    """36 vertices, no damping, no gravity: what leapfrog conserves changes by less than 1e-3."""
     cloth = Material(0.05, 50.0, 0.3, 5e-5, mass_damping=0.0, stiffness_damping=0.0)
     rest, faces = equilateral_sheet(0.25, 0.22, 0.05)
     sheet = Sheet.of(rest, faces, cloth)
@@ -140,15 +139,25 @@ def test_energy_stays_over_ten_thousand_periods() -> None:
     v -= (sheet.mass @ v) / sheet.mass.sum()
     engine = Engine(sheet)
     limit = engine.step((), engine.inward(start), first_mode(len(rest)), first=True)
-    eighth = 10_000 * np.pi * limit / 8  # the fastest mode's period is pi times the stable step
-    at, seen = (start, v), []
-    for _ in range(8):
-        run = {"velocities": at[1], "substeps": round(0.04 / (0.35 * limit))}
-        end = drape(sheet, at[0], [Phase(eighth, (0.0, 0.0))], **run)
-        at = (end.positions, end.velocities)
-        seen.append(sum(energies(sheet.stencil, *at)))
-    assert max(seen) / min(seen) - 1 < 0.05
-    assert abs(np.mean(seen[4:]) / np.mean(seen[:4]) - 1) < 1e-3
+    long = 10_000 * np.pi * limit  # the fastest mode's period is pi times the stable step
+    substeps = 2 * round(0.02 / (0.35 * limit))
+
+    def energy(x: np.ndarray, v: np.ndarray, step: float) -> float:
+        """What leapfrog conserves: the product of the velocities before and after stands for their square."""
+        strain, tension, force = np.zeros(len(sheet.edges)), np.zeros(len(sheet.edges)), np.zeros_like(start)
+        edge_tensions(sheet.stencil, x, v, 0.0, strain, tension)
+        vertex_forces(sheet.stencil, x, tension, force)
+        bend = np.zeros_like(start)
+        vertex_forces(sheet.stencil, x, 0 * tension, bend)  # of two steps at once
+        after = v + step * (force + bend) / sheet.mass[:, None]
+        stored = energies(sheet.stencil, x, v)
+        return stored[0] + stored[1] + 0.5 * float((sheet.mass[:, None] * v * after).sum())
+
+    seen = []
+    for part in (0.01, 0.3, 0.6, 1.0):
+        end = drape(sheet, start, [Phase(part * long, (0.0, 0.0))], velocities=v, substeps=substeps)
+        seen.append(energy(end.positions, end.velocities, 0.04 / substeps))
+    assert max(seen) / min(seen) - 1 < 1e-3
 
 
 @pytest.mark.slow
@@ -156,11 +165,11 @@ def test_capstan_holds_exp_mu_theta() -> None:
     """A strip over a fixed cylinder slips when T2 / T1 exceeds exp(mu theta), theta = pi; within 3 %."""
     radius, mu, width = 0.05, 0.2, 0.02
     arc = np.pi * (radius + 0.003)
-    cloth = Material(0.02, 4000.0, 0.0, 1e-9, mu, 0.0, 2e-5)
+    cloth = Material(0.1, 1000.0, 0.0, 1e-9, mu, 0.0, 2e-5)
     left = 0.08
 
     def slipped(ratio: float) -> float:
-        sheet = strip(2 * left + arc, width, 0.006, cloth)
+        sheet = strip(2 * left + arc, width, 0.008, cloth)
         s = sheet.rest[:, 0]
         angle = (s - left) / (radius + 0.003)
         x = np.where(s < left, -(radius + 0.003), np.where(s > left + arc, radius + 0.003, 0.0))
@@ -179,22 +188,22 @@ def test_capstan_holds_exp_mu_theta() -> None:
         low = np.flatnonzero(s < 1e-9)
         high = np.flatnonzero(s > s.max() - 1e-9)
         force, before = 0.1, 0.0
-        for frame in range(60):
+        for frame in range(50):
             grown = min(1.0, (frame + 1) / 10)
             more = 1 + (ratio - 1) * max(0.0, min(1.0, (frame - 10) / 20))
             pull = np.zeros((len(low) + len(high), 3))
             pull[: len(low), 1] = -grown * force / len(low)
             pull[len(low) :, 1] = -grown * more * force / len(high)
             x = live.step(pulls=(np.r_[low, high], pull))
-            if frame == 40:
+            if frame == 10:
                 before = x[low, 1].mean()
-            if frame > 40 and x[low, 1].mean() - before > 0.002:
+            if frame > 10 and x[low, 1].mean() - before > 0.003:
                 break
         return float(x[low, 1].mean() - before)
 
     limit = math.exp(mu * np.pi)
-    assert slipped(0.97 * limit) < 2e-4  # creeps no further
-    assert slipped(1.03 * limit) > 1e-3
+    assert slipped(0.97 * limit) < 0.001  # no more than it stretches
+    assert slipped(1.03 * limit) > 0.003
 
 
 @pytest.mark.slow
