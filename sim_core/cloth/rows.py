@@ -23,7 +23,31 @@ def equilateral_sheet(width: float, height: float, edge: float) -> tuple[np.ndar
         raise WrongArgument(
             f"edge {edge} m – a sheet of {width} x {height} m takes {least:.2g} to {most:.2g} m"
         )
-    columns, rows = max(1, round(width / edge)), max(1, round(height / (edge * sqrt(0.75))))
+    return _lattice(width, height, max(1, round(width / edge)), max(1, round(height / (edge * sqrt(0.75)))))
+
+
+def sheet_of(width: float, height: float, vertices: int) -> tuple[np.ndarray, np.ndarray]:
+    """The sheet with as nearly so many vertices as its triangles, within 4 % of equilateral, allow.
+
+    Raises WrongArgument if there is none.
+    """
+    if not 12 <= vertices <= MOST_VERTICES:
+        raise WrongArgument(f"vertices: {vertices} – a sheet takes 12 to {MOST_VERTICES}")
+    guess = sqrt(width * height * 2 / sqrt(3) / vertices)
+    found = []
+    for columns in range(max(2, int(width / guess * 0.8)), int(width / guess * 1.25) + 3):
+        for rows in range(max(2, int(height / guess)), int(1.5 * height / guess) + 3):
+            skew = abs(height / rows / (width / columns * sqrt(0.75)) - 1)
+            count = (rows + 1) * columns + rows // 2 + 1
+            if skew < 0.04 or vertices < 200:
+                found.append((round(abs(count / vertices - 1), 3), skew, columns, rows))
+    off, skew, columns, rows = min(found, default=(1.0, 1.0, 0, 0))
+    if off > 0.3 or skew > 0.5:
+        raise WrongArgument(f"vertices: {vertices} – too few for a sheet of {width} x {height} m")
+    return _lattice(width, height, columns, rows)
+
+
+def _lattice(width: float, height: float, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
     step = width / columns
     even = np.arange(columns + 1) * step
     even[-1] = width
@@ -74,20 +98,3 @@ def _facing(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
     turned = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0
     faces[turned] = faces[turned][:, [0, 2, 1]]
     return faces.astype(np.int32)
-
-
-def edge_for(width: float, height: float, vertices: int) -> float:
-    """The edge [m] whose sheet comes nearest to so many vertices; raises WrongArgument if none is near."""
-    if not 12 <= vertices <= MOST_VERTICES:
-        raise WrongArgument(f"vertices: {vertices} – a sheet takes 12 to {MOST_VERTICES}")
-    guess = sqrt(width * height * 2 / sqrt(3) / vertices)
-
-    def count(edge: float) -> int:
-        columns, rows = max(1, round(width / edge)), max(1, round(height / (edge * sqrt(0.75))))
-        return (rows + 1) * columns + rows // 2 + 1
-
-    tries = [guess * (1 + 0.002 * k) for k in range(-60, 120)]
-    tries = [e for e in tries if e <= min(width, height) / 2]
-    if not tries:
-        raise WrongArgument(f"vertices: {vertices} – too few for a sheet of {width} x {height} m")
-    return min(tries, key=lambda e: (abs(count(e) - vertices), abs(e - guess)))

@@ -120,6 +120,7 @@ class Run:
             first = state.mode.shape != begin[0].shape
             mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
             step = engine.step(pins, begin[0], mode, first=first)
+            step = min(step, engine.air_step(under, begin[1]) / COURANT)
             state.mode = mode
         for attempt in range(MAX_HALVINGS):
             count = self.fixed or SLOW * int(np.ceil(FRAME / (SLOW * COURANT * state.safety * step)))

@@ -15,7 +15,7 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
 from sim_core.cloth.material import Material
 from sim_core.cloth.phases import FRAME, Contact, Phase
-from sim_core.cloth.rows import disc, edge_for, equilateral_sheet
+from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.teapot import teapot_solid
 from sim_core.errors import WrongArgument
@@ -106,7 +106,7 @@ def _checked_size(size: Sequence[float]) -> tuple[float, float]:
 
 
 def _sheet(width: float, height: float, count: int, cloth: Material) -> Sheet:
-    rest, faces = equilateral_sheet(width, height, edge_for(width, height, count))
+    rest, faces = sheet_of(width, height, count)
     return Sheet.of(rest, faces, cloth)
 
 
@@ -124,7 +124,7 @@ def _teapot(values: dict[str, Any], width: float, height: float, count: int, clo
     (x, z), top = values["at"], 3.15 * scale + 0.02
     flat = sheet.rest - [width / 2, height / 2]
     positions = np.column_stack([flat[:, 0] + x, np.full(len(flat), top), flat[:, 1] + z])
-    contact = Contact(clearance=0.003, sample_clearance=0.001)
+    contact = Contact(clearance=0.003, sample_clearance=0.001, cap=0.002)
     phases = (Phase(1.0, label="teapot"),)
     return Scene("teapot", sheet, positions, phases, (), teapot_solid(scale), contact)
 

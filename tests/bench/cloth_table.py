@@ -17,7 +17,8 @@ from cloth_runs import across, simulate
 from sim_core.cloth.fidelity import FILE, choose
 from sim_core.cloth.scenes import Scene, material, scene
 
-FINEST = 0.007
+FINEST = 0.008
+COARSEST_IMPLICIT = 0.028  # finer meshes never pay by the implicit scheme: its error is that of its step
 EDGES = (0.08, 0.056, 0.04, 0.028, 0.02, 0.014, 0.01)
 SECONDS = {"flag": 0.2, "teapot": 0.24, "hanging": 0.4}
 AREA = {"flag": 1.5, "teapot": 1.0, "hanging": 1.0}
@@ -49,6 +50,8 @@ def made_table(names: list[str]) -> dict:
         finest = {c: scene(name, c, vertices=count(AREA[name], FINEST)) for c in cases}
         for integrator in ("auto", "implicit"):
             for edge in EDGES:
+                if integrator == "implicit" and edge < COARSEST_IMPLICIT:
+                    continue
                 errors, spent = [], []
                 for c in cases:
                     coarse = scene(name, c, vertices=count(AREA[name], edge))
@@ -87,7 +90,7 @@ def unseen(seed: int = 3) -> list[tuple[str, Callable[[float], Scene], float]]:
     return out
 
 
-def check(budgets: tuple[float, ...] = (5.0, 10.0, 20.0)) -> int:
+def check(budgets: tuple[float, ...] = (10.0, 20.0, 30.0)) -> int:
     """Prints budget and true error of every unseen scene; returns how many kept it."""
     kept = 0
     for k, (name, make, area) in enumerate(unseen()):
