@@ -27,7 +27,7 @@ def bending_matrix(
     area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     weight = np.sqrt(area * bend)
     scaled = sparse.diags_array((weight[:, None] * TWIST).ravel()) @ operator
-    matrix = (scaled.T @ scaled).tocsr()
+    matrix = sparse.csr_array(scaled.T @ scaled)
     # What rounding leaves of entries that cancel would cost the loops as much as any other.
     matrix.data[np.abs(matrix.data) < 1e-12 * np.abs(matrix.data).max(initial=0.0)] = 0.0
     matrix.eliminate_zeros()
@@ -75,7 +75,7 @@ def _curvatures(
         ]
         rows[:, c] = np.stack([0.5 * square[0], 0.5 * square[1], square[2]], axis=1)
         heights.append((faces[face, place], share))
-    whole = (twin >= 0).all(1)
+    whole = np.all(twin >= 0, axis=1)
     scale = np.abs(rows).max(axis=(1, 2))[:, None, None]
     unit = np.where(whole[:, None, None], rows / np.maximum(scale, 1e-300), np.eye(3))
     singular = np.linalg.svd(unit, compute_uv=False)
@@ -128,6 +128,6 @@ def _lent(curved: sparse.csr_array, known: np.ndarray, twin: np.ndarray) -> spar
             ),
             (3 * found, 3 * found),
         ).tocsr()
-        operator = (mix @ operator).tocsr()
+        operator = sparse.csr_array(mix @ operator)
         known |= give
     return operator

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
+from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.forces import energies
 from sim_core.cloth.holding import Holds, bound, draw_together, mirror
@@ -28,38 +28,6 @@ AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at i
 IMPLICIT_STEPS = 8  # a frame by backward Euler
 IMPLICIT_PASSES = 4  # over the contacts after each of them
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
-_NO_PULL = (np.zeros(0, np.int64), np.zeros((0, 3)))
-
-
-@dataclass(frozen=True)
-class Conditions:
-    """What one frame is under: gravity (3,) [m/s2], damping [1/s], friction, speed limit [m/s], sewing, body, wind.
-
-    pulls: vertices (P,) and the forces (P, 3) [N] on them; led: pinned vertices (L,) and where they are by the frame's
-    end (L, 3) [m]; wind (2, 3) [m/s] at its begin and end.
-    """
-
-    gravity: np.ndarray
-    damping: float
-    friction: float
-    speed_limit: float
-    sewing: tuple[float, float] = (0.0, 0.0)
-    body: tuple[float, float] = (0.0, 0.0)
-    wind: np.ndarray | None = None
-    press: float = 0.0
-    pulls: tuple[np.ndarray, np.ndarray] = _NO_PULL
-    led: tuple[np.ndarray, np.ndarray] = _NO_PULL
-
-    @property
-    def quiet(self) -> bool:
-        """Nothing from outside does work on the cloth but gravity and a wind that only brakes."""
-        still = self.sewing[0] == self.sewing[1] and self.body[0] == self.body[1]
-        return (
-            still
-            and not len(self.pulls[0])
-            and not len(self.led[0])
-            and (self.press == 0.0 or not np.any(self.wind))
-        )
 
 
 class Engine:

@@ -50,7 +50,7 @@ def choose(scene: str, *, error_mm: float, area: float | None = None) -> Choice:
     if not (math.isfinite(error_mm) and error_mm > 0):
         raise WrongArgument(f"error {error_mm} mm – a budget is above 0")
     part = known[scene]
-    area = area or part["area"]
+    area = float(part["area"]) if area is None else area
     rows = sorted(part["rows"], key=lambda r: r["ms"])
     within = [r for r in rows if SAFETY * r["error_mm"] <= error_mm]
     if not within:

@@ -9,7 +9,7 @@ import numpy as np
 from sim_core.cloth.air import Air
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
-from sim_core.cloth.engine import Conditions
+from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Phase
 from sim_core.cloth.running import Run, checked_state

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 
@@ -18,7 +18,7 @@ def mended(
     """
     rest, faces = np.asarray(rest, float), np.asarray(faces)
     number = np.arange(len(rest))
-    for a, b in sorted(cKDTree(rest).query_pairs(near)):
+    for a, b in sorted(KDTree(rest).query_pairs(near)):
         number[number == number[b]] = number[a]
     faces = number[faces]
     a, b, c = (rest[faces[:, k]] for k in range(3))

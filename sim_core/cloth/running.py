@@ -10,7 +10,8 @@ import numpy as np
 from sim_core.cloth.air import Air
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
-from sim_core.cloth.engine import COURANT, IMPLICIT_STEPS, SLOW, Conditions, Engine
+from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.engine import COURANT, IMPLICIT_STEPS, SLOW, Engine
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase

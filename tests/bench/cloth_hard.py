@@ -182,17 +182,18 @@ def broken_mesh(kind: str) -> Outcome:
 
 
 def on_a_spike() -> Outcome:
-    """A cloth falls level on a spike of 4 mm: it stays outside, and comes to hang."""
+    """A cloth falls level on a spike of 4 mm over a floor: it stays outside both, and comes to rest."""
     rest, faces = equilateral_sheet(0.4, 0.4, 0.02)
     sheet = Sheet.of(rest, faces, replace(GF_CM, friction=0.6))
-    start = np.column_stack([rest[:, 0] - 0.2, np.full(len(rest), 0.52), rest[:, 1] - 0.2])
-    spike, contact = Capsule((0, 0, 0), (0, 0.5, 0), 0.004), Contact(clearance=0.003, thickness=0.002)
+    start = np.column_stack([rest[:, 0] - 0.2, np.full(len(rest), 0.27), rest[:, 1] - 0.2])
+    spike = Union((Capsule((0, 0, 0), (0, 0.25, 0), 0.004), HalfSpace()))
+    contact = Contact(clearance=0.003, thickness=0.002)
     end = drape(
         sheet, start, [Phase(1.0, damping=1.0), Phase(2.0, damping=6.0)], collider=spike, contact=contact
     )
     deep, crossed = inside(sheet, end.positions, spike, 0.003), metrics.intersections(end.positions, faces)
     energy = kinetic(sheet, end.velocities)
-    kept = deep == 0 and crossed == 0 and np.isfinite(energy)
+    kept = deep == 0 and crossed == 0 and energy < 1e-4
     return Outcome(
         kept, "calm", f"{deep} inside, {crossed} self-intersections, KE {energy:.1e} J", end.fallbacks
     )
@@ -206,12 +207,12 @@ def ring(radius: float, thick: float, parts: int = 24) -> Solid:
 
 def through_a_ring() -> Outcome:
     """A cloth of 0.3 m is drawn by its middle through a ring 9 cm wide, at 0.3 m/s."""
-    rest, faces = equilateral_sheet(0.3, 0.3, 0.02)
+    rest, faces = equilateral_sheet(0.3, 0.3, 0.012)
     sheet = Sheet.of(rest, faces, replace(GF_CM, friction=0.2))
     start = np.column_stack([rest[:, 0] - 0.15, np.full(len(rest), 0.02), rest[:, 1] - 0.15])
     middle = np.argsort(((rest - 0.15) ** 2).sum(1))[:7].tolist()
     hoop = ring(0.051, 0.006)
-    contact = Contact(clearance=0.003, thickness=0.001, speed_limit=3.0)
+    contact = Contact(clearance=0.003, thickness=0.002, cap=0.003, speed_limit=3.0)
     live = Live(sheet, start, pins=middle, collider=hoop, contact=contact, damping=4.0)
     place, deep, worst = start[middle].copy(), 0, 1.0
     for _ in range(40):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
-from sim_core.cloth.engine import Conditions, Engine
+from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.engine import Engine
 from sim_core.cloth.factor import Factored
 from sim_core.cloth.implicit import Load
 from sim_core.cloth.scenes import equilateral_sheet, hang_edge
