@@ -17,7 +17,7 @@ from typing import Any
 from sim_core.errors import WrongArgument
 
 FILE = Path(__file__).with_name("fidelity.json")
-SAFETY = 2.0
+SAFETY = 4.0
 
 
 @dataclass(frozen=True)
