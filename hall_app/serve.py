@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     import uvicorn
     from fastapi import FastAPI
 
+    from survey import Clip
+
     from .house import House
 
 __all__ = ["add_parser", "run"]
@@ -120,6 +122,7 @@ def _server(app: FastAPI, arguments: argparse.Namespace) -> uvicorn.Server:
         port=arguments.port,
         log_level="warning",
         access_log=False,
+        loop="asyncio",  # the loop viser runs on as well
         ws="websockets-sansio",
         ws_max_size=1 << 26,
         timeout_graceful_shutdown=2,
@@ -178,11 +181,28 @@ def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
             house.close()
 
     app = create_app(house, lifespan=living)
-    survey = mount(app, content=content.folder, data=arguments.data, problems=[])
+    survey = mount(
+        app, content=content.folder, data=arguments.data, problems=[], clip_of=lambda key: _film(house, key)
+    )
     house.survey_problems = lambda: survey.problems
     for problem in survey.problems:
         _say(f"  left out: {problem}")
     return app
+
+
+def _film(house: House, key: str) -> Clip | None:
+    """The exhibit's film, for the questionnaire's items on motion; None where it has none (yet)."""
+    from survey import Clip
+
+    from .content.views import exhibit_json
+
+    models = house.models(key)
+    shown = exhibit_json(house.content, key, baked=models.baked if models else None) or {"media": ()}
+    for medium in shown["media"]:
+        if medium["kind"] == "video":
+            sources = tuple((source["url"], source["type"]) for source in medium["sources"])
+            return Clip(sources, medium["alt"] or {}, medium["poster"])
+    return None
 
 
 def _greet(house: House, arguments: argparse.Namespace) -> None:

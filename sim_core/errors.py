@@ -1,6 +1,6 @@
 """The errors of the simulation core: each message is one line that names what, where and the remedy."""
 
-__all__ = ["FileProblem", "OutlineError", "SimCoreError", "WeaveError", "WrongArgument"]
+__all__ = ["FileProblem", "OutlineError", "OutlineWarning", "SimCoreError", "WeaveError", "WrongArgument"]
 
 
 class SimCoreError(ValueError):
@@ -13,6 +13,10 @@ class WeaveError(SimCoreError):
 
 class OutlineError(SimCoreError):
     """A panel outline that cannot be meshed (too few points, self-crossing, zero area, ...)."""
+
+
+class OutlineWarning(UserWarning):
+    """A panel outline that was changed before meshing, such as a hole merged with the outline it touches."""
 
 
 class FileProblem(SimCoreError):

@@ -15,7 +15,7 @@ from sim_core.errors import FileProblem
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["read_json", "read_npz", "read_toml", "shown"]
+__all__ = ["read_json", "read_npz", "read_text", "read_toml", "shown"]
 
 LARGEST_TEXT = 16_000_000  # bytes of a TOML or JSON file; an outline of half a million points
 LARGEST_ARRAYS = 2_000_000_000  # bytes of all arrays of an npz once unpacked
@@ -66,6 +66,15 @@ def read_json(path: Path, what: str) -> Any:
         raise FileProblem(f"{path}: brackets nested too deep – give {what}") from error
     except ValueError as error:
         raise FileProblem(f"{path}: not valid JSON ({error}) – give {what}") from error
+
+
+def read_text(path: Path, what: str) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark; raises FileProblem as `read_toml` does."""
+    text = _text(path, what)
+    try:
+        return text.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileProblem(f"{path}: not UTF-8 text – give {what}") from error
 
 
 def _text(path: Path, what: str) -> bytes:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from survey.api import router
     from survey.content import QuestionnaireFolder, content_folder, read_questionnaire
     from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError, SurveyError
-    from survey.form import form_router
+    from survey.form import Clip, form_router
     from survey.mounting import Mounted, mount
     from survey.questionnaire import Questionnaire
     from survey.store import Receipt, Store
@@ -23,6 +23,7 @@ __all__ = [
     "Analysis",
     "Answer",
     "AnswerError",
+    "Clip",
     "Mounted",
     "Problem",
     "Questionnaire",
@@ -53,6 +54,7 @@ _HOME = {
     "QuestionnaireError": "survey.errors",
     "StoreError": "survey.errors",
     "SurveyError": "survey.errors",
+    "Clip": "survey.form",
     "form_router": "survey.form",
     "Mounted": "survey.mounting",
     "mount": "survey.mounting",

@@ -6,7 +6,8 @@ import hashlib
 import json
 import uuid
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, get_args
 
 from survey.errors import AnswerError
@@ -38,10 +39,10 @@ class Answer:
     suggestions: tuple[tuple[str, str], ...] = ()
     exhibit: str | None = None
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """SHA-256 of the whole content, hexadecimal: a replay has the same, another body has not."""
-        text = json.dumps(asdict(self), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
+        text = json.dumps(vars(self), ensure_ascii=False, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @classmethod
@@ -76,10 +77,10 @@ def _check_keys(data: dict[str, Any]) -> None:
 def submission_id(value: object) -> str:
     """A UUID in its usual spelling, lower case. Raises AnswerError."""
     try:
-        known = str(uuid.UUID(value)) if isinstance(value, str) else ""
+        known = str(uuid.UUID(value)) if isinstance(value, str) else None
     except ValueError:
-        known = ""
-    if not isinstance(value, str) or known != value.lower():
+        known = None
+    if known is None or not isinstance(value, str) or known != value.lower():
         raise AnswerError(
             "id", "not a UUID", "make a fresh one, such as 0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
         )
@@ -87,10 +88,11 @@ def submission_id(value: object) -> str:
 
 
 def _version(questionnaire: Questionnaire, value: object) -> int:
-    if type(value) is not int or value != questionnaire.version:
+    whole = type(value) is int or type(value) is float  # 1.0 is an integer to JSON Schema, true is none
+    if not whole or value != questionnaire.version:
         problem = f"version {_shown(value)} is not the current one ({questionnaire.version})"
         raise AnswerError("version", problem, "load the questionnaire again and answer its current version")
-    return value
+    return questionnaire.version
 
 
 def _language(value: object) -> Language:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
+import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
+from survey.commands import analyse, backup, bench, export, freeze, grim, purge, serve, token
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -25,18 +25,29 @@ examples:
   survey export --questionnaire garment --out a.csv  all answers, opens in Excel
   survey analyse a.csv                               every numeric column is an item
   survey analyse --questionnaire garment --json      straight from the data folder
-  survey token --label "Dr Lin"                      access to rows and suggestions over HTTP
+  survey analyse --demo likert-20 --drop static --report out   a report of a synthetic sample
+  survey token --label "Dr Lin"                      access to rows, suggestions and analysis over HTTP
+  survey freeze garment                              from now on these answers cannot be withdrawn
+  survey backup 2026-05-01.sqlite                    a copy while the service runs
 
 exit status: 0 done, 1 the work failed, 2 wrong arguments"""
+
+_COMMANDS = (serve, export, analyse, grim, token, freeze, purge, backup, bench)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit status."""
     args = _parser().parse_args(arguments)
     try:
-        return args.run(args)
+        status = args.run(args)
+        sys.stdout.flush()
+        return status
     except KeyboardInterrupt:
         return 130
+    except BrokenPipeError:
+        # Whoever reads, such as head, has enough; Python would complain once more while it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except Exception as error:
         if args.debug:
             raise
@@ -54,208 +65,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for add in (_add_serve, _add_export, _add_analyse, _add_token):
-        command = add(commands)
+    for module in _COMMANDS:
+        command = module.add(commands)
         # Taken before and after the command; SUPPRESS, so that its default does not undo the one before.
         command.add_argument(
             "--debug", action="store_true", default=argparse.SUPPRESS, help=argparse.SUPPRESS
         )
     return parser
-
-
-def _port(text: str) -> int:
-    if not text.isdecimal() or not 0 < int(text[:6]) < 65536:
-        raise argparse.ArgumentTypeError(f"{text!r} is no port – give a number from 1 to 65535")
-    return int(text)
-
-
-def _number(text: str) -> int:
-    if not text.isdecimal() or not 0 < int(text[:10]) < 2**31 or len(text) > 10:
-        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no number from 1 on")
-    return int(text)
-
-
-def _label(text: str) -> str:
-    if len(text) > 200 or not text.isprintable():
-        raise argparse.ArgumentTypeError("give at most 200 printable characters")
-    return text
-
-
-def _command(commands, name: str, run, about: str, more: str = "") -> argparse.ArgumentParser:
-    command = commands.add_parser(
-        name,
-        help=about,
-        description=f"{about[0].upper()}{about[1:]}.\n\n{more}".strip(),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    command.set_defaults(run=run)
-    return command
-
-
-def _add_places(command: argparse.ArgumentParser, *, content: bool = True) -> None:
-    if content:
-        command.add_argument(
-            "--content", type=Path, metavar="DIR", help="content folder (default: ./assets, else ours)"
-        )
-    command.add_argument(
-        "--data",
-        type=Path,
-        default=Path("hall-data"),
-        metavar="DIR",
-        help="data folder (default: ./hall-data)",
-    )
-    command.add_argument(
-        "--db", metavar="URL", help="database instead of the data folder: postgresql+psycopg://…"
-    )
-
-
-def _add_serve(commands) -> argparse.ArgumentParser:
-    more = "Without the hall: forms at /questionnaires, the API at /api/v1, its description at /api/v1/openapi.json."
-    command = _command(commands, "serve", _serve, "serve the questionnaires", more)
-    command.add_argument("--host", default="127.0.0.1", help="address to listen on (default: 127.0.0.1)")
-    command.add_argument("--port", type=_port, default=8001, help="port to listen on (default: 8001)")
-    _add_places(command)
-    return command
-
-
-def _add_export(commands) -> argparse.ArgumentParser:
-    more = (
-        "CSV in UTF-8 with a byte order mark: one row per answer, one column per item and per module's suggestions.\n"
-        '"Not seen" is an empty cell. Text that a spreadsheet would run as a formula gets an apostrophe in front.'
-    )
-    command = _command(commands, "export", _export, "export all answers to one questionnaire", more)
-    command.add_argument("--questionnaire", required=True, metavar="ID", help="which one, such as garment")
-    command.add_argument(
-        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
-    )
-    command.add_argument("--format", choices=["csv"], default="csv", help="format (default: csv)")
-    command.add_argument("--out", type=Path, metavar="FILE", help="where to (default: standard output)")
-    _add_places(command)
-    return command
-
-
-def _add_analyse(commands) -> argparse.ArgumentParser:
-    more = (
-        "The procedure of the paper: means, Pearson correlations, KMO, Bartlett's test, components with an\n"
-        "eigenvalue above 1, Kaiser-normalised varimax, Cronbach's alpha. What cannot be computed is left out\n"
-        "and explained; answers with gaps are left out whole (listwise)."
-    )
-    command = _command(commands, "analyse", _analyse, "analyse the answers to one questionnaire", more)
-    command.add_argument(
-        "file", nargs="?", type=Path, metavar="FILE.csv", help="a table; default: the stored answers"
-    )
-    command.add_argument(
-        "--questionnaire", metavar="ID", help="whose items to analyse (needed without FILE.csv)"
-    )
-    command.add_argument(
-        "--version", type=_number, metavar="N", help="an earlier version (default: the file's)"
-    )
-    command.add_argument(
-        "--drop",
-        default="none",
-        metavar="WHAT",
-        help='items to leave out: "none", a tag ("static"), or ITEM,ITEM …',
-    )
-    command.add_argument(
-        "--factors", default="kaiser", metavar="N", help="number of components (default: kaiser)"
-    )
-    command.add_argument("--json", action="store_true", help="everything, machine-readable")
-    _add_places(command)
-    command.set_defaults(parser=command)
-    return command
-
-
-def _add_token(commands) -> argparse.ArgumentParser:
-    more = "It is shown once and stored as a hash. Send it as `Authorization: Bearer TOKEN`."
-    command = _command(
-        commands, "token", _token, "make a token for rows, suggestions and export over HTTP", more
-    )
-    command.add_argument("--label", type=_label, default="", help="whose it is, for --list")
-    which = command.add_mutually_exclusive_group()
-    which.add_argument("--list", action="store_true", help="list the tokens instead")
-    which.add_argument(
-        "--revoke", type=_number, metavar="NUMBER", help="revoke the token of this number instead"
-    )
-    _add_places(command, content=False)
-    return command
-
-
-def _where(args: argparse.Namespace) -> Path | str:
-    return args.db or args.data
-
-
-def _serve(args: argparse.Namespace) -> int:
-    from survey.content import content_folder
-    from survey.serving import serve, survey_app
-
-    content = content_folder(args.content)
-    app, mounted, problems = survey_app(content, _where(args))
-    for problem in problems:
-        print(f"survey: {problem}", file=sys.stderr)
-    print(f"content {content}: {len(mounted.questionnaires)} questionnaires, {len(problems)} problems")
-    print(f"http://{args.host}:{args.port}/questionnaires", flush=True)
-    serve(app, args.host, args.port)
-    return 0
-
-
-def _export(args: argparse.Namespace) -> int:
-    from survey.export import write_csv
-    from survey.working import open_stored, other_versions
-
-    with open_stored(_where(args), args.content, args.questionnaire, args.version) as (questionnaire, store):
-        rows, others = store.rows(questionnaire), other_versions(store, questionnaire)
-    text = write_csv(questionnaire, rows)
-    if others:
-        print(f"survey: {args.questionnaire}: {others}", file=sys.stderr)
-    if args.out is None:
-        sys.stdout.buffer.write(text.encode())
-        sys.stdout.flush()
-        return 0
-    try:
-        args.out.write_text(text, "utf-8", newline="")
-    except OSError as error:
-        raise SurveyError(f"{args.out}: cannot be written ({error.strerror}) – give another --out") from None
-    print(f"{args.out}: {len(rows)} answers")
-    return 0
-
-
-def _analyse(args: argparse.Namespace) -> int:
-    from survey.analysis import analyse
-    from survey.analysis.printed import printed
-    from survey.analysis.summary import summary
-    from survey.working import dropped, load_scores
-
-    if args.file is None and args.questionnaire is None:
-        args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers")
-    if args.factors != "kaiser" and not (args.factors.isdecimal() and 0 < int(args.factors[:6]) < 10**5):
-        args.parser.error(f"--factors: {args.factors!r} is neither a number nor kaiser")
-    scores, items, questionnaire = load_scores(
-        args.file, _where(args), args.content, args.questionnaire, args.version
-    )
-    keep = None if args.factors == "kaiser" else int(args.factors)
-    found = summary(analyse(scores, items, drop=dropped(args.drop, questionnaire), keep=keep))
-    print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1) if args.json else printed(found))
-    return 0
-
-
-def _token(args: argparse.Namespace) -> int:
-    from survey.store import Store
-
-    store = Store(_where(args))
-    try:
-        if args.list:
-            for token in store.tokens.all():
-                print(f"{token.id}\t{token.made:%Y-%m-%d %H:%M}\t{token.label}")
-            return 0
-        if args.revoke is not None:
-            if not store.tokens.revoke(args.revoke):
-                raise SurveyError(f"token {args.revoke}: there is none – see survey token --list")
-            print(f"token {args.revoke} is revoked")
-            return 0
-        print(store.tokens.make(args.label))
-        return 0
-    finally:
-        store.close()
 
 
 if __name__ == "__main__":

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
+import math
+import os
+import time
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -79,14 +82,28 @@ def _problem(file: str, entry: Mapping) -> Problem:
     return Problem(file, key, f"{message[0].lower()}{message[1:]}", f"change {value}")
 
 
+def _marks(folder: Path) -> dict[str, tuple[int, int]]:
+    """Time and size of each questionnaire file, by its name."""
+    try:
+        with os.scandir(folder) as entries:
+            found = [entry for entry in entries if entry.name.endswith(".toml") and entry.is_file()]
+            return {entry.name: ((stat := entry.stat()).st_mtime_ns, stat.st_size) for entry in found}
+    except FileNotFoundError:  # no folder yet, or a file that went between the two looks
+        return {}
+
+
 class QuestionnaireFolder(Mapping[str, Questionnaire]):
     """The questionnaires of a content folder by id, sorted; a changed file shows on the next look.
 
     A faulty file is left out and named in `problems`; one that was good before stays as it was.
+    patience: seconds for which the last look at the folder is good enough. Every look is several system calls, at
+    each of which a busy service may have to wait for its other threads.
     """
 
-    def __init__(self, content: Path) -> None:
+    def __init__(self, content: Path, *, patience: float = 0.0) -> None:
         self.folder = content / FOLDER
+        self._patience, self._looked = patience, -math.inf
+        self._marks: dict[str, tuple[int, int]] | None = None
         self._seen: dict[Path, tuple[int, int]] = {}
         self._good: dict[Path, Questionnaire] = {}
         self._bad: dict[Path, tuple[Problem, ...]] = {}
@@ -95,17 +112,24 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
     @property
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with the files now, in the order of their names."""
+        self._looked = -math.inf
         self.refresh()
         return tuple(problem for path in sorted(self._bad) for problem in self._bad[path])
 
     def refresh(self) -> None:
         """Read the files that are new or changed; forget those that are gone."""
-        paths = {path: path.stat() for path in sorted(self.folder.glob("*.toml")) if path.is_file()}
+        if time.monotonic() - self._looked < self._patience:
+            return
+        marks = _marks(self.folder)
+        self._looked = time.monotonic()
+        if marks == self._marks:  # asked again and again, so the usual case is a single look at the folder
+            return
+        self._marks = marks
+        paths = {self.folder / name: mark for name, mark in sorted(marks.items())}
         for path in set(self._seen) - set(paths):
             for table in (self._seen, self._good, self._bad):
                 table.pop(path, None)
-        for path, stat in paths.items():
-            mark = (stat.st_mtime_ns, stat.st_size)
+        for path, mark in paths.items():
             if self._seen.get(path) == mark:
                 continue
             try:

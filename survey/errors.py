@@ -46,10 +46,19 @@ class ContentMissing(SurveyError):
 class AnswerError(SurveyError):
     """A submission that is refused: which field, what is wrong with it, what to do."""
 
-    def __init__(self, field: str, problem: str, remedy: str, *, status: int = 422) -> None:
+    def __init__(self, field: str, problem: str, remedy: str, *, status: int = 422, wait: int = 0) -> None:
         self.field, self.problem, self.remedy, self.status = field, problem, remedy, status
+        self.wait = wait  # seconds after which the same would be taken (429)
         super().__init__(f"{field}: {problem} – {remedy}" if field else f"{problem} – {remedy}")
 
 
 class StoreError(SurveyError):
-    """The database does not take or give anything now: locked, full, unreachable or of another make."""
+    """The database does not take or give anything now: locked, full, unreachable or of another make.
+
+    place: the file or the URL without its password; it stands in the text for the operator, `problem` is for
+    everybody.
+    """
+
+    def __init__(self, problem: str, place: str = "") -> None:
+        self.problem, self.place = problem, place
+        super().__init__(f"{place}: {problem}" if place else problem)

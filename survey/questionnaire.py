@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from datetime import date
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
@@ -14,6 +15,7 @@ from survey.slug import COLUMN_KEY, SLUG
 __all__ = [
     "LANGUAGES",
     "META_COLUMNS",
+    "UNSEEN",
     "Item",
     "Language",
     "Module",
@@ -28,6 +30,9 @@ LANGUAGES: tuple[Language, ...] = ("zh", "en")
 # Columns of an export beside the items; an item of that name would hide one.
 META_COLUMNS = ("submission", "version", "language", "exhibit", "received")
 
+UNSEEN = (
+    9  # "not seen" where a file needs a number for it: above every scale, which have at most seven points
+)
 
 SUGGESTION = "suggestion_"
 
@@ -101,6 +106,8 @@ class Questionnaire(_Part):
     title: Text
     intro: Text
     consent: Text
+    # Until when answers are kept; not strict, because a frozen version comes back from JSON.
+    retain_until: Annotated[date | None, Field(strict=False)] = None
     scale: Scale
     dimensions: list[Dimension] = Field(default=[], alias="dimension")
     modules: Annotated[list[Module], Field(min_length=1, alias="module")]
@@ -156,7 +163,10 @@ class Questionnaire(_Part):
 
     def document(self) -> dict[str, object]:
         """The version as plain data with the keys of its file, as the store freezes it."""
-        return self.model_dump(mode="json", by_alias=True)
+        document = self.model_dump(mode="json", by_alias=True)
+        if self.retain_until is None:  # versions frozen before this key existed keep their digest
+            del document["retain_until"]
+        return document
 
     @cached_property
     def digest(self) -> str:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
+import re
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,40 +15,60 @@ from numpy.typing import NDArray
 
 from survey.answer import Answer
 from survey.errors import SurveyError
-from survey.questionnaire import META_COLUMNS, SUGGESTION
+from survey.questionnaire import META_COLUMNS, SUGGESTION, Questionnaire, suggestion_column
 
-__all__ = ["read_scores", "scores_of"]
+__all__ = ["SECONDS", "ScoreTable", "read_scores", "scores_of"]
+
+SYNTHETIC = "synthetic-"  # how the ids begin in a sample that nobody answered
+SECONDS = "seconds"  # column of the time an answer took
+MISSING = {"", "NA", "."}  # how spreadsheets, R and SPSS write a missing score
+
+SEPARATORS = ",;\t"  # also how Excel writes a CSV where the comma is the decimal point
+DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
+
+Lines = list[tuple[int, list[str]]]
 
 
-def read_scores(
-    path: Path, items: Sequence[str] | None = None
-) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Scores (n, p) of a CSV file, NaN where a cell is empty, and the items' names.
+@dataclass(frozen=True)
+class ScoreTable:
+    """scores: (n, p), NaN where missing. seconds: (n,) spent on each answer, or None.
 
-    items: the columns to take; None takes every column that holds numbers only.
+    suggestions: (module, text) as they were written. source: where it all comes from, for a heading.
+    synthetic: whether nobody gave these answers. beside: a sentence on answers to other versions, may be empty.
+    """
+
+    scores: NDArray[np.float64]
+    items: tuple[str, ...]
+    seconds: NDArray[np.float64] | None = None
+    suggestions: tuple[tuple[str, str], ...] = ()
+    questionnaire: Questionnaire | None = None
+    source: str = ""
+    synthetic: bool = False
+    beside: str = ""
+
+
+def read_scores(path: Path, questionnaire: Questionnaire | None = None) -> ScoreTable:
+    """A CSV file's scores: the questionnaire's items, or without one every column that holds numbers.
+
     Raises SurveyError naming file, line and column.
     """
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            table = csv.reader(file)
-            lines = [(table.line_num, line) for line in table if any(cell.strip() for cell in line)]
-    except OSError as error:
-        raise SurveyError(f"{path}: cannot be read ({error.strerror}) – check the file") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise SurveyError(f"{path}: is no CSV in UTF-8 ({error}) – export it again") from None
-    if len(lines) < 2:
-        raise SurveyError(
-            f"{path}: no rows – the first line names the columns, each further line is an answer"
-        )
-    header, body = [cell.strip() for cell in lines[0][1]], lines[1:]
-    for number, line in body:
-        if len(line) != len(header):
-            raise SurveyError(
-                f"{path}: line {number} has {len(line)} cells, the header {len(header)} – mend it"
-            )
+    header, body = _lines(path)
+    items = None if questionnaire is None else questionnaire.item_ids
     columns = _columns(path, header, body, items)
-    cells = [[_number(path, line[at], name, row) for name, at in columns] for row, line in body]
-    return np.array(cells, dtype=np.float64), tuple(name for name, _ in columns)
+    scores = np.array([_numbers(path, line, columns, row) for row, line in body], dtype=np.float64)
+    seconds = None
+    if SECONDS in header and SECONDS not in dict(columns):
+        at = [(SECONDS, header.index(SECONDS))]
+        seconds = np.array([_numbers(path, line, at, row)[0] for row, line in body], dtype=np.float64)
+    table = ScoreTable(
+        scores.reshape(len(body), len(columns)), tuple(name for name, _ in columns), seconds, source=path.name
+    )
+    return replace(
+        table,
+        questionnaire=questionnaire,
+        suggestions=_written(header, body, questionnaire),
+        synthetic=_synthetic(header, body),
+    )
 
 
 def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.float64]:
@@ -57,12 +80,56 @@ def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.flo
     return np.array(table, dtype=np.float64).reshape(len(rows), len(items))
 
 
-def _columns(
-    path: Path, header: list[str], body: list[tuple[int, list[str]]], items: Sequence[str] | None
-) -> list[tuple[str, int]]:
+def _lines(path: Path) -> tuple[list[str], Lines]:
+    text = _text(path)
+    try:
+        head = [line for line in text if line.strip()]
+        separator = max(SEPARATORS, key=lambda one: len(next(csv.reader(head, delimiter=one), [])))
+        table = csv.reader(text, delimiter=separator)
+        lines = [(table.line_num, line) for line in table if any(map(str.strip, line))]
+    except csv.Error as error:
+        raise SurveyError(f"{path}: is no CSV ({error}) – export it again") from None
+    if separator != ",":
+        lines = [(number, [_with_point(cell) for cell in line]) for number, line in lines]
+    if len(lines) < 2:
+        raise SurveyError(
+            f"{path}: no rows – the first line names the columns, each further line is an answer"
+        )
+    header, body = [cell.strip() for cell in lines[0][1]], lines[1:]
+    for number, line in body:
+        if len(line) != len(header):
+            raise SurveyError(
+                f"{path}: line {number} has {len(line)} cells, the header {len(header)} – mend it"
+            )
     twice = sorted({name for name in header if name and header.count(name) > 1})
     if twice:
         raise SurveyError(f"{path}: column {twice[0]!r} stands twice – rename one")
+    return header, body
+
+
+def _text(path: Path) -> list[str]:
+    """The file's lines, in UTF-8, or as Excel writes them in Chinese (GB 18030) or as Unicode text (UTF-16)."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise SurveyError(f"{path}: cannot be read ({error.strerror}) – check the file") from None
+    wide = data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    reason = ""
+    for encoding in ("utf-16",) if wide else ("utf-8-sig", "gb18030"):
+        try:
+            return [*io.StringIO(data.decode(encoding), newline="")]
+        except UnicodeDecodeError as error:
+            reason = reason or str(error)
+    raise SurveyError(f"{path}: is no CSV in UTF-8, UTF-16 or GB 18030 ({reason}) – export it again")
+
+
+def _with_point(cell: str) -> str:
+    return cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell
+
+
+def _columns(
+    path: Path, header: list[str], body: Lines, items: Sequence[str] | None
+) -> list[tuple[str, int]]:
     if items is not None:
         missing = [item for item in items if item not in header]
         if missing:
@@ -70,20 +137,24 @@ def _columns(
                 f"{path}: no column {missing[0]!r} – the questionnaire asks it; add it or name another"
             )
         return [(item, header.index(item)) for item in items]
+    apart = {*META_COLUMNS, SECONDS}
     found = [
         (name, at)
         for at, name in enumerate(header)
-        if name and name not in META_COLUMNS and not name.startswith(SUGGESTION) and _meant(body, at)
+        if name and name not in apart and not name.startswith(SUGGESTION) and _meant(body, at)
     ]
     if not found:
         raise SurveyError(f"{path}: no column of numbers – name the items in the first line")
     return found
 
 
-def _meant(body: list[tuple[int, list[str]]], at: int) -> bool:
-    """Whether a column is meant as numbers: most of what it holds are some. A slip among them is then named."""
-    filled = [line[at] for _, line in body if line[at].strip()]
-    return 2 * sum(map(_is_number, filled)) > len(filled)
+def _meant(body: Lines, at: int) -> bool:
+    """Whether a column is meant as numbers: most of what it holds are some. A slip among them is then named.
+
+    A column of nothing but gaps is meant so too: an item that nobody answered must be named, not overlooked.
+    """
+    written = [text for _, line in body if (text := line[at].strip()) not in MISSING]
+    return 2 * sum(map(_is_number, written)) > len(written) or not written
 
 
 def _is_number(cell: str) -> bool:
@@ -91,11 +162,42 @@ def _is_number(cell: str) -> bool:
         float(cell)
     except ValueError:
         return False
-    return True
+    return "_" not in cell
+
+
+def _numbers(path: Path, line: list[str], columns: list[tuple[str, int]], row: int) -> list[float]:
+    try:
+        if "_" not in "".join(line):  # Python reads 1_0 as 10
+            return [float(line[at]) for _, at in columns]
+    except ValueError:  # a gap, or a slip to name
+        pass
+    return [_number(path, line[at].strip(), name, row) for name, at in columns]
 
 
 def _number(path: Path, cell: str, name: str, line: int) -> float:
-    try:
-        return float(cell) if cell.strip() else math.nan
-    except ValueError:
-        raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it") from None
+    if cell in MISSING:
+        return math.nan
+    if not _is_number(cell):
+        raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it")
+    return float(cell)
+
+
+def _synthetic(header: list[str], body: Lines) -> bool:
+    """Whether every row says of itself that nobody gave it."""
+    if META_COLUMNS[0] not in header:
+        return False
+    at = header.index(META_COLUMNS[0])
+    return all(line[at].startswith(SYNTHETIC) for _, line in body)
+
+
+def _written(
+    header: list[str], body: Lines, questionnaire: Questionnaire | None
+) -> tuple[tuple[str, str], ...]:
+    modules = [] if questionnaire is None else [module.id for module in questionnaire.modules]
+    places = [
+        (key, header.index(suggestion_column(key))) for key in modules if suggestion_column(key) in header
+    ]
+    # The apostrophe that the export puts before what a spreadsheet would run is no part of what was written.
+    return tuple(
+        (key, text.removeprefix("'")) for key, at in places for _, line in body if (text := line[at].strip())
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
 __all__ = ["serve", "survey_app"]
 
 
-def survey_app(content: Path, data: Path | str) -> tuple[FastAPI, Mounted, list[Problem]]:
+def survey_app(
+    content: Path, data: Path | str, per_minute: int | None = None
+) -> tuple[FastAPI, Mounted, list[Problem]]:
     """An app with the API, the form pages and nothing else; the problems of left-out questionnaires."""
     from fastapi import FastAPI
     from fastapi.responses import RedirectResponse
@@ -32,7 +35,7 @@ def survey_app(content: Path, data: Path | str) -> tuple[FastAPI, Mounted, list[
         title="Survey", lifespan=life, docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json"
     )
     problems: list[Problem] = []
-    mounted = mount(app, content=content, data=data, problems=problems)
+    mounted = mount(app, content=content, data=data, problems=problems, per_minute=per_minute)
 
     @app.get("/", include_in_schema=False)
     def home() -> RedirectResponse:
@@ -53,5 +56,9 @@ def serve(app: FastAPI, host: str, port: int) -> None:
             raise SurveyError(
                 f"{host}:{port}: cannot listen ({error.strerror}) – choose another --port"
             ) from None
+    # What stands now stands until the end: the collector need not walk through it again and again while it holds
+    # everybody up.
+    gc.collect()
+    gc.freeze()
     # No access log: it would keep the visitors' addresses, which we promise not to.
     uvicorn.run(app, host=host, port=port, log_level="warning", access_log=False)

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from survey.content import content_folder, read_questionnaire
 from survey.errors import SurveyError
 from survey.questionnaire import Questionnaire
-from survey.reading import read_scores, scores_of
+from survey.reading import ScoreTable, read_scores, scores_of
 from survey.slug import is_slug
-from survey.store import Store, tables
+from survey.store import Store, Stored, tables
 
-__all__ = ["dropped", "find_questionnaire_file", "load_scores", "open_stored", "other_versions"]
+__all__ = [
+    "dropped",
+    "find_questionnaire_file",
+    "load_scores",
+    "open_stored",
+    "other_roles",
+    "other_versions",
+    "scores_table",
+    "stored_scores",
+]
 
 
 def find_questionnaire_file(content: Path | None, key: str) -> Questionnaire:
@@ -74,17 +81,45 @@ def other_versions(store: Store, questionnaire: Questionnaire) -> str:
 
 def load_scores(
     file: Path | None, where: Path | str, content: Path | None, key: str | None, version: int | None = None
-) -> tuple[NDArray[np.float64], Sequence[str], Questionnaire | None]:
-    """Scores (n, p), items and questionnaire, from a CSV file or else from the store."""
+) -> ScoreTable:
+    """Scores from a CSV file, or else from the store."""
     if file is not None:
-        questionnaire = None if key is None else find_questionnaire_file(content, key)
-        scores, items = read_scores(file, None if questionnaire is None else questionnaire.item_ids)
-        return scores, items, questionnaire
+        return read_scores(file, None if key is None else find_questionnaire_file(content, key))
     if key is None:
         raise SurveyError("no questionnaire named – give --questionnaire ID")
     with open_stored(where, content, key, version) as (questionnaire, store):
-        answers = [row.answer for row in store.rows(questionnaire)]
-    return scores_of(answers, questionnaire.item_ids), questionnaire.item_ids, questionnaire
+        return replace(stored_scores(questionnaire, store), beside=other_versions(store, questionnaire))
+
+
+def stored_scores(questionnaire: Questionnaire, store: Store) -> ScoreTable:
+    """All standing answers to one version."""
+    return scores_table(questionnaire, store.rows(questionnaire))
+
+
+def scores_table(questionnaire: Questionnaire, rows: Sequence[Stored]) -> ScoreTable:
+    """Stored answers as an (n, p) table of scores, NaN where an item was not seen."""
+    answers = [row.answer for row in rows]
+    return ScoreTable(
+        scores_of(answers, questionnaire.item_ids),
+        questionnaire.item_ids,
+        suggestions=tuple(written for answer in answers for written in answer.suggestions),
+        questionnaire=questionnaire,
+        source=f"{questionnaire.id} v{questionnaire.version}",
+    )
+
+
+def other_roles(where: Path | str, content: Path | None, asked: Questionnaire) -> list[ScoreTable]:
+    """Stored answers to the other questionnaires with the same dimensions: the platform's other role."""
+    folder, found = content_folder(content) / "questionnaires", []
+    sides = [side.id for side in asked.dimensions]
+    for path in sorted(folder.glob("*.toml")):
+        other = read_questionnaire(path)
+        if other.id != asked.id and [side.id for side in other.dimensions] == sides:
+            with open_stored(where, content, other.id) as (questionnaire, store):
+                table = stored_scores(questionnaire, store)
+            if len(table.scores):
+                found.append(table)
+    return found
 
 
 def dropped(what: str, questionnaire: Questionnaire | None) -> tuple[str, ...]:

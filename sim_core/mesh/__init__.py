@@ -4,19 +4,27 @@ from sim_core.errors import OutlineError
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.model import MeshReport, PanelMesh
 from sim_core.mesh.outline import outline_samples
-from sim_core.mesh.panel import grow, panel_mesh
+from sim_core.mesh.panel import panel_mesh
 from sim_core.mesh.quality import quality
 from sim_core.mesh.raycast import inside, keep_points
+from sim_core.mesh.seams import Seam, SeamFit, SeamSide, sewn_meshes
+from sim_core.mesh.sizes import SizeField
+from sim_core.mesh.triangulation import triangulate
 
 __all__ = [
     "MeshReport",
     "OutlineError",
     "PanelMesh",
-    "grow",
+    "Seam",
+    "SeamFit",
+    "SeamSide",
+    "SizeField",
     "inside",
     "keep_points",
     "outline_samples",
     "panel_mesh",
     "quality",
+    "sewn_meshes",
     "staggered_points",
+    "triangulate",
 ]

@@ -3,6 +3,7 @@
 import argparse
 import json
 import sys
+import warnings
 from pathlib import Path
 from time import perf_counter
 
@@ -14,8 +15,16 @@ DESCRIPTION = """\
 Triangulate a pattern panel: equal steps along the outline that keep its corners, staggered points inside
 (Eq. 1-8 of the paper), redundant points removed, growth triangulation (Eq. 9), and a check of the result.
 
-The outline file is JSON in metres, y down, each contour closed without repeating its first point:
-  {"outline": [[0, 0], [0.6, 0], [0.6, 0.9], [0, 0.9]], "holes": [[[0.2, 0.2], [0.4, 0.2], [0.3, 0.4]]]}
+The outline file is JSON in metres, y down; either direction, first point repeated or not:
+  {"outline": [[0, 0], [0.6, 0], [0.6, 0.9], [0, 0.9]], "holes": [[[0.2, 0.2], [0.4, 0.2], [0.3, 0.4]]],
+   "constraints": [[[0.1, 0], [0.1, 0.9]]]}
+or a drawing (.svg, .dxf): the largest closed line is the outline, other closed lines are holes, open lines are
+constraints, inner lines that edges follow (pleat folds, motif borders).
+
+--quality fair is the paper's method and nothing else; best adds a row of points along the outline, smoothing,
+insertion and deletion. A size field is JSON {"points": [[x, y, size], ...], "gradation": 0.2}: the edge length is
+the least of --edge and size + gradation x distance over its points.
+The npz holds vertices (V, 2), faces (F, 3), boundary with boundary_start (one index loop per contour) and lines.
 
 The summary states how good the mesh is:
   min_angle_deg       smallest angle of any triangle (60 = equilateral)
@@ -23,7 +32,7 @@ The summary states how good the mesh is:
   edge_ratio          shortest / longest edge of a triangle, mean and worst
   conformity          fraction of outline steps that are mesh edges (must be 1)
   area_error          relative to the polygon meshed (below 1e-12)
-  outline_deviation   largest distance [m] of a given outline point from the meshed outline
+  outline_deviation   Hausdorff distance [m] between the given outline and the meshed one
   compile_seconds     machine code of the kernels, made once and cached; not part of seconds
 
 example:
@@ -39,10 +48,17 @@ def add_parser(subparsers) -> None:
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, metavar="OUTLINE.json", help="outline and holes")
+    parser.add_argument("file", type=Path, metavar="OUTLINE", help="outline and holes: .json, .svg or .dxf")
     parser.add_argument(
         "--edge", type=number(1e-9, 1e6, " m"), required=True, metavar="M", help="length of a mesh edge [m]"
     )
+    parser.add_argument(
+        "--quality",
+        choices=("fair", "best"),
+        default="fair",
+        help="fair: no smoothing (default); best: no small angle",
+    )
+    parser.add_argument("--size-field", type=Path, metavar="FILE", help="shorter edges by place (JSON)")
     parser.add_argument(
         "--threshold",
         type=number(0.5, 0.9),
@@ -60,17 +76,31 @@ def add_parser(subparsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, mesh, write; returns the exit status."""
-    from sim_core.errors import OutlineError
+    from sim_core.errors import OutlineError, OutlineWarning
+    from sim_core.mesh.sizes import read_size_field
     from sim_core.mesh.writing import read_outline, write_mesh
 
-    outline, holes = read_outline(args.file)
-    compile_seconds = _warm_up()
+    drawing = read_outline(args.file)
+    sizes = read_size_field(args.size_field) if args.size_field else None
+    compile_seconds = _warm_up(args.quality, graded=sizes is not None)
     from sim_core.mesh import panel_mesh
 
     try:
-        mesh = panel_mesh(outline, edge=args.edge, holes=holes, threshold=args.threshold)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always", OutlineWarning)
+            mesh = panel_mesh(
+                drawing.outline,
+                edge=args.edge,
+                holes=drawing.holes,
+                constraints=drawing.constraints,
+                sizes=sizes,
+                threshold=args.threshold,
+                quality=args.quality,
+            )
     except OutlineError as error:
         raise OutlineError(f"{args.file}: {error}") from error
+    for warning in told:
+        sys.stderr.write(f"simcore mesh: {args.file}: {warning.message}\n")
     if args.out:
         write_mesh(args.out, mesh)
     if args.picture:
@@ -80,12 +110,17 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _warm_up() -> float:
+def _warm_up(quality: str, *, graded: bool) -> float:
     """Load or compile every kernel on a small panel, so that `seconds` is the work alone."""
     begin = perf_counter()
-    from sim_core.mesh import panel_mesh
+    import numpy as np
 
-    panel_mesh([[0, 0], [1, 0], [1, 1], [0, 1]], edge=0.2)
+    from sim_core.mesh import SizeField, panel_mesh
+
+    square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    line = [[0.2, 0.1], [0.2, 0.9]]
+    field = SizeField(np.zeros((1, 2)), np.array([0.05])) if graded else None
+    panel_mesh(square, edge=0.1, holes=[square / 3 + 0.4], constraints=[line], quality=quality, sizes=field)
     return perf_counter() - begin
 
 

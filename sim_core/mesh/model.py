@@ -40,9 +40,11 @@ class PanelMesh:
     vertices: (V, 2) float64 [m].  faces: (F, 3) int32, positive area in (x, -y).
     boundary: one array of vertex indices per contour, the outer one first; outer counter-clockwise and holes
     clockwise in (x, -y), so that the cloth lies to the left.
+    lines: one array of vertex indices per inner line, open; their steps are edges of the mesh.
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     boundary: tuple[np.ndarray, ...]
     report: MeshReport
+    lines: tuple[np.ndarray, ...] = ()

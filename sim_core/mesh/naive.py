@@ -13,24 +13,34 @@ __all__ = ["grow_naive"]
 TIE = 1e-9
 
 
-def grow_naive(points: np.ndarray) -> np.ndarray:
-    """Triangulate points (n, 2) [m], y down, no two equal. Returns faces (F, 3) int32 with positive area in (x, -y)."""
+def grow_naive(points: np.ndarray, edges: np.ndarray | None = None) -> np.ndarray:
+    """Triangulate points (n, 2) [m], y down, no two equal. Returns faces (F, 3) int32 with positive area in (x, -y).
+
+    edges: (m, 2) int, oriented outline steps to start from, each of them a Delaunay edge (this form knows no walls);
+    None starts from the first point and its nearest neighbour, as the paper does, and grows to the convex hull.
+    """
     turned = np.ascontiguousarray(points * (1.0, -1.0))
-    count, faces = _grow(turned)
+    seeds = _first_edge(turned) if edges is None else np.asarray(edges, dtype=np.int64)
+    count, faces = _grow(turned, seeds, edges is not None)
     return faces[:count].astype(np.int32)
 
 
+def _first_edge(points: np.ndarray) -> np.ndarray:
+    square = ((points - points[0]) ** 2).sum(axis=1)
+    square[0] = np.inf
+    nearest = int(square.argmin())
+    return np.array([[0, nearest], [nearest, 0]])
+
+
 @njit(cache=True)
-def _grow(points):
-    n = points.shape[0]
-    first, second = 0, 1
-    for k in range(1, n):
-        if _square(points, 0, k) < _square(points, 0, second):
-            second = k
-    faces = np.zeros((2 * n + 8, 3), np.int64)
-    front = [(first, second), (second, first)]
+def _grow(points, seeds, closed):
+    faces = np.zeros((2 * points.shape[0] + 8, 3), np.int64)
+    front = [(k, k) for k in range(0)]
     done = set(front)
-    done.clear()
+    for k in range(seeds.shape[0] - 1, -1, -1):
+        front.append((seeds[k, 0], seeds[k, 1]))
+        if closed:  # nothing grows outward from the outline
+            done.add((seeds[k, 1], seeds[k, 0]))
     count = 0
     while len(front) > 0:
         a, b = front.pop()

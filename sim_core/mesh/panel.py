@@ -3,146 +3,147 @@
 from time import perf_counter
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.exact import snap_frame
-from sim_core.mesh.growth import grow_snapped
+from sim_core.mesh.best import BestFill, best_fill
+from sim_core.mesh.graded import graded_points
+from sim_core.mesh.growth import CLOSED, Growth, grow_points
 from sim_core.mesh.lattice import staggered_points
+from sim_core.mesh.lines import clean_lines
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.outline import check_edge, clean_contours, sharpest_corner
-from sim_core.mesh.quality import quality
+from sim_core.mesh.quality import quality as face_quality
 from sim_core.mesh.raycast import keep_points
 from sim_core.mesh.report import measured
-from sim_core.mesh.sampling import sampled_contours
+from sim_core.mesh.sampling import Rim, sampled_rim
+from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.smoothing import smoothed
 from sim_core.mesh.verify import fills, verify
 
-__all__ = ["grow", "panel_mesh"]
+__all__ = ["QUALITIES", "panel_mesh"]
 
-DUPLICATE = 1e-7  # of the bounding box: points closer than this are one point
+UPRIGHT = np.array([1.0, -1.0])  # y down -> y up; exact
 ENOUGH_DEGREES = 30.0
 OTHER_THRESHOLDS = (0.76, 0.64, 0.82)
-
-
-def grow(points: np.ndarray, edges: np.ndarray | None = None) -> np.ndarray:
-    """Growth triangulation of a point set (Eq. 9).
-
-    points: (n, 2) [m], y down; points nearer to each other than 1e-7 of the bounding box count as one (the first).
-    edges: (m, 2) int, outline steps with the cloth on their left in (x, -y); None grows to the convex hull.
-    Returns faces (F, 3) int32 with positive area in (x, -y). Raises OutlineError where growth cannot close.
-    """
-    points = np.asarray(points, dtype=float)
-    if len(points) < 3:
-        raise OutlineError(f"{len(points)} points – a triangle needs three")
-    keep, unique = _without_duplicates(points)
-    if len(keep) < 3:
-        raise OutlineError(f"{len(keep)} different points – a triangle needs three")
-    place = points[keep]
-    seeds = None if edges is None else unique[np.asarray(edges)]
-    faces, status, where = grow_snapped(snap_frame(place).snap(place), seeds)
-    if status:
-        x, y = place[where]
-        raise OutlineError(
-            f"growth does not close near ({x:.4f}, {y:.4f}) m – the outline crosses or is too fine"
-        )
-    return keep[faces].astype(np.int32)
-
-
-def _without_duplicates(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the points kept, and for every point its position among those."""
-    reach = DUPLICATE * float(np.ptp(points, axis=0).max())
-    first = np.arange(len(points))
-    for i, j in np.sort(KDTree(points).query_pairs(reach, output_type="ndarray"), axis=1)[::-1]:
-        first[j] = min(first[j], i)
-    while not np.array_equal(first, first[first]):
-        first = first[first]
-    keep = np.flatnonzero(first == np.arange(len(points)))
-    return keep, np.searchsorted(keep, first)
+QUALITIES = ("fair", "light", "best")
+PASSES = 3  # of light smoothing
 
 
 def panel_mesh(
-    outline, *, edge: float, holes=(), threshold: float = 0.7, smooth: int = 3, sampled: bool = False
+    outline,
+    *,
+    edge: float,
+    holes=(),
+    constraints=(),
+    sizes: SizeField | None = None,
+    threshold: float = 0.7,
+    quality: str = "light",
+    sampled: bool = False,
 ) -> PanelMesh:
     """Triangulate one pattern panel.
 
-    outline: (N, 2) [m], y down, in either direction, closed without repeating the first point.  edge: [m] length L of
-    a lattice step; outline steps are at most that.  holes: contours inside the outline.  threshold: lattice points
-    nearer to the outline than threshold * edge are redundant; 0.5 to 0.9. Other thresholds are tried where the
-    smallest angle stays below 30 degrees (or below the outline's own sharpest corner).  smooth: most smoothing passes
-    tried; a pass is kept only where it raises the smallest angle.  sampled: the contours are sampled already, so that
-    every point becomes a boundary vertex, in its order where the cloth lies to the left in (x, -y).
+    outline: (N, 2) [m], y down, in either direction, first point repeated or not.  edge: [m] length L of a lattice
+    step; outline steps are at most that.  holes: contours inside the outline; one that touches it is merged with it,
+    with a warning.  constraints: open lines (N, 2) [m] inside the cloth that edges must follow.  sizes: shorter edges
+    by place.  threshold: lattice points nearer to the outline than threshold * edge are redundant; 0.5 to 0.9.
+    quality: "fair", the paper's method and nothing else; "light", with up to three smoothing passes, kept where the
+    smallest angle grows, and other thresholds where it stays below 30 degrees (or the outline's own sharpest corner);
+    "best", with a row of points along the outline, smoothing, insertion and deletion (`best.py`; the threshold plays
+    no part).  sampled: the contours are sampled already, so that every point becomes a boundary vertex, in its order
+    where the cloth lies to the left in (x, -y).
     Raises OutlineError saying what is wrong with the outline, where, and what to do.
     """
     begin = perf_counter()
+    if quality not in QUALITIES:
+        raise OutlineError(f"quality {quality!r} – give one of {', '.join(QUALITIES)}")
     if not 0.5 <= threshold <= 0.9:
         raise OutlineError(f"threshold {threshold} – give a fraction of the edge between 0.5 and 0.9")
-    contours = clean_contours(outline, holes)
+    contours = clean_contours(outline, holes, edge=edge)
     check_edge(edge, contours)
-    samples = contours if sampled else sampled_contours(contours, edge)
-    boundary = _loops(samples)
-    vertices, faces = _best_fill(samples, boundary, edge, threshold, smooth)
-    verify(vertices, faces, boundary, edge)
-    report = measured(vertices, faces, boundary, contours, perf_counter() - begin)
-    return PanelMesh(vertices, faces, boundary, report)
+    if sizes is not None:
+        sizes.check(edge)
+    rim = _rim(contours, constraints, edge, sizes, sampled)
+    vertices, faces = _filled(rim, edge, threshold, quality, sizes)
+    free = verify(vertices, faces, rim.loops, edge, rim.lines)
+    report = measured(vertices, faces, rim.loops, contours, free, perf_counter() - begin)
+    return PanelMesh(vertices, faces, rim.loops, report, rim.lines)
 
 
-def _best_fill(
-    samples, boundary, edge: float, threshold: float, smooth: int
-) -> tuple[np.ndarray, np.ndarray]:
+def _rim(contours, constraints, edge: float, sizes: SizeField | None, sampled: bool) -> Rim:
+    if len(constraints):
+        if sampled:
+            raise OutlineError("constraints: not on contours that are sampled already – leave `sampled` out")
+        lines, contours, kept = clean_lines(constraints, contours)
+        return sampled_rim(contours, edge, lines=lines, kept=kept, sizes=sizes)
+    if not sampled:
+        return sampled_rim(contours, edge, sizes=sizes)
+    ends = np.cumsum([len(loop) for loop in contours])
+    loops = tuple(
+        np.arange(end - len(loop), end, dtype=np.int32) for loop, end in zip(contours, ends, strict=True)
+    )
+    return Rim(np.concatenate(contours), loops)
+
+
+def _filled(rim: Rim, edge: float, threshold: float, quality: str, sizes) -> tuple[np.ndarray, np.ndarray]:
+    if quality == "best" or (sizes is not None and quality == "light"):
+        best = best_fill(rim, edge, sizes)
+        return best.vertices, _closed(best, best.vertices)
+    if sizes is not None:
+        vertices = np.concatenate([rim.points, graded_points(rim, edge, sizes)])
+        return vertices, _fill(vertices, rim)
+    return _light_fill(rim, edge, threshold, PASSES if quality == "light" else 0)
+
+
+def _light_fill(rim: Rim, edge: float, threshold: float, smooth: int) -> tuple[np.ndarray, np.ndarray]:
     """Fill the contours for one threshold after the other until the smallest angle is good enough; the best counts."""
-    lattice = staggered_points(samples[0].min(axis=0), samples[0].max(axis=0), edge)
-    enough = min(ENOUGH_DEGREES, sharpest_corner(samples))
+    contours = rim.contours
+    lattice = staggered_points(contours[0].min(axis=0), contours[0].max(axis=0), edge)
+    enough = min(ENOUGH_DEGREES, sharpest_corner(contours))
     others = [t for t in OTHER_THRESHOLDS if smooth and abs(t - threshold) > 0.02]
     tried = []
     for fraction in (threshold, *others):
-        inner = keep_points(lattice, samples, edge=edge, threshold=fraction)
-        vertices = np.concatenate([*samples, inner])
-        tried.append(_improved(vertices, _fill(vertices, boundary), boundary, smooth))
+        inner = keep_points(lattice, contours, edge=edge, threshold=fraction, segments=rim.segments)
+        vertices = np.concatenate([rim.points, inner])
+        faces = _fill(vertices, rim)
+        if not smooth:
+            return vertices, faces
+        tried.append(_improved(vertices, faces, rim, smooth))
         if tried[-1][0] >= enough:
             break
     _, vertices, faces = max(tried, key=lambda found: found[0])
     return vertices, faces
 
 
-def _loops(samples: list[np.ndarray]) -> tuple[np.ndarray, ...]:
-    ends = np.cumsum([len(loop) for loop in samples])
-    return tuple(
-        np.arange(end - len(loop), end, dtype=np.int32) for loop, end in zip(samples, ends, strict=True)
-    )
-
-
-def _fill(vertices: np.ndarray, boundary: tuple[np.ndarray, ...]) -> np.ndarray:
+def _fill(vertices: np.ndarray, rim: Rim) -> np.ndarray:
     """Grow inward from the oriented outline, so that nothing outside, in holes or across notches needs culling.
 
-    Outline steps are Delaunay edges nearly always; where a spike or slit is so fine that one is not, growth runs again
-    with the steps as walls.
+    Outline steps are Delaunay edges nearly always; where a spike or slit is so fine that one is not, it becomes a wall.
     """
-    steps = np.concatenate([np.column_stack([loop, np.roll(loop, -1)]) for loop in boundary])
-    snapped = snap_frame(vertices).snap(vertices)
-    faces, status, where = grow_snapped(snapped, steps)
-    if status or not fills(vertices, faces, boundary):
-        faces, status, where = grow_snapped(snapped, steps, walls=True)
-    if status:
-        x, y = vertices[where]
+    return _closed(grow_points(vertices * UPRIGHT, rim.steps), vertices)
+
+
+def _closed(grown: Growth | BestFill, vertices: np.ndarray) -> np.ndarray:
+    """The faces of a front that has closed; raises OutlineError where it has not."""
+    if grown.status != CLOSED:
+        x, y = vertices[grown.where]
         raise OutlineError(
             f"outline: the mesh does not close near ({x:.4f}, {y:.4f}) m – the outline has a feature finer than the "
             "edge there; give a smaller edge"
         )
-    return faces
+    return grown.faces
 
 
-def _improved(vertices, faces, boundary, passes: int) -> tuple[float, np.ndarray, np.ndarray]:
+def _improved(vertices, faces, rim: Rim, passes: int) -> tuple[float, np.ndarray, np.ndarray]:
     """The best of the mesh and its smoothed forms, by the smallest angle: (angle, vertices, faces)."""
-    fixed = sum(len(loop) for loop in boundary)
-    best = _angle(vertices, faces, boundary), vertices, faces
+    fixed = len(rim.points)
+    best = _angle(vertices, faces, rim), vertices, faces
     for _ in range(passes if fixed < len(vertices) else 0):
         vertices = smoothed(vertices, faces, fixed)
         try:
-            faces = _fill(vertices, boundary)
+            faces = _fill(vertices, rim)
         except OutlineError:
             break  # a point has come too close to the outline; what was found before stands
-        angle = _angle(vertices, faces, boundary)
+        angle = _angle(vertices, faces, rim)
         if angle > best[0]:
             best = angle, vertices, faces
         if angle < 0:
@@ -150,6 +151,8 @@ def _improved(vertices, faces, boundary, passes: int) -> tuple[float, np.ndarray
     return best
 
 
-def _angle(vertices, faces, boundary) -> float:
+def _angle(vertices, faces, rim: Rim) -> float:
     """Smallest angle [degrees], or -1 where the faces do not fill the contours."""
-    return float(quality(vertices, faces).min_angle.min()) if fills(vertices, faces, boundary) else -1.0
+    if not fills(vertices, faces, rim.loops):
+        return -1.0
+    return float(face_quality(vertices, faces).min_angle.min())

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 __all__ = ["Quality", "quality", "triangle_areas"]
 
@@ -17,20 +18,40 @@ class Quality(NamedTuple):
 
 def triangle_areas(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Signed areas [m2] in (x, -y) of faces (F, 3) over vertices (V, 2) [m], y down."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    u, v = b - a, c - a
-    return 0.5 * (u[:, 1] * v[:, 0] - u[:, 0] * v[:, 1])
+    return _areas(np.asarray(vertices), np.asarray(faces))
 
 
 def quality(vertices: np.ndarray, faces: np.ndarray) -> Quality:
     """Measure triangles: vertices (V, 2) [m], faces (F, 3) int. Zero-area triangles have angle and q of 0."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    squares = np.sort(
-        np.column_stack([((p - q) ** 2).sum(axis=1) for p, q in ((b, c), (c, a), (a, b))]), axis=1
-    )
-    double = 2 * np.abs(triangle_areas(vertices, faces))
-    cosine = squares[:, 1] + squares[:, 2] - squares[:, 0]
-    angle = np.degrees(np.arctan2(2 * double, cosine))
-    return Quality(
-        angle, 2 * np.sqrt(3) * double / squares.sum(axis=1), np.sqrt(squares[:, 0] / squares[:, 2])
-    )
+    return Quality(*_measured(np.asarray(vertices), np.asarray(faces)))
+
+
+@njit(cache=True, error_model="numpy")
+def _areas(vertices, faces):
+    areas = np.zeros(faces.shape[0])
+    for f in range(faces.shape[0]):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy = vertices[b, 0] - vertices[a, 0], vertices[b, 1] - vertices[a, 1]
+        vx, vy = vertices[c, 0] - vertices[a, 0], vertices[c, 1] - vertices[a, 1]
+        areas[f] = 0.5 * (uy * vx - ux * vy)
+    return areas
+
+
+@njit(cache=True, error_model="numpy")
+def _measured(vertices, faces):
+    areas = _areas(vertices, faces)
+    angle, shape, ratio = np.zeros(len(areas)), np.zeros(len(areas)), np.zeros(len(areas))
+    for f in range(len(areas)):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        p = (vertices[b, 0] - vertices[c, 0]) ** 2 + (vertices[b, 1] - vertices[c, 1]) ** 2
+        q = (vertices[c, 0] - vertices[a, 0]) ** 2 + (vertices[c, 1] - vertices[a, 1]) ** 2
+        r = (vertices[a, 0] - vertices[b, 0]) ** 2 + (vertices[a, 1] - vertices[b, 1]) ** 2
+        least, most, total = min(p, min(q, r)), max(p, max(q, r)), p + q + r
+        if total == 0.0:
+            continue
+        double = 2 * abs(areas[f])
+        # The smallest angle lies opposite the shortest side: tan = 2 * 2 area / (b b + c c - a a)
+        angle[f] = np.degrees(np.arctan2(2 * double, total - 2 * least))
+        shape[f] = 2 * np.sqrt(3.0) * double / total
+        ratio[f] = np.sqrt(least / most)
+    return angle, shape, ratio

@@ -1,53 +1,104 @@
-"""Readers and writers of the mesh room: outline JSON in; npz, PLY, OBJ out."""
+"""Readers and writers of the mesh room: outlines from JSON, SVG and DXF in; npz, PLY, OBJ out."""
 
 from pathlib import Path
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 
 from sim_core.errors import FileProblem
+from sim_core.mesh.dxf import read_dxf
 from sim_core.mesh.model import PanelMesh
+from sim_core.mesh.outline import LARGEST, signed_area
+from sim_core.mesh.svg import read_svg
 from sim_core.reading import read_json, shown
 
-__all__ = ["read_outline", "write_mesh"]
+__all__ = ["Drawing", "read_outline", "write_mesh"]
 
 
-def read_outline(path: Path) -> tuple[list, list]:
-    """The outline and the holes of {"outline": [[x, y], ...], "holes": [...]}, metres, y down.
+class Drawing(NamedTuple):
+    """What an outline file holds: outline [m], holes and inner lines, as lists of [x, y] or arrays, y down."""
 
-    Raises FileProblem (path: what – remedy) for a file that is missing, empty, no JSON or of another shape.
+    outline: Any
+    holes: list
+    constraints: list
+
+
+def read_outline(path: Path) -> Drawing:
+    """The outline, holes and inner lines of a JSON, SVG or DXF file, metres, y down.
+
+    JSON: {"outline": [[x, y], ...], "holes": [...], "constraints": [...]}. In drawings the closed line of the largest
+    area is the outline, other closed lines are holes, open ones are inner lines.
+    Raises FileProblem (path: what – remedy) for a file that is missing, empty, of another kind or shape.
     """
-    shape = 'it must hold {"outline": [[x, y], ...], "holes": [...]} in metres'
+    kind = path.suffix.lower()
+    if kind in (".svg", ".dxf"):
+        return _sorted(path, read_svg(path) if kind == ".svg" else read_dxf(path))
+    shape = 'it must hold {"outline": [[x, y], ...], "holes": [...], "constraints": [...]} in metres'
     values = read_json(path, f"an outline file (JSON): {shape}")
     if not isinstance(values, dict) or "outline" not in values:
         raise FileProblem(f"{path}: outline: missing – {shape}")
-    unknown = sorted(set(values) - {"outline", "holes"})
+    unknown = sorted(set(values) - {"outline", "holes", "constraints"})
     if unknown:
         raise FileProblem(f"{path}: {unknown[0][:80]}: unknown key – {shape}")
-    holes = values.get("holes", [])
-    if not isinstance(holes, list):
-        raise FileProblem(f"{path}: holes: {shown(holes)} – give a list of contours")
-    return values["outline"], holes
+    for name in ("holes", "constraints"):
+        if not isinstance(values.get(name, []), list):
+            raise FileProblem(f"{path}: {name}: {shown(values[name])} – give a list of lists of [x, y]")
+    return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
+
+
+def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
+    for points, _ in lines:
+        if not (np.abs(points) <= LARGEST).all():  # false for NaN too
+            raise FileProblem(
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+            )
+    closed = [points for points, round_ in lines if round_]
+    if not closed:
+        raise FileProblem(f"{path}: no closed line in it – close the outline")
+    closed.sort(key=lambda points: -abs(signed_area(points)))
+    return Drawing(closed[0], closed[1:], [points for points, round_ in lines if not round_])
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
-    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise."""
+    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise.
+
+    It is written beside `path` and renamed over: an interrupt leaves the old file or the new one.
+    """
     writers = {".npz": _write_npz, ".ply": _write_ply, ".obj": _write_obj}
     if path.suffix.lower() not in writers:
         raise FileProblem(f"{path}: unknown kind of file – end the name with .npz, .ply or .obj")
     path.parent.mkdir(parents=True, exist_ok=True)
-    writers[path.suffix.lower()](path, mesh)
+    beside = path.with_name(path.name + ".part")
+    try:
+        with beside.open("wb") as stream:
+            writers[path.suffix.lower()](stream, mesh)
+        beside.replace(path)
+    finally:
+        beside.unlink(missing_ok=True)
 
 
-def _write_npz(path: Path, mesh: PanelMesh) -> None:
-    loops = {f"boundary_{k}": loop for k, loop in enumerate(mesh.boundary)}
-    np.savez_compressed(path, allow_pickle=False, vertices=mesh.vertices, faces=mesh.faces, **loops)
+def _write_npz(stream: IO[bytes], mesh: PanelMesh) -> None:
+    np.savez_compressed(
+        stream,
+        vertices=mesh.vertices,
+        faces=mesh.faces,
+        boundary=np.concatenate(mesh.boundary),
+        boundary_start=_starts(mesh.boundary),
+        lines=np.concatenate([np.zeros(0, np.int32), *mesh.lines]),
+        lines_start=_starts(mesh.lines),
+    )
+
+
+def _starts(chains: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Where each chain begins in their concatenation, and its end: (k + 1,) int32."""
+    return np.concatenate([[0], np.cumsum([len(chain) for chain in chains])]).astype(np.int32)
 
 
 def _upright(mesh: PanelMesh) -> np.ndarray:
     return np.column_stack([mesh.vertices[:, 0], -mesh.vertices[:, 1], np.zeros(len(mesh.vertices))])
 
 
-def _write_ply(path: Path, mesh: PanelMesh) -> None:
+def _write_ply(stream: IO[bytes], mesh: PanelMesh) -> None:
     head = (
         "ply\nformat binary_little_endian 1.0\n"
         f"element vertex {len(mesh.vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -55,10 +106,10 @@ def _write_ply(path: Path, mesh: PanelMesh) -> None:
     )
     faces = np.zeros(len(mesh.faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, mesh.faces
-    path.write_bytes(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
+    stream.write(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
 
 
-def _write_obj(path: Path, mesh: PanelMesh) -> None:
+def _write_obj(stream: IO[bytes], mesh: PanelMesh) -> None:
     lines = [f"v {x:.9g} {y:.9g} 0" for x, y, _ in _upright(mesh)]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces]
-    path.write_text("\n".join(lines) + "\n", "utf-8")
+    stream.write(("\n".join(lines) + "\n").encode())

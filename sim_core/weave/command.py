@@ -1,4 +1,4 @@
-"""`simcore weave`: a weave file becomes texture maps and parameters."""
+"""`simcore weave`: a weave by name, file or motif becomes facts, maps, yarns and WIF."""
 
 import argparse
 import json
@@ -6,134 +6,123 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
-from sim_core.arguments import whole
+from sim_core.arguments import ending, whole
 
 __all__ = ["add_parser", "run"]
 
 DESCRIPTION = """\
-Relax the yarns of a weave and draw it.
+From draft to yarn to cloth.
 
-The weave file (TOML, see assets/weaves) states draft, yarns and sett in SI units. The yarn heights of one repeat
-are brought into force balance (beams with contact, periodic), then drawn as tileable maps, and homogenised into
-the parameters a cloth solver needs.
+SOURCE is one of
+  plain                     1/1
+  twill:2/1                 over 2, under 1; Z, advancing one end a pick
+  satin:8/3                 warp-faced, the one weft point of pick i on end 3 i mod 8
+    suffixes                :S mirrors, :weft takes the weft-faced weave (twill:3/1:S, satin:8/3:weft)
+  FILE.toml                 a weave file, such as those in assets/weaves
+  FILE.wif                  WIF 1.0 or 1.1, read tolerantly
+  FILE.json                 what Weave.to_dict or draft_to_dict wrote
+  FILE.png, .jpg ...        a motif, one pixel a crossing: dark becomes figure of a satin damask
 
-With --out DIR these files are written:
-  albedo.png normal.png height.png opacity.png   tileable maps; normal as glTF has it (y up the picture)
-  lit.png                                        a lit picture of 2 x 2 tiles, to look at
-  parameters.json                                cloth parameters with units, bounds and the formula of each
+Yarn heights of one repeat are brought into force balance: at the crossings (stage A, beams in contact), and with
+--relax in three dimensions (stage B: stretch, bending, contact, friction, flattened sections). Leno and compound
+weaves stay at stage A. A bare draft is woven of an assumed silk, which the summary says.
+
+Written on demand:
+  --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json
+  --yarns FILE  the yarns of one repeat: tubes as .glb, axes as .ply
+  --wif FILE    WIF 1.1; what WIF cannot say goes into a private section
 
 example:
-  simcore weave assets/weaves/gauze.toml --out gauze --pixels 1024
+  simcore weave satin:8/3 --relax --maps satin --size 1024 --json
 """
-
-UNITS = {
-    "density": "kg/m2",
-    "thickness": "m",
-    "stretch_warp": "N/m",
-    "stretch_weft": "N/m",
-    "shear": "N/m",
-    "poisson": "1",
-    "bend": "N m",
-    "bend_warp": "N m",
-    "bend_weft": "N m",
-    "friction": "1",
-}
 
 
 def add_parser(subparsers) -> None:
     """Describe the command to argparse."""
     parser = subparsers.add_parser(
         "weave",
-        help="weave file -> texture maps and cloth parameters",
+        help="draft, WIF or motif -> yarns, texture maps, cloth parameters",
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, metavar="FILE.toml", help="weave file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the maps and parameters.json")
     parser.add_argument(
-        "--pixels", type=whole(32, 4096), default=512, help="width and height of the maps (default 512)"
+        "source", metavar="SOURCE", help="plain, twill:2/1, satin:8/3, a file or a motif picture"
     )
+    parser.add_argument("--relax", action="store_true", help="relax the yarns in three dimensions (stage B)")
+    parser.add_argument("--maps", type=Path, metavar="DIR", help="folder for the maps")
     parser.add_argument(
-        "--seed", type=whole(0, 2**32 - 1), default=0, help="of the yarns' irregularity (default 0)"
+        "--size", type=whole(32, 4096), default=1024, metavar="N", help="pixels of the maps (default 1024)"
     )
+    parser.add_argument("--yarns", type=ending(".glb", ".ply"), metavar="FILE", help="yarn tubes or axes")
+    parser.add_argument("--wif", type=ending(".wif"), metavar="FILE", help="the draft as WIF 1.1")
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 
 def run(args: argparse.Namespace) -> int:
     """Relax, draw and write; returns the exit status."""
-    from sim_core.weave import Weave, cloth_parameters, relax, texture_maps
+    from sim_core.weave.draft import plain
+    from sim_core.weave.particles import relax_particles
+    from sim_core.weave.report import summary_of
+    from sim_core.weave.solve import solve
+    from sim_core.weave.words import dressed, weave_of
 
-    weave = Weave.load(args.file)
-    if args.out:
-        args.out.mkdir(parents=True, exist_ok=True)  # refused before the work, not after it
+    for path in (args.yarns, args.wif):  # refused before the work, not after it
+        if path is not None and not path.parent.is_dir():
+            raise NotADirectoryError(f"{path}: no such folder – make {path.parent} first")
+        if path is not None and path.is_dir():
+            raise IsADirectoryError(f"{path}: a folder – give the name of a file")
+    if args.maps and any(place.exists() and not place.is_dir() for place in (args.maps, *args.maps.parents)):
+        raise NotADirectoryError(f"{args.maps}: a file is in the way – give the name of a folder")
+    weave, origin = weave_of(args.source)
+    if args.maps:
+        args.maps.mkdir(parents=True, exist_ok=True)
+    if args.relax:  # compiled before the clock runs: `seconds` is what the relaxation takes
+        relax_particles(dressed(plain()), tolerance=0.1)
     begin = perf_counter()
-    geometry = relax(weave)
-    seconds = {"relax": perf_counter() - begin}
-    parameters = cloth_parameters(weave, geometry)
-    begin = perf_counter()
-    maps = texture_maps(weave, geometry, pixels=args.pixels, seed=args.seed) if args.out else None
-    seconds["maps"] = perf_counter() - begin
-    summary = _summary(weave, geometry, parameters, maps, seconds)
-    if maps is not None:
-        _write(args.out, maps, summary)
-    text = json.dumps(summary, ensure_ascii=False, indent=2) if args.json else _text(summary, args.out)
+    geometry = solve(weave, particles=args.relax)
+    summary = summary_of(weave, geometry, perf_counter() - begin, origin)
+    if args.wif:
+        from sim_core.weave.wif import wif_of
+        from sim_core.weave.wif_write import write_wif
+
+        write_wif(wif_of(weave), args.wif)
+    if args.yarns:
+        from sim_core.weave.strands import strands
+        from sim_core.weave.tubes import write_yarns
+
+        write_yarns(strands(weave, geometry), args.yarns)
+    if args.maps:
+        _write(args.maps, weave, geometry, args.size, summary)
+    text = json.dumps(summary, ensure_ascii=False, indent=2) if args.json else _text(weave.name, summary)
     sys.stdout.write(text + "\n")
     return 0
 
 
-def _summary(weave, geometry, parameters, maps, seconds) -> dict:
-    values = parameters.to_dict()
-    summary = {
-        "weave": weave.name,
-        "draft": weave.draft.name,
-        "face": weave.draft.face,
-        "openness": weave.openness,
-        "crimp_warp": float(geometry.warp_crimp.mean()),
-        "crimp_weft": float(geometry.weft_crimp.mean()),
-        "residual": geometry.residual,
-        "penetration": geometry.penetration,
-        "seconds": seconds,
-        "parameters": {key: values[key] for key in UNITS},
-        "units": UNITS,
-        "bounds": {key: list(bound) for key, bound in values["bounds"].items()},
-        "provenance": values["provenance"],
-    }
-    if maps is not None:
-        summary["tile"] = {
-            "pixels": len(maps.height),
-            "size": list(maps.size),
-            "relief": maps.relief,
-            "seam": maps.seam,
-            "cover": float(maps.opacity.mean() / 255),
-        }
-    return summary
-
-
-def _write(folder: Path, maps, summary: dict) -> None:
+def _write(folder: Path, weave, geometry, size: int, summary: dict) -> None:
     from PIL import Image
 
-    from sim_core.weave.drawing import lit_picture
+    from sim_core.weave.surface import lit_cloth, surface_maps
 
-    pictures = {name: getattr(maps, name) for name in ("albedo", "normal", "height", "opacity")}
-    pictures["lit"] = lit_picture(maps, tiles=2)
-    for name, picture in pictures.items():
+    maps = surface_maps(weave, geometry, pixels=size)
+    for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():
         Image.fromarray(picture).save(folder / f"{name}.png")
-    (folder / "parameters.json").write_text(json.dumps(summary, ensure_ascii=False, indent=2) + "\n", "utf-8")
+    tile = {"size": list(maps.size), "relief": maps.relief, "repeats": list(maps.repeats), "unit": "m"}
+    text = json.dumps({**summary, "tile": tile}, ensure_ascii=False, indent=2)
+    (folder / "parameters.json").write_text(text + "\n", "utf-8")
 
 
-def _text(summary: dict, out: Path | None) -> str:
+def _text(name: str, summary: dict) -> str:
+    repeat, floats, crimp = summary["repeat"], summary["floats"], summary["crimp"]
     lines = [
-        f"{summary['weave']}: {summary['draft']}, {summary['face']} face, {summary['openness']:.0%} open, crimp "
-        f"{summary['crimp_warp']:.2%} warp {summary['crimp_weft']:.2%} weft"
+        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, longest float "
+        f"{floats['warp']['longest']} warp {floats['weft']['longest']} weft, "
+        f"{'hangs together' if summary['integral'] else 'FALLS APART'}",
+        f"  crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, {summary['thickness'] * 1e6:.0f} um thick, "
+        f"{summary['areal_density'] * 1e3:.1f} g/m2",
     ]
-    for key, value in summary["parameters"].items():
-        bound = summary["bounds"].get(key)
-        between = f"   between {bound[0]:.3g} and {bound[1]:.3g}" if bound else ""
-        lines.append(f"  {key:<13}{value:10.3g} {UNITS[key]}{between}")
-    if "tile" in summary:
-        tile = summary["tile"]
-        lines.append(
-            f"  maps: {tile['pixels']} pixels over {tile['size'][0] * 1e3:.2f} x {tile['size'][1] * 1e3:.2f} mm, "
-            f"seam {tile['seam'] * 255:.0f}/255, in {out}"
-        )
+    for key, entry in summary["parameters"].items():
+        if isinstance(entry, dict) and "value" in entry:
+            band = entry.get("band")
+            between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
+            lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
     return "\n".join(lines)

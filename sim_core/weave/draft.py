@@ -1,15 +1,57 @@
-"""Drafts: which yarn lies on top at each crossing of one repeat, and the generators of the three basic weaves."""
+"""Drafts: one repeat of a weave, its smallest repeat, face, floats and interlacings, and the three basic weaves.
 
-from dataclasses import dataclass
+A draft is more than a 0/1 matrix: `Channels` holds what leno, compound weaves, tapestry and brocade need besides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
 from math import gcd
 
 import numpy as np
 
 from sim_core.errors import WeaveError
 
-__all__ = ["Draft", "plain", "satin", "twill"]
+__all__ = ["Channels", "Draft", "plain", "satin", "twill"]
 
-MOST = 256  # ends or picks of one repeat; to relax that many takes up to a minute
+MOST = 1024  # ends or picks of one repeat
+KINDS = ("main", "inner", "extra")
+
+
+@dataclass(frozen=True, eq=False)
+class Channels:
+    """What a lift matrix cannot say; every channel is optional (None).
+
+    end_series: (ends,) int, which set of warp ends (the colours of a compound weave; 1 = doup ends of a leno).
+    pick_series: (picks,) int, the same of the wefts.
+    pick_kind: (picks,) int, index into ("main", "inner", "extra"): binding pick, inner pick between face and back of
+    a compound weave, or supplementary weft that is not part of the ground.
+    layer: (picks, ends) int, 0 the face, 1 and more behind it, of the warp end at that pick.
+    order: (picks, ends) int, the place (in end spacings from the left) that an end takes at a pick; ends that
+    change places between two picks cross there, the doup end (series 1) beneath the other.
+    region: (picks, ends) int, number of the weft bobbin (colour) at a crossing, -1 where the pick is not there.
+    """
+
+    end_series: np.ndarray | None = None
+    pick_series: np.ndarray | None = None
+    pick_kind: np.ndarray | None = None
+    layer: np.ndarray | None = None
+    order: np.ndarray | None = None
+    region: np.ndarray | None = None
+
+    def items(self) -> list[tuple[str, np.ndarray]]:
+        """The channels that are there, by name."""
+        return [(f.name, getattr(self, f.name)) for f in fields(self) if getattr(self, f.name) is not None]
+
+
+AXES = {
+    "end_series": (1,),
+    "pick_series": (0,),
+    "pick_kind": (0,),
+    "layer": (0, 1),
+    "order": (0, 1),
+    "region": (0, 1),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,11 +59,12 @@ class Draft:
     """One repeat of a weave.
 
     lift: (picks, ends) bool, True where the warp end passes over the weft pick (a warp point).
-    Raises WeaveError where a yarn never interlaces, since such a yarn would fall out of the cloth.
+    channels: see Channels.  Raises WeaveError where the matrix or a channel has the wrong shape or values.
     """
 
     name: str
     lift: np.ndarray
+    channels: Channels = Channels()
 
     def __post_init__(self) -> None:
         lift = np.array(self.lift)
@@ -31,17 +74,47 @@ class Draft:
         if not np.isin(lift, (0, 1)).all():
             raise WeaveError(f"draft {self.name}: lift holds values other than 0 and 1")
         lift = lift.astype(bool)
-        for axis, kind in ((0, "end"), (1, "pick")):
-            loose = np.flatnonzero(lift.all(axis=axis) | ~lift.any(axis=axis))
-            if loose.size:
-                raise WeaveError(
-                    f"draft {self.name}: {kind} {loose[0]} never interlaces – it needs both warp and weft points"
-                )
         lift.setflags(write=False)
         object.__setattr__(self, "lift", lift)
+        made = {name: self._channel(name, values) for name, values in self.channels.items()}
+        object.__setattr__(self, "channels", Channels(**made))
+        self._check_channels()
+
+    def _check_channels(self) -> None:
+        """Channels that need one another, and cloths without a weft; raises WeaveError."""
+        c = self.channels
+        if c.layer is not None and c.end_series is None and c.pick_series is None:
+            raise WeaveError(f"draft {self.name}: layer without series – add end_series or pick_series")
+        if c.region is not None and c.region.max() < 0:
+            raise WeaveError(f"draft {self.name}: region is -1 everywhere – give the weft a colour somewhere")
+        if c.pick_kind is not None and (c.pick_kind == KINDS.index("extra")).all():
+            raise WeaveError(f"draft {self.name}: every pick is extra – a cloth needs picks of its ground")
+
+    def _channel(self, name: str, values) -> np.ndarray:
+        values = np.array(values)
+        wanted = tuple(self.lift.shape[axis] for axis in AXES[name])
+        if values.shape != wanted or values.dtype.kind not in "iu":
+            raise WeaveError(
+                f"draft {self.name}: {name} has shape {values.shape} – whole numbers, shape {wanted}"
+            )
+        least, most = (-1 if name == "region" else 0), (len(KINDS) - 1 if name == "pick_kind" else 4 * MOST)
+        if name == "order":
+            least = -4 * MOST
+        if values.min() < least or values.max() > most:
+            raise WeaveError(f"draft {self.name}: {name} holds values outside {least} to {most}")
+        values = values.astype(np.int32)
+        values.setflags(write=False)
+        return values
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Draft) and self.name == other.name and np.array_equal(self.lift, other.lift)
+        if (
+            not isinstance(other, Draft)
+            or self.name != other.name
+            or not np.array_equal(self.lift, other.lift)
+        ):
+            return False
+        mine, theirs = dict(self.channels.items()), dict(other.channels.items())
+        return mine.keys() == theirs.keys() and all(np.array_equal(v, theirs[k]) for k, v in mine.items())
 
     @property
     def picks(self) -> int:
@@ -71,9 +144,59 @@ class Draft:
         picks = (self.lift != np.roll(self.lift, -1, axis=1)).sum(axis=1)
         return ends, picks
 
-    def back(self) -> "Draft":
-        """The same cloth seen from the other side, turned about a pick (ends in opposite order)."""
+    def loose(self) -> str | None:
+        """The first yarn of the ground that never changes side, such as "end 3", or None; it would fall out.
+
+        Ends of a leno may stay on one side: their crossings hold them.
+        """
+        kind = self.channels.pick_kind
+        ground = np.arange(self.picks) if kind is None else np.flatnonzero(kind != KINDS.index("extra"))
+        lift = self.lift[ground]
+        systems = [(0, "end", np.arange(self.ends)), (1, "pick", ground)]
+        for axis, name, numbers in systems[self.channels.order is not None and self.channels.layer is None :]:
+            loose = np.flatnonzero(lift.all(axis=axis) | ~lift.any(axis=axis))
+            if loose.size:
+                return f"{name} {numbers[loose[0]]}"
+        return None
+
+    def repeat(self) -> Draft:
+        """The same weave in its smallest repeat of ends and picks (all channels repeat as well)."""
+        # An order may run on by a whole repeat of places; its steps are what repeats.
+        picks, ends = (_period(self, axis) for axis in (0, 1))
+        if (picks, ends) == self.lift.shape:
+            return self
+        cut = {
+            name: values[:picks, :ends] if len(AXES[name]) == 2 else values[: (picks, ends)[AXES[name][0]]]
+            for name, values in self.channels.items()
+        }
+        return Draft(self.name, self.lift[:picks, :ends], Channels(**cut))
+
+    def renamed(self, name: str) -> Draft:
+        """The same draft under another name."""
+        return replace(self, name=name)
+
+    def back(self) -> Draft:
+        """The same cloth seen from the other side, turned about a pick (ends in opposite order); lift only."""
         return Draft(f"{self.name} (back)", ~self.lift[:, ::-1])
+
+
+def _period(draft: Draft, axis: int) -> int:
+    """Smallest count of picks (axis 0) or ends (axis 1) after which lift and every channel repeat."""
+    count = draft.lift.shape[axis]
+    ends = np.arange(draft.ends)
+    # places are told from the end's own column, so that they repeat across the cloth as the lift does
+    layers = [
+        (values - ends if name == "order" else values, AXES[name])
+        for name, values in draft.channels.items()
+        if axis in AXES[name]
+    ]
+    layers.append((draft.lift, (0, 1)))
+    for period in range(1, count):
+        if count % period == 0 and all(
+            np.array_equal(values, np.roll(values, -period, axis=axes.index(axis))) for values, axes in layers
+        ):
+            return period
+    return count
 
 
 def _check_size(name: str, *counts: int) -> None:
@@ -107,6 +230,8 @@ def plain() -> Draft:
 
 def twill(up: int, down: int, step: int = 1) -> Draft:
     """A regular twill: each end goes over `up` and under `down` picks, moved by `step` from end to end.
+
+    With step 1 the line rises to the right, pick 0 lowest: a Z twill.
 
     step: +1 rises to later picks with later ends, -1 falls; it must share no factor with up + down.
     """

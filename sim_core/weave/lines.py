@@ -8,7 +8,7 @@ from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.model import Weave
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["YarnSystem", "spline_slopes", "yarn_systems"]
+__all__ = ["YarnSystem", "resampled", "spline_slopes", "yarn_systems"]
 
 TABLE = 256  # samples of irregularity along a yarn, once round the tile
 STREAKS = 64  # fibre streaks round a yarn
@@ -43,6 +43,18 @@ def spline_slopes(height: np.ndarray) -> np.ndarray:
     theta = 2 * np.pi * np.arange(height.shape[1]) / height.shape[1]
     symbol = 6j * np.sin(theta) / (4 + 2 * np.cos(theta))
     return np.fft.ifft(np.fft.fft(height, axis=1) * symbol, axis=1).real
+
+
+def resampled(height: np.ndarray, per: int) -> np.ndarray:
+    """(lines, crossings) -> (lines, crossings * per) on the periodic cubic spline through the crossings."""
+    slope = spline_slopes(height)
+    t = np.arange(per) / per
+    after, slope_after = np.roll(height, -1, axis=1), np.roll(slope, -1, axis=1)
+    z = (
+        height[..., None] * (1 + 2 * t) * (1 - t) ** 2 + after[..., None] * t * t * (3 - 2 * t)
+        + slope[..., None] * t * (1 - t) ** 2 - slope_after[..., None] * t * t * (1 - t)
+    )  # fmt: skip
+    return np.ascontiguousarray(z.reshape(len(height), -1))
 
 
 def yarn_systems(

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.draft import Draft
+from sim_core.weave.draft import Channels, Draft
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["Weave"]
+__all__ = ["Weave", "draft_from_dict", "draft_to_dict"]
 
 MOST_PER_METRE = 1e6
 
@@ -19,7 +19,9 @@ class Weave:
     """A cloth on the loom: draft, warp and weft yarn, and how many of each lie side by side.
 
     ends_per_m, picks_per_m: [1/m].  friction: coefficient between two layers of the cloth.
-    Raises WeaveError where the sett is not positive or the yarns do not fit beside each other.
+    extra: yarn of the supplementary wefts of a brocade, None where there are none.
+    warp_colours: sRGB of the warp series, weft_colours: of the weft regions or series; empty: the yarns' own colours.
+    Raises WeaveError where the sett is not positive, or a yarn of the ground never interlaces.
     """
 
     name: str
@@ -29,6 +31,9 @@ class Weave:
     ends_per_m: float
     picks_per_m: float
     friction: float = 0.3
+    extra: Yarn | None = None
+    warp_colours: tuple[tuple[float, float, float], ...] = ()
+    weft_colours: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
         for key in ("ends_per_m", "picks_per_m"):
@@ -37,6 +42,18 @@ class Weave:
                 raise WeaveError(
                     f"weave {self.name}: {key} is {value} – give 1 to {MOST_PER_METRE:g} yarns per metre"
                 )
+        loose = self.draft.loose()
+        if loose:
+            raise WeaveError(
+                f"draft {self.draft.name}: {loose} never interlaces – it needs both warp and weft points"
+            )
+        for key in ("warp_colours", "weft_colours"):
+            colours = tuple(tuple(float(c) for c in colour) for colour in getattr(self, key))
+            if not all(len(colour) == 3 and all(0 <= c <= 1 for c in colour) for colour in colours):
+                raise WeaveError(
+                    f"weave {self.name}: {key} – give three sRGB values between 0 and 1 a colour"
+                )
+            object.__setattr__(self, key, colours)
         if not 0 <= self.friction <= 2:
             raise WeaveError(f"weave {self.name}: friction is {self.friction} – between 0 and 2")
 
@@ -72,19 +89,43 @@ class Weave:
     def to_dict(self) -> dict:
         """A plain dictionary that JSON can hold and `from_dict` reads back."""
         values = {key: getattr(self, key) for key in ("name", "ends_per_m", "picks_per_m", "friction")}
-        draft = {"name": self.draft.name, "lift": self.draft.lift.astype(int).tolist()}
-        return {**values, "draft": draft, "warp": asdict(self.warp), "weft": asdict(self.weft)}
+        values |= {"draft": draft_to_dict(self.draft), "warp": asdict(self.warp), "weft": asdict(self.weft)}
+        if self.extra:
+            values["extra"] = asdict(self.extra)
+        for key in ("warp_colours", "weft_colours"):
+            if getattr(self, key):
+                values[key] = [list(colour) for colour in getattr(self, key)]
+        return values
 
     @classmethod
     def from_dict(cls, values: dict) -> "Weave":
         """The inverse of `to_dict`; raises WeaveError for a missing or unknown key."""
         try:
             rest = dict(values)
-            draft = rest.pop("draft")
-            lift = np.array(draft["lift"], dtype=bool)
-            yarns = {side: Yarn(**{**rest.pop(side)}) for side in ("warp", "weft")}
-            return cls(draft=Draft(draft["name"], lift), **yarns, **rest)
-        except (KeyError, TypeError) as error:
+            draft = draft_from_dict(rest.pop("draft"))
+            yarns = {side: Yarn(**rest.pop(side)) for side in ("warp", "weft", "extra") if side in rest}
+            return cls(draft=draft, **yarns, **rest)
+        except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+            if isinstance(error, WeaveError):
+                raise
             raise WeaveError(
                 f"weave: {error} – the dictionary must be one that Weave.to_dict wrote"
             ) from error
+
+
+def draft_to_dict(draft: Draft) -> dict:
+    """Name, lift and channels of a draft as JSON can hold them."""
+    values = {"name": draft.name, "lift": draft.lift.astype(int).tolist()}
+    channels = {name: channel.tolist() for name, channel in draft.channels.items()}
+    return values | ({"channels": channels} if channels else {})
+
+
+def draft_from_dict(values: dict) -> Draft:
+    """The inverse of `draft_to_dict`; raises WeaveError for what is no draft."""
+    try:
+        channels = {name: np.array(channel) for name, channel in values.get("channels", {}).items()}
+        return Draft(str(values["name"]), np.array(values["lift"]), Channels(**channels))
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
+        if isinstance(error, WeaveError):
+            raise
+        raise WeaveError(f"draft: {error} – the dictionary must hold name, lift and channels") from error

@@ -7,6 +7,7 @@ import numpy as np
 from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
 from sim_core.weave.relaxation import relax
+from sim_core.weave.yarn import Yarn
 
 __all__ = ["areal_density", "cloth_parameters", "tensile_compliance"]
 
@@ -37,7 +38,13 @@ def cloth_parameters(weave: Weave, geometry: YarnGeometry) -> ClothParameters:
         friction=weave.friction,
         bend_warp=bend_warp,
         bend_weft=bend_weft,
-        bounds={"shear": shear_bounds, "bend_warp": warp_bounds, "bend_weft": weft_bounds},
+        bounds={
+            "shear": shear_bounds,
+            "bend_warp": warp_bounds,
+            "bend_weft": weft_bounds,
+            "stretch_warp": _stretch_bounds(weave, compliance[0, 0], weave.warp, weave.ends_per_m),
+            "stretch_weft": _stretch_bounds(weave, compliance[1, 1], weave.weft, weave.picks_per_m),
+        },
         provenance=PROVENANCE,
     )
 
@@ -97,6 +104,16 @@ def _shear(weave: Weave, geometry: YarnGeometry) -> tuple[float, tuple[float, fl
     return min(stuck, slipping), (min(stuck, slipping), stuck)
 
 
+def _stretch_bounds(weave: Weave, compliance: float, yarn: Yarn, count: float) -> tuple[float, float]:
+    """Tensile stiffness [N/m] with free and with stuck fibres in both yarns: the crimp's compliance goes as 1 / EI."""
+    own = weave.warp.stiffness * weave.weft.stiffness
+    free = sqrt(weave.warp.stiffness_free * weave.weft.stiffness_free / own)
+    stuck = sqrt(weave.warp.stiffness_stuck * weave.weft.stiffness_stuck / own)
+    axial = 1 / (yarn.axial * count)
+    crimp = max(compliance - axial, 0.0)
+    return float(1 / (axial + crimp / min(free, 1.0))), float(1 / (axial + crimp / max(stuck, 1.0)))
+
+
 def _bending_bounds(weave: Weave, geometry: YarnGeometry) -> list[tuple[float, float]]:
     """Bending stiffness [N m] with free and with stuck fibres, for warp and weft."""
     bounds = []
@@ -113,7 +130,8 @@ PROVENANCE = {
     "density": "sum over warp and weft of yarns per metre x linear density x (1 + crimp of the relaxed yarn)",
     "thickness": "highest minus lowest point of the flattened yarns in the relaxed repeat",
     "stretch_warp": "uniaxial: 1 / (crimp straightened per tension, by finite difference on the relaxed repeat, "
-    "+ 1 / (EA x ends per metre)); EA = fibre modulus x linear density / fibre density",
+    "+ 1 / (EA x ends per metre)); EA = fibre modulus x linear density / fibre density; bounds: yarns of "
+    "free fibres, of fibres stuck to one rod",
     "stretch_weft": "as stretch_warp, for the picks",
     "poisson": "crimp interchange: -S12 / sqrt(S11 S22) of the symmetric compliance of the relaxed repeat, "
     "not below 0 (long floats can turn its sign)",

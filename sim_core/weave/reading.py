@@ -15,6 +15,20 @@ from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 __all__ = ["read_weave"]
 
 
+Colour = Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")]
+# A motif written out: one string a row, the top row of the picture first; "." is 0, digits are themselves.
+Motif = Annotated[
+    list[Annotated[str, Field(pattern=r"^[.0-9]+$", max_length=MOST)]], Field(min_length=1, max_length=MOST)
+]
+
+
+def _motif(rows: list[str]) -> np.ndarray:
+    """(picks, ends) int, the lowest row first, as cloth grows upwards."""
+    if len({len(row) for row in rows}) != 1:
+        raise WeaveError("draft.motif: rows differ in length – give every row the same number of places")
+    return np.array([[0 if c == "." else int(c) for c in row] for row in reversed(rows)])
+
+
 class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
@@ -47,6 +61,69 @@ class _Satin(_Part):
         return made if self.face == "warp" else Draft(f"{made.name} (weft face)", ~made.lift.T)
 
 
+class _Damask(_Part):
+    """Figure on a ground by a motif; ground and figure as on the command line, such as "satin:8/3"."""
+
+    kind: Literal["damask"]
+    motif: Motif
+    ground: str = "satin:5/2"
+    figure: str | None = None
+    longest: int = Field(0, ge=0, le=MOST)
+
+    def draft(self) -> Draft:
+        from sim_core.weave.generators import damask
+        from sim_core.weave.words import draft_of_words
+
+        figure = draft_of_words(self.figure) if self.figure else None
+        return damask(_motif(self.motif) > 0, draft_of_words(self.ground), figure, longest=self.longest)
+
+
+class _Leno(_Part):
+    kind: Literal["leno"]
+    form: Literal["pair", "four-end"] = "pair"
+
+    def draft(self) -> Draft:
+        from sim_core.weave.structures import four_end_gauze, gauze
+
+        return gauze() if self.form == "pair" else four_end_gauze()
+
+
+class _Compound(_Part):
+    kind: Literal["compound"]
+    motif: Motif
+    series: int = Field(ge=2, le=8)
+    face: Literal["warp", "weft"] = "warp"
+
+    def draft(self) -> Draft:
+        from sim_core.weave.structures import warp_compound, weft_compound
+
+        made = warp_compound if self.face == "warp" else weft_compound
+        return made(_motif(self.motif), self.series)
+
+
+class _Tapestry(_Part):
+    kind: Literal["tapestry"]
+    motif: Motif
+
+    def draft(self) -> Draft:
+        from sim_core.weave.structures import tapestry
+
+        return tapestry(_motif(self.motif))
+
+
+class _Brocade(_Part):
+    kind: Literal["brocade"]
+    motif: Motif
+    ground: str = "plain"
+    every: int = Field(4, ge=2, le=32)
+
+    def draft(self) -> Draft:
+        from sim_core.weave.structures import brocade
+        from sim_core.weave.words import draft_of_words
+
+        return brocade(_motif(self.motif) - 1, ground=draft_of_words(self.ground), every=self.every)
+
+
 class _Lift(_Part):
     """A draft written out: one string of 0 and 1 a pick, 1 = warp on top."""
 
@@ -66,7 +143,7 @@ class _Yarn(_Part):
     diameter: float
     flattening: float = 1.0
     stiffness: float = 0.0
-    colour: Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")] = "#ede5d1"
+    colour: Colour = "#ede5d1"
     modulus: float = SILK_MODULUS
     density: float = SILK_DENSITY
     filament: float = SILK_FILAMENT
@@ -75,8 +152,12 @@ class _Yarn(_Part):
 
     def yarn(self) -> Yarn:
         values = self.model_dump()
-        red, green, blue = (int(self.colour[k : k + 2], 16) / 255 for k in (1, 3, 5))
-        return Yarn(**{**values, "colour": (red, green, blue)})
+        return Yarn(**{**values, "colour": _rgb(self.colour)})
+
+
+def _rgb(text: str) -> tuple[float, float, float]:
+    red, green, blue = (int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return red, green, blue
 
 
 class _Title(_Part):
@@ -90,9 +171,16 @@ class _WeaveFile(_Part):
     ends_per_m: float
     picks_per_m: float
     friction: float = 0.3
-    draft: Annotated[_Plain | _Twill | _Satin | _Lift, Field(discriminator="kind")]
+    source: str | None = None
+    draft: Annotated[
+        _Plain | _Twill | _Satin | _Damask | _Leno | _Compound | _Tapestry | _Brocade | _Lift,
+        Field(discriminator="kind"),
+    ]
     warp: _Yarn
     weft: _Yarn
+    extra: _Yarn | None = None
+    warp_colours: list[Colour] = Field(default=[], max_length=16)
+    weft_colours: list[Colour] = Field(default=[], max_length=16)
 
 
 def read_weave(path: Path) -> Weave:
@@ -108,9 +196,10 @@ def read_weave(path: Path) -> Weave:
 
 def _weave(file: _WeaveFile) -> Weave:
     yarns = {}
-    for side in ("warp", "weft"):
+    for side in ("warp", "weft", "extra"):
         try:
-            yarns[side] = getattr(file, side).yarn()
+            if getattr(file, side):
+                yarns[side] = getattr(file, side).yarn()
         except WeaveError as error:
             raise WeaveError(f"{side}: {error}") from error
     return Weave(
@@ -119,6 +208,8 @@ def _weave(file: _WeaveFile) -> Weave:
         ends_per_m=file.ends_per_m,
         picks_per_m=file.picks_per_m,
         friction=file.friction,
+        warp_colours=tuple(_rgb(c) for c in file.warp_colours),
+        weft_colours=tuple(_rgb(c) for c in file.weft_colours),
         **yarns,
     )
 

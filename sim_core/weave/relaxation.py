@@ -12,6 +12,7 @@ the alternating direction method of multipliers (ADMM) needs two 2-D FFTs an ite
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import irfft2, rfft2
 
 from sim_core.errors import WeaveError
 from sim_core.weave.geometry import YarnGeometry
@@ -45,16 +46,21 @@ class _Problem:
 
 
 def relax(
-    weave: Weave, *, tension: tuple[float, float] = (0.0, 0.0), tolerance: float = TOLERANCE
+    weave: Weave,
+    *,
+    tension: tuple[float, float] = (0.0, 0.0),
+    tolerance: float = TOLERANCE,
+    share: int = 1,
 ) -> YarnGeometry:
     """Yarn geometry of one repeat in force balance (stage A), periodic and free of penetration.
 
     tension: (T of each warp end, T of each pick) [N], added to that of the yarns.  tolerance: on gap and force,
-    relative to D and to the largest crossing force.
+    relative to D and to the largest crossing force.  share: yarns of a compound weave that share one place.
     Slopes are taken as small: expect crimp up to a few per cent to be exact, near jam it is not.
     Raises WeaveError for a jammed sett, or where the iteration does not reach the tolerance.
     """
-    check_jam(weave)
+    if share == 1:
+        check_jam(weave)
     picks, ends = weave.draft.lift.shape
     pulls = weave.warp.tension + tension[0], weave.weft.tension + tension[1]
     warp = beam_stiffness(picks, weave.pick_spacing, weave.warp.stiffness, pulls[0])[:, None]
@@ -75,13 +81,14 @@ def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np
     """ADMM on the gap g = zw - zf with a penalty that is balanced as it goes. Returns force on the warp, gap, ..."""
     together = np.maximum(problem.warp + problem.weft, 1e-300)
     resist = problem.warp * problem.weft / together  # 1 / H, zero where a yarn may move as a whole
+    resist = resist[:, : problem.sign.shape[1] // 2 + 1]  # of a real pattern half the spectrum is enough
     stiff = resist[resist > 0]
     rho = float(np.sqrt(stiff.min() * stiff.max()))
     gap = problem.sign.copy()
     dual = np.zeros_like(gap)
     error = np.inf
     for iteration in range(1, ITERATIONS + 1):
-        free = np.fft.ifft2(rho / (rho + resist) * np.fft.fft2(gap - dual)).real
+        free = np.asarray(irfft2(rho / (rho + resist) * np.asarray(rfft2(gap - dual)), s=gap.shape))
         mixed = OVER_RELAXATION * free + (1 - OVER_RELAXATION) * gap
         before = gap
         gap = problem.sign * np.maximum(problem.sign * (mixed + dual), 1.0)

@@ -10,22 +10,31 @@ from survey.analysis.correlation import stars
 __all__ = ["printed"]
 
 
-def printed(found: dict[str, Any]) -> str:
-    """The tables of the paper in their order; what was not computed is missing, the notes say why."""
-    parts = (_means, _correlations, _adequacy, _variance, _loadings, _alpha, _notes)
-    return "\n\n".join(text for part in parts if (text := "\n".join(part(found))))
+def printed(found: dict[str, Any], means: list[dict[str, Any]]) -> str:
+    """The tables of the paper in their order, from `summary` and `descriptives`; the notes say what is missing."""
+    parts = (_correlations, _adequacy, _variance, _retention, _loadings, _reliability, _notes)
+    texts = ["\n".join(_means(found, means)), *("\n".join(part(found)) for part in parts)]
+    return "\n\n".join(text for text in texts if text)
 
 
 def _width(names: list[str]) -> int:
     return max(map(len, names)) + 2
 
 
-def _means(found: dict[str, Any]) -> Iterator[str]:
+def _means(found: dict[str, Any], means: list[dict[str, Any]]) -> Iterator[str]:
     wide = _width(found["items"])
+    intervals = (found["bootstrap"] or {}).get("means", {})
     yield f"{found['n']} complete answers, {len(found['items'])} items"
-    yield f"{'':{wide}}{'n':>6}{'mean':>8}{'sd':>8}"
-    for item in found["items"]:
-        yield f"{item:{wide}}{found['answered'][item]:6d}{found['mean'][item]:8.3f}{found['sd'][item]:8.3f}"
+    yield f"{'':{wide}}{'n':>6}{'mean':>8}{'sd':>8}" + ("    95 % bootstrap" if intervals else "")
+    for row in means:
+        line = f"{row['item']:{wide}}{row['answered']:6d}{_cell(row['mean'])}{_cell(row['sd'])}"
+        if row["item"] in intervals:
+            line += "".join(_cell(intervals[row["item"]][side]) for side in ("low", "high"))
+        yield line
+
+
+def _cell(value: float | None, wide: int = 8, digits: int = 3) -> str:
+    return f"{'–':>{wide}}" if value is None else f"{value:{wide}.{digits}f}"
 
 
 def _correlations(found: dict[str, Any]) -> Iterator[str]:
@@ -35,10 +44,12 @@ def _correlations(found: dict[str, Any]) -> Iterator[str]:
     yield "Pearson correlation, two-tailed (** p < .01, * p < .05)"
     yield " " * wide + "".join(f"{number + 1:>8}" for number in range(len(r["rows"])))
     for row, item in enumerate(r["rows"]):
-        cells = (
-            f"{r['values'][row][col]:.3f}{stars(found['p']['values'][row][col]):2}" for col in range(row)
-        )
+        cells = (_starred(r["values"][row][col], found["p"]["values"][row][col]) for col in range(row))
         yield f"{item:{wide}}" + "".join(f"{cell:>8}" for cell in cells) + f"{'1':>6}"
+
+
+def _starred(r: float | None, p: float | None) -> str:
+    return "–  " if r is None or p is None else f"{r:.3f}{stars(p):2}"
 
 
 def _adequacy(found: dict[str, Any]) -> Iterator[str]:
@@ -64,14 +75,48 @@ def _loadings(found: dict[str, Any]) -> Iterator[str]:
     if not (table := found["loadings"]):
         return
     wide = _width(table["rows"])
-    yield f"Loadings, {found['rotation']}"
+    turn = found["rotation"]
+    normalised = ", Kaiser normalisation" if turn["normalisation"] else ""
+    yield f"Loadings, rotation {turn['method']}{normalised}"
     for item, row in zip(table["rows"], table["values"], strict=True):
         yield f"{item:{wide}}" + "".join(f"{value:8.3f}" for value in row)
+    if turn["method"] == "oblimin":
+        yield "Correlations of the components"
+        for name, row in zip(turn["correlation"]["rows"], turn["correlation"]["values"], strict=True):
+            yield f"{name:{wide}}" + "".join(f"{value:8.3f}" for value in row)
 
 
-def _alpha(found: dict[str, Any]) -> Iterator[str]:
-    if found["alpha"] is not None:
-        yield f"Cronbach's α {found['alpha']:.3f}"
+def _retention(found: dict[str, Any]) -> Iterator[str]:
+    if found["eigenvalues"] is None:
+        return
+    kaiser = sum(value > 1.0 + 1e-12 for value in found["eigenvalues"])
+    counts = [f"Kaiser {kaiser}"]
+    if (parallel := found["parallel"]) is not None:
+        counts.append(
+            f"parallel analysis {parallel['keep']} (as factors {_or_dash(parallel['factors']['keep'])})"
+        )
+    if (average := found["map"]) is not None:
+        counts.append(f"MAP {average['keep']} (fourth powers {average['keep_fourth']})")
+    yield "Components to keep: " + ", ".join(counts)
+
+
+def _or_dash(value: int | None) -> str:
+    return "–" if value is None else str(value)
+
+
+def _reliability(found: dict[str, Any]) -> Iterator[str]:
+    if found["alpha"] is None:
+        return
+    interval = (found["bootstrap"] or {}).get("alpha")
+    text = f"Cronbach's α {found['alpha']:.3f}"
+    if interval:
+        text += f" (95 % bootstrap {interval['low']:.3f} to {interval['high']:.3f})"
+    yield text + (f", McDonald's ω {found['omega']:.3f}" if found["omega"] is not None else "")
+    if found["alpha_if_deleted"]:
+        wide = _width(list(found["alpha_if_deleted"]))
+        yield "α without the item"
+        for item, value in found["alpha_if_deleted"].items():
+            yield f"{item:{wide}}{_cell(value)}"
 
 
 def _notes(found: dict[str, Any]) -> Iterator[str]:

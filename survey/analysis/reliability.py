@@ -1,4 +1,4 @@
-"""Cronbach's α (Cronbach 1951)."""
+"""Cronbach's α (Cronbach 1951) and α without each item."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from survey.analysis.checks import constant_columns, finite_scores
-from survey.analysis.errors import AllEqual, AnalysisError
+from survey.analysis.checks import finite_scores
+from survey.analysis.errors import AllEqual, TooFewItems
 
-__all__ = ["Reliability", "reliability"]
+__all__ = ["Reliability", "reliability", "reliability_of"]
+
+STILL = 1e-12  # a variance of the sums below this share of the items' variances counts as none
 
 
 @dataclass(frozen=True)
 class Reliability:
     """alpha: raw; standardised: from the mean correlation; if_deleted: (p,) raw α without each item, or None.
 
-    standardised is None where an item is constant, if_deleted where only two items are left.
+    standardised is None where an item is constant, if_deleted where only two items are left; an entry of
+    if_deleted is NaN where the sums of the others do not vary.
     """
 
     alpha: float
@@ -27,29 +30,37 @@ class Reliability:
 
 
 def reliability(scores: ArrayLike, items: Sequence[str] | None = None) -> Reliability:
-    """α = p / (p − 1) (1 − Σ var_i / var(Σ x_i)) of scores (n, p).
+    """α = p / (p − 1) (1 − Σ var_i / var(Σ x_i)) of complete scores (n, p).
 
-    Raises AllEqual when the sums do not vary, AnalysisError for a single item, NotFinite, TooFewRows.
+    Raises AllEqual when the sums do not vary, TooFewItems for a single one, NotFinite, TooFewRows.
     """
     table, names = finite_scores(scores, items)
-    p = table.shape[1]
+    return reliability_of(np.atleast_2d(np.cov(table, rowvar=False)), names)
+
+
+def reliability_of(covariance: NDArray[np.float64], names: Sequence[str]) -> Reliability:
+    """The same from covariances (p, p). Raises AllEqual, TooFewItems."""
+    p = len(covariance)
     if p < 2:
-        raise AnalysisError("one item alone has no internal consistency – give at least two", names)
-    covariance = np.cov(table, rowvar=False)
+        raise TooFewItems("one item alone has no internal consistency – give at least two", names)
+    variances = np.diag(covariance)
+    alpha = float(_alpha(np.array([variances.sum()]), np.array([covariance.sum()]), p)[0])
+    if np.isnan(alpha):
+        raise AllEqual("the sums of the answers do not vary – α is undefined", names)
     deleted = None
     if p > 2:
-        rest = [np.delete(np.delete(covariance, item, 0), item, 1) for item in range(p)]
-        deleted = np.array([_alpha(part, names) for part in rest])
+        rest = covariance.sum() - 2.0 * covariance.sum(axis=0) + variances
+        deleted = _alpha(variances.sum() - variances, rest, p - 1)
     standardised = None
-    if not constant_columns(table).any():
-        deviation = np.sqrt(np.diag(covariance))
-        standardised = _alpha(covariance / np.outer(deviation, deviation), names)
-    return Reliability(_alpha(covariance, names), standardised, deleted)
+    if (variances > 0.0).all():
+        deviation = np.sqrt(variances)
+        total = (covariance / np.outer(deviation, deviation)).sum()
+        value = float(_alpha(np.array([float(p)]), np.array([total]), p)[0])
+        standardised = None if np.isnan(value) else value
+    return Reliability(alpha, standardised, deleted)
 
 
-def _alpha(covariance: NDArray[np.float64], names: Sequence[str]) -> float:
-    total = covariance.sum()
-    if total <= 1e-12 * np.trace(covariance) or np.trace(covariance) == 0.0:
-        raise AllEqual("the sums of the answers do not vary – α is undefined", names)
-    p = len(covariance)
-    return float(p / (p - 1) * (1.0 - np.trace(covariance) / total))
+def _alpha(parts: NDArray[np.float64], total: NDArray[np.float64], p: int) -> NDArray[np.float64]:
+    """α from the sum of the variances and the variance of the sum; NaN where the sum does not vary."""
+    still = total <= STILL * parts
+    return np.where(still, np.nan, p / (p - 1) * (1.0 - parts / np.where(still, 1.0, total)))

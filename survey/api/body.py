@@ -11,12 +11,13 @@ from survey.errors import AnswerError
 __all__ = ["BODY_LIMIT", "read_json"]
 
 BODY_LIMIT = 1_000_000  # bytes
+HEARD_OUT = 4_000_000  # bytes of a refused body that are read and thrown away
 
 
 async def read_json(request: Request) -> object:
     """The decoded body.
 
-    Raises AnswerError: 415 for another content type, 413 as soon as the body is known to be over the limit,
+    Raises AnswerError: 415 for another content type, 413 for a body over the limit, no more of which is kept,
     400 for what is no JSON; a key that stands twice, NaN and Infinity are none.
     """
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
@@ -26,13 +27,18 @@ async def read_json(request: Request) -> object:
             "", "the body is not announced as JSON", "send Content-Type: application/json", status=415
         )
     announced = request.headers.get("content-length", "")
-    if announced.isdecimal() and int(announced) > BODY_LIMIT:
+    if announced.isdecimal() and int(announced) > HEARD_OUT:
         raise _too_large()
-    body = bytearray()
+    body, size = bytearray(), 0
     async for part in request.stream():
-        body += part
-        if len(body) > BODY_LIMIT:
+        size += len(part)
+        if size <= BODY_LIMIT:
+            body += part
+        elif size > HEARD_OUT:
             raise _too_large()
+    if size > BODY_LIMIT:
+        # Only now: who still sends when the connection closes sees it break and never hears why.
+        raise _too_large()
     try:
         return json.loads(body.decode("utf-8"), object_pairs_hook=_unique, parse_constant=_refuse)
     except (ValueError, RecursionError) as error:

@@ -12,12 +12,15 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.answer import TEXT_LIMIT
+from survey.api.schema import UUID_PATTERN
 from survey.errors import AnswerError, StoreError
 from survey.slug import SLUG
 
-__all__ = ["ExplainingRoute", "Refusal", "Submission", "refused"]
+__all__ = ["ExplainingRoute", "PlainRoute", "Receipt", "Refusal", "Submission", "refused"]
 
 RETRY_SECONDS = 5
+
+Handler = Callable[[Request], Coroutine[Any, Any, Response]]
 
 
 class Refusal(BaseModel):
@@ -28,13 +31,23 @@ class Refusal(BaseModel):
     remedy: str
 
 
+class Receipt(BaseModel):
+    """The answer is stored."""
+
+    id: str
+    questionnaire: str
+    version: int
+
+
 class Submission(BaseModel):
     """What to send. This model documents; the questionnaire itself decides which items and points exist."""
 
     model_config = ConfigDict(extra="forbid")
 
     id: str = Field(
-        json_schema_extra={"format": "uuid"}, description="made by the sender; repeat it to retry"
+        pattern=UUID_PATTERN,
+        json_schema_extra={"format": "uuid"},
+        description="made by the sender; repeat it to retry",
     )
     version: int = Field(ge=1)
     language: Literal["zh", "en"]
@@ -53,15 +66,25 @@ def refused(error: AnswerError) -> JSONResponse:
     headers = {"Connection": "close"} if error.status in (413, 415) else {}
     if error.status == 401:
         headers["WWW-Authenticate"] = "Bearer"
+    if error.wait:
+        headers["Retry-After"] = str(error.wait)
     body = {"field": error.field, "problem": error.problem, "remedy": error.remedy}
     return JSONResponse(body, error.status, headers)
+
+
+def _explained(error: RequestValidationError) -> AnswerError:
+    first = error.errors()[0]
+    field = str(first["loc"][-1])[:60]
+    if first["type"] == "extra_forbidden":
+        return AnswerError(field, "unknown parameter", "leave it out or correct its spelling")
+    return AnswerError(field, str(first["msg"]).lower(), f"correct {field}")
 
 
 class ExplainingRoute(APIRoute):
     """A route that answers every foreseeable failure with a Refusal, so that any app can mount the router."""
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        handle = super().get_route_handler()
+    def get_route_handler(self) -> Handler:
+        handle = self.handler()
 
         async def explaining(request: Request) -> Response:
             try:
@@ -69,15 +92,27 @@ class ExplainingRoute(APIRoute):
             except AnswerError as error:
                 return refused(error)
             except RequestValidationError as error:
-                first = error.errors()[0]
-                field = str(first["loc"][-1])
-                return refused(AnswerError(field, str(first["msg"]).lower(), f"correct {field}"))
+                return refused(_explained(error))
             except StoreError as error:
                 body = {
                     "field": "",
-                    "problem": str(error),
+                    "problem": error.problem,
                     "remedy": "nothing was stored; send the same again later",
                 }
                 return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})
 
         return explaining
+
+    def handler(self) -> Handler:
+        """What answers where nothing fails."""
+        return super().get_route_handler()
+
+
+class PlainRoute(ExplainingRoute):
+    """A route whose function takes the request alone and returns a response.
+
+    FastAPI would look for its parameters at each request, a third of what a submission costs apart from its commit.
+    """
+
+    def handler(self) -> Handler:
+        return self.endpoint

@@ -6,6 +6,7 @@ const settings = JSON.parse(document.getElementById("settings").textContent);
 const words = settings.words;
 const form = byId("form");
 const KEY = `survey:${settings.id}:${settings.exhibit ?? ""}`;
+const SENT = "survey-sent"; // [trace of an id, when it was sent], of all the questionnaires' tabs on this device
 const KEPT_DAYS = 7; // an older draft is somebody else's on a shared device
 const TIMEOUT = 15000; // [ms] until an unanswered request counts as lost
 const WAITS = [2, 4, 8, 15, 30, 60]; // [s] between attempts
@@ -15,6 +16,11 @@ let attempt = 0;
 let timer = 0;
 
 function byId(id) { return document.getElementById(id); }
+
+// Items and modules may be called as JavaScript's own properties are: "constructor", "length".
+function has(table, key) { return Object.prototype.hasOwnProperty.call(table, key); }
+
+function radios(item) { return form.querySelectorAll(`input[name="score-${item}"]`); }
 
 function say(key, values = {}) {
   return words[key].replace(/\{(\w+)\}/g, (_, name) => String(values[name] ?? ""));
@@ -35,23 +41,62 @@ function uuid() {
 function fresh() { return { id: uuid(), saved: 0, scores: {}, suggestions: {}, pending: null }; }
 
 function restored() {
+  if (settings.preview) return null;
   try {
     const found = JSON.parse(localStorage.getItem(KEY));
-    if (!found || Date.now() - found.saved > KEPT_DAYS * 86400e3) return null;
+    if (!found || Date.now() - found.saved > KEPT_DAYS * 86400e3 || wasSent(found.id)) return null;
     return { ...fresh(), ...found };
   } catch { return null; }
 }
 
 function keep() {
+  if (settings.preview || wasSent(draft.id)) return;
   draft.saved = Date.now();
   // Storage may be full or forbidden; the page then works without it.
   try { localStorage.setItem(KEY, JSON.stringify(draft)); } catch { /* nothing to keep it in */ }
 }
 
 function forget() {
-  try { localStorage.removeItem(KEY); } catch { /* there was nothing */ }
+  if (!settings.preview) try { localStorage.removeItem(KEY); } catch { /* there was nothing */ }
   draft = fresh();
 }
+
+// An id is the code that withdraws its answer, so on a shared device only 32 bits of it stay behind.
+function trace(id) {
+  let hash = 0x811c9dc5; // FNV-1a
+  for (const sign of id) hash = Math.imul(hash ^ sign.charCodeAt(0), 0x01000193) >>> 0;
+  return hash;
+}
+
+function sentOnes() {
+  try {
+    return JSON.parse(localStorage.getItem(SENT)).filter(([, at]) => Date.now() - at < KEPT_DAYS * 86400e3);
+  } catch { return []; }
+}
+
+function wasSent(id) {
+  const mine = trace(id);
+  return sentOnes().some(([one]) => one === mine);
+}
+
+function markSent(id) {
+  const all = [...sentOnes().slice(-99), [trace(id), Date.now()]];
+  try { localStorage.setItem(SENT, JSON.stringify(all)); } catch { /* the server tells an id that comes twice */ }
+}
+
+// Two tabs open the same draft. Once one has sent it, the other must not keep it for another go under the same id.
+function dropSent() {
+  if (settings.preview || draft.pending || !wasSent(draft.id)) return false;
+  draft = restored() ?? fresh();
+  fillIn();
+  byId("consent").checked = false;
+  byId("restored").hidden = byId("errors").hidden = true;
+  remark([]);
+  showState(words.sent_elsewhere, []);
+  return true;
+}
+
+addEventListener("storage", (event) => { if (event.key === SENT) dropSent(); });
 
 // ---- the form ------------------------------------------------------------------------------------------------
 
@@ -59,16 +104,19 @@ const items = [...form.querySelectorAll(".item")].map((element) => element.datas
 
 function fillIn() {
   for (const item of items) {
-    const value = item in draft.scores ? String(draft.scores[item]) : null;
-    for (const input of form.elements[item]) input.checked = input.value === value;
+    const value = has(draft.scores, item) ? String(draft.scores[item]) : null;
+    for (const input of radios(item)) input.checked = input.value === value;
   }
-  for (const field of form.querySelectorAll("textarea")) field.value = draft.suggestions[field.dataset.module] ?? "";
+  for (const field of form.querySelectorAll("textarea")) {
+    const module = field.dataset.module;
+    field.value = has(draft.suggestions, module) ? draft.suggestions[module] : "";
+  }
   showProgress();
 }
 
 function readOut() {
   for (const item of items) {
-    const chosen = form.querySelector(`input[name="${item}"]:checked`);
+    const chosen = [...radios(item)].find((input) => input.checked);
     if (chosen) draft.scores[item] = chosen.value === "null" ? null : Number(chosen.value);
   }
   for (const field of form.querySelectorAll("textarea")) {
@@ -78,7 +126,7 @@ function readOut() {
 }
 
 function showProgress() {
-  const done = items.filter((item) => item in draft.scores).length;
+  const done = items.filter((item) => has(draft.scores, item)).length;
   byId("bar").style.width = `${(100 * done) / items.length}%`;
   const text = say("progress", { done, all: items.length });
   if (byId("count").textContent !== text) byId("count").textContent = text;
@@ -90,7 +138,7 @@ function mark(element, wrong, lacking) {
 }
 
 function lacking() {
-  const missing = settings.required.filter((item) => !(item in draft.scores));
+  const missing = settings.required.filter((item) => !has(draft.scores, item));
   return byId("consent").checked ? missing : [...missing, "consent"];
 }
 
@@ -104,7 +152,7 @@ function showMissing(missing) {
   const list = document.createElement("ul");
   for (const key of missing) {
     const link = document.createElement("a");
-    const input = key === "consent" ? byId("consent") : form.elements[key][0];
+    const input = key === "consent" ? byId("consent") : radios(key)[0];
     link.href = key === "consent" ? "#consent-box" : `#item-${key}`;
     link.textContent = key === "consent" ? words.consent_title : labelOf(key);
     link.addEventListener("click", (event) => { event.preventDefault(); goTo(input); });
@@ -131,6 +179,7 @@ function goTo(input) {
 }
 
 form.addEventListener("input", () => {
+  if (dropSent()) return;
   readOut();
   keep();
   showProgress();
@@ -142,14 +191,16 @@ form.addEventListener("input", () => {
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
+  if (dropSent()) return;
   readOut();
   const missing = lacking();
   remark(missing);
   if (missing.length) return showMissing(missing);
   byId("errors").hidden = true;
+  if (settings.preview) return showState(words.preview_done, []);
   draft.pending = {
     id: draft.id, version: settings.version, language: settings.language, consent: true,
-    scores: Object.fromEntries(items.filter((item) => item in draft.scores).map((item) => [item, draft.scores[item]])),
+    scores: Object.fromEntries(items.filter((item) => has(draft.scores, item)).map((item) => [item, draft.scores[item]])),
     suggestions: draft.suggestions,
     ...(settings.exhibit ? { exhibit: settings.exhibit } : {}),
   };
@@ -222,6 +273,7 @@ function giveBack(message, reload = false) {
   keep();
   form.removeAttribute("aria-busy");
   form.inert = false;
+  if (dropSent()) return;
   if (message) showState(message, reload ? [[words.reload, () => location.reload()]] : []);
   else byId("state").hidden = true;
 }
@@ -248,6 +300,7 @@ function showState(message, buttons) {
 
 function finish(note) {
   const code = draft.id;
+  markSent(code);
   forget();
   form.hidden = true;
   form.inert = false;
@@ -286,6 +339,7 @@ byId("withdraw").addEventListener("submit", async (event) => {
   try {
     const response = await fetch(`${settings.submissions}/${encodeURIComponent(code)}`, { method: "DELETE" });
     if (response.ok) told = "withdraw_done";
+    else if (response.status === 409) told = "withdraw_frozen";
     else if (response.status < 500) told = "withdraw_unknown";
   } catch { /* no connection: told so */ }
   byId("withdraw-state").textContent = words[told];

@@ -9,11 +9,13 @@ from collections.abc import Iterable
 from functools import lru_cache
 from html import escape
 from pathlib import Path
+from typing import Literal
 
 from survey.answer import TEXT_LIMIT
+from survey.form.clip import Clip, clip_html
 from survey.questionnaire import Item, Language, Module, Questionnaire, Text
 
-__all__ = ["ASSETS", "form_page", "list_page", "missing_page", "words"]
+__all__ = ["ASSETS", "form_page", "list_page", "notice_page", "words"]
 
 FOLDER = Path(__file__).parent
 ASSETS = {"form.css": "text/css; charset=utf-8", "form.js": "text/javascript; charset=utf-8"}
@@ -35,18 +37,30 @@ def _stamp() -> str:
     return hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in sorted(ASSETS))).hexdigest()[:12]
 
 
-def form_page(questionnaire: Questionnaire, language: Language, exhibit: str | None) -> str:
-    """The page of one questionnaire; `exhibit` is kept with the answer."""
+def form_page(
+    questionnaire: Questionnaire,
+    language: Language,
+    exhibit: str | None,
+    *,
+    clip: Clip | None = None,
+    preview: bool = False,
+) -> str:
+    """The page of one questionnaire; `exhibit` is kept with the answer, `clip` stands beside items on motion.
+
+    preview: everything as visitors see it, but nothing is kept or sent.
+    """
     say = words(language)
     modules = "".join(
-        _module(questionnaire, module, number, language)
+        _module(questionnaire, module, number, language, clip)
         for number, module in enumerate(questionnaire.modules, 1)
     )
+    title, intro = questionnaire.title.in_language(language), questionnaire.intro.in_language(language)
     body = f"""
-{_header(questionnaire.title.in_language(language), questionnaire.intro.in_language(language), language, exhibit)}
+{_header(title, intro, language, exhibit, preview)}
 <noscript><p class="notice">{escape(say["noscript"])}</p></noscript>
+{f'<p class="notice" id="preview">{escape(say["preview"])}</p>' if preview else ""}
 <div class="progress"><div class="track"><div id="bar"></div></div><p id="count" role="status"></p></div>
-<form id="form" novalidate>
+<form id="form" novalidate autocomplete="off">
 <div id="errors" class="notice" tabindex="-1" hidden></div>
 <p id="restored" class="notice quiet" hidden><span>{escape(say["restored"])}</span>
 <button type="button" id="restart" class="plain">{escape(say["restart"])}</button></p>
@@ -58,7 +72,7 @@ def form_page(questionnaire: Questionnaire, language: Language, exhibit: str | N
 <div id="state" class="notice" role="status" tabindex="-1" hidden></div>
 {_thanks(say)}
 {_withdraw(say)}
-<script type="application/json" id="settings">{_settings(questionnaire, language, exhibit)}</script>"""
+<script type="application/json" id="settings">{_settings(questionnaire, language, exhibit, preview)}</script>"""
     return _page(questionnaire.title.in_language(language), language, body, script=True)
 
 
@@ -74,15 +88,13 @@ def list_page(questionnaires: Iterable[Questionnaire], language: Language) -> st
     return _page(say["list_title"], language, head + listed, script=False, base="./")
 
 
-def missing_page(language: Language) -> str:
-    """What a wrong address shows."""
+def notice_page(kind: Literal["missing", "unavailable"], language: Language) -> str:
+    """What a wrong address shows, or any while the store does not answer."""
     say = words(language)
-    return _page(
-        say["missing_title"],
-        language,
-        _header(say["missing_title"], say["missing_text"], language, None),
-        script=False,
-    )
+    titles = {"missing": say["missing_title"], "unavailable": say["unavailable_title"]}
+    texts = {"missing": say["missing_text"], "unavailable": say["unavailable_text"]}
+    head = _header(titles[kind], texts[kind], language, None)
+    return _page(titles[kind], language, head, script=False)
 
 
 def _page(title: str, language: Language, body: str, *, script: bool, base: str = "../") -> str:
@@ -104,9 +116,10 @@ def _page(title: str, language: Language, body: str, *, script: bool, base: str 
 """
 
 
-def _header(title: str, intro: str, language: Language, exhibit: str | None) -> str:
+def _header(title: str, intro: str, language: Language, exhibit: str | None, preview: bool = False) -> str:
     say, other = words(language), "en" if language == "zh" else "zh"
     kept = f"&amp;exhibit={escape(exhibit)}" if exhibit else ""
+    kept += "&amp;preview" if preview else ""
     return f"""<header><div class="top"><span class="seal" aria-hidden="true">{escape(say["seal"])}</span>
 <a class="switch" id="switch" href="?lang={other}{kept}" lang="{other}"
  aria-label="{escape(say["switch_label"])}">{escape(say["switch"])}</a></div>
@@ -114,14 +127,16 @@ def _header(title: str, intro: str, language: Language, exhibit: str | None) -> 
 <p class="intro">{escape(intro)}</p></header>"""
 
 
-def _module(questionnaire: Questionnaire, module: Module, number: int, language: Language) -> str:
+def _module(
+    questionnaire: Questionnaire, module: Module, number: int, language: Language, clip: Clip | None
+) -> str:
     items = "".join(_item(questionnaire, item, language) for item in questionnaire.items_of(module))
     intro = f'<p class="lead">{escape(module.intro.in_language(language))}</p>' if module.intro else ""
     title = escape(module.title.in_language(language))
     numeral = "一二三四五六七八九十"[number - 1] if language == "zh" and number <= 10 else str(number)
     return f"""<section class="module" aria-labelledby="module-{module.id}">
 <h2 id="module-{module.id}"><span class="numeral" aria-hidden="true">{numeral}</span>{title}</h2>
-{intro}{items}{_suggestion(module, language)}</section>
+{intro}{clip_html(clip, module, language)}{items}{_suggestion(module, language)}</section>
 """
 
 
@@ -144,6 +159,7 @@ def _item(questionnaire: Questionnaire, item: Item, language: Language) -> str:
         f'<p class="ends" aria-hidden="true"><span>1 {first}</span><span>{len(anchors)} {last}</span></p>'
     )
     unseen = questionnaire.scale.not_seen
+    wide = _scale_kinds(anchors, unseen, language)
     if unseen:
         points += _point(item, "null", "–", unseen, language)
     hint, described = "", ""
@@ -153,25 +169,38 @@ def _item(questionnaire: Questionnaire, item: Item, language: Language) -> str:
     label = escape(item.label.in_language(language))
     return f"""<div class="item" id="item-{item.id}" data-item="{item.id}">
 <div class="asked"><span class="label" id="label-{item.id}">{label}</span>{hint}</div>
-<div class="answer"><div class="scale of-{len(anchors)}" role="radiogroup" aria-labelledby="label-{item.id}"{described}>
+<div class="answer"><div class="scale {wide}" role="radiogroup" aria-labelledby="label-{item.id}"{described}>
 {points}</div>
 <p class="wrong" id="wrong-{item.id}" hidden>{escape(words(language)["choose"])}</p></div></div>
 """
 
 
+def _scale_kinds(anchors: list[Text], unseen: Text | None, language: Language) -> str:
+    """How the scale is laid out on a phone: what does not fit into a cell of 44 px stands beneath the row."""
+    kinds = [f"of-{len(anchors)}"]
+    if any(len(anchor.in_language(language)) > 3 for anchor in anchors):
+        kinds.append("long")
+    words_apart = [] if unseen is None else unseen.in_language(language).split()
+    if len(anchors) > 5 or len(words_apart) > 2 or any(len(word) > 4 for word in words_apart):
+        kinds.append("apart")
+    return " ".join(kinds)
+
+
 def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) -> str:
     kind = "point unseen" if value == "null" else "point"
+    # Prefixed: a control named "hidden" or "elements" would take the place of the form's own property.
     return (
-        f'<label class="{kind}"><input type="radio" name="{item.id}" value="{value}">'
+        f'<label class="{kind}"><input type="radio" name="score-{item.id}" value="{value}">'
         f'<span class="cell"><b>{mark}</b> <i>{escape(anchor.in_language(language))}</i></span></label>'
     )
 
 
 def _consent(questionnaire: Questionnaire, language: Language) -> str:
-    say = words(language)
+    say, until = words(language), questionnaire.retain_until
+    kept = f'<p class="small">{escape(say["kept"].format(date=until.isoformat()))}</p>' if until else ""
     return f"""<section class="module consent" id="consent-box"><h2>{escape(say["consent_title"])}</h2>
 <label class="check"><input type="checkbox" id="consent" aria-describedby="wrong-consent">
-<span>{escape(questionnaire.consent.in_language(language))}</span></label>
+<span>{escape(questionnaire.consent.in_language(language))}</span></label>{kept}
 <p class="wrong" id="wrong-consent" hidden>{escape(say["consent_missing"])}</p></section>
 """
 
@@ -196,12 +225,13 @@ def _withdraw(say: dict[str, str]) -> str:
 """
 
 
-def _settings(questionnaire: Questionnaire, language: Language, exhibit: str | None) -> str:
+def _settings(questionnaire: Questionnaire, language: Language, exhibit: str | None, preview: bool) -> str:
     settings = {
         "id": questionnaire.id,
         "version": questionnaire.version,
         "language": language,
         "exhibit": exhibit,
+        "preview": preview,
         "submissions": f"../api/v1/questionnaires/{questionnaire.id}/submissions",
         "required": [item.id for item in questionnaire.items if item.required],
         "words": words(language),

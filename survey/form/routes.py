@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated
+from collections.abc import Callable, Coroutine, Mapping
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import HTMLResponse, Response
+from fastapi.routing import APIRoute
 
-from survey.form.page import ASSETS, FOLDER, form_page, list_page, missing_page
+from survey.errors import StoreError
+from survey.form.clip import ClipOf
+from survey.form.page import ASSETS, FOLDER, form_page, list_page, notice_page
 from survey.questionnaire import LANGUAGES, Language, Questionnaire
 from survey.slug import is_slug
 
 __all__ = ["form_router"]
 
 _POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src data:; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' data:; media-src 'self'; "
     "form-action 'self'; base-uri 'none'; frame-ancestors 'self'"
 )
+RETRY_SECONDS = 5
 _HEADERS = {
     "Content-Security-Policy": _POLICY,
     "Cache-Control": "no-cache",
@@ -29,9 +34,32 @@ Wanted = Annotated[str | None, Query(alias="lang", description="zh or en; else w
 Preferred = Annotated[str, Header(alias="accept-language")]
 
 
-def form_router(questionnaires: Mapping[str, Questionnaire]) -> APIRouter:
-    """GET /questionnaires, /questionnaires/{id} and the script and style they use."""
-    routes = APIRouter(include_in_schema=False)
+class PageRoute(APIRoute):
+    """A route whose visitor sees a page also when the store does not answer."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        handle = super().get_route_handler()
+
+        async def showing(request: Request) -> Response:
+            try:
+                return await handle(request)
+            except StoreError:
+                asked, preferred = (
+                    request.query_params.get("lang"),
+                    request.headers.get("accept-language", ""),
+                )
+                headers = _HEADERS | {"Retry-After": str(RETRY_SECONDS)}
+                return HTMLResponse(notice_page("unavailable", _language(asked, preferred)), 503, headers)
+
+        return showing
+
+
+def form_router(questionnaires: Mapping[str, Questionnaire], clip_of: ClipOf | None = None) -> APIRouter:
+    """GET /questionnaires, /questionnaires/{id} and the script and style they use.
+
+    clip_of: the host's film of an exhibit, shown beside items on motion. `?preview` sends and keeps nothing.
+    """
+    routes = APIRouter(include_in_schema=False, route_class=PageRoute)
 
     @routes.get("/questionnaires")
     def listed(lang: Wanted = None, preferred: Preferred = "") -> Response:
@@ -43,11 +71,14 @@ def form_router(questionnaires: Mapping[str, Questionnaire]) -> APIRouter:
     def form(request: Request, key: str, lang: Wanted = None, preferred: Preferred = "") -> Response:
         language, questionnaire = _language(lang, preferred), questionnaires.get(key)
         if questionnaire is None:
-            return HTMLResponse(missing_page(language), 404, _HEADERS)
+            return HTMLResponse(notice_page("missing", language), 404, _HEADERS)
         exhibit = request.query_params.get("exhibit")
         # A mistyped exhibit must not keep a visitor from answering; the answer then stands without it.
         known = exhibit if exhibit is not None and is_slug(exhibit) else None
-        return HTMLResponse(form_page(questionnaire, language, known), headers=_HEADERS)
+        clip = clip_of(known) if clip_of is not None and known is not None else None
+        preview = "preview" in request.query_params
+        page = form_page(questionnaire, language, known, clip=clip, preview=preview)
+        return HTMLResponse(page, headers=_HEADERS)
 
     @routes.get("/survey-static/{name}")
     def static(name: str) -> Response:

@@ -3,31 +3,28 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, Table, delete, func, select, update
-from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, func, select, update
+from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError
 
 from survey.answer import Answer
 from survey.errors import AnswerError, StoreError
 from survey.questionnaire import Language, Questionnaire
 from survey.store import tables
+from survey.store.backup import write_copy
+from survey.store.committing import Entry, Receipt, commit_batch, freeze_version, now
+from survey.store.place import Place
+from survey.store.tally import Tallies, Tally
 from survey.store.tokens import Tokens
+from survey.store.writer import Writer
 
 __all__ = ["Receipt", "Store", "Stored"]
-
-
-@dataclass(frozen=True)
-class Receipt:
-    """A committed submission. `replayed`: the same body had been committed before."""
-
-    id: str
-    replayed: bool
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class Stored:
 
 
 class Store:
-    """Answers in a database. One writer at a time in this process; what returns is committed.
+    """Answers in a database. One writer in this process, with group commit; what returns is on the disk.
 
     where: the data folder (Path) or a database URL. Raises StoreError when it cannot be opened.
     """
@@ -47,13 +44,18 @@ class Store:
     def __init__(self, where: Path | str) -> None:
         self._engine: Engine = tables.open_engine(where)
         self._writing = threading.Lock()
-        with explained():
-            tables.metadata.create_all(self._engine)
+        self._place = Place(self._engine)
+        with explained(self._place.name):
+            self._place.open()
+        self._writer = Writer(self._commit)
+        self._tallies = Tallies(self._snapshot)
         self.tokens = Tokens(self._write, self._read)
 
     def close(self) -> None:
-        """Give the connections back."""
+        """Write what waits and give the connections back."""
+        self._writer.close()
         self._engine.dispose()
+        self._place.close()
 
     def alive(self) -> None:
         """Ask the database for anything. Raises StoreError."""
@@ -61,9 +63,14 @@ class Store:
             connection.execute(select(1))
 
     def changed(self, questionnaire: Questionnaire) -> bool:
-        """True when this version reads differently from what its first answer froze."""
+        """True when this version reads differently from what its publication froze."""
         with self._read() as connection:
             return _frozen_digest(connection, questionnaire) not in (None, questionnaire.digest)
+
+    def publish(self, questionnaire: Questionnaire) -> bool:
+        """Freeze a version as it reads now. False when it was frozen with another content."""
+        with self._write() as connection:
+            return freeze_version(connection, questionnaire)
 
     def submit(self, questionnaire: Questionnaire, answer: Answer) -> Receipt:
         """Commit an answer. The same again is a replay of the first.
@@ -71,42 +78,78 @@ class Store:
         Raises AnswerError: 409 the id was used for another answer, or the version was changed after its
         first answer; 410 the answer was withdrawn. Raises StoreError when nothing can be committed now.
         """
+        return self.enqueue(questionnaire, answer).result()
+
+    def enqueue(self, questionnaire: Questionnaire, answer: Answer) -> Future[Receipt]:
+        """As submit(), without waiting: all that wait are committed together."""
+        return self._writer.put((questionnaire, answer))
+
+    def _commit(self, entries: Sequence[Entry]) -> list[Receipt | AnswerError]:
         with self._write() as connection:
-            new_row = _insert_new(connection, tables.submission).values(
-                id=answer.id,
-                questionnaire=answer.questionnaire,
-                version=answer.version,
-                language=answer.language,
-                exhibit=answer.exhibit,
-                digest=answer.digest,
-                received=datetime.now(UTC).replace(microsecond=0),
-            )
-            # RETURNING, because psycopg's count of rows does not tell an insert from a conflict.
-            if connection.execute(new_row.returning(tables.submission.c.id)).first() is None:
-                _check_replay(connection, answer)
-                return Receipt(answer.id, replayed=True)
-            _freeze(connection, questionnaire)
-            rows = [{"submission": answer.id, "item": item, "score": score} for item, score in answer.scores]
-            connection.execute(tables.answer.insert(), rows)
-            if answer.suggestions:
-                texts = [
-                    {"submission": answer.id, "module": key, "text": text} for key, text in answer.suggestions
-                ]
-                connection.execute(tables.suggestion.insert(), texts)
-        return Receipt(answer.id, replayed=False)
+            return commit_batch(connection, entries)
+
+    def known(self, submission: str) -> bool:
+        """True when an answer with this id is stored, also as a tombstone."""
+        table = tables.submission
+        with self._read() as connection:
+            return connection.execute(select(table.c.id).where(table.c.id == submission)).first() is not None
+
+    def version_of(self, questionnaire: str, submission: str) -> Questionnaire | None:
+        """The version to which the answer with this id was given, also of a tombstone; None: no such answer."""
+        table = tables.submission
+        mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
+        with self._read() as connection:
+            found = connection.execute(select(table.c.version).where(*mine)).scalar_one_or_none()
+        return None if found is None else self.frozen(questionnaire, found)
 
     def withdraw(self, questionnaire: str, submission: str) -> bool:
-        """Take an answer back: its scores and suggestions are deleted. False when there is no such answer."""
+        """Take an answer back: its scores and suggestions are deleted. False when there is no such answer.
+
+        Raises AnswerError 409 once the answers were frozen for evaluation.
+        """
         table = tables.submission
         with self._write() as connection:
             mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
-            empty = {"withdrawn": datetime.now(UTC).replace(microsecond=0), "digest": "", "exhibit": None}
-            done = connection.execute(update(table).where(*mine, table.c.withdrawn.is_(None)).values(**empty))
-            if done.rowcount == 0:
-                return connection.execute(select(table.c.id).where(*mine)).first() is not None
-            for part in (tables.answer, tables.suggestion):
-                connection.execute(delete(part).where(part.c.submission == submission))
+            # Held until the commit: another process must not freeze between this look and the erasure. SQLite's
+            # writing transaction holds everything already.
+            asked = select(table.c.withdrawn, table.c.frozen).where(*mine).with_for_update()
+            found = connection.execute(asked).first()
+            if found is None:
+                return False
+            if found.withdrawn is None:
+                if found.frozen is not None:
+                    raise AnswerError("id", *_TOO_LATE, status=409)
+                _erase(connection, (table.c.id == submission,))
         return True
+
+    def freeze(self, questionnaire: str) -> int:
+        """Fix all standing answers for evaluation: they cannot be withdrawn any more. How many were fixed now."""
+        table = tables.submission
+        open_ones = (table.c.questionnaire == questionnaire, *_OPEN)
+        with self._write() as connection:
+            done = connection.execute(update(table).where(*open_ones).values(frozen=now()))
+            connection.execute(tables.audit.insert().values(at=now(), action="freeze", subject=questionnaire))
+            return done.rowcount
+
+    def purge(self, questionnaire: str, version: int) -> int:
+        """Erase all answers to a version whose retention has ended, frozen or not; tombstones stay."""
+        with self._write() as connection:
+            done = _erase(connection, _standing(questionnaire, version))
+            subject = f"{questionnaire} {version}"
+            connection.execute(tables.audit.insert().values(at=now(), action="purge", subject=subject))
+            return done
+
+    def all_frozen(self) -> tuple[Questionnaire, ...]:
+        """Every frozen version, by questionnaire and version."""
+        table = tables.version
+        query = select(table.c.document).order_by(table.c.questionnaire, table.c.version)
+        with self._read() as connection:
+            documents = connection.execute(query).scalars().all()
+        return tuple(Questionnaire.model_validate(document) for document in documents)
+
+    def copy_to(self, path: Path) -> int:
+        """Write a consistent copy of everything into a new SQLite file, while answers come in. Answers in it."""
+        return write_copy(self._engine, path)
 
     def count(self, questionnaire: str, version: int) -> int:
         """How many answers stand."""
@@ -114,6 +157,10 @@ class Store:
         query = select(func.count()).select_from(table).where(*_standing(questionnaire, version))
         with self._read() as connection:
             return connection.execute(query).scalar_one()
+
+    def tally(self, questionnaire: Questionnaire) -> Tally:
+        """Counts and sums over the answers that stand; counted anew only after a change."""
+        return self._tallies.of(questionnaire)
 
     def versions(self, questionnaire: str) -> tuple[int, ...]:
         """The versions that were answered, the earliest first."""
@@ -148,8 +195,10 @@ class Store:
 
     @contextmanager
     def _read(self) -> Iterator[Connection]:
-        with explained(), self._engine.connect() as connection:
-            yield connection
+        with explained(self._place.name):
+            self._place.check()
+            with self._engine.connect() as connection:
+                yield connection
 
     @contextmanager
     def _snapshot(self) -> Iterator[Connection]:
@@ -164,36 +213,47 @@ class Store:
     @contextmanager
     def _write(self) -> Iterator[Connection]:
         # Waiting here is fair and cheap; waiting for SQLite's own lock is a busy loop.
-        with self._writing, explained(), self._engine.begin() as connection:
-            yield connection
+        with self._writing, explained(self._place.name):
+            self._place.check()
+            with self._engine.connect() as connection:
+                tables.begin_writing(connection)
+                yield connection
+                connection.commit()
+            # What was written into a file that went away meanwhile must not be acknowledged.
+            self._place.check()
 
 
 @contextmanager
-def explained() -> Iterator[None]:
-    """Turn the database's errors into a StoreError of one line."""
+def explained(place: str) -> Iterator[None]:
+    """Turn the database's errors into a StoreError of one line that names the place."""
     try:
         yield
+    except StoreError as error:
+        raise StoreError(error.problem, error.place or place) from None
+    except (DataError, IntegrityError):
+        raise  # a row that cannot be, not a database that does not answer
     except SQLAlchemyError as error:
         cause = error.orig if isinstance(error, DBAPIError) else error
         first = str(cause).strip().splitlines()[0] if str(cause).strip() else type(error).__name__
-        raise StoreError(f"the database refuses: {first} – see that it is there, free and not full") from None
+        problem = f"the database refuses: {first} – see that it is there, free and not full"
+        raise StoreError(problem, place) from None
 
 
-def _insert_new(connection: Connection, table: Table):
-    """INSERT that leaves an existing key as it is."""
-    insert = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
-    return insert(table).on_conflict_do_nothing()
+_OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))
+_TOO_LATE = (
+    "the answers were frozen for evaluation, so this one cannot be withdrawn any more",
+    "ask the curator; no name was stored with it",
+)
 
 
-def _check_replay(connection: Connection, answer: Answer) -> None:
+def _erase(connection: Connection, which: tuple[ColumnElement[bool], ...]) -> int:
+    """Delete scores and texts of the submissions; the rows stay as tombstones."""
     table = tables.submission
-    query = select(table.c.digest, table.c.withdrawn).where(table.c.id == answer.id)
-    known = connection.execute(query).one()
-    if known.withdrawn is not None:
-        raise AnswerError("id", "this answer was withdrawn", "make a fresh id to answer anew", status=410)
-    if known.digest != answer.digest:
-        problem = "this id stands for another answer already"
-        raise AnswerError("id", problem, "send the same body again, or make a fresh id", status=409)
+    ids = select(table.c.id).where(*which)
+    for part in (tables.answer, tables.suggestion):
+        connection.execute(delete(part).where(part.c.submission.in_(ids)))
+    empty = {"withdrawn": now(), "digest": "", "exhibit": None}
+    return connection.execute(update(table).where(*which).values(**empty)).rowcount
 
 
 def _frozen_digest(connection: Connection, questionnaire: Questionnaire) -> str | None:
@@ -205,22 +265,7 @@ def _frozen_digest(connection: Connection, questionnaire: Questionnaire) -> str 
     ).scalar_one_or_none()
 
 
-def _freeze(connection: Connection, questionnaire: Questionnaire) -> None:
-    """Keep the version as it is asked now; refuse when it was asked differently before."""
-    connection.execute(
-        _insert_new(connection, tables.version).values(
-            questionnaire=questionnaire.id,
-            version=questionnaire.version,
-            digest=questionnaire.digest,
-            document=questionnaire.document(),
-        )
-    )
-    if _frozen_digest(connection, questionnaire) != questionnaire.digest:
-        problem = f"version {questionnaire.version} was changed after its first answer"
-        raise AnswerError("version", problem, "the curator raises `version` in the file", status=409)
-
-
-def _standing(questionnaire: str, version: int):
+def _standing(questionnaire: str, version: int) -> tuple[ColumnElement[bool], ...]:
     table = tables.submission
     return (table.c.questionnaire == questionnaire, table.c.version == version, table.c.withdrawn.is_(None))
 

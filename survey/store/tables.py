@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import sqlite3
 from pathlib import Path
 
 from sqlalchemy import (
     JSON,
     Column,
+    Connection,
     DateTime,
     Engine,
     ForeignKey,
@@ -27,6 +30,8 @@ from survey.errors import StoreError
 __all__ = [
     "SQLITE_FILE",
     "answer",
+    "audit",
+    "begin_writing",
     "metadata",
     "open_engine",
     "sqlite_file",
@@ -64,6 +69,7 @@ submission = Table(
     Column("digest", String(64), nullable=False),
     Column("received", DateTime(timezone=True), nullable=False),
     Column("withdrawn", DateTime(timezone=True)),
+    Column("frozen", DateTime(timezone=True)),  # fixed for evaluation: cannot be withdrawn any more
 )
 Index("submission_by_questionnaire", submission.c.questionnaire, submission.c.version)
 
@@ -91,6 +97,26 @@ token = Table(
     Column("digest", String(64), nullable=False, unique=True),
     Column("made", DateTime(timezone=True), nullable=False),
 )
+
+# What was done to the store, by which no visitor can be known: freezing, purging, tokens.
+audit = Table(
+    "audit",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("at", DateTime(timezone=True), nullable=False),
+    Column("action", String(32), nullable=False),
+    Column("subject", String(200), nullable=False),
+)
+
+
+def begin_writing(connection: Connection) -> None:
+    """Open the transaction as a writing one.
+
+    SQLite: a transaction that reads first and writes then is refused at once when another wrote between,
+    instead of waiting for its turn; sqlite3 itself opens none before the first change.
+    """
+    if connection.dialect.name == "sqlite":
+        connection.exec_driver_sql("BEGIN IMMEDIATE")
 
 
 def sqlite_file(where: Path | str) -> Path | None:
@@ -134,15 +160,28 @@ def open_engine(where: Path | str) -> Engine:
             return create_engine(url, pool_size=8, max_overflow=40, pool_pre_ping=True)
         except (NoSuchModuleError, ModuleNotFoundError) as error:
             raise StoreError(f"{url.get_backend_name()}: no driver ({error}) – pip install it") from None
-    # Threads of the web server share the pool, so a connection may move from one to another.
-    engine = create_engine(
-        url,
-        pool_size=8,
-        max_overflow=40,
-        connect_args={"timeout": BUSY_SECONDS, "check_same_thread": False},
-    )
+    if not url.database or url.database == ":memory:":
+        raise StoreError("a database in memory keeps nothing – write sqlite:///FILE")
+    engine = _open_file(url, Path(url.database).absolute())
     event.listen(engine, "connect", _prepare_sqlite)
     return engine
+
+
+def _open_file(url: URL, file: Path) -> Engine:
+    try:
+        if not file.exists():
+            os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o644))
+    except OSError as error:
+        raise StoreError(f"no database file ({error.strerror}) – give a writable place", str(file)) from None
+
+    def connect() -> sqlite3.Connection:
+        # mode=rw: a file that went away must be missed, not made anew and empty.
+        # Threads of the web server share the pool, so a connection may move from one to another.
+        return sqlite3.connect(
+            f"{file.as_uri()}?mode=rw", uri=True, timeout=BUSY_SECONDS, check_same_thread=False
+        )
+
+    return create_engine(url, creator=connect, pool_size=8, max_overflow=40)
 
 
 def _prepare_sqlite(connection, _record) -> None:

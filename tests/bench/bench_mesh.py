@@ -1,122 +1,197 @@
-"""Meshing: time and error together, beside Qhull (scipy) and the paper's naive growth, in one interleaved run.
+"""Meshing: time and error together, beside Qhull, Triangle, gmsh and the paper's naive growth, in one interleaved run.
 
-    python tests/bench/bench_mesh.py [--quick] [--large] [--json FILE]
+    simcore bench mesh -- [--quick | --large] [--peers [FOLDER]] [--json FILE] [--plot FILE.png]
 
-Every engine triangulates the same staggered points of one half robe; rounds alternate between the engines and the
-median is told. Error: |area - polygon area| / polygon area after dropping what lies outside (Qhull fills the convex
-hull), zero-area triangles, and outline steps that are no mesh edge. Then whole panels, with their quality.
+growth    Every engine triangulates the same filtered points of three outlines; rounds alternate between the engines.
+          Error: |area - polygon area| / polygon area, zero-area triangles, and outline steps that are no mesh edge,
+          after dropping what lies outside (Qhull fills the convex hull; the dropping is not timed).
+panels    Outline in, checked mesh out, beside gmsh's Frontal-Delaunay on the same outline steps.
+cloth     How far the sheet that hangs by one edge is from the converged one, by the edge length of its mesh.
+
+Triangle and gmsh are no dependencies: `--peers` makes an environment of their own from tests/bench/peers.txt (in
+build/peers, or FOLDER) and runs them there. The ratio of an engine is its time divided by growth's (or best's) in the
+same round: median, least and greatest over the rounds. --add puts further parts into the --json file that is there.
 """
 
 import argparse
 import json
 import statistics
+import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
+from mesh_cases import PANELS, PointSet, edge_for, errors, shape
+from mesh_figures import added, exponent
+from peers import Peers, peer_python
 from scipy.spatial import Delaunay
 
-from sim_core.mesh import grow, inside, keep_points, panel_mesh, quality, staggered_points
+from sim_core.mesh import panel_mesh, triangulate
 from sim_core.mesh.naive import grow_naive
-from sim_core.mesh.outline import clean_contours, signed_area
-from sim_core.mesh.quality import triangle_areas
-from sim_core.mesh.sampling import sampled_contours
 
-NAIVE_LIMIT = 7000
-ROUNDS = 3
-TURN = np.arange(64) * 2 * np.pi / 64
-ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])
+ROOT = Path(__file__).parents[2]
+NAIVE_LIMIT, QHULL_LIMIT, GMSH_LIMIT = 7000, 1_100_000, 150_000
+SIZES = {"quick": [3000, 6000], "usual": [3000, 10_000, 30_000, 100_000], "large": [1_000_000, 2_000_000]}
 
 
-def half_robe() -> np.ndarray:
-    t = np.linspace(0, 1, 15)[:, None]
-    neck = 0.09 * np.column_stack([np.sin(t * np.pi / 2), np.cos(t * np.pi / 2)])
-    a, b, c, d = np.array([[0.35, 0.32], [0.27, 0.33], [0.26, 0.36], [0.27, 0.45]])
-    arm = (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
-    return np.vstack([neck, [[0.75, 0.02], [0.75, 0.3]], arm, [[0.38, 1.2], [0, 1.22]]])
+def timed(run) -> tuple[float, Any]:
+    begin = perf_counter()
+    found = run()
+    return perf_counter() - begin, found
 
 
-PANELS = {
-    "rectangle": (np.array([[0, 0], [1, 0], [1, 0.7], [0, 0.7]]), ()),
-    "half robe": (half_robe(), ()),
-    "hole": (np.array([[0.2, 0], [0.8, 0], [1, 0.9], [0, 0.9]]), (0.15 * ROUND + (0.5, 0.45),)),
-}
+def growth_engines(case: PointSet, peers: Peers | None) -> dict:
+    """Name -> function returning (seconds, vertices, faces)."""
+    points = case.points
 
+    def own():
+        seconds, faces = timed(lambda: triangulate(points, case.steps))
+        return seconds, points, faces
 
-def point_set(edge: float):
-    contours = clean_contours(half_robe(), ())
-    samples = sampled_contours(contours, edge)
-    lattice = staggered_points(samples[0].min(axis=0), samples[0].max(axis=0), edge)
-    points = np.concatenate([*samples, keep_points(lattice, samples, edge=edge)])
-    loop = np.arange(len(samples[0]))
-    return points, np.column_stack([loop, np.roll(loop, -1)]), samples
+    def qhull():
+        seconds, found = timed(lambda: Delaunay(points))
+        return seconds, points, case.culled(found.simplices)
 
+    def naive():
+        seconds, faces = timed(lambda: grow_naive(points, case.steps))
+        return seconds, points, faces
 
-def engines(points, steps, samples):
-    """Name -> function that returns the faces inside the outline."""
+    def triangle():
+        assert peers is not None
+        made = peers.run("triangle", points=points, steps=case.steps, inside_holes=case.inside_holes)
+        return made["seconds"], made["vertices"], made["faces"]
 
-    def culled(faces):
-        return faces[inside(points[faces].mean(axis=1), samples)]
-
-    made = {
-        "growth, grid": lambda: grow(points, steps),
-        "Qhull (scipy)": lambda: culled(Delaunay(points).simplices),
-    }
+    made = {"growth": own}
+    if len(points) <= QHULL_LIMIT:
+        made["Qhull"] = qhull
+    if peers:
+        made["Triangle p"] = triangle
     if len(points) <= NAIVE_LIMIT:
-        made["growth, naive"] = lambda: culled(grow_naive(points))
+        made["growth, naive"] = naive
     return made
 
 
-def errors(points, faces, steps, samples) -> dict:
-    wanted = sum(signed_area(loop) for loop in samples)
-    areas = np.abs(triangle_areas(points, faces))
-    edges = {
-        tuple(e)
-        for e in np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    }
-    lost = sum(tuple(sorted(step)) not in edges for step in steps.tolist())
-    return {
-        "faces": len(faces),
-        "area_error": abs(float(areas.sum()) - wanted) / wanted,
-        "slivers": int((areas < 1e-9 * areas.mean()).sum()),
-        "outline_steps_lost": int(lost),
-        "min_angle_deg": float(quality(points, faces).min_angle.min()),
-    }
-
-
-def compare(edge: float) -> list[dict]:
-    points, steps, samples = point_set(edge)
-    runs = engines(points, steps, samples)
-    times = {name: [] for name in runs}
-    faces = {}
-    for _ in range(ROUNDS):
-        for name, run in runs.items():
-            begin = perf_counter()
-            faces[name] = run()
-            times[name].append(perf_counter() - begin)
-    own = statistics.median(times["growth, grid"])
-    return [
-        {
-            "engine": name,
-            "points": len(points),
-            "seconds": statistics.median(times[name]),
-            "ratio": statistics.median(times[name]) / own,
-            **errors(points, np.asarray(faces[name]), steps, samples),
-        }
-        for name in runs
-    ]
-
-
-def panels(edges) -> list[dict]:
+def growth(sizes: list[int], panels: list[str], peers: Peers | None) -> list[dict]:
     rows = []
-    for name, (outline, holes) in PANELS.items():
-        for edge in edges:
-            mesh = panel_mesh(outline, edge=edge, holes=holes)
-            rows.append(
-                {"panel": name, "edge": edge, "vertices": len(mesh.vertices), **mesh.report.to_dict()}
-            )
+    for panel in panels:
+        for size in sizes:
+            case = PointSet(panel, edge_for(panel, size))
+            runs = growth_engines(case, peers)
+            times: dict[str, list[float]] = {name: [] for name in runs}
+            found = {}
+            for turn in range(7 if size <= 30_000 else 5):
+                for name, run in runs.items():
+                    if name in ("Qhull", "growth, naive") and turn >= (3 if size <= 100_000 else 2):
+                        continue  # seconds long: what they cost is plain after few rounds
+                    seconds, vertices, faces = run()
+                    times[name].append(seconds)
+                    found[name] = errors(vertices, np.asarray(faces), case)
+            for name, spent in times.items():
+                ratios = [t / own for t, own in zip(spent, times["growth"], strict=False)]
+                rows.append({"panel": panel, "engine": name, "points": len(case.points)})
+                rows[-1].update(spread(spent, ratios), **found[name])
+                tell_growth(rows[-1])
     return rows
+
+
+def spread(seconds: list[float], ratios: list[float]) -> dict:
+    """Least and median time, and the ratio's median, least and greatest."""
+    return {
+        "seconds": min(seconds),
+        "seconds_median": statistics.median(seconds),
+        "rounds": len(seconds),
+        "ratio": statistics.median(ratios),
+        "ratio_least": min(ratios),
+        "ratio_most": max(ratios),
+    }
+
+
+def tell_growth(row: dict) -> None:
+    print(
+        f"{row['panel']:<11}{row['engine']:<14}{row['points']:>9}{row['seconds']:>10.4f} s{row['ratio']:>9.2f} x"
+        f"{row['area_error']:>10.1e}{row['slivers']:>7}{row['outline_steps_lost']:>5}",
+        flush=True,
+    )
+
+
+MEMORY = """
+import re, sys
+from pathlib import Path
+sys.path.insert(0, {bench!r})
+import numpy as np
+from mesh_cases import PointSet, edge_for
+from sim_core.mesh import triangulate
+
+def kilobytes(name):
+    return int(re.search(name + r":\\s+(\\d+)", Path("/proc/self/status").read_text()).group(1))
+
+small = PointSet("rectangle", edge_for("rectangle", 2000))
+triangulate(small.points, small.steps)
+points = np.load({points!r})
+steps = np.load({steps!r})
+Path("/proc/self/clear_refs").write_text("5")  # the greatest resident size counts from here
+before = kilobytes("VmRSS")
+triangulate(points, steps)
+print((kilobytes("VmHWM") - before) * 1024 / len(points))
+"""
+
+
+def memory(size: int) -> dict | None:
+    """Bytes a point that growth adds to the greatest resident size of a fresh process; None where no Linux tells."""
+    from tempfile import TemporaryDirectory
+
+    if not Path("/proc/self/clear_refs").exists():
+        return None
+    case = PointSet("rectangle", edge_for("rectangle", size))
+    with TemporaryDirectory() as folder:
+        points, steps = f"{folder}/points.npy", f"{folder}/steps.npy"
+        np.save(points, case.points)
+        np.save(steps, case.steps)
+        program = MEMORY.format(bench=str(Path(__file__).parent), points=points, steps=steps)
+        told = subprocess.run(
+            [sys.executable, "-c", program], check=True, capture_output=True, text=True, cwd=ROOT
+        )
+    return {"points": len(case.points), "bytes_a_point": float(told.stdout)}
+
+
+def panels(sizes: list[int], names: list[str], peers: Peers | None) -> list[dict]:
+    rows = []
+    for name in names:
+        outline, holes = PANELS[name]
+        for size in sizes:
+            edge = edge_for(name, size)
+            case = PointSet(name, edge)
+            times: dict[str, list[float]] = {}
+            found = {}
+            for _ in range(5 if size <= 100_000 else 2):
+                for kind in ("fair", "best"):
+                    seconds, mesh = timed(partial(panel_mesh, outline, edge=edge, holes=holes, quality=kind))
+                    times.setdefault(kind, []).append(seconds)
+                    figures = {key: getattr(mesh.report, key) for key in ("area_error", "conformity")}
+                    found[kind] = {**shape(mesh.vertices, mesh.faces), **figures}
+                if peers and size <= GMSH_LIMIT:
+                    samples = np.concatenate(case.samples) * (1, -1)
+                    made = peers.run("gmsh", points=samples, lengths=case.lengths, edge=np.float64(edge))
+                    times.setdefault("gmsh", []).append(made["seconds"])
+                    found["gmsh"] = shape(made["vertices"] * (1, -1), made["faces"])
+            for kind, spent in times.items():
+                ratios = [t / own for t, own in zip(spent, times["best"], strict=True)]
+                rows.append({"panel": name, "engine": kind, "edge": edge})
+                rows[-1].update(spread(spent, ratios), **found[kind])
+                tell_panel(rows[-1])
+    return rows
+
+
+def tell_panel(row: dict) -> None:
+    print(
+        f"{row['panel']:<11}{row['engine']:<6}{row['vertices']:>9}{row['seconds']:>10.4f} s{row['ratio']:>8.2f} x"
+        f"  angle {row['min_angle_deg']:>5.1f}  q {row['mean_quality']:.4f} worst {row['worst_quality']:.3f}"
+        f"  er {row['mean_edge_ratio']:.4f}",
+        flush=True,
+    )
 
 
 def main() -> int:
@@ -124,39 +199,58 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="up to 6 000 points")
-    parser.add_argument("--large", action="store_true", help="also a million points")
+    parser.add_argument("--large", action="store_true", help="one and two million points too")
+    parser.add_argument("--sizes", nargs="+", type=int, metavar="N", help="these numbers of points instead")
+    parser.add_argument(
+        "--peers",
+        nargs="?",
+        const=ROOT / "build" / "peers",
+        type=Path,
+        metavar="FOLDER",
+        help="with Triangle and gmsh",
+    )
+    parser.add_argument("--only", choices=("growth", "panels", "cloth"), help="one part")
+    parser.add_argument("--panel", choices=tuple(PANELS), help="one outline")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument(
+        "--add", action="store_true", help="keep what the --json file holds of other parts and sizes"
+    )
+    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw time against points and quality")
     args = parser.parse_args()
-    edges = [0.0141, 0.01] if args.quick else [0.0141, 0.01, 0.0045, 0.00245]
-    edges += [0.000774] if args.large else []
-    compare(0.05)  # compile
-    rows = [row for edge in edges for row in compare(edge)]
-    print(
-        f"{'engine':<16}{'points':>9}{'seconds':>10}{'ratio':>8}{'area error':>12}{'slivers':>9}"
-        f"{'lost':>6}{'angle':>7}"
-    )
-    for row in rows:
-        print(
-            f"{row['engine']:<16}{row['points']:>9}{row['seconds']:>10.4f}{row['ratio']:>8.1f}{row['area_error']:>12.1e}"
-            f"{row['slivers']:>9}{row['outline_steps_lost']:>6}{row['min_angle_deg']:>7.1f}"
-        )
-    whole = panels([0.0141, 0.01] if args.quick else [0.0141, 0.01, 0.0045])
-    print(
-        f"\n{'panel':<12}{'vertices':>9}{'seconds':>10}{'angle':>7}{'q mean':>8}{'er mean':>9}{'area error':>12}"
-    )
-    for row in whole:
-        print(
-            f"{row['panel']:<12}{row['vertices']:>9}{row['seconds']:>10.4f}{row['min_angle_deg']:>7.1f}"
-            f"{row['mean_quality']:>8.4f}{row['mean_edge_ratio']:>9.4f}{row['area_error']:>12.1e}"
-        )
+    sizes = SIZES["quick"] if args.quick else SIZES["usual"] + (SIZES["large"] if args.large else [])
+    sizes = args.sizes or sizes
+    names = [args.panel] if args.panel else list(PANELS)
+    peers = Peers(peer_python(args.peers)) if args.peers else None
+    figures: dict = {}
+    warm = PointSet("hole", 0.05)
+    triangulate(warm.points, warm.steps)
+    grow_naive(warm.points, warm.steps)
+    for kind in ("fair", "best"):
+        panel_mesh(PANELS["hole"][0], edge=0.05, holes=PANELS["hole"][1], quality=kind)
+    if args.only in (None, "growth"):
+        figures["growth"] = growth(sizes, names, peers)
+        figures["memory"] = memory(max(sizes))
+        print(f"time grows as points to the power {exponent(figures['growth'])}; {figures['memory']}")
+    if args.only in (None, "panels"):
+        figures["panels"] = panels(sizes, names, peers)
+    if args.only in (None, "cloth"):
+        from mesh_cloth import hanging
+
+        figures["cloth"] = hanging(quick=args.quick)
+    if peers:
+        peers.close()
     if args.json:
-        args.json.write_text(json.dumps({"engines": rows, "panels": whole}, indent=2) + "\n", "utf-8")
-    failed = [
-        r
-        for r in rows
-        if r["engine"] == "growth, grid" and (r["area_error"] > 1e-12 or r["outline_steps_lost"])
-    ]
-    return 1 if failed or any(row["area_error"] > 1e-12 for row in whole) else 0
+        if args.add and args.json.is_file():
+            figures = added(json.loads(args.json.read_text("utf-8")), figures)
+        args.json.parent.mkdir(parents=True, exist_ok=True)
+        args.json.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
+    if args.plot:
+        from mesh_plot import plot
+
+        plot(figures, args.plot)
+    own = [r for r in figures.get("growth", []) if r["engine"] == "growth"]
+    own += [r for r in figures.get("panels", []) if r["engine"] != "gmsh"]
+    return 1 if any(r["area_error"] > 1e-12 or r.get("outline_steps_lost") for r in own) else 0
 
 
 if __name__ == "__main__":

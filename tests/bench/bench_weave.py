@@ -1,10 +1,12 @@
 """Weaving: time and error together. The references are closed forms, and a dense solver for weaves without one.
 
-    python tests/bench/bench_weave.py [--quick] [--json FILE]
+    python tests/bench/bench_weave.py [--quick] [--json FILE] [--plot FILE.png] [--sheet FILE.png] [--large]
+                                      [--peers [FOLDER]]
 
 Plain weave: heights and crossing forces have closed forms (small slope). Twill and satin: the same contact problem is
 solved in dense matrices by scipy's non-negative least squares, to 1e-12, interleaved with ours. Maps: seconds and
-the measured seam.
+the measured seam. Stage B, fuzz, densities and TexGen (optional: --peers makes an environment of its own) are in
+weave_particles.py.
 """
 
 import argparse
@@ -16,12 +18,15 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+import weave_particles
+import weave_sheet
 from scipy.optimize import nnls
 
 from sim_core.weave import Weave, Yarn, plain, relax, satin, texture_maps, twill
 from sim_core.weave.draft import Draft
 from sim_core.weave.relaxation import beam_stiffness
 
+ROOT = Path(__file__).parents[2]
 D = 1e-4
 ROUNDS = 5
 
@@ -63,7 +68,8 @@ def _flexibility(stiffness: np.ndarray) -> np.ndarray:
 
 
 def median_time(*runs):
-    times, results = [[] for _ in runs], [None for _ in runs]
+    times: list[list[float]] = [[] for _ in runs]
+    results: list = [None for _ in runs]
     for _ in range(ROUNDS):
         for k, run in enumerate(runs):
             begin = perf_counter()
@@ -118,7 +124,24 @@ def main() -> int:
     )
     parser.add_argument("--quick", action="store_true", help="small repeats and maps")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument("--plot", type=Path, help="draw speed against error (PNG)")
+    parser.add_argument(
+        "--sheet", type=Path, help="draw the contact sheet of all weaves (PNG) and nothing else"
+    )
+    parser.add_argument("--large", action="store_true", help="also 400 x 400 by stage B, minutes")
+    parser.add_argument(
+        "--peers",
+        nargs="?",
+        const=ROOT / "build" / "peers",
+        type=Path,
+        metavar="FOLDER",
+        help="also TexGen, in an environment of its own (default: build/peers)",
+    )
     args = parser.parse_args()
+    if args.sheet:
+        weave_sheet.draw(args.sheet)
+        return 0
+    particles = weave_particles.measure(quick=args.quick, large=args.large, peers=args.peers)
     drafts = [twill(2, 2), twill(3, 1), satin(5, 2), satin(8, 3)] + ([] if args.quick else [satin(16, 7)])
     closed, dense_results = closed_rows(), dense_rows(drafts)
     maps = map_rows([256] if args.quick else [512, 1024])
@@ -136,8 +159,11 @@ def main() -> int:
     print(f"\n{'maps':<24}{'ms':>9}{'seam/255':>10}")
     for row in maps:
         print(f"{row['case']:<24}{row['seconds'] * 1e3:>9.1f}{row['seam'] * 255:>10.0f}")
+    weave_particles.show(particles)
+    if args.plot:
+        weave_sheet.plot(particles, args.plot)
     if args.json:
-        rows = {"closed": closed, "dense": dense_results, "maps": maps}
+        rows = {"closed": closed, "dense": dense_results, "maps": maps, **particles}
         args.json.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
     sound = all(row["error"] < 1e-5 for row in closed) and all(row["seam"] <= 1 / 255 for row in maps)
     return 0 if sound else 1

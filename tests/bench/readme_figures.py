@@ -3,13 +3,16 @@
 hall bench walking -- --json docs/figures/walking.json
 hall bench page -- --json docs/figures/page.json
 hall bench look -- --json docs/figures/look.json
-simcore bench mesh -- --json docs/figures/mesh.json          (and weave, cloth)
+simcore bench mesh -- --peers --large --json docs/figures/mesh.json
+python tests/mesh_polygons.py 10000 --json docs/figures/mesh-polygons.json
 python tests/bench/readme_figures.py
 """
 
 import json
 import sys
 from pathlib import Path
+
+import mesh_figures
 
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
@@ -166,7 +169,7 @@ def robe() -> list[tuple[str, str, str]]:
 
 
 def main() -> int:
-    rows = walking() + page() + look() + room()
+    rows = walking() + page() + look() + mesh_figures.summary() + room()
     rows += garment("beizi", "beizi") + garment("pibo-figure", "pibo over a robe") + robe()
     rows += garment("pibo", "scarf")
     lines = ["| What | Measured | Command |", "|---|---|---|"]

@@ -1,13 +1,17 @@
 """Panels: invariants of finished meshes, quality bounds, and every bad outline with its own message."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from exact_delaunay import delaunay_faults
 
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh
 from sim_core.mesh.outline import signed_area
 from sim_core.mesh.quality import quality, triangle_areas
 from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh.writing import write_mesh
 
 TURN = np.arange(64) * 2 * np.pi / 64
 ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])
@@ -58,6 +62,18 @@ def test_panels_are_sound_and_well_shaped(name, edge):
 
 
 @pytest.mark.parametrize("name", PANELS)
+@pytest.mark.parametrize("edge", [0.03, 0.012])
+def test_best_panels_have_no_small_angle(name, edge):
+    outline, holes = PANELS[name]
+    mesh = panel_mesh(outline, edge=edge, holes=holes, quality="best")
+    assert_sound(mesh, len(holes))
+    assert mesh.report.min_angle_deg >= 38
+    assert mesh.report.mean_quality >= (0.992 if edge < 0.02 else 0.985)
+    steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+    assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+
+
+@pytest.mark.parametrize("name", PANELS)
 def test_direction_of_the_contours_does_not_matter(name):
     outline, holes = PANELS[name]
     mesh = panel_mesh(outline[::-1], edge=0.04, holes=[hole[::-1] for hole in holes])
@@ -65,7 +81,7 @@ def test_direction_of_the_contours_does_not_matter(name):
 
 
 def test_paper_lattice_without_smoothing_keeps_its_points():
-    mesh = panel_mesh(RECTANGLE, edge=0.05, smooth=0)
+    mesh = panel_mesh(RECTANGLE, edge=0.05, quality="fair")
     inner = np.setdiff1d(np.arange(len(mesh.vertices)), mesh.boundary[0])
     rows = mesh.vertices[inner, 1] / (0.05 * np.sqrt(3) / 2)
     np.testing.assert_allclose(rows, np.rint(rows), atol=1e-9)
@@ -139,7 +155,7 @@ BAD = {
     "edge -1.0 m": (RECTANGLE, {"edge": -1.0}),
     "edge nan m": (RECTANGLE, {"edge": np.nan}),
     "edge 0 m": (RECTANGLE, {"edge": 0}),
-    "longer than the panel": (RECTANGLE, {"edge": 1.5}),
+    "longer than the panel": (RECTANGLE, {"edge": 1.1}),
     "threshold": (RECTANGLE, {"threshold": 0.2}),
 }
 
@@ -151,8 +167,47 @@ def test_bad_outlines_are_named(message):
         panel_mesh(outline, **{"edge": 0.05, **options})
 
 
+@pytest.mark.parametrize("degrees", [0, 30, 45])
+def test_how_long_an_edge_may_be_does_not_depend_on_how_the_panel_lies(degrees):
+    t = np.radians(degrees)
+    strip = np.array([[0, 0], [1, 0], [1, 0.02], [0, 0.02]]) @ [
+        [np.cos(t), np.sin(t)],
+        [-np.sin(t), np.cos(t)],
+    ]
+    assert_sound(panel_mesh(strip, edge=0.99), 0)
+    with pytest.raises(OutlineError, match="longer than the panel"):
+        panel_mesh(strip, edge=1.01)
+
+
 def test_repeated_closing_point_is_accepted():
     mesh = panel_mesh(np.vstack([RECTANGLE, RECTANGLE[:1]]), edge=0.1)
     assert_sound(mesh, 0)
     assert triangle_areas(mesh.vertices, mesh.faces).sum() == pytest.approx(0.7, rel=1e-12)
     assert quality(mesh.vertices, mesh.faces).min_angle.min() == pytest.approx(mesh.report.min_angle_deg)
+
+
+@pytest.mark.parametrize("kind", ["fair", "light", "best"])
+@pytest.mark.parametrize("width", [1e-4, 1e-6, 3e-7])
+def test_hair_thin_strips_at_any_angle_are_sound(width, kind):
+    """Cancellation in the areas of slivers is no fault of the mesh."""
+    for degrees in (11, 30, 84):
+        t = np.radians(degrees)
+        strip = np.array([[0, 0], [1, 0], [1, width], [0, 0.6 * width]])
+        strip = strip @ [[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]]
+        mesh = panel_mesh(strip, edge=0.1, quality=kind)
+        assert_sound(mesh, 0)
+        steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+        assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+
+
+@pytest.mark.parametrize("ending", [".npz", ".NPZ", ".ply", ".obj"])
+def test_a_failed_write_leaves_the_old_file_alone(tmp_path, ending):
+    path = tmp_path / f"mesh{ending}"
+    mesh = panel_mesh(RECTANGLE, edge=0.2)
+    write_mesh(path, mesh)
+    before = path.read_bytes()
+    assert len(before) > 500
+    with pytest.raises((TypeError, ValueError, IndexError)):
+        write_mesh(path, replace(mesh, faces="none", boundary=()))
+    assert path.read_bytes() == before
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]

@@ -115,7 +115,8 @@ def test_steps_are_halved_where_contours_run_close(gap):
     assert len(foreign_in_circles(samples)) == 0
     assert sum(map(len, samples)) < 12 * sum(map(len, before))
     for early, late in zip(before, samples, strict=True):
-        assert {tuple(p) for p in early} <= {tuple(p) for p in late}  # halving moves nothing
+        gaps = np.hypot(*(early[:, None] - late).transpose(2, 0, 1))
+        assert gaps.min(axis=1).max() < 1e-15  # halving moves nothing
 
 
 def test_spikes_do_not_halve_for_ever():

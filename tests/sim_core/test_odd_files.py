@@ -203,12 +203,12 @@ def test_meshes_beyond_measure_are_refused_before_any_work() -> None:
     from sim_core.mesh import panel_mesh
 
     square = [[0, 0], [1, 0], [1, 1], [0, 1]]
-    for edge in (1e-300, 1e-7, 5e-4):
-        with pytest.raises(OutlineError, match=r"more than 2000000 vertices – give at least 0\.0007"):
+    for edge in (1e-300, 1e-7, 4e-4):
+        with pytest.raises(OutlineError, match=r"more than 5000000 vertices – give at least 0\.00048"):
             panel_mesh(square, edge=edge)
     comb = [[0.0, 0.0], [1.0, 0.0]] + [[1.0 - k * 1e-4, 0.5 + 0.4 * (k % 2)] for k in range(9000)]
-    with pytest.raises(OutlineError, match="more than 2000000 vertices"):
-        panel_mesh(comb, edge=0.0015)  # its rectangle is small, its outline long
+    with pytest.raises(OutlineError, match="more than 5000000 vertices"):
+        panel_mesh(comb, edge=0.0006)  # its rectangle is small, its outline long
 
 
 def npz(**arrays: object) -> bytes:

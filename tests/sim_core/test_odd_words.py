@@ -16,8 +16,9 @@ PATTERN = str(REPO / "assets" / "patterns" / "robe.toml")
 
 WRONG = {
     "weave": [
-        *(["--seed", word] for word in ("-1", "1.5", "x", "9" * 5000)),
-        *(["--pixels", word] for word in ("-3", "0", "31", "4097", "1e3")),
+        *(["--size", word] for word in ("-3", "0", "31", "4097", "1e3", "9" * 5000)),
+        ["--yarns", "yarns.obj"],
+        ["--wif", "draft.txt"],
     ],
     "mesh": [
         *(["--edge", word] for word in ("0", "-1", "nan", "inf", "1e-300", "1e300", "x")),
@@ -161,7 +162,7 @@ def test_places_that_cannot_be_written_are_told_before_the_work(tmp_path: Path, 
     taken.write_text("here", "utf-8")
     outline = tmp_path / "panel.json"
     outline.write_text(json.dumps({"outline": [[0, 0], [1, 0], [1, 1]]}), "utf-8")
-    assert cli.main(["weave", WEAVE, "--out", str(taken)]) == 1
+    assert cli.main(["weave", WEAVE, "--maps", str(taken)]) == 1
     assert cli.main(["cloth", "hanging", "--out", str(taken / "frames.npz")]) == 2
     assert cli.main(["garment", PATTERN, "--weave", WEAVE, "--out", str(taken)]) == 1
     assert cli.main(["mesh", str(outline), "--edge", "0.2", "--out", str(taken / "mesh.obj")]) == 1

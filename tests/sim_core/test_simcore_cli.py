@@ -112,28 +112,80 @@ def test_debug_shows_the_traceback(tmp_path):
         cli.main(["--debug", "mesh", str(tmp_path / "none.json"), "--edge", "0.1"])
 
 
-def test_weave_writes_maps_and_parameters(tmp_path, capsys):
-    file = REPO / "assets" / "weaves" / "gauze.toml"
-    assert cli.main(["weave", str(file), "--out", str(tmp_path / "maps"), "--pixels", "64", "--json"]) == 0
+KEYS = {
+    "repeat", "face", "floats", "interlacings", "integral", "crimp", "thickness", "areal_density", "residual",
+    "penetration", "seconds", "parameters",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("relax", [[], ["--relax"]])
+def test_weave_writes_maps_yarns_wif_and_summary(tmp_path, capsys, relax):
+    import trimesh
+
+    yarns, wif, maps = tmp_path / "y.glb", tmp_path / "d.wif", tmp_path / "maps"
+    words = [
+        "weave",
+        "twill:2/1",
+        *relax,
+        "--maps",
+        str(maps),
+        "--size",
+        "64",
+        "--yarns",
+        str(yarns),
+        "--wif",
+        str(wif),
+    ]
+    assert cli.main([*words, "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
-    assert summary == json.loads((tmp_path / "maps" / "parameters.json").read_text("utf-8"))
-    assert summary["tile"]["seam"] <= 1 / 255
-    assert set(summary["units"]) == set(summary["parameters"])
-    for name, shape in (
-        ("albedo", (64, 64, 3)),
-        ("normal", (64, 64, 3)),
-        ("height", (64, 64)),
-        ("opacity", (64, 64)),
-    ):
-        assert np.asarray(Image.open(tmp_path / "maps" / f"{name}.png")).shape == shape
+    assert set(summary) == KEYS
+    assert summary["repeat"] == {"ends": 3, "picks": 3}
+    assert (summary["face"], summary["interlacings"], summary["integral"]) == ("warp", 12, True)
+    assert summary["floats"] == {"warp": {"longest": 2, "mean": 1.5}, "weft": {"longest": 2, "mean": 1.5}}
+    assert 0 < summary["crimp"]["warp"] < 0.2
+    assert summary["penetration"] <= 5e-4
+    assert summary["residual"] <= 1e-3
+    stored = json.loads((maps / "parameters.json").read_text("utf-8"))
+    assert {key: stored[key] for key in KEYS} == summary
+    for name in ("albedo", "normal", "height", "roughness", "direction", "opacity", "yarn", "lit"):
+        assert np.asarray(Image.open(maps / f"{name}.png")).shape[:2] == (64, 64)
+    scene = trimesh.load(yarns)
+    assert scene.extents[2] == pytest.approx(summary["thickness"], rel=0.02)
+    assert cli.main(["weave", str(wif), "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["floats"] == summary["floats"]
+
+
+def test_weave_takes_a_picture_of_a_motif_and_our_json(tmp_path, capsys):
+    from sim_core.weave.model import draft_to_dict
+    from sim_core.weave.structures import gauze
+
+    motif = np.full((20, 20, 3), 255, np.uint8)
+    motif[5:15, 5:15] = 0
+    Image.fromarray(motif).save(tmp_path / "motif.png")
+    assert cli.main(["weave", str(tmp_path / "motif.png"), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["repeat"] == {"ends": 20, "picks": 20}
+    assert max(summary["floats"][side]["longest"] for side in ("warp", "weft")) <= 8
+    (tmp_path / "sha.json").write_text(json.dumps(draft_to_dict(gauze())), "utf-8")
+    assert cli.main(["weave", str(tmp_path / "sha.json"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["integral"] is True
 
 
 def test_weave_text_and_broken_file(tmp_path, capsys):
     assert cli.main(["weave", str(REPO / "assets" / "weaves" / "satin.toml")]) == 0
     assert "N/m" in capsys.readouterr().out
+    (tmp_path / "blank.png").write_bytes(b"x")
     (tmp_path / "bad.toml").touch()
-    assert cli.main(["weave", str(tmp_path / "bad.toml")]) == 1
-    assert capsys.readouterr().err.count("\n") == 1
+    (tmp_path / "bad.json").write_text('{"lift": [[1, 2]]}', "utf-8")
+    (tmp_path / "bad.wif").write_text("[WIF]\nVersion=1.1\n", "utf-8")
+    for source in ("blank.png", "bad.toml", "bad.json", "bad.wif", "none.wif", "none.png"):
+        assert cli.main(["weave", str(tmp_path / source)]) == 1
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        assert source in told
+    assert cli.main(["weave", "satin:8/2"]) == 1
+    assert "shares a factor" in capsys.readouterr().err
 
 
 def test_bench_outside_a_checkout_exits_with_2(monkeypatch, tmp_path, capsys):

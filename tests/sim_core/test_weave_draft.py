@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Draft, plain, satin, twill
+from sim_core.weave import Draft, Weave, Yarn, plain, satin, twill
 
 
 def test_plain_alternates():
@@ -51,8 +51,6 @@ def test_satin_binds_every_yarn_once_and_never_beside(ends, step):
         (lambda: satin(6, 2), "none"),
         (lambda: twill(1, 0), "at least"),
         (lambda: twill(2, 2, 2), "shares a factor"),
-        (lambda: Draft("x", np.ones((2, 2))), "never interlaces"),
-        (lambda: Draft("x", np.array([[1, 0], [1, 0]])), "never interlaces"),
         (lambda: Draft("x", np.array([[2, 0], [0, 1]])), "other than 0 and 1"),
         (lambda: Draft("x", np.zeros(4)), "shape"),
     ],
@@ -60,6 +58,13 @@ def test_satin_binds_every_yarn_once_and_never_beside(ends, step):
 def test_impossible_drafts_are_named(make, message):
     with pytest.raises(WeaveError, match=message):
         make()
+
+
+@pytest.mark.parametrize("lift", [np.ones((2, 2)), np.array([[1, 0], [1, 0]])])
+def test_a_cloth_with_a_loose_yarn_is_refused(lift):
+    yarn = Yarn(1e-4, 5e-6)
+    with pytest.raises(WeaveError, match="end 0 never interlaces"):
+        Weave("x", Draft("x", lift), yarn, yarn, 2000, 2000)
 
 
 def test_back_of_a_satin_is_weft_faced_and_twice_back_is_the_face():

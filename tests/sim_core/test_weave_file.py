@@ -85,3 +85,18 @@ def test_impossible_yarns_are_named(values, message):
 def test_bending_bounds_enclose_the_derived_stiffness():
     yarn = Yarn(5e-5, 1.2e-6)
     assert yarn.stiffness_free < yarn.stiffness < yarn.stiffness_stuck
+
+
+@pytest.mark.parametrize(
+    ("option", "name"), [("--maps", "file"), ("--maps", "file/x"), ("--wif", "folder.wif")]
+)
+def test_places_that_cannot_be_written_are_named_before_the_work(option, name, tmp_path, capsys):
+    from sim_core.cli import main
+
+    (tmp_path / "file").touch()
+    (tmp_path / "folder.wif").mkdir()
+    assert main(["weave", "plain", option, str(tmp_path / name)]) == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert f"{tmp_path / name}: a f" in printed.err
+    assert "Errno" not in printed.err

@@ -116,7 +116,7 @@ def test_square_plain_weave_jams_at_0_866(spacing, fits):
 
 
 def test_overfull_satin_is_jammed():
-    with pytest.raises(WeaveError, match="lower ends_per_m"):
+    with pytest.raises(WeaveError, match="at most 10000 ends_per_m"):
         relax(weave(satin(8, 3), ends=0.7))
 
 

@@ -10,7 +10,9 @@ from sim_core.errors import WeaveError
 from sim_core.weave import ClothParameters, Weave, cloth_parameters, lit_picture, relax, texture_maps
 from sim_core.weave.maps import repeats_in_tile
 
-WEAVES = sorted((Path(__file__).parents[2] / "assets" / "weaves").glob("*.toml"))
+FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
+# these maps draw yarns on a grid of crossings; leno, compound and extra wefts have surface_maps
+WEAVES = [path for path in sorted(FOLDER.glob("*.toml")) if not Weave.load(path).draft.channels.items()]
 
 
 @pytest.fixture(scope="module", params=WEAVES, ids=lambda path: path.stem)
@@ -36,7 +38,7 @@ def test_tile_holds_whole_repeats_and_is_nearly_square(cloth):
     maps = texture_maps(weave, geometry, pixels=128)
     across, down = repeats_in_tile(weave, 128)
     assert maps.size == pytest.approx((across * weave.size[0], down * weave.size[1]))
-    assert 0.8 <= maps.size[0] / maps.size[1] <= 1.25
+    assert 0.8 <= maps.size[0] / maps.size[1] <= 1.25 or (across, down) == (1, 1)  # a motif is not cut
 
 
 def test_cover_is_one_minus_openness_for_even_yarns(cloth):

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import itertools
+import warnings
 from types import SimpleNamespace
 
 import pytest
@@ -9,12 +11,44 @@ from survey_samples import ASSETS
 
 import survey
 
+_NUMBERS = itertools.count()
+
+
+@pytest.fixture(scope="session")
+def postgres(tmp_path_factory):
+    """A PostgreSQL server of our own; a function that makes an empty database and returns its URL."""
+    pytest.importorskip("psycopg", reason="PostgreSQL's driver is not installed (extra 'test')")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # platformdirs remarks on XDG_RUNTIME_DIR while it is imported
+        pgserver = pytest.importorskip("pgserver", reason="no PostgreSQL server for this platform")
+    from sqlalchemy import create_engine, make_url, text
+
+    server = pgserver.get_server(tmp_path_factory.mktemp("postgres"), cleanup_mode="delete")
+    url = make_url(server.get_uri()).set(drivername="postgresql+psycopg")
+    engine = create_engine(url, isolation_level="AUTOCOMMIT")
+
+    def fresh() -> str:
+        name = f"survey_{next(_NUMBERS)}"
+        with engine.connect() as connection:
+            connection.execute(text(f"CREATE DATABASE {name}"))
+        return url.set(database=name).render_as_string(hide_password=False)
+
+    yield fresh
+    engine.dispose()
+    server.cleanup()
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
+def database(request, tmp_path):
+    """Where a store keeps its answers: a data folder, or the URL of an empty PostgreSQL database."""
+    return tmp_path / "data" if request.param == "sqlite" else request.getfixturevalue("postgres")()
+
 
 @pytest.fixture
-def hall(tmp_path):
+def hall(database):
     """A web application with the survey mounted under a prefix-free path, and what one needs to talk to it."""
     app = FastAPI()
-    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data")
+    mounted = survey.mount(app, content=ASSETS, data=database)
     with TestClient(app, raise_server_exceptions=False) as client:
         yield SimpleNamespace(
             client=client,
@@ -23,6 +57,6 @@ def hall(tmp_path):
             store=mounted.store,
             garment=mounted.questionnaires["garment"],
             url="/api/v1/questionnaires/garment/submissions",
-            data=tmp_path / "data",
+            data=database,
         )
     mounted.close()

@@ -3,29 +3,37 @@
 from __future__ import annotations
 
 import json
+import re
 import warnings
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import scipy.stats
-from survey_samples import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS, likert_sample, paper_sample
+from survey_samples import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS, given, likert_sample, paper_sample
 
+import survey.analysis
 from survey.analysis import (
     AllEqual,
     AnalysisError,
     ConstantItem,
     DependentItems,
+    NoComponents,
     NotFinite,
+    Settings,
     TooFewRows,
+    UnknownItem,
     adequacy,
-    adequacy_by_formula,
+    adequacy_by_factor_analyzer,
     analyse,
     correlate,
     principal_components,
     reliability,
     varimax,
 )
-from survey.analysis.summary import summary
+from survey.analysis.summary import KEYS, descriptives, summary
+from survey.report.words import Words
 
 STATIC = ("static_drape", "static_overall")
 
@@ -72,7 +80,7 @@ def test_rotation_keeps_the_total_and_eigenvalues_sum_to_the_number_of_items(pap
 @pytest.mark.parametrize(("n", "seed"), [(20, 1), (50, 2), (200, 3), (1000, 4)])
 def test_factor_analyzer_works_with_the_installed_scikit_learn_and_agrees(n, seed):
     table = likert_sample(n, seed)
-    theirs, ours = adequacy(table), adequacy_by_formula(table)
+    theirs, ours = adequacy_by_factor_analyzer(table), adequacy(table)
     assert theirs.kmo == pytest.approx(ours.kmo, abs=1e-10)
     assert np.abs(theirs.kmo_per_item - ours.kmo_per_item).max() < 1e-10
     assert theirs.bartlett.chi2 == pytest.approx(ours.bartlett.chi2, rel=1e-10)
@@ -87,7 +95,8 @@ def test_factor_analyzer_s_own_fit_runs_and_its_loadings_are_ours_up_to_its_earl
 
     table = likert_sample(200, 8)
     found = principal_components(correlate(table).r, keep=3)
-    fit = FactorAnalyzer(n_factors=3, rotation=None, method="principal")
+    unturned: dict[str, Any] = {"rotation": None}  # its annotations know no None, which it takes
+    fit: Any = FactorAnalyzer(n_factors=3, method="principal", **unturned)
     with warnings.catch_warnings():
         # scikit-learn 1.6–1.7 announces that `force_all_finite`, which factor_analyzer passes, is renamed.
         warnings.filterwarnings("ignore", message=".*force_all_finite.*", category=FutureWarning)
@@ -159,7 +168,14 @@ def test_varimax_does_not_depend_on_where_it_starts_nor_on_signs():
 
 
 def as_strict_json(found) -> dict:
-    return json.loads(json.dumps(summary(found), allow_nan=False))
+    told = json.loads(json.dumps(summary(found), allow_nan=False))
+    assert tuple(told) == KEYS
+    json.dumps(descriptives(found), allow_nan=False)
+    return told
+
+
+def mean_of(found, item) -> float:
+    return {row["item"]: row["mean"] for row in descriptives(found)}[item]
 
 
 def codes(found) -> set[str]:
@@ -168,10 +184,9 @@ def codes(found) -> set[str]:
 
 def test_a_duplicated_item_is_named_and_only_stops_kmo_and_bartlett():
     table = np.column_stack([likert_sample(40, 1), likert_sample(40, 1)[:, 2]])
-    for function in (adequacy, adequacy_by_formula):
-        with pytest.raises(DependentItems, match="item_3, item_11") as caught:
-            function(table)
-        assert caught.value.items == ("item_3", "item_11")
+    with pytest.raises(DependentItems, match="item_3, item_11") as caught:
+        adequacy(table)
+    assert caught.value.items == ("item_3", "item_11")
     found = analyse(table)
     assert "dependent_items" in codes(found)
     assert found.adequacy is None
@@ -195,7 +210,7 @@ def test_a_constant_item_stays_in_the_means_and_leaves_the_rest():
     found = analyse(table)
     assert "constant_item" in codes(found)
     assert "item_4" not in found.factored
-    assert as_strict_json(found)["mean"]["item_4"] == 4.0
+    assert mean_of(found, "item_4") == 4.0
 
 
 @pytest.mark.parametrize("n", [3, 9, 10])
@@ -207,7 +222,8 @@ def test_no_more_rows_than_items_gives_means_and_no_factors(n):
     assert "too_few_rows" in codes(found)
     assert found.adequacy is None
     assert found.components is None
-    assert as_strict_json(found)["mean"]
+    assert as_strict_json(found)["kmo"] is None
+    assert mean_of(found, "item_1") == pytest.approx(table[:, 0].mean())
 
 
 def test_one_row_more_than_items_gives_a_result_with_a_warning():
@@ -227,7 +243,7 @@ def test_one_row_or_none_is_refused(rows):
 def test_two_rows_are_described_without_correlation():
     found = analyse(np.array([[1.0, 2, 3], [3, 5, 4]]))
     assert found.correlation is None
-    assert as_strict_json(found)["mean"]["item_1"] == 2.0
+    assert mean_of(found, "item_1") == 2.0
 
 
 def test_all_answers_equal_are_refused_by_name_of_the_trouble():
@@ -245,7 +261,7 @@ def test_missing_scores_leave_whole_answers_out_and_say_so():
     assert "missing" in codes(found)
     assert found.answered.tolist() == [59, 60, 60, 60, 60, 60, 60, 59, 60, 60]
     complete = analyse(np.delete(table, [4, 9], axis=0))
-    assert found.adequacy.kmo == complete.adequacy.kmo
+    assert given(found.adequacy).kmo == given(complete.adequacy).kmo
     with pytest.raises(NotFinite, match="item_1, item_8"):
         correlate(holes)
 
@@ -258,12 +274,21 @@ def test_an_empty_or_infinite_column_is_named(value, says):
         analyse(table)
 
 
+@pytest.mark.parametrize("factor", [1e300, 1e-300])
+def test_scores_that_no_scale_has_are_named_before_they_overflow(factor):
+    table = likert_sample(30, 2)
+    table[:, 5] *= factor
+    with pytest.raises(NotFinite, match="item_6: scores beyond"):
+        analyse(table)
+
+
 def test_items_without_any_correlation_have_no_component():
     table = np.array([[a, b, c] for a in (1, 5) for b in (1, 5) for c in (1, 5)], dtype=float)
-    with pytest.raises(AnalysisError, match="no eigenvalue above 1"):
+    with pytest.raises(NoComponents, match="no eigenvalue above 1"):
         principal_components(correlate(table).r)
     found = as_strict_json(analyse(table))
     assert found["loadings"] is None
+    assert found["eigenvalues"] == pytest.approx([1.0, 1.0, 1.0])
     assert found["alpha"] == pytest.approx(0.0, abs=1e-12)
 
 
@@ -280,5 +305,32 @@ def test_a_single_item_is_described_and_not_factored():
 
 
 def test_an_unknown_item_to_drop_is_an_error():
-    with pytest.raises(AnalysisError, match="nonsense: no such item"):
+    with pytest.raises(UnknownItem, match="nonsense: no such item"):
         analyse(likert_sample(30, 1), drop=("nonsense",))
+
+
+def test_every_kind_of_failure_has_a_code_of_its_own():
+    kinds = AnalysisError.__subclasses__()
+    assert len({kind.code for kind in kinds}) == len(kinds) > 14
+    modules = Path(survey.analysis.__file__).parent.glob("*.py")
+    assert not [path.name for path in modules if "raise AnalysisError" in path.read_text("utf-8")]
+
+
+def test_a_warning_s_code_tells_what_failed():
+    gaps, alone = likert_sample(40, 2), likert_sample(40, 2)[:, :2]
+    gaps[3, 1] = np.nan
+    square = np.array([[a, b, c] for a in (1, 5) for b in (1, 5) for c in (1, 5)], dtype=float)
+    told = {
+        "gaps_left": analyse(gaps, settings=Settings(method="polychoric", missing="pairwise")),
+        "too_many_scores": analyse(
+            np.random.default_rng(1).normal(size=(50, 3)), settings=Settings(method="polychoric")
+        ),
+        "no_components": analyse(alone, settings=Settings(factors=5)),
+        "too_few_items": analyse(alone),
+        "lone_item": analyse(square),
+    }
+    for code, found in told.items():
+        assert code in codes(found)
+        (note,) = [note for note in found.notes if note.code == code]
+        assert "analysis" not in codes(found)
+        assert re.search("[\u4e00-\u9fff]", Words("zh", None).note(note))

@@ -7,30 +7,30 @@ import io
 import json
 import sqlite3
 import uuid
+from concurrent.futures import Future
 
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
-from survey_samples import submission
+from survey_samples import looked_up, submission
 
 import survey
 from survey.answer import TEXT_LIMIT
+from survey.api import Limit
+from survey.errors import StoreError
 
 BASE = "/api/v1/questionnaires"
 
 
 def count(hall) -> int:
-    with sqlite3.connect(hall.data / "survey.sqlite") as database:
-        (found,) = database.execute("SELECT count(*) FROM submission").fetchone()
-    database.close()
-    return found
+    return looked_up(hall.data, "SELECT count(*) FROM submission")[0][0]
 
 
 def test_an_answer_is_committed_before_it_is_acknowledged(hall):
     body = submission(hall.garment, exhibit="pibo", suggestions={"fabric": "  更亮一些\r\n谢谢 "})
     reply = hall.client.post(hall.url, json=body)
     assert reply.status_code == 201
-    assert reply.json() == {"id": body["id"], "questionnaire": "garment", "version": 1}
+    assert reply.json() == {"id": body["id"], "questionnaire": "garment", "version": hall.garment.version}
     (row,) = hall.store.rows(hall.garment)
     assert row.answer.id == body["id"]
     assert dict(row.answer.scores) == body["scores"]
@@ -67,10 +67,12 @@ def test_the_same_id_with_another_body_is_refused_and_changes_nothing(hall):
 WRONG = {
     "unknown field": ({"colour": "red"}, "colour", "unknown field"),
     "no uuid": ({"id": "42"}, "id", "not a UUID"),
+    "empty id": ({"id": ""}, "id", "not a UUID"),
     "uuid in braces": ({"id": "{0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e}"}, "id", "not a UUID"),
     "number as uuid": ({"id": 42}, "id", "not a UUID"),
     "old version": ({"version": 7}, "version", "not the current one"),
     "version true": ({"version": True}, "version", "not the current one"),
+    "version 1.5": ({"version": 1.5}, "version", "not the current one"),
     "version text": ({"version": "1"}, "version", "not the current one"),
     "language": ({"language": "fr"}, "language", "not offered"),
     "language list": ({"language": ["zh"]}, "language", "not offered"),
@@ -196,7 +198,7 @@ def test_rows_suggestions_and_export_need_a_token(hall):
     hall.client.post(hall.url, json=submission(hall.garment, suggestions={"form": "好看"}))
     token = hall.store.tokens.make("test")
     bad = [None, "Bearer ", "Bearer nonsense", f"Basic {token}", f"Bearer {token}x", "Bearer \xff", token]
-    for path in ("rows", "suggestions", "export.csv"):
+    for path in ("rows", "suggestions", "export/csv"):
         url = f"{BASE}/garment/{path}"
         for header in bad:
             raw = {} if header is None else {"authorization": header.encode("latin-1")}
@@ -225,6 +227,7 @@ def test_nothing_public_shows_a_suggestion_or_a_code(hall):
         assert bodies[0]["id"] not in text
 
 
+@pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_neither_address_nor_browser_nor_the_token_itself_is_stored(hall):
     agent = "Unmistakable/1.0"
     hall.client.post(hall.url, json=submission(hall.garment), headers={"user-agent": agent})
@@ -242,7 +245,7 @@ def test_the_export_opens_in_excel_without_running_anything(hall):
     for body in bodies:
         hall.client.post(hall.url, json=body)
     headers = {"authorization": f"Bearer {hall.store.tokens.make('x')}"}
-    reply = hall.client.get(f"{BASE}/garment/export.csv", headers=headers)
+    reply = hall.client.get(f"{BASE}/garment/export/csv", headers=headers)
     assert reply.content.startswith("\ufeff".encode())
     rows = list(csv.DictReader(io.StringIO(reply.content.decode("utf-8-sig"), newline="")))
     assert list(rows[0])[5:17] == list(hall.garment.item_ids)
@@ -274,12 +277,11 @@ def test_a_withdrawn_answer_is_gone_and_cannot_come_back(hall):
     assert hall.store.rows(hall.garment) == ()
     assert hall.client.delete(f"{hall.url}/{uuid.uuid4()}").status_code == 404
     assert hall.client.delete(f"{hall.url}/nonsense").status_code == 422
-    with sqlite3.connect(hall.data / "survey.sqlite") as database:
-        for table in ("answer", "suggestion"):
-            assert database.execute(f"SELECT count(*) FROM {table}").fetchone() == (0,)
-    database.close()
+    for table in ("answer", "suggestion"):
+        assert looked_up(hall.data, f"SELECT count(*) FROM {table}") == [(0,)]
 
 
+@pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_a_locked_or_broken_store_answers_503_and_recovers(hall, monkeypatch):
     from survey.store import tables
 
@@ -314,3 +316,93 @@ def test_the_openapi_document_describes_the_submission(hall):
     schema = post["requestBody"]["content"]["application/json"]["schema"]
     assert set(schema["required"]) == {"id", "version", "language", "consent", "scores"}
     assert schema["additionalProperties"] is False
+
+
+def test_a_replay_after_the_version_was_raised_gives_the_stored_answer(hall, monkeypatch):
+    body = submission(hall.garment)
+    first = hall.client.post(hall.url, json=body)
+    folder = hall.mounted.questionnaires
+    path = folder.folder / "garment.toml"
+    raised = hall.garment.model_copy(update={"version": 7})
+    raised.__dict__.pop("digest", None)
+    monkeypatch.setitem(folder._good, path, raised)
+    again = hall.client.post(hall.url, json=body)
+    assert (first.status_code, again.status_code, again.json()) == (201, 200, first.json())
+    other = hall.client.post(hall.url, json=body | {"language": "en"})
+    assert (other.status_code, other.json()["field"]) == (409, "id")
+    fresh = hall.client.post(hall.url, json=submission(hall.garment))
+    assert (fresh.status_code, fresh.json()["field"]) == (422, "version")
+    assert hall.client.delete(f"{hall.url}/{body['id']}").status_code == 204
+    assert hall.client.post(hall.url, json=body).status_code == 410
+    monkeypatch.delitem(folder._good, path)
+    assert hall.client.post(hall.url, json=body).status_code == 410
+    assert hall.client.post(hall.url, json=submission(hall.garment)).status_code == 404
+    assert count(hall) == 1
+
+
+def test_an_answer_frozen_for_evaluation_cannot_be_withdrawn(hall):
+    body = submission(hall.garment)
+    hall.client.post(hall.url, json=body)
+    assert hall.store.freeze("garment") == 1
+    refused = hall.client.delete(f"{hall.url}/{body['id']}")
+    assert refused.status_code == 409
+    assert refused.json()["remedy"]
+    assert len(hall.store.rows(hall.garment)) == 1
+
+
+def test_too_many_new_answers_from_one_address_wait_and_replays_do_not(hall):
+    app = FastAPI()
+    app.include_router(survey.router(hall.store, hall.mounted.questionnaires, Limit(3)))
+    with TestClient(app) as client:
+        bodies = [submission(hall.garment) for _ in range(4)]
+        assert [client.post(hall.url, json=body).status_code for body in bodies] == [201, 201, 201, 429]
+        refused = client.post(hall.url, json=bodies[3])
+        assert set(refused.json()) == {"field", "problem", "remedy"}
+        assert int(refused.headers["retry-after"]) >= 1
+        assert [client.post(hall.url, json=body).status_code for body in bodies[:3]] == [200] * 3
+        assert (
+            client.post(hall.url, json=bodies[3]).status_code == 429
+        )  # replays do not fill the bucket either
+    assert count(hall) == 3
+
+
+def test_what_the_store_refuses_does_not_count_against_the_address(hall, monkeypatch):
+    app, full = FastAPI(), Future()
+    full.set_exception(StoreError("the disk is full"))
+    app.include_router(survey.router(hall.store, hall.mounted.questionnaires, Limit(3)))
+    with TestClient(app) as client:
+        bodies = [submission(hall.garment) for _ in range(3)]
+        with monkeypatch.context() as broken:
+            broken.setattr(hall.store, "enqueue", lambda *_: full)
+            assert [client.post(hall.url, json=body).status_code for body in bodies * 2] == [503] * 6
+        assert [client.post(hall.url, json=body).status_code for body in bodies] == [201] * 3
+
+
+def test_replays_leave_the_new_answers_of_an_address_their_room(hall):
+    app = FastAPI()
+    app.include_router(survey.router(hall.store, hall.mounted.questionnaires, Limit(3)))
+    with TestClient(app) as client:
+        bodies = [submission(hall.garment) for _ in range(3)]
+        assert [client.post(hall.url, json=bodies[0]).status_code for _ in range(9)] == [201] + [200] * 8
+        assert [client.post(hall.url, json=body).status_code for body in bodies[1:]] == [201] * 2
+
+
+def test_a_bucket_fills_again_evenly_and_each_address_has_its_own():
+    clock = [0.0]
+    limit = Limit(60, clock=lambda: clock[0])
+    assert [limit.take("a") for _ in range(60)] == [0] * 60
+    assert limit.take("a") == 1
+    assert limit.take("b") == 0
+    clock[0] = 2.0
+    assert [limit.take("a") for _ in range(3)] == [0, 0, 1]
+    assert [Limit(0).take("a") for _ in range(1000)] == [0] * 1000
+
+
+def test_who_waits_as_long_as_told_is_let_in_and_not_before():
+    clock = [0.0]
+    limit = Limit(3, clock=lambda: clock[0])
+    assert [limit.take("a") for _ in range(4)] == [0, 0, 0, 20]
+    clock[0] = 19.0
+    assert limit.take("a") == 1
+    clock[0] = 20.0
+    assert limit.take("a") == 0

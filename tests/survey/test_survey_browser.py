@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 import time
 
 import pytest
 import uvicorn
 from fastapi import FastAPI
-from fastapi.responses import HTMLResponse
+from fastapi.responses import FileResponse, HTMLResponse
 from survey_samples import ASSETS
 
 import survey
 
 pytestmark = pytest.mark.browser
 
+FILM = ASSETS / "exhibits" / "pibo" / "baked" / "drape.webm"
 FRAME = """<!doctype html><title>hall</title><script>
 window.heard = []; addEventListener("message", (event) => heard.push(event.data));
 </script><iframe src="/questionnaires/garment?lang=zh&exhibit=pibo" width="900" height="700"></iframe>"""
@@ -24,7 +26,13 @@ window.heard = []; addEventListener("message", (event) => heard.push(event.data)
 def site(tmp_path):
     """A running server with the survey and a page that embeds it; yields (address, mounted)."""
     app = FastAPI()
-    mounted = survey.mount(app, content=ASSETS, data=tmp_path / "data")
+    clips = {
+        "pibo": survey.Clip((("/drape.webm", "video/webm"),), {"zh": "披帛垂落", "en": "The scarf falls"})
+    }
+    content = tmp_path / "content"
+    shutil.copytree(ASSETS / "questionnaires", content / "questionnaires")
+    mounted = survey.mount(app, content=content, data=tmp_path / "data", clip_of=clips.get)
+    app.get("/drape.webm")(lambda: FileResponse(FILM))
     app.get("/hall", response_class=HTMLResponse)(lambda: FRAME)
     server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", access_log=False))
     thread = threading.Thread(target=server.run)
@@ -89,6 +97,68 @@ def test_a_visitor_answers_and_receives_the_code(visit, site):
     assert stored(site) == []
 
 
+ODD_KEYS = ("constructor", "length", "item", "hidden", "inert", "elements", "submit", "reset")
+
+
+def test_items_may_be_called_as_the_page_s_own_properties_are(visit, site):
+    def text(words):
+        return f'{{ zh = "{words}", en = "{words}" }}'
+
+    def part(table, key, named):
+        return f'[[{table}]]\nid = "{key}"\n{named} = {text(key)}\n'
+
+    head = 'id = "odd"\nversion = 1\n' + "".join(
+        f"{key} = {text(key)}\n" for key in ("title", "intro", "consent")
+    )
+    scale = f"[scale]\nanchors = [{', '.join([text('point')] * 3)}]\n"
+    module = part("module", "constructor", "title") + f"suggestion = {text('more')}\n"
+    items = "".join(part("module.item", key, "label") for key in ODD_KEYS)
+    (site[1].questionnaires.folder / "odd.toml").write_text(head + scale + module + items, "utf-8")
+    time.sleep(0.5)  # until a new file shows
+    page = visit("/questionnaires/odd?lang=en")
+    assert page.locator("#count").inner_text() == f"0 of {len(ODD_KEYS)} answered"
+    assert page.locator("textarea").input_value() == ""
+    page.locator("#send").click()
+    assert page.locator("#errors li").count() == len(ODD_KEYS) + 1  # all of them, and the consent
+    answer_all(page, 2)
+    page.reload()
+    assert page.locator("input:checked").count() == len(ODD_KEYS)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site, "odd")
+    assert dict(answer.scores) == dict.fromkeys(ODD_KEYS, 2)
+
+
+def test_going_back_to_a_sent_form_finds_it_empty(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    form = page.url
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    page.goto(form.replace("/garment", ""))
+    page.go_back()
+    page.wait_for_timeout(500)  # a browser puts a form's old state back after the page's scripts have run
+    # Either the thanks are still there, or a fresh form: never the sent answers, ready to be sent as another's.
+    assert page.locator("#thanks").is_visible() or page.locator("input:checked").count() == 0
+    assert len(stored(site)) == 1
+
+
+def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
+    page = visit("/questionnaires/garment?lang=en")
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.wait_for_selector("#thanks:not([hidden])")
+    site[1].store.freeze("garment")
+    page.locator("details.withdraw summary").click()
+    page.locator("#withdraw-code").fill(page.locator("#code").inner_text())
+    page.locator("#withdraw button").click()
+    page.get_by_text("can no longer be withdrawn").wait_for()
+    assert len(stored(site)) == 1
+
+
 def test_what_is_lacking_is_listed_and_reached_by_keyboard_alone(visit, site):
     page = visit("/questionnaires/platform-user?lang=zh")
     page.locator("#send").focus()
@@ -118,7 +188,7 @@ def test_a_reload_and_another_language_keep_what_was_chosen(visit, site):
     assert page.locator("textarea").nth(1).input_value() == "下摆"
     page.reload()
     assert page.locator("#restored").is_visible()
-    assert page.locator('input[name="pleat"][value="2"]').is_checked()
+    assert page.locator('input[name="score-pleat"][value="2"]').is_checked()
     page.locator("#restart").click()
     assert page.locator("input:checked").count() == 0
     page.reload()
@@ -182,6 +252,58 @@ def test_editing_after_a_lost_receipt_does_not_make_a_second_answer(visit, site)
     assert {score for _, score in answer.scores} == {4}
 
 
+@pytest.mark.parametrize("told", [True, False], ids=["the other tab hears of it", "it was asleep"])
+def test_a_draft_that_another_tab_has_sent_is_not_kept_again(visit, site, told):
+    first = visit("/questionnaires/garment?lang=en")
+    answer_all(first)
+    second = first.context.new_page()
+    if not told:
+        second.add_init_script(
+            "addEventListener('storage', (event) => event.stopImmediatePropagation(), true)"
+        )
+    second.goto(first.url)
+    assert second.locator("#restored").is_visible()
+    second.locator("#consent").check()
+    first.locator("#consent").check()
+    first.locator("#send").click()
+    first.wait_for_selector("#thanks:not([hidden])")
+    code = first.locator("#code").text_content()
+    if not told:
+        second.locator(".item").first.locator("label.point").nth(1).click()
+    second.get_by_text("sent from another tab").wait_for()
+    assert second.locator("input:checked").count() == 0
+    left = second.evaluate("JSON.stringify(localStorage)")
+    assert code not in left  # whoever has it can withdraw the answer
+    assert "scores" not in left
+    # What is chosen from now on is an answer of its own, kept as any other.
+    answer_all(second, point=2)
+    second.reload()
+    assert second.locator("#restored").is_visible()
+    second.locator("#consent").check()
+    second.locator("#send").click()
+    second.wait_for_selector("#thanks:not([hidden])")
+    assert len({code, second.locator("#code").text_content()}) == 2
+    assert sorted(min(score for _, score in answer.scores if score) for answer in stored(site)) == [2, 4]
+
+
+def test_two_tabs_that_send_the_same_draft_at_once_make_one_answer(visit, site):
+    first = visit("/questionnaires/garment?lang=en")
+    answer_all(first)
+    first.locator("#consent").check()
+    first.route("**/submissions", lambda route: route.abort("internetdisconnected"))
+    first.locator("#send").click()
+    first.get_by_text("There is no connection.").wait_for()
+    second = first.context.new_page()
+    second.goto(first.url)  # takes up what waits to be sent
+    second.wait_for_selector("#thanks:not([hidden])")
+    first.get_by_text("Back to my answers").click()
+    first.get_by_text("sent from another tab").wait_for()
+    assert first.locator("input:checked").count() == 0
+    first.reload()
+    assert not first.locator("#restored").is_visible()
+    assert len(stored(site)) == 1
+
+
 def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     page = visit("/hall")
     frame = page.frame_locator("iframe")
@@ -199,6 +321,52 @@ def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     (answer,) = stored(site)
     assert answer.exhibit == "pibo"
     assert {score for _, score in answer.scores} == {None}
+
+
+def test_a_network_that_drops_in_the_middle_costs_nothing(visit, site):
+    page = visit("/questionnaires/garment?lang=en", width=390, height=844, has_touch=True)
+    items = page.locator(".item").all()
+    for item in items[:6]:
+        item.locator("label.point").nth(2).tap()
+    page.context.set_offline(True)
+    for item in items[6:]:
+        item.locator("label.point").nth(2).tap()
+    page.locator("#consent").tap()
+    tries = []
+    page.on(
+        "request", lambda request: request.method == "POST" and tries.append(request.post_data_json["id"])
+    )
+    page.locator("#send").tap()
+    page.get_by_text("There is no connection.").wait_for()
+    assert stored(site) == []
+    page.context.set_offline(False)  # the page hears of it and sends at once
+    page.wait_for_selector("#thanks:not([hidden])")
+    (answer,) = stored(site)
+    assert page.locator("#code").inner_text() == answer.id
+    assert set(tries) == {answer.id}
+    assert len(tries) >= 2
+
+
+def test_items_on_motion_stand_beside_the_film_of_the_exhibit(visit):
+    page = visit("/questionnaires/garment?lang=en&exhibit=pibo")
+    film = page.locator("section:has(#item-dynamic_swing) video")
+    assert page.locator("video").count() == film.count() == 1
+    assert film.get_attribute("aria-label") == "The scarf falls"
+    page.wait_for_function("document.querySelector('video').readyState >= 1")
+    assert page.evaluate("document.querySelector('video').error") is None
+    assert visit("/questionnaires/garment?lang=en&exhibit=mirror").locator("video").count() == 0
+
+
+def test_a_preview_keeps_and_sends_nothing(visit, site):
+    page = visit("/questionnaires/garment?lang=en&preview")
+    answer_all(page)
+    page.locator("#consent").check()
+    page.locator("#send").click()
+    page.get_by_text("Nothing was sent.").wait_for()
+    page.locator("#switch").click()
+    page.locator("#preview").wait_for()
+    assert page.evaluate("localStorage.length") == 0
+    assert stored(site) == []
 
 
 @pytest.mark.parametrize("language", ["zh", "en"])

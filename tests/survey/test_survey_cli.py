@@ -15,7 +15,9 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS, paper_sample, submission
 
 import survey
+from survey.analysis.summary import KEYS
 from survey.cli import main
+from survey.reading import read_scores
 
 HERE = ["--content", str(ASSETS)]
 
@@ -60,6 +62,8 @@ def test_a_wrong_database_url_is_one_line(url, capsys):
 def test_reading_makes_no_store(tmp_path, capsys):
     failing(capsys, "export", "--questionnaire", "garment", "--data", tmp_path, *HERE)
     failing(capsys, "analyse", "--questionnaire", "garment", "--db", f"sqlite:///{tmp_path}/typo.db", *HERE)
+    failing(capsys, "token", "--list", "--data", tmp_path / "typo")
+    failing(capsys, "token", "--revoke", "1", "--data", tmp_path / "typo")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -134,7 +138,9 @@ def test_answers_go_from_the_form_s_door_through_export_into_the_analysis(tmp_pa
         assert main(["analyse", *source, "--questionnaire", "garment", "--json", *HERE]) == 0
         results.append(json.loads(capsys.readouterr().out))
     assert results[0] == results[1] == results[2]
-    assert results[0]["mean"]["pleat"] == pytest.approx(scores[:, garment.item_ids.index("pleat")].mean())
+    pleat = results[0]["bootstrap"]["means"]["pleat"]
+    assert pleat["mean"] == pytest.approx(scores[:, garment.item_ids.index("pleat")].mean())
+    assert pleat["low"] < pleat["mean"] < pleat["high"]
 
 
 def test_a_token_opens_the_rows_until_it_is_revoked(tmp_path, capsys):
@@ -166,6 +172,8 @@ FAULTY = {
     "one row": ("a,b\n1,2\n", "1 complete answers"),
     "all equal": ("a,b\n3,3\n3,3\n3,3\n", "the same score in all answers"),
     "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "b: infinite"),
+    "absurd": ("a,b\n1,1e308\n2,3\n3,1\n4,4\n", "b: scores beyond"),
+    "underscore": ("a,b\n1,4_0\n2,3\n3,1\n4,4\n", "line 2, b: '4_0' is no number"),
     "no utf-8": (b"a,b\n\xff,2\n", "no CSV in UTF-8"),
 }
 
@@ -214,7 +222,15 @@ def test_a_taken_port_is_one_line(tmp_path, capsys):
 
 @pytest.mark.parametrize(
     "arguments",
-    [[], ["fly"], ["export"], ["analyse"], ["analyse", "x.csv", "--factors", "0"], ["serve", "--port", "x"]],
+    [
+        [],
+        ["fly"],
+        ["export"],
+        ["analyse"],
+        ["analyse", "x.csv", "--factors", "0"],
+        ["serve", "--port", "x"],
+        ["analyse", "x.csv", "--factors", "parallel", "--parallel", "0"],
+    ],
 )
 def test_wrong_arguments_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
@@ -222,7 +238,7 @@ def test_wrong_arguments_exit_2(arguments, capsys):
     assert caught.value.code == 2
 
 
-@pytest.mark.parametrize("command", [[], ["serve"], ["export"], ["analyse"], ["token"]])
+@pytest.mark.parametrize("command", [[], ["serve"], ["export"], ["analyse"], ["grim"], ["token"]])
 def test_help_teaches(command, capsys):
     with pytest.raises(SystemExit) as caught:
         main([*command, "--help"])
@@ -238,3 +254,112 @@ def test_the_public_names_are_there_and_importing_them_lazily_stays_light():
     code = f"import sys, survey; print([name for name in {heavy} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+HARD = {
+    "duplicate": (
+        "a,b,c\n" + "".join(f"{x},{x},{y}\n" for x, y in zip("123451234512", "513243541325", strict=True)),
+        None,
+    ),
+    "constant": (
+        "a,b,c,d\n" + "".join(f"{x},3,{y},{z}\n" for x, y, z in zip("12345", "51324", "25143", strict=True)),
+        None,
+    ),
+    "n below p": ("a,b,c,d\n1,2,3,4\n4,3,1,2\n2,2,5,1\n", None),
+    "n = p + 1": ("a,b,c\n1,2,4\n4,3,1\n2,2,5\n5,5,2\n", None),
+    "missing": ("a,b\n1,2\nNA,3\n4,\n2,5\n5,1\n3,3\n", None),
+    "all equal": ("a,b\n3,3\n3,3\n3,3\n", "all_equal"),
+    "empty column": ("a,b,c\n1,2,\n2,1,\n4,5,\n", "not_finite"),
+    "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "not_finite"),
+    "one row": ("a,b\n1,2\n", "too_few_rows"),
+}
+
+
+@pytest.mark.parametrize("case", HARD)
+@pytest.mark.parametrize(
+    "way", [[], ["--missing", "pairwise"], ["--rotation", "oblimin"]], ids=lambda way: "".join(way)
+)
+def test_a_hard_case_is_strict_json_with_a_typed_warning_or_error(tmp_path, capsys, case, way):
+    text, error = HARD[case]
+    path = tmp_path / "hard.csv"
+    path.write_text(text, "utf-8")
+
+    def no_constant(name):
+        raise AssertionError(f"{name} in JSON")
+
+    status = main(["analyse", str(path), "--json", "--bootstrap", "50", "--parallel", "50", *way])
+    out, err = capsys.readouterr()
+    found = json.loads(out, parse_constant=no_constant)
+    if error is not None:
+        assert status == 1
+        assert found["error"]["code"] == error
+        assert err.startswith("survey: ")
+        return
+    assert status == 0
+    assert tuple(found) == KEYS
+    assert found["warnings"]
+    assert all(set(warning) == {"code", "items", "message"} for warning in found["warnings"])
+
+
+def test_demonstrations_are_listed_and_analysed_and_call_for_no_file(capsys):
+    assert main(["analyse", "--demo", "list"]) == 0
+    assert "likert-20" in capsys.readouterr().out
+    assert (
+        main(["analyse", "--demo", "likert-20", "--drop", "static", "--json", "--bootstrap", "0", *HERE]) == 0
+    )
+    assert json.loads(capsys.readouterr().out)["dropped"] == ["static_drape", "static_overall"]
+    for wrong in (["--demo", "nothing"], ["x.csv", "--demo", "likert-20"]):
+        with pytest.raises(SystemExit) as ended:
+            main(["analyse", *wrong])
+        assert ended.value.code == 2
+
+
+def test_grim_tells_the_impossible_means(capsys):
+    assert main(["grim", "4.46", "4.15", "--n", "20"]) == 0
+    out = capsys.readouterr().out
+    assert "4.46  IMPOSSIBLE" in out
+    assert "4.15  possible" in out
+    assert "smallest n that makes all possible: 13" in out  # 20, which is larger, does not
+    assert main(["grim", "4.46", "--n", "20", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["possible"] == {"4.46": False}
+    assert "is no mean" in failing(capsys, "grim", "x", "--n", "20")
+
+
+def test_seconds_in_a_table_flag_haste(tmp_path, capsys):
+    rng = np.random.default_rng(1)
+    lines = ["seconds," + ",".join(f"q{at}" for at in range(9))]
+    lines += [",".join(map(str, [3 if row == 4 else 60, *rng.integers(1, 6, 9)])) for row in range(30)]
+    (tmp_path / "a.csv").write_text("\n".join(lines), "utf-8")
+    assert main(["analyse", str(tmp_path / "a.csv"), "--json", "--bootstrap", "0"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert "seconds" not in found["items"]
+    (note,) = [note for note in found["warnings"] if note["code"] == "too_fast"]
+    assert "number 5)" in note["message"]
+
+
+@pytest.mark.parametrize("gap", ["", "NA", ".", " NA "])
+def test_gaps_are_written_as_spreadsheets_r_and_spss_write_them(tmp_path, gap):
+    (tmp_path / "a.csv").write_text(f"a,b\n1,2\n{gap},3\n2,4\n", "utf-8")
+    table = read_scores(tmp_path / "a.csv")
+    assert table.items == ("a", "b")
+    assert np.isnan(table.scores).tolist() == [[False, False], [True, False], [False, False]]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "gb18030"])
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_as_excel_writes_it_anywhere_is_read(tmp_path, encoding, separator):
+    rows = [["姓名", "质感,光泽", "垂感"], ["李, 一", "1", "2"], ["吴；二", "3", "4.5"], ["何三", "", "5"]]
+    if separator != ",":
+        rows[2][2] = "4,5"
+    with (tmp_path / "a.csv").open("w", encoding=encoding, newline="") as file:
+        csv.writer(file, delimiter=separator).writerows(rows)
+    table = read_scores(tmp_path / "a.csv")
+    assert table.items == ("质感,光泽", "垂感")
+    np.testing.assert_array_equal(table.scores, [[1, 2], [3, 4.5], [np.nan, 5]])
+
+
+def test_a_reader_who_has_enough_ends_the_command_quietly():
+    command = f"{sys.executable} -m survey.cli analyse --demo likert-20 --bootstrap 0 --json | head -c 5"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ASSETS.parent)
+    assert done.stdout == '{\n "n'
+    assert done.stderr == ""

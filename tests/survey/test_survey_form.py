@@ -51,7 +51,7 @@ def test_every_item_has_a_named_group_with_all_points_and_unique_ids(hall, key, 
         f"label-{item}" for item in questionnaire.item_ids
     ]
     for item in questionnaire.item_ids:
-        values = [one["value"] for one in page.of("input") if one.get("name") == item]
+        values = [one["value"] for one in page.of("input") if one.get("name") == f"score-{item}"]
         assert values == ["1", "2", "3", "4", "5", "null"]
     labelled = {label["for"] for label in page.of("label") if "for" in label}
     assert {area["id"] for area in page.of("textarea")} <= labelled
@@ -136,7 +136,7 @@ def test_every_text_colour_stands_out_from_every_ground(ink, ground):
 
 def test_the_list_names_every_questionnaire_and_its_links_lead_there(hall):
     page = Tags(hall.client.get("/questionnaires?lang=en").text)
-    links = [link["href"] for link in page.of("a") if (link.get("href") or "").startswith("./")]
+    links = [href for link in page.of("a") if (href := link.get("href") or "").startswith("./")]
     assert len(links) == 3
     for link in links:
         assert hall.client.get(link.removeprefix(".")).status_code == 200
@@ -148,3 +148,40 @@ def test_an_empty_folder_shows_an_empty_list(tmp_path):
     with TestClient(app) as client:
         assert words("zh")["list_empty"] in client.get("/questionnaires?lang=zh").text
     mounted.close()
+
+
+def test_a_scale_s_layout_on_a_phone_follows_its_words():
+    garment = survey.read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
+    kinds = {language: set(re.findall(r'class="scale ([^"]+)"', form_page(garment, language, None)))
+             for language in ("zh", "en")}  # fmt: skip
+    assert kinds == {"zh": {"of-5"}, "en": {"of-5 long"}}
+    seven = {"anchors": [{"zh": "好", "en": "ok"}] * 7, "not_seen": {"zh": "无", "en": "no"}}
+    scaled = survey.Questionnaire.model_validate(garment.document() | {"scale": seven})
+    assert 'class="scale of-7 apart"' in form_page(scaled, "en", None)
+
+
+def test_the_consent_tells_until_when_an_answer_can_be_taken_back():
+    for path in (ASSETS / "questionnaires").glob("*.toml"):
+        consent = survey.read_questionnaire(path).consent
+        assert "until" in consent.en
+        assert "之前" in consent.zh
+
+
+@pytest.mark.parametrize("database", ["sqlite"], indirect=True)
+def test_while_the_database_is_away_every_door_says_so_and_opens_again_afterwards(hall):
+    file, away = hall.data / "survey.sqlite", hall.data / "away"
+    file.rename(away)
+    for address in ("/questionnaires", PAGE):
+        reply = hall.client.get(f"{address}?lang=en")
+        assert reply.status_code == 503
+        assert "not available just now" in reply.text
+        assert int(reply.headers["retry-after"]) > 0
+        assert str(file) not in reply.text  # where it lies is for the operator
+    assert hall.client.get("/api/v1/questionnaires").status_code == 503
+    (problem,) = hall.mounted.problems
+    assert problem.file == str(file)
+    assert "is gone" in problem.what
+    assert not file.exists()
+    away.rename(file)
+    assert hall.client.get(PAGE).status_code == 200
+    assert hall.mounted.problems == ()

@@ -6,15 +6,15 @@ import http.client
 import json
 import signal
 import socket
-import sqlite3
 import subprocess
 import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
-from survey_samples import ASSETS, submission
+from survey_samples import ASSETS, looked_up, submission
 
 from survey import read_questionnaire
 from survey.store.tables import open_engine
@@ -36,7 +36,7 @@ class Service:
     def __init__(self, data) -> None:
         self.data, self.port = data, free_port()
         command = [sys.executable, "-m", "survey.cli", "serve", "--port", str(self.port)]
-        command += ["--content", str(ASSETS), "--data", str(data)]
+        command += ["--content", str(ASSETS), "--data", str(data), "--rate", "0"]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self._wait()
 
@@ -75,13 +75,12 @@ def service(tmp_path):
 
 def rows_of(data) -> dict[str, int]:
     """submission → number of its answers, read behind the product's back."""
-    database = sqlite3.connect(data / "survey.sqlite")
-    try:
-        assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        query = "SELECT s.id, count(a.item) FROM submission s LEFT JOIN answer a ON a.submission = s.id GROUP BY s.id"
-        return dict(database.execute(query).fetchall())
-    finally:
-        database.close()
+    if isinstance(data, Path):
+        assert looked_up(data, "PRAGMA integrity_check") == [("ok",)]
+    query = (
+        "SELECT s.id, count(a.item) FROM submission s LEFT JOIN answer a ON a.submission = s.id GROUP BY s.id"
+    )
+    return {key: number for key, number in looked_up(data, query)}
 
 
 def test_many_threads_submit_and_replay_and_each_answer_is_there_once(hall):
@@ -189,6 +188,13 @@ def test_a_huge_body_is_refused_from_its_announcement_alone(service):
         head = f"POST {URL} HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\nContent-Length: 9000000000\r\n\r\n"
         line.sendall(head.encode() + b"{")
         assert b" 413 " in line.recv(4096)
+
+
+def test_who_sends_too_much_hears_why(service):
+    body = json.dumps(submission(GARMENT) | {"suggestions": {"fabric": "a" * 3_000_000}}).encode()
+    status, reply = service.request("POST", URL, body)  # sends all of it before it listens
+    assert status == 413
+    assert set(json.loads(reply)) == {"field", "problem", "remedy"}
 
 
 def test_an_endless_chunked_body_is_cut_off(service):

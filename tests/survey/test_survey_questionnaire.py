@@ -8,10 +8,11 @@ import shutil
 import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
-from survey_samples import ASSETS, submission
+from survey_samples import ASSETS, given, submission
 
 import survey
 import survey.content
+import survey.mounting
 from survey import QuestionnaireError, content_folder, read_questionnaire
 from survey.cli import main
 
@@ -33,7 +34,8 @@ label = { zh = "一", en = "One" }
 
 
 @pytest.fixture
-def content(tmp_path):
+def content(tmp_path, monkeypatch):
+    monkeypatch.setattr(survey.mounting, "PATIENCE", 0.0)  # edits show at once
     shutil.copytree(ASSETS / "questionnaires", tmp_path / "content" / "questionnaires")
     return tmp_path / "content"
 
@@ -130,6 +132,19 @@ def test_with_a_list_for_problems_the_good_ones_are_served(content, tmp_path):
     mounted.close()
 
 
+def test_a_look_at_the_folder_is_good_for_as_long_as_patience_says(content, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(survey.content.time, "monotonic", lambda: now[0])
+    write(content, SMALL)
+    folder = survey.QuestionnaireFolder(content, patience=0.2)
+    write(content, SMALL.replace('"Small"', '"Smaller"'))
+    assert folder["small"].title.en == "Small"
+    now[0] += 0.25
+    assert folder["small"].title.en == "Smaller"
+    write(content, SMALL.replace("version = 1", "version = -1"))
+    assert folder.problems  # whoever asks what is wrong now is told of now
+
+
 def test_an_edit_shows_without_a_restart_and_a_bad_one_keeps_the_last_good(content, tmp_path):
     app = FastAPI()
     write(content, SMALL)
@@ -166,8 +181,8 @@ def test_a_version_is_frozen_with_its_first_answer(content, tmp_path):
         write(content, SMALL.replace('"One"', '"Too late"').replace("version = 1", "version = 2"))
         assert not mounted.problems
         assert client.post(url, json=submission(mounted.questionnaires["small"], score=3)).status_code == 201
-        assert mounted.store.frozen("small", 1).items[0].label.en == "Still free"
-        assert mounted.store.frozen("small", 2).items[0].label.en == "Too late"
+        assert given(mounted.store.frozen("small", 1)).items[0].label.en == "Still free"
+        assert given(mounted.store.frozen("small", 2)).items[0].label.en == "Too late"
         assert mounted.store.count("small", 1) == 2
     mounted.close()
 
@@ -185,7 +200,7 @@ def test_an_edited_version_stays_readable_as_it_was_asked(content, tmp_path):
         write(content, SMALL.replace('id = "one"', 'id = "other"'))
         assert client.get(f"{base}/results").json()["items"][0]["id"] == "one"
         assert client.get(f"{base}/rows", headers=token).json()[0]["scores"] == {"one": 3}
-        assert ",one" in client.get(f"{base}/export.csv", headers=token).text
+        assert ",one" in client.get(f"{base}/export/csv", headers=token).text
     mounted.close()
     places = ["--content", str(content), "--data", str(tmp_path / "data")]
     assert main(["export", "--questionnaire", "small", "--out", str(tmp_path / "a.csv"), *places]) == 0

@@ -1,0 +1,60 @@
+"""Holes that touch the outline, or each other, become part of it."""
+
+import warnings
+
+import numpy as np
+
+from sim_core.errors import OutlineError, OutlineWarning
+
+__all__ = ["merged"]
+
+WIDER = 0.02  # of the edge: a touching hole is cut this much wider, so that the mouth has a width
+NEAR = 1e-9  # of the extent: contours this near to each other touch
+
+
+def merged(named: list[tuple[str, np.ndarray]], edge: float) -> list[tuple[str, np.ndarray]]:
+    """Cut holes that touch the outline out of it, and join holes that touch each other.
+
+    named: ("outline", (n, 2) [m]) first, then holes.  edge: [m].  A hole that touches is cut 0.02 edge wider: a mouth
+    of no width would make two sheets of cloth share a vertex. Holes that truly cross the outline are left for the
+    check of crossings to name. Returns named contours; raises OutlineError where a hole cuts the panel in two.
+    """
+    from shapely import Polygon, unary_union
+
+    shapes = [Polygon(contour) for _, contour in named]
+    near = NEAR * float(np.ptp(named[0][1], axis=0).max())
+    if any(not shape.is_valid for shape in shapes):
+        return named  # the check of crossings says where
+    cloth, holes = shapes[0], shapes[1:]
+    grown = cloth.buffer(near)
+    if any(not grown.covers(hole) for hole in holes):
+        return named
+    touching = [
+        k
+        for k, hole in enumerate(holes)
+        if hole.distance(cloth.exterior) <= near
+        or any(
+            m != k and hole.distance(other) <= near and not other.contains(hole) and not hole.contains(other)
+            for m, other in enumerate(holes)
+        )
+    ]
+    if not touching:
+        return named
+    names = ", ".join(named[k + 1][0] for k in touching)
+    wider = [
+        hole.buffer(WIDER * edge, join_style="mitre") if k in touching else hole
+        for k, hole in enumerate(holes)
+    ]
+    left = cloth.difference(unary_union(wider))
+    if left.is_empty:
+        raise OutlineError(f"{names}: leaves no cloth – holes belong inside the outline")
+    if not isinstance(left, Polygon):
+        raise OutlineError(f"{names}: cuts the panel into parts – give each part an outline of its own")
+    warnings.warn(
+        f"{names}: touches the outline or another hole and is merged with it, {WIDER:g} of the edge wider",
+        OutlineWarning,
+        stacklevel=2,
+    )
+    rings = [left.exterior, *left.interiors]
+    found = [np.array(ring.coords)[:-1] for ring in rings]
+    return [("outline", found[0]), *((f"hole {k}", ring) for k, ring in enumerate(found[1:]))]

@@ -1,0 +1,87 @@
+"""Walls: outline steps and inner lines that are no Delaunay edges by themselves, kept in the cells they pass."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from sim_core.mesh.cells import Cells, cell_of
+from sim_core.mesh.exact import orient
+
+__all__ = ["Walls", "crosses", "hidden", "wall_cells"]
+
+
+class Walls(NamedTuple):
+    """ends: (w, 2) int32 points.  first: (cells + 1,) and items: per cell the walls whose bounding box meets it."""
+
+    ends: np.ndarray
+    first: np.ndarray
+    items: np.ndarray
+
+
+def wall_cells(places: np.ndarray, ends: np.ndarray, cells: Cells) -> Walls:
+    """Sort walls (w, 2) into the grid of the points they join."""
+    ends = np.unique(np.sort(ends, axis=1), axis=0).astype(np.int32)
+    first, items = _fill(places, ends, cells.x0, cells.y0, cells.per_metre, cells.columns, cells.rows)
+    return Walls(ends, first, items)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill(places, ends, x0, y0, per_metre, columns, rows):
+    first = np.zeros(columns * rows + 1, np.int32)
+    spans = np.zeros((ends.shape[0], 4), np.int32)
+    for k in range(ends.shape[0]):
+        p, q = ends[k, 0], ends[k, 1]
+        spans[k, 0] = cell_of(min(places[p, 0], places[q, 0]), x0, per_metre, columns)
+        spans[k, 1] = cell_of(max(places[p, 0], places[q, 0]), x0, per_metre, columns)
+        spans[k, 2] = cell_of(min(places[p, 1], places[q, 1]), y0, per_metre, rows)
+        spans[k, 3] = cell_of(max(places[p, 1], places[q, 1]), y0, per_metre, rows)
+        for i in range(spans[k, 2], spans[k, 3] + 1):
+            for j in range(spans[k, 0], spans[k, 1] + 1):
+                first[i * columns + j + 1] += 1
+    for k in range(columns * rows):
+        first[k + 1] += first[k]
+    items = np.zeros(first[-1], np.int32)
+    filled = first.copy()
+    for k in range(ends.shape[0]):
+        for i in range(spans[k, 2], spans[k, 3] + 1):
+            for j in range(spans[k, 0], spans[k, 1] + 1):
+                items[filled[i * columns + j]] = k
+                filled[i * columns + j] += 1
+    return first, items
+
+
+@njit(cache=True, error_model="numpy")
+def hidden(places, a, b, c, x0, y0, per_metre, columns, rows, walls):
+    """Whether a wall keeps c from being joined to a or to b."""
+    ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
+    cx, cy = places[c, 0], places[c, 1]
+    left = cell_of(min(ax, bx, cx), x0, per_metre, columns)
+    right = cell_of(max(ax, bx, cx), x0, per_metre, columns)
+    low = cell_of(min(ay, by, cy), y0, per_metre, rows)
+    high = cell_of(max(ay, by, cy), y0, per_metre, rows)
+    for i in range(low, high + 1):
+        for k in range(walls.first[i * columns + left], walls.first[i * columns + right + 1]):
+            w = walls.items[k]
+            p, q = walls.ends[w, 0], walls.ends[w, 1]
+            if crosses(places, a, c, p, q) or crosses(places, b, c, p, q):
+                return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def crosses(places, a, c, p, q):
+    """Whether the segment a c meets the wall p q elsewhere than at an end of both. Exact."""
+    ax, ay, cx, cy = places[a, 0], places[a, 1], places[c, 0], places[c, 1]
+    px, py, qx, qy = places[p, 0], places[p, 1], places[q, 0], places[q, 1]
+    if max(px, qx) < min(ax, cx) or min(px, qx) > max(ax, cx):
+        return False
+    if max(py, qy) < min(ay, cy) or min(py, qy) > max(ay, cy):
+        return False
+    if p == a or p == c or q == a or q == c:
+        return False
+    s1, s2 = orient(ax, ay, cx, cy, px, py), orient(ax, ay, cx, cy, qx, qy)
+    if (s1 > 0 and s2 > 0) or (s1 < 0 and s2 < 0):
+        return False
+    s3, s4 = orient(px, py, qx, qy, ax, ay), orient(px, py, qx, qy, cx, cy)
+    return not ((s3 > 0 and s4 > 0) or (s3 < 0 and s4 < 0))

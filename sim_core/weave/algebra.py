@@ -1,0 +1,77 @@
+"""Draft algebra: threading x tie-up x treadling <-> lift plan <-> drawdown, exact and with the fewest shafts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.errors import WeaveError
+
+__all__ = ["Harness", "drawdown", "harness", "lift_plan", "tie_up"]
+
+
+@dataclass(frozen=True, eq=False)
+class Harness:
+    """How a loom lifts: rising shed, any end on any number of shafts, any number of treadles a pick.
+
+    threading: (ends, shafts) bool.  tieup: (shafts, treadles) bool.  treadling: (picks, treadles) bool.
+    Raises WeaveError where the shapes do not fit.
+    """
+
+    threading: np.ndarray
+    tieup: np.ndarray
+    treadling: np.ndarray
+
+    def __post_init__(self) -> None:
+        for name in ("threading", "tieup", "treadling"):
+            values = np.array(getattr(self, name))
+            if values.ndim != 2 or not np.isin(values, (0, 1)).all():
+                raise WeaveError(f"harness: {name} has shape {values.shape} – give a matrix of 0 and 1")
+            object.__setattr__(self, name, values.astype(bool))
+        if self.threading.shape[1] != self.tieup.shape[0] or self.treadling.shape[1] != self.tieup.shape[1]:
+            raise WeaveError(
+                f"harness: threading over {self.threading.shape[1]} shafts, tie-up {self.tieup.shape}, treadling over "
+                f"{self.treadling.shape[1]} treadles – shafts and treadles must agree"
+            )
+
+    @property
+    def lift(self) -> np.ndarray:
+        """Drawdown: (picks, ends) bool."""
+        return drawdown(self.threading, lift_plan(self.tieup, self.treadling))
+
+
+def lift_plan(tieup: np.ndarray, treadling: np.ndarray) -> np.ndarray:
+    """Shafts raised at each pick: (picks, shafts) bool from (shafts, treadles) and (picks, treadles)."""
+    return _product(np.asarray(treadling, bool), np.asarray(tieup, bool).T)
+
+
+def drawdown(threading: np.ndarray, plan: np.ndarray) -> np.ndarray:
+    """Lift (picks, ends) bool from threading (ends, shafts) and lift plan (picks, shafts)."""
+    return _product(np.asarray(plan, bool), np.asarray(threading, bool).T)
+
+
+def tie_up(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The inverse of `lift_plan`: tie-up (shafts, treadles) and treadling, one treadle for each row that differs."""
+    rows, which = _distinct(np.asarray(plan, bool))
+    return rows.T, np.eye(len(rows), dtype=bool)[which]
+
+
+def harness(lift: np.ndarray) -> Harness:
+    """The harness of a lift matrix with one end a shaft at most and the fewest shafts: one for each end that differs.
+
+    Shafts and treadles are numbered as they first appear, so that the same lift yields the same harness.
+    """
+    columns, shaft = _distinct(np.asarray(lift, bool).T)
+    tieup, treadling = tie_up(columns.T)
+    return Harness(np.eye(len(columns), dtype=bool)[shaft], tieup, treadling)
+
+
+def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a.astype(np.int32) @ b.astype(np.int32) > 0
+
+
+def _distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows that differ, in order of appearance, and for each row which of them it is."""
+    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    appearance = np.argsort(first)
+    rank = np.argsort(appearance)
+    return rows[np.sort(first)], rank[inverse.ravel()]

@@ -1,0 +1,253 @@
+"""Stage B: yarn particles in 3-D brought to rest on one energy, periodic, started from stage A.
+
+Energy: bending, tension times length, contact of flattened sections (also of neighbours), and friction at the
+crossings as work against slip from the place as woven (the pressing force held fixed while it is evaluated, then
+renewed). Minimised by FIRE with a mass for each particle that makes all fast modes equally fast.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, sqrt
+
+import numpy as np
+from numba import njit
+
+from sim_core.errors import WeaveError
+from sim_core.weave.geometry import YarnGeometry
+from sim_core.weave.jam import check_jam
+from sim_core.weave.lines import resampled
+from sim_core.weave.model import Weave
+from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
+
+__all__ = ["ParticleCell", "relax_particles"]
+
+RESIDUAL = 1e-3
+OVERLAP = 4e-4  # of D; what is promised is 5e-4
+MOST_STEPS = 20_000
+SLIP = 0.01  # of D, elastic slip of a crossing that sticks
+YARN_FRICTION = 0.3
+START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
+LONGEST_STEP = 1.0  # x 1 / fastest frequency
+SHORTER, PATIENCE = 0.7, 400  # of that, after so many steps without gain
+WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
+SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
+
+
+@dataclass(frozen=True, eq=False)
+class ParticleCell:
+    """One repeat in force balance; particle 0 of every yarn stands at crossing 0.
+
+    warp_side, warp_height: (ends, picks * per) [m], sideways from the end's place and above the middle plane.
+    weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
+    warp_crimp: (ends,), weft_crimp: (picks,), from arc lengths.  residual: largest net force on a particle / largest
+    crossing force.  penetration: deepest overlap of a particle with a curve in units of D, the mean height of warp and
+    weft; between the particles two curves may come closer, see the README.
+    skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
+    """
+
+    per: int
+    warp_side: np.ndarray
+    warp_height: np.ndarray
+    weft_side: np.ndarray
+    weft_height: np.ndarray
+    force: np.ndarray
+    warp_crimp: np.ndarray
+    weft_crimp: np.ndarray
+    residual: float
+    penetration: float
+    energy: float
+    friction: float
+    steps: int
+
+    @property
+    def skew(self) -> tuple[float, float]:
+        """Largest sideways shift of a crossing from its mean over the repeat [m], of the warp and of the weft."""
+        warp, weft = self.warp_side[:, :: self.per], self.weft_side[:, :: self.per]
+        return float(np.abs(warp - warp.mean()).max()), float(np.abs(weft - weft.mean()).max())
+
+    def crest_to_trough(self) -> tuple[float, float]:
+        """h1 of the warp and h2 of the weft [m]."""
+        return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
+
+
+@njit(cache=True)
+def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, overlap, most):
+    """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
+    friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
+    l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
+    reach1, reach2 = int(r1), int(r2)
+    gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    vwu, vwz, vfu, vfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
+    base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
+    dt, mix, downhill = START, MIX, 0
+    residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
+    longest, best, since = LONGEST_STEP, np.inf, 0
+    for step in range(most):
+        steps = step + 1
+        weigh = step % WEIGH == 0
+        gwu[:], gwz[:], gfu[:], gfz[:] = 0.0, 0.0, 0.0, 0.0
+        if weigh:
+            hwu[:], hwz[:], hfu[:], hfz[:] = 0.0, 0.0, 0.0, 0.0
+        energy = yarn_forces(wu, wz, l1, e1, t1, gwu, gwz) + yarn_forces(fu, fz, l2, e2, t2, gfu, gfz)
+        side = 0.0
+        if s1 > 0:
+            more, side = side_forces(wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, weigh, hwu, hwz)
+            energy += more
+        if s2 > 0:
+            more, other = side_forces(fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, weigh, hfu, hfz)
+            energy += more
+            side = max(side, other)
+        more, deepest, largest = contact_forces(
+            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y, reach1, reach2,
+            stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
+        )  # fmt: skip
+        energy += more
+        deepest = max(deepest, side)
+        if weigh:
+            for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
+                for y in range(m.shape[0]):
+                    for k in range(m.shape[1]):
+                        m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
+        power, speed, push, worst = 0.0, 0.0, 0.0, 0.0
+        for v, g, m in ((vwu, gwu, mwu), (vwz, gwz, mwz), (vfu, gfu, mfu), (vfz, gfz, mfz)):
+            for y in range(v.shape[0]):
+                for k in range(v.shape[1]):
+                    force = g[y, k]
+                    worst = max(worst, abs(force))
+                    power += force * v[y, k]
+                    push += force * force / m[y, k]
+                    speed += v[y, k] * v[y, k] * m[y, k]
+        residual = worst / max(largest, 1e-300)
+        if residual < 0.7 * best:
+            best, since = residual, step
+        elif (
+            step - since > PATIENCE
+        ):  # some particles flutter between touching and not: smaller steps calm them
+            longest, best, since = max(SHORTER * longest, 0.3), residual, step
+        if weigh and residual < tolerance:
+            if deepest <= overlap:
+                break
+            if step >= checked:  # at rest, but the contact is too soft
+                stiff *= min(max(1.3 * deepest / overlap, 1.3), 20.0)
+                checked = step + 20
+                continue
+        if power > 0:
+            downhill += 1
+            if downhill > 8:
+                dt, mix = min(dt * GROW, longest), mix * 0.99
+            blend = mix * sqrt(speed / max(push, 1e-300))
+        else:
+            downhill, mix, blend = 0, MIX, 0.0
+            dt = max(dt * CUT, 0.05)
+        keep = 1.0 - mix if power > 0 else 0.0
+        for x, v, g, m in (
+            (wu, vwu, gwu, mwu),
+            (wz, vwz, gwz, mwz),
+            (fu, vfu, gfu, mfu),
+            (fz, vfz, gfz, mfz),
+        ):
+            for y in range(v.shape[0]):
+                for k in range(v.shape[1]):
+                    v[y, k] = keep * v[y, k] + (blend + dt) * g[y, k] / m[y, k]
+                    x[y, k] += min(max(dt * v[y, k], -0.05), 0.05)
+    return residual, deepest, energy, steps, stiff
+
+
+def relax_particles(
+    weave: Weave,
+    *,
+    per: int = 8,
+    friction: float = YARN_FRICTION,
+    tolerance: float = RESIDUAL,
+    start: YarnGeometry | None = None,
+    most: int = MOST_STEPS,
+) -> ParticleCell:
+    """Bring the particles of one repeat to rest.
+
+    per: particles for each crossing and yarn, 4 to 64.  friction: Coulomb's mu between warp and weft.  tolerance: of
+    the net force on a particle, relative to the largest crossing force.  start: stage A of this weave, made if absent.
+    Raises WeaveError for a jammed sett, or where the cell does not come to rest within `most` steps.
+    """
+    from sim_core.weave.relaxation import relax
+
+    if not 4 <= per <= 64:
+        raise WeaveError(f"weave {weave.name}: {per} particles a crossing – give 4 to 64")
+    check_jam(weave)
+    lift = np.ascontiguousarray(weave.draft.lift)
+    first = start or relax(weave, tolerance=1e-4)
+    scale = _Scale.of(weave, per)
+    wz, fz = (
+        resampled(first.warp_height.T, per) / scale.length,
+        resampled(first.weft_height, per) / scale.length,
+    )
+    wu, fu = np.zeros_like(wz), np.zeros_like(fz)
+    pressing = first.force / scale.force
+    stiff = 1250.0 * max(float(pressing.max()), 1e-12)
+    numbers = scale.numbers(friction)
+    residual, deepest, energy, steps, _ = _settle(
+        wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, OVERLAP, most
+    )
+    if residual > tolerance or deepest > 1.25 * OVERLAP:
+        raise WeaveError(
+            f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
+            f"after {steps} steps) – lower the sett, or allow a larger residual"
+        )
+    l1, l2 = numbers[0], numbers[1]
+    return ParticleCell(
+        per, wu * scale.length, wz * scale.length, fu * scale.length, fz * scale.length, pressing * scale.force,
+        _crimp(wu, wz, l1), _crimp(fu, fz, l2), float(residual), float(deepest),
+        float(energy) * scale.force * scale.length, friction, int(steps),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Scale:
+    """The repeat in units of D and EI/D^2."""
+
+    weave: Weave
+    length: float
+    force: float
+    stiffness: float
+    spacing: tuple[float, float]  # ends, picks
+    piece: tuple[float, float]
+    wide: tuple[float, float]  # contact norm along the weft, along the warp
+    reach: tuple[int, int]
+
+    @classmethod
+    def of(cls, weave: Weave, per: int) -> _Scale:
+        warp, weft = weave.warp, weave.weft
+        length = (warp.height + weft.height) / 2
+        stiffness = sqrt(warp.stiffness * weft.stiffness)
+        p1, p2 = weave.end_spacing / length, weave.pick_spacing / length
+        wide = (warp.width + weft.height) / 2 / length, (weft.width + warp.height) / 2 / length
+        piece = p2 / per, p1 / per
+        half = per * min(weave.draft.picks, weave.draft.ends) - 1
+        reach = tuple(min(ceil(w / p), per - 1, half) for w, p in ((wide[1], piece[0]), (wide[0], piece[1])))
+        return cls(weave, length, stiffness / length**2, stiffness, (p1, p2), piece, wide, reach)  # type: ignore[arg-type]
+
+    def numbers(self, friction: float) -> tuple[float, ...]:
+        warp, weft = self.weave.warp, self.weave.weft
+        sides = []
+        for yarn, room in ((warp, self.spacing[0]), (weft, self.spacing[1])):
+            wide = yarn.width / self.length
+            # a section is never wider than its room: packed fibres give way sideways
+            sides += [min(wide, room) if room < 1.7 * wide else 0.0, yarn.height / self.length]
+        return (
+            *self.piece, warp.stiffness / self.stiffness, weft.stiffness / self.stiffness, warp.tension / self.force,
+            weft.tension / self.force, *self.wide, float(self.reach[0]), float(self.reach[1]), *self.spacing, *sides,
+            friction, SLIP,
+        )  # fmt: skip
+
+
+def _crimp(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
+    """Excess arc length of each yarn; every piece counts as an arc of the angles at its ends."""
+    du, dz = np.roll(u, -1, axis=1) - u, np.roll(z, -1, axis=1) - z
+    chord = np.sqrt(piece**2 + du**2 + dz**2)
+    cosine = piece**2 + du * np.roll(du, 1, axis=1) + dz * np.roll(dz, 1, axis=1)
+    turn = 2 * (1 - np.clip(cosine / (chord * np.roll(chord, 1, axis=1)), -1, 1))
+    arc = chord * (1 + (turn + np.roll(turn, -1, axis=1)) / 48)
+    return arc.mean(axis=1) / piece - 1

@@ -1,0 +1,157 @@
+"""The summary of a relaxed weave: the keys of `simcore weave --json`, SI units throughout."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim_core.weave.analysis import summary
+from sim_core.weave.geometry import ClothParameters, YarnGeometry
+from sim_core.weave.model import Weave
+from sim_core.weave.parameters import cloth_parameters
+from sim_core.weave.particles import ParticleCell
+from sim_core.weave.solve import ground_of, solve
+from sim_core.weave.strands import strands
+
+__all__ = ["measured", "parameters_of", "summary_of"]
+
+UNITS = {
+    "density": "kg/m2",
+    "thickness": "m",
+    "stretch_warp": "N/m",
+    "stretch_weft": "N/m",
+    "shear": "N/m",
+    "poisson": "1",
+    "bend": "N m",
+    "bend_warp": "N m",
+    "bend_weft": "N m",
+    "friction": "1",
+    "take_up_warp": "1",
+    "take_up_weft": "1",
+}
+TAKE_UP = (
+    "crimp / (1 + crimp): share of the yarn's length that the cloth takes up; band: beams held at their places (stage "
+    "A) and particles free to slide with friction (stage B), since the crimp of floats depends on how the cloth "
+    "was handled"
+)
+
+
+def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
+    """All keys of the command's JSON. seconds: that the relaxation took.  origin: of yarns and sett."""
+    facts = summary(weave.draft)
+    size = measured(weave, geometry)
+    parameters = parameters_of(weave, geometry)
+    deep = geometry.penetration
+    if not isinstance(geometry, ParticleCell):
+        deep /= (weave.warp.height + weave.weft.height) / 2
+    return {
+        "repeat": {"ends": facts.ends, "picks": facts.picks},
+        "face": facts.face,
+        "floats": {
+            side: {"longest": floats.longest, "mean": floats.mean}
+            for side, floats in (("warp", facts.warp), ("weft", facts.weft))
+        },
+        "interlacings": facts.interlacings,
+        "integral": facts.integral,
+        "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
+        "thickness": size["thickness"],
+        "areal_density": size["areal_density"],
+        "residual": geometry.residual,
+        "penetration": deep,
+        "seconds": seconds,
+        "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
+    }
+
+
+def _take_up(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict:
+    """Take-up of warp and weft, with the band between both stages where stage B was run."""
+    kinds = [geometry]
+    if isinstance(geometry, ParticleCell):
+        kinds.append(solve(weave))
+    entries = {}
+    for side in ("warp", "weft"):
+        shares = [c / (1 + c) for c in (float(np.mean(getattr(kind, f"{side}_crimp"))) for kind in kinds)]
+        entries[f"take_up_{side}"] = {
+            "value": shares[0],
+            "unit": UNITS[f"take_up_{side}"],
+            "provenance": TAKE_UP,
+        }
+        if len(shares) > 1:
+            entries[f"take_up_{side}"]["band"] = [min(shares), max(shares)]
+    return entries
+
+
+def _entries(parameters: ClothParameters) -> dict:
+    values = parameters.to_dict()
+    entries = {}
+    for key, unit in UNITS.items():
+        if key not in values:
+            continue
+        entries[key] = {"value": values[key], "unit": unit, "provenance": parameters.provenance[key]}
+        if key in parameters.bounds:
+            entries[key]["band"] = list(parameters.bounds[key])
+    return entries
+
+
+def measured(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict[str, float]:
+    """Crimp, thickness [m] and areal density [kg/m2] of the relaxed repeat, all yarns and only where they are."""
+    warp, weft = float(np.mean(geometry.warp_crimp)), float(np.mean(geometry.weft_crimp))
+    width, height = weave.size
+    mass = weave.draft.ends * height * (1 + warp) * weave.warp.tex
+    systems = strands(weave, geometry)
+    for k, system in enumerate(systems[1:]):
+        # a yarn that ends at a slit gives one place of its path to the slit, which is no yarn missing
+        there = (system.colour >= 0).mean(axis=1) if k else np.ones(len(system.place))
+        mass += float(there.sum()) * width * (1 + (weft if k == 0 else 0.0)) * system.yarn.tex
+    tops = [(s.height + s.yarn.height / 2)[s.colour >= 0].max() for s in systems]
+    bottoms = [(s.height - s.yarn.height / 2)[s.colour >= 0].min() for s in systems]
+    return {
+        "crimp_warp": warp,
+        "crimp_weft": weft,
+        "thickness": float(max(tops) - min(bottoms)),
+        "areal_density": mass / (width * height),
+    }
+
+
+def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothParameters:
+    """Parameters of a relaxed cloth for `cloth.Material.of`: density and thickness of the cell that is given, stiffness
+    from stage A of the ground.
+
+    What the model cannot settle is a band in `bounds`: bending between free and stuck fibres, shear between slipping
+    and stuck crossings. The ends of a leno or compound weave are counted as if each had its own place.
+    """
+    channels = weave.draft.channels
+    plain = replace(ground_of(weave), extra=None)
+    if channels.order is not None or channels.layer is not None:
+        plain = _stand_in(weave)
+    from sim_core.weave.relaxation import relax
+
+    base = relax(plain, share=64 if plain is not weave and channels.layer is not None else 1)
+    made = cloth_parameters(plain, base)
+    size = measured(weave, geometry)
+    note = dict(made.provenance)
+    if channels.order is not None or channels.layer is not None:
+        for key in ("stretch_warp", "stretch_weft", "shear", "poisson", "bend_warp", "bend_weft", "bend"):
+            note[key] += (
+                "; of a plain weave with the same yarns and sett in place of the leno or compound weave"
+            )
+    stage = "the relaxed particles" if isinstance(geometry, ParticleCell) else "the relaxed beams"
+    note["density"] += f"; yarn paths of {stage}"
+    return replace(made, density=size["areal_density"], thickness=size["thickness"], provenance=note)
+
+
+def _stand_in(weave: Weave) -> Weave:
+    """A plain weave with the yarns and a sett that fits, for the stiffness of leno and compound weaves."""
+    from sim_core.weave.draft import plain
+
+    series = [s for s in (weave.draft.channels.end_series, weave.draft.channels.pick_series) if s is not None]
+    share = 1 + int(series[0].max()) if weave.draft.channels.layer is not None else 1
+    warp = share if weave.draft.channels.end_series is not None else 1
+    weft = share if weave.draft.channels.end_series is None else 1
+    room = 1.01 * (weave.warp.height + weave.weft.height)
+    ends = min(weave.ends_per_m / warp, 1 / (room + weave.warp.width - weave.warp.height))
+    picks = min(weave.picks_per_m / weft, 1 / (room + weave.weft.width - weave.weft.height))
+    return replace(
+        weave, draft=plain(), ends_per_m=ends, picks_per_m=picks, warp_colours=(), weft_colours=(), extra=None
+    )

@@ -1,0 +1,138 @@
+"""The `Wif` value: what a WIF 1.0/1.1 file says, and how it turns into a draft and back.
+
+What WIF cannot say (series, layers, order of leno ends, regions, yarns in SI) is kept as JSON in a private section.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from sim_core.errors import WeaveError
+from sim_core.weave.algebra import Harness, harness
+from sim_core.weave.draft import Draft
+from sim_core.weave.model import Weave, draft_from_dict, draft_to_dict
+
+__all__ = ["PRIVATE", "Wif", "centimetres", "plain_title", "tidy", "wif_of"]
+
+PRIVATE = "PRIVATE HALL WEAVE"
+MOST_TREADLES = 64  # beyond, the file has a lift plan instead of tie-up and treadling
+
+
+@dataclass(frozen=True, eq=False)
+class Wif:
+    """One WIF file.
+
+    harness: threading, tie-up, treadling; the lift follows.  plan: written as LIFTPLAN instead of tie-up + treadling.
+    palette: (n, 3) int of 0 to top, colours 1 to n.  warp_colours: (ends,), weft_colours: (picks,) int >= 1.
+    spacing, thickness: (warp, weft) [m] or None.  text: (key, value) of [TEXT].  notes: lines of [NOTES].
+    other: (section, ((key, value), ...)) of private and unknown sections, kept as they are.
+    private: the JSON of our own section, None where there is none.  remarks: what the reader had to settle.
+    """
+
+    title: str
+    harness: Harness
+    plan: bool = False
+    palette: np.ndarray = field(default_factory=lambda: np.array([[255, 255, 255], [0, 0, 0]]))
+    top: int = 255
+    warp_colours: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
+    weft_colours: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
+    spacing: tuple[float | None, float | None] = (None, None)
+    thickness: tuple[float | None, float | None] = (None, None)
+    text: tuple[tuple[str, str], ...] = ()
+    notes: tuple[str, ...] = ()
+    other: tuple[tuple[str, tuple[tuple[str, str], ...]], ...] = ()
+    private: dict | None = None
+    remarks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        picks, ends = self.harness.treadling.shape[0], self.harness.threading.shape[0]
+        for name, count in (("warp_colours", ends), ("weft_colours", picks)):
+            values = np.array(getattr(self, name), int)
+            object.__setattr__(self, name, values if values.size else np.full(count, 1 + (name[1] == "e")))
+            if getattr(self, name).shape != (count,):
+                raise WeaveError(f"wif: {name} has {values.size} entries – {count} are wanted")
+            if getattr(self, name).min() < 1 or getattr(self, name).max() > len(self.palette):
+                raise WeaveError(f"wif: {name} names a colour outside the palette of {len(self.palette)}")
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Wif):
+            return False
+        arrays = lambda w: (w.harness.threading, w.harness.tieup, w.harness.treadling, w.palette, w.warp_colours,  # noqa: E731
+                            w.weft_colours)  # fmt: skip
+        rest = lambda w: (w.title, w.plan, w.top, w.spacing, w.thickness, w.text, w.notes, w.other, w.private)  # noqa: E731
+        return rest(self) == rest(other) and all(
+            np.array_equal(a, b) for a, b in zip(arrays(self), arrays(other), strict=True)
+        )
+
+    @property
+    def draft(self) -> Draft:
+        """The draft; with all channels where our private section fits the lift that the harness weaves."""
+        return self._value()[0]
+
+    @property
+    def weave(self) -> Weave | None:
+        """The whole cloth, where our private section holds it and fits the harness; else None."""
+        return self._value()[1]
+
+    def _value(self) -> tuple[Draft, Weave | None]:
+        lift = self.harness.lift
+        if self.private:
+            weave = Weave.from_dict(self.private["weave"]) if "weave" in self.private else None
+            draft = weave.draft if weave else draft_from_dict(self.private.get("draft", {}))
+            if np.array_equal(
+                draft.lift, lift
+            ):  # else another program has changed the draft: its word counts
+                return draft, weave
+        return Draft(self.title or "draft", lift), None
+
+
+def wif_of(cloth: Weave | Draft) -> Wif:
+    """A weave or draft as WIF, with everything WIF cannot say in the private section.
+
+    Raises WeaveError where the repeat is larger than a draft may be.
+    """
+    weave, draft = (cloth, cloth.draft) if isinstance(cloth, Weave) else (None, cloth)
+    made = harness(draft.lift)
+    plan = made.tieup.shape[1] > MOST_TREADLES
+    private = {"weave": weave.to_dict()} if weave else {"draft": draft_to_dict(draft)}
+    value = Wif(
+        plain_title(draft.name),
+        _with_plan(made) if plan else made,
+        plan,
+        private=json.loads(json.dumps(private)),
+    )
+    if weave is None:
+        return value
+    sides = weave.warp, weave.weft
+    palette = np.rint(np.array([yarn.colour for yarn in sides]) * 255).astype(int)
+    return replace(
+        value,
+        palette=palette,
+        spacing=(tidy(weave.end_spacing), tidy(weave.pick_spacing)),
+        thickness=(tidy(weave.warp.width), tidy(weave.weft.width)),
+    )
+
+
+def _with_plan(made: Harness) -> Harness:
+    """The harness of a lift plan: one treadle a shaft."""
+    from sim_core.weave.algebra import lift_plan
+
+    return Harness(made.threading, np.eye(len(made.tieup), dtype=bool), lift_plan(made.tieup, made.treadling))
+
+
+def plain_title(text: str) -> str:
+    """A title as one line of printable ASCII; the private section keeps the name itself."""
+    return " ".join("".join(c if " " <= c <= "~" else "?" for c in text).split())
+
+
+def tidy(metres: float) -> float:
+    """What fourteen digits of centimetres can hold, so that writing and reading it is the identity."""
+    return float(centimetres(metres)) / 100
+
+
+def centimetres(metres: float) -> str:
+    """A length in centimetres, fourteen digits without an exponent."""
+    return np.format_float_positional(float(f"{metres * 100:.14g}"), trim="-")

@@ -1,0 +1,158 @@
+"""SOURCE of the command: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; a file; a motif picture."""
+
+from __future__ import annotations
+
+import re
+from math import gcd
+from pathlib import Path
+
+import numpy as np
+
+from sim_core.errors import FileProblem, WeaveError
+from sim_core.weave.draft import MOST, Draft, plain, satin, twill
+from sim_core.weave.generators import damask
+from sim_core.weave.model import Weave, draft_from_dict
+from sim_core.weave.yarn import Yarn
+
+__all__ = ["draft_of_words", "dressed", "satin_by_pick", "weave_of"]
+
+WORDS = (
+    "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .json or .toml file, or a picture of a motif"
+)
+PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"}
+# What a bare draft is woven of: degummed silk, two threads of 20/22 den; an assumption, told in the provenance.
+TEX, DIAMETER, FLATTENING, ROOM = 3.59e-6, 78e-6, 1.8, 1.7
+
+
+def weave_of(source: str) -> tuple[Weave, str]:
+    """The cloth that SOURCE names, and where its yarns and sett come from.
+
+    Raises WeaveError or FileProblem: what, where, and the remedy.
+    """
+    path = Path(source)
+    kind = path.suffix.lower()
+    if kind == ".toml":
+        return Weave.load(path), f"{path.name}"
+    if kind == ".json":
+        return _from_json(path)
+    if kind == ".wif":
+        return _from_wif(path)
+    if kind in PICTURES:
+        return dressed(damask(_motif_of(path), longest=8, name=path.stem)), ASSUMED
+    return dressed(draft_of_words(source)), ASSUMED
+
+
+ASSUMED = (
+    f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, "
+    f"spaced {ROOM} widths"
+)
+
+
+def draft_of_words(words: str) -> Draft:
+    """A draft by name; `twill:2/1` is Z, `satin:8/3` has the one weft point of pick i on end 3 i mod 8."""
+    name, *rest = words.strip().split(":")
+    numbers = rest.pop(0) if name in ("twill", "satin") and rest else ""
+    if name not in ("plain", "twill", "satin") or any(
+        word not in ("S", "Z", "weft", "warp") for word in rest
+    ):
+        raise WeaveError(f"{words[:60]!r}: no such weave – give {WORDS}")
+    if name == "plain":
+        draft = plain()
+    else:
+        found = re.fullmatch(r"(\d{1,4})/(\d{1,4})", numbers, re.ASCII)
+        if not found:
+            raise WeaveError(
+                f"{words[:60]!r}: numbers are missing – give {name}:{'2/1' if name == 'twill' else '8/3'}"
+            )
+        first, second = int(found[1]), int(found[2])
+        draft = twill(first, second) if name == "twill" else satin_by_pick(first, second)
+    if "weft" in rest and draft.face != "warp":
+        raise WeaveError(f"{words[:60]!r}: it is no warp-faced weave – leave :weft out")
+    lift = ~draft.lift if "weft" in rest else draft.lift
+    if "S" in rest:
+        lift = np.roll(lift[:, ::-1], 1, axis=1)  # mirrored about end 0
+    return Draft(words.strip(), lift)
+
+
+def satin_by_pick(ends: int, step: int) -> Draft:
+    """The warp-faced satin whose one weft point of pick i lies on end step x i mod ends."""
+    if ends >= 5 and 1 < step < ends - 1 and gcd(ends, step) == 1:
+        return satin(ends, pow(step, -1, ends)).renamed(f"satin {ends}/{step}")
+    return satin(ends, step)  # says what is wrong
+
+
+def dressed(draft: Draft) -> Weave:
+    """A bare draft with yarns and sett of a plain silk."""
+    yarn = Yarn(DIAMETER, TEX, FLATTENING, unevenness=0.05)
+    sett = 1 / (ROOM * yarn.width)
+    return Weave(
+        draft.name,
+        draft,
+        yarn,
+        yarn,
+        sett,
+        sett,
+        extra=yarn if draft.channels.pick_kind is not None else None,
+    )
+
+
+def _from_json(path: Path) -> tuple[Weave, str]:
+    from sim_core.reading import read_json
+
+    values = read_json(path, "a weave written as JSON")
+    if not isinstance(values, dict):
+        raise WeaveError(f"{path}: not an object – give what Weave.to_dict or draft_to_dict wrote")
+    try:
+        if "draft" in values:
+            return Weave.from_dict(values), path.name
+        return dressed(draft_from_dict(values)), ASSUMED
+    except WeaveError as error:
+        raise WeaveError(f"{path}: {error}") from error
+
+
+def _from_wif(path: Path) -> tuple[Weave, str]:
+    from sim_core.weave.wif_read import read_wif
+
+    wif = read_wif(path)
+    try:
+        weave = wif.weave
+        if weave:
+            return weave, path.name
+        made = dressed(wif.draft)
+    except WeaveError as error:
+        raise WeaveError(f"{path}: {error}") from error
+    return made, ASSUMED
+
+
+def _grey(picture) -> np.ndarray:
+    """(rows, columns) brightness; what is transparent counts as white paper, 16 bits keep their range."""
+    from PIL import Image
+
+    if picture.mode.startswith(("I", "F")):
+        return np.asarray(picture)
+    if picture.mode in ("LA", "La", "PA", "RGBA", "RGBa") or "transparency" in picture.info:
+        drawn = picture.convert("RGBA")
+        picture = Image.alpha_composite(Image.new("RGBA", drawn.size, "white"), drawn)
+    return np.asarray(picture.convert("L"))
+
+
+def _motif_of(path: Path) -> np.ndarray:
+    """(picks, ends) bool, dark where the figure is; one pixel a crossing, the lowest row the first pick."""
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(path) as picture:
+            if max(picture.size) > MOST:
+                raise WeaveError(
+                    f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST}"
+                )
+            grey = _grey(picture)
+    except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        if isinstance(error, WeaveError):
+            raise
+        reason = getattr(error, "strerror", None) or "not a picture"
+        raise FileProblem(f"{path}: {reason} – give a picture of the motif, one pixel a crossing") from error
+    dark = grey < (float(grey.min()) + float(grey.max()) + 1) / 2
+    if dark.all() or not dark.any():
+        raise WeaveError(f"{path}: one tone only – paint the figure dark on a light ground")
+    return dark[::-1]

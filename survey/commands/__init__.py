@@ -1,0 +1,1 @@
+"""Subcommands of `survey`, one module each: `add(commands)` declares it and sets what it runs."""

@@ -1,0 +1,103 @@
+"""A script that repeats the analysis in R with psych and GPArotation, so that nobody need trust ours."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Sequence
+
+from survey.export.cells import safe_cell
+
+__all__ = ["write_r"]
+
+_SCRIPT = r"""# Repeats `survey analyse` in R.   Rscript @NAME@ [answers.csv [out.json]]
+# install.packages(c("psych", "GPArotation", "jsonlite"))
+suppressMessages({library(psych); library(GPArotation)})
+given <- commandArgs(trailingOnly = TRUE)
+file <- if (length(given) > 0) given[1] else "@FILE@"
+
+items <- c(@ITEMS@)
+dropped <- c(@DROPPED@)
+answers <- read.csv(file, fileEncoding = "UTF-8-BOM", na.strings = c("", "NA", "."), check.names = FALSE)
+# A name that a spreadsheet would run as a formula stands in our files behind an apostrophe.
+guarded <- c(@GUARDED@)
+scores <- as.matrix(answers[, ifelse(items %in% names(answers), items, guarded)])
+colnames(scores) <- items
+kept <- setdiff(items, dropped)
+usable <- if ("@MISSING@" == "listwise") complete.cases(scores[, kept]) else rowSums(!is.na(scores[, kept])) > 0
+x <- scores[usable, kept]
+
+# Means, and correlations of all items (the paper's Fig. 6)
+print(describe(scores)[, c("n", "mean", "sd")])
+way <- if ("@MISSING@" == "listwise") "complete" else "pairwise"
+all_items <- corr.test(scores, use = way, adjust = "none", ci = FALSE)
+print(round(all_items$r, 3))
+
+# KMO and Bartlett
+r <- if ("@METHOD@" == "polychoric") polychoric(x, correct = 0, global = FALSE)$rho else cor(x, use = "pairwise")
+n <- if ("@MISSING@" == "listwise") nrow(x) else min(pairwiseCount(x))
+kmo <- KMO(r)
+bartlett <- cortest.bartlett(r, n = n)
+cat(sprintf("KMO %.3f   Bartlett chi2(%d) = %.2f, p = %.3g\n",
+  kmo$MSA, as.integer(bartlett$df), bartlett$chisq, bartlett$p.value))
+
+# Components (Table 2) and their rotation (Table 3); psych stops its varimax early, so GPArotation to the end
+values <- eigen(r)$values
+keep <- @KEEP@
+unrotated <- unclass(principal(r, nfactors = keep, rotate = "none")$loadings)
+turn <- function(start) suppressWarnings(switch("@ROTATION@",
+  varimax = Varimax(unrotated, Tmat = start, normalize = TRUE, eps = 1e-8, maxit = 5000),
+  oblimin = GPFoblq(unrotated, Tmat = start, method = "quartimin", normalize = TRUE, eps = 1e-8, maxit = 5000)))
+loadings <- unrotated
+if ("@ROTATION@" != "none" && keep > 1) {
+  set.seed(1)
+  ends <- lapply(0:8, function(at) turn(if (at == 0) diag(keep) else Random.Start(keep)))
+  loadings <- unclass(ends[[which.min(sapply(ends, function(end) min(end$Table[, 2])))]]$loadings)
+  loadings <- loadings %*% diag(ifelse(colSums(loadings) < 0, -1, 1), keep)
+  rownames(loadings) <- kept
+  if ("@ROTATION@" == "varimax") loadings <- loadings[, order(-colSums(loadings^2)), drop = FALSE]
+}
+print(round(data.frame(initial = values, percent = 100 * values / length(values)), 3))
+print(round(loadings, 3))
+
+# Reliability, and how many components chance would keep
+reliable <- suppressWarnings(alpha(as.data.frame(x), check.keys = FALSE))
+cat(sprintf("Cronbach's alpha %.3f\n", reliable$total$raw_alpha))
+chance <- fa.parallel(r, n.obs = n, fa = "pc", n.iter = 100, quant = .95, plot = FALSE)
+
+if (length(given) > 1)
+  writeLines(jsonlite::toJSON(list(n = n, kmo = kmo$MSA, chi2 = bartlett$chisq, eigenvalues = values,
+    alpha = reliable$total$raw_alpha, items = kept, loadings = unname(loadings)),
+    digits = NA, auto_unbox = TRUE), given[2])
+"""
+
+
+def write_r(
+    items: Sequence[str],
+    *,
+    file: str = "answers.csv",
+    name: str = "analysis.R",
+    dropped: Sequence[str] = (),
+    rotation: str = "varimax",
+    factors: int | str = "kaiser",
+    missing: str = "listwise",
+    method: str = "pearson",
+) -> str:
+    """The script's text. file: the CSV that it reads by default. Arguments as `survey analyse` takes them."""
+    if isinstance(factors, int):
+        keep = str(factors)
+    elif factors == "kaiser":
+        keep = "sum(values > 1)"
+    else:
+        keep = 'max(1, fa.parallel(r, n.obs = n, fa = "pc", quant = .95, plot = FALSE)$ncomp)'
+    filled = {
+        "NAME": name, "FILE": file, "ITEMS": _strings(items), "GUARDED": _strings(map(safe_cell, items)),
+        "DROPPED": _strings(dropped), "MISSING": missing, "METHOD": method, "ROTATION": rotation, "KEEP": keep,
+    }  # fmt: skip
+    # All at once: a column's name that looks like one of our marks stays as it is.
+    return re.sub(r"@([A-Z]+)@", lambda mark: filled[mark[1]], _SCRIPT)
+
+
+def _strings(texts: Iterable[str]) -> str:
+    # JSON's escapes are R's, for any column name.
+    return ", ".join(json.dumps(text, ensure_ascii=False) for text in texts)

@@ -1,0 +1,250 @@
+"""Outlines from SVG and DXF: shapes, units, transforms, curves, and files that are none."""
+
+import json
+
+import numpy as np
+import pytest
+
+from sim_core import cli
+from sim_core.errors import FileProblem
+from sim_core.mesh.outline import signed_area
+from sim_core.mesh.writing import read_outline
+
+HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="300mm" viewBox="0 0 200 300">'
+
+
+def svg(tmp_path, body: str, head: str = HEAD):
+    path = tmp_path / "drawing.svg"
+    path.write_text(head + body + "</svg>")
+    return read_outline(path)
+
+
+def area(contour) -> float:
+    return abs(signed_area(np.asarray(contour)))
+
+
+CIRCLE = np.pi * 0.05**2
+SHAPES = {
+    '<rect x="10" y="20" width="100" height="50"/>': 0.005,
+    '<path d="M10 20h100v50h-100z"/>': 0.005,
+    '<path d="M 10,20 L 110,20 110,70 10,70 Z"/>': 0.005,
+    '<polygon points="10,20 110,20 110,70 10,70"/>': 0.005,
+    '<g transform="translate(5,5) rotate(30) scale(2)"><rect width="50" height="25"/></g>': 0.005,
+    '<rect width="50" height="25" transform="matrix(0 2 -2 0 7 7)"/>': 0.005,
+    '<circle cx="60" cy="60" r="50"/>': CIRCLE,
+    '<ellipse cx="60" cy="60" rx="100" ry="25"/>': CIRCLE,
+    '<path d="M10,60 a50,50 0 1 0 100,0 a50,50 0 1 0 -100,0 z"/>': CIRCLE,
+    '<path d="M10,60 A50,50 0 0 1 110,60 A50 50 0 0 1 10 60Z"/>': CIRCLE,
+    '<path d="M0,0 Q100,0 100,100 T200,200 L0,200 z"/>': 0.02,
+    '<path d="M10 60a50 50 0 11100 0a50 50 0 1 1-100 0z"/>': CIRCLE,
+    '<path d="M10,60 a50,50,0,1,0,100,0 50 50 0 10-100,0z"/>': CIRCLE,
+    '<path d="M10 20 H110 V70 H10 L10 20"/>': 0.005,
+    '<polyline points="10,20 110,20 110,70 10,70 10,20"/>': 0.005,
+    '<rect x="10" width="100" height="100" rx="50"/>': CIRCLE,
+    '<rect width="100" height="50" rx="10" ry="5"/>': 0.005 - (4 - np.pi) * 5e-5,
+    '<path d="M0,0 C50,0 50,0 100,0 S 100,50 100,100 L 0 100 z"/>': 0.011125,
+}
+
+
+@pytest.mark.parametrize("body", SHAPES)
+def test_svg_shapes_have_their_area(tmp_path, body):
+    drawing = svg(tmp_path, body)
+    assert area(drawing.outline) == pytest.approx(SHAPES[body], rel=1e-3)
+    assert drawing.holes == []
+    assert drawing.constraints == []
+
+
+def test_svg_sorts_outline_holes_and_lines_and_leaves_out_definitions(tmp_path):
+    drawing = svg(
+        tmp_path,
+        '<defs><rect width="190" height="290"/></defs><circle cx="50" cy="50" r="10"/><rect width="100" height="100"/>'
+        '<polyline points="20,0 20,100"/><line x1="80" y1="0" x2="80" y2="100"/>',
+    )
+    assert area(drawing.outline) == pytest.approx(0.01)
+    assert [area(hole) for hole in drawing.holes] == [pytest.approx(np.pi * 1e-4, rel=1e-3)]
+    assert sorted(float(line[0][0]) for line in drawing.constraints) == pytest.approx([0.02, 0.08])
+
+
+def test_svg_with_a_document_type_but_no_entities_is_read(tmp_path):
+    kind = (
+        '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd">'
+    )
+    assert area(svg(tmp_path, '<rect width="100" height="50"/>', kind + HEAD).outline) == pytest.approx(0.005)
+
+
+def test_svg_without_units_is_in_css_pixels(tmp_path):
+    drawing = svg(tmp_path, '<rect width="96" height="96"/>', '<svg xmlns="http://www.w3.org/2000/svg">')
+    assert area(drawing.outline) == pytest.approx(0.0254**2)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<svg", "not valid SVG"),
+        ("<html></html>", "its root is <html>"),
+        ("<svg></svg>", "no closed line"),
+        ('<svg><path d="M0 0 L 1"/></svg>', "path data end"),
+        ('<svg><path d="0 0 1"/></svg>', "path data end"),
+        ('<svg><rect width="1e" height="1"/></svg>', "cannot be read|not a number|could not convert"),
+        ('<svg><rect transform="spin(3)" width="1" height="1"/></svg>', "transform spin"),
+        ('<!DOCTYPE svg [<!ENTITY a "b">]><svg>&a;</svg>', "declares entities"),
+        ("<svg>" + "<g>" * 3000 + "</g>" * 3000 + "</svg>", "nested too deep"),
+        ('<svg><path d="M0 0 L1e200 0 0 1e200z"/></svg>', "leaves the range"),
+        ('<svg><path d="M0 0 L1e999 0 0 1z"/></svg>', "leaves the range"),
+        ('<svg><path d="M0 0 A1e308 1e308 0 0 1 9 9 L0 9z"/></svg>', "leaves the range"),
+        ('<svg><g transform="scale(1e10)"><path d="M0 0 L1e308 0 0 1z"/></g></svg>', "leaves the range"),
+        ('<svg width="0mm" viewBox="0 0 9 9"><rect width="9" height="9"/></svg>', "not positive"),
+        ("", "empty"),
+    ],
+)
+def test_bad_svg_is_one_line(tmp_path, text, message):
+    path = tmp_path / "bad.svg"
+    path.write_text(text)
+    with pytest.raises(FileProblem, match=message):
+        read_outline(path)
+
+
+def dxf_text(entities: str, unit: int | None = 4) -> str:
+    head = "" if unit is None else f"0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n{unit}\n0\nENDSEC\n"
+    return head + "0\nSECTION\n2\nENTITIES\n" + entities.replace(" ", "\n") + "\n0\nENDSEC\n0\nEOF\n"
+
+
+def dxf(tmp_path, entities: str, unit: int | None = 4):
+    path = tmp_path / "drawing.dxf"
+    path.write_text(dxf_text(entities, unit))
+    return read_outline(path)
+
+
+DRAWN = {
+    "0 LWPOLYLINE 70 1 10 0 20 0 10 100 20 0 10 100 20 50 10 0 20 50": 0.005,
+    "0 LWPOLYLINE 70 1 10 0 20 0 42 1 10 100 20 0 42 1": CIRCLE,
+    "0 POLYLINE 70 1 0 VERTEX 10 0 20 0 0 VERTEX 10 100 20 0 0 VERTEX 10 100 20 50 0 VERTEX 10 0 20 50 0 SEQEND": 0.005,
+    "0 LINE 10 0 20 0 11 100 21 0 0 LINE 10 100 20 50 11 100 21 0 "
+    "0 LINE 10 100 20 50 11 0 21 50 0 LINE 10 0 20 0 11 0 21 50": 0.005,
+    "0 CIRCLE 10 5 20 5 40 50": CIRCLE,
+    "0 ARC 10 0 20 0 40 50 50 0 51 180 0 ARC 10 0 20 0 40 50 50 180 51 360": CIRCLE,
+    "0 ELLIPSE 10 0 20 0 11 0 21 100 40 0.25 41 0 42 6.283185307179586": CIRCLE,
+}
+
+
+@pytest.mark.parametrize("entities", DRAWN)
+def test_dxf_shapes_have_their_area(tmp_path, entities):
+    assert area(dxf(tmp_path, entities).outline) == pytest.approx(DRAWN[entities], rel=1e-3)
+
+
+def test_dxf_joins_thousands_of_lines_in_any_order_and_direction(tmp_path):
+    rng = np.random.default_rng(3)
+    t = np.arange(8001) * 2 * np.pi / 8000
+    places = [f"{50 * np.cos(a):.9f} {50 * np.sin(a):.9f}".split() for a in t % (2 * np.pi)]
+    lines = []
+    for k in rng.permutation(8000):
+        (ax, ay), (bx, by) = (places[k + i] for i in (rng.permutation(2)))
+        lines.append(f"0 LINE 10 {ax} 20 {ay} 11 {bx} 21 {by}")
+    drawing = dxf(tmp_path, " ".join(lines))
+    assert len(drawing.outline) == 8000
+    assert area(drawing.outline) == pytest.approx(CIRCLE, rel=1e-5)
+
+
+@pytest.mark.parametrize("place", range(5))
+def test_dxf_line_that_ends_at_a_corner_is_an_inner_line(tmp_path, place):
+    sides = ["0 0 9 0", "9 0 9 9", "9 9 0 9", "0 9 0 0"]
+    sides.insert(place, "9 9 4 4")
+    drawn = ("0 LINE 10 {} 20 {} 11 {} 21 {}".format(*side.split()) for side in sides)
+    drawing = dxf(tmp_path, " ".join(drawn))
+    assert area(drawing.outline) == pytest.approx(81e-6)
+    assert [np.round(line, 9).tolist() for line in drawing.constraints] == [
+        [[0.009, -0.009], [0.004, -0.004]]
+    ]
+
+
+def test_dxf_spline_passes_its_ends_and_y_is_turned(tmp_path):
+    spline = "0 SPLINE 70 8 71 3 " + " ".join(f"40 {k}" for k in (0, 0, 0, 0, 1, 1, 1, 1))
+    spline += " 10 0 20 0 10 0 20 40 10 100 20 40 10 100 20 0"
+    drawing = dxf(tmp_path, spline + " 0 LINE 10 100 20 0 11 0 21 0")
+    assert area(drawing.outline) == pytest.approx(0.0024, rel=2e-3)  # a Bézier arch: 3/5 of 100 x 40
+    assert np.asarray(drawing.outline)[:, 1].min() == pytest.approx(-0.03)
+
+
+@pytest.mark.parametrize(
+    "circle", ["0 CIRCLE 10 50 20 0 40 10 230 -1", "0 LWPOLYLINE 70 1 230 -1 10 40 20 0 42 1 10 60 20 0 42 1"]
+)
+def test_dxf_extruded_downwards_is_mirrored(tmp_path, circle):
+    """Mirrored parts of a drawing are written in axes of their own, whose x runs the other way."""
+    drawing = dxf(tmp_path, circle + " 0 LWPOLYLINE 70 1 10 -100 20 -20 10 0 20 -20 10 0 20 20 10 -100 20 20")
+    np.testing.assert_allclose(np.mean(drawing.holes[0], axis=0), (-0.05, 0), atol=1e-12)
+
+
+@pytest.mark.parametrize(("unit", "metres"), [(None, 1e-3), (1, 0.0254), (5, 0.01), (6, 1.0)])
+def test_dxf_units(tmp_path, unit, metres):
+    square = "0 LWPOLYLINE 70 1 10 0 20 0 10 2 20 0 10 2 20 2 10 0 20 2"
+    assert area(dxf(tmp_path, square, unit).outline) == pytest.approx(4 * metres**2)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("hello\nworld\n", "not a DXF"),
+        ("0\nEOF\n", "no section"),
+        ("AutoCAD Binary DXF\r\n\x1a", "binary DXF"),
+        ("0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n", "no closed line"),
+        ("0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n10\nx\n20\n0\n40\n1\n0\nENDSEC\n", "cannot be read"),
+        ("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n99\n0\nENDSEC\n", "INSUNITS 99"),
+        (dxf_text("0 LWPOLYLINE 70 1 10 0 20 0 10 1e308 20 0 10 1e308 20 1e308"), "leaves the range"),
+        (dxf_text("0 LWPOLYLINE 70 1 10 0 20 0 42 inf 10 5 20 0 10 1 20 1"), "leaves the range"),
+        (dxf_text("0 LINE 10 0 20 0 11 nan 21 1"), "leaves the range"),
+        ("", "empty"),
+    ],
+)
+def test_bad_dxf_is_one_line(tmp_path, text, message):
+    path = tmp_path / "bad.dxf"
+    path.write_text(text)
+    with pytest.raises(FileProblem, match=message):
+        read_outline(path)
+
+
+@pytest.mark.parametrize("kind", ["fair", "best"])
+def test_the_command_reads_all_kinds_and_tells_its_keys(tmp_path, capsys, kind):
+    made = tmp_path / "panel.json"
+    made.write_text(
+        json.dumps(
+            {
+                "outline": [[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]],
+                "constraints": [[[0.3, 0], [0.3, 1]]],
+                "holes": [],
+            }
+        )
+    )
+    field = tmp_path / "field.json"
+    field.write_text('{"points": [[0, 0, 0.03]]}')
+    out = tmp_path / "mesh.npz"
+    words = [
+        "mesh",
+        str(made),
+        "--edge",
+        "0.1",
+        "--quality",
+        kind,
+        "--size-field",
+        str(field),
+        "--out",
+        str(out),
+        "--json",
+    ]
+    assert cli.main(words) == 0
+    told = json.loads(capsys.readouterr().out)
+    wanted = "vertices faces seconds compile_seconds min_angle_deg quality edge_ratio conformity area_error"
+    assert list(told) == [*wanted.split(), "outline_deviation"]
+    assert set(told["quality"]) == set(told["edge_ratio"]) == {"mean", "worst"}
+    with np.load(out) as found:
+        assert found["vertices"].dtype == np.float64
+        assert found["faces"].dtype == found["boundary"].dtype == np.int32
+        assert found["boundary_start"].tolist() == [0, len(found["boundary"])]
+        line = found["vertices"][found["lines"]]
+        assert found["lines_start"].tolist() == [0, len(line)]
+        np.testing.assert_allclose(line[:, 0], 0.3, atol=1e-12)
+    drawing = tmp_path / "panel.svg"
+    drawing.write_text(HEAD + '<rect width="100" height="100"/><circle cx="50" cy="10" r="10"/></svg>')
+    assert cli.main(["mesh", str(drawing), "--edge", "0.02", "--quality", kind]) == 0
+    captured = capsys.readouterr()
+    assert "hole 0: touches the outline" in captured.err
+    assert captured.err.count("\n") == 1

@@ -1,0 +1,109 @@
+"""Seams: both sides match vertex for vertex, notches and corners kept, ease told."""
+
+import numpy as np
+import pytest
+
+from sim_core.errors import OutlineError
+from sim_core.mesh import Seam, SeamSide, sewn_meshes
+from sim_core.mesh.verify import mesh_fault
+
+SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+T = np.linspace(0, np.pi / 2, 30)
+CURVED = np.vstack(
+    [[[0, 0], [1.2, 0]], np.column_stack([1.2 - 0.3 * np.sin(T), 0.3 + 0.7 * (1 - np.cos(T))]), [[0, 1.0]]]
+)
+
+
+def lengths(mesh, vertices) -> np.ndarray:
+    return np.hypot(*np.diff(mesh.vertices[vertices], axis=0).T)
+
+
+def assert_on_outline(mesh, vertices) -> None:
+    """Neighbours of the seam are neighbours on the mesh's outline, in one direction."""
+    loop = mesh.boundary[0].tolist()
+    where = np.array([loop.index(v) for v in vertices])
+    steps = np.diff(where) % len(loop)
+    assert (steps == 1).all() or (steps == len(loop) - 1).all()
+
+
+@pytest.mark.parametrize("quality", ["light", "best"])
+@pytest.mark.parametrize("backward", [False, True])
+def test_equal_sides_match_to_the_last_bit_of_length(backward, quality):
+    side = SeamSide(1, 3, 2, backward=True) if backward else SeamSide(1, 2, 3)
+    meshes, (fit,) = sewn_meshes(
+        [SQUARE, SQUARE], [Seam(SeamSide(0, 0, 1), side)], edge=0.07, quality=quality
+    )
+    for mesh, column in zip(meshes, fit.pairs.T, strict=True):
+        assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary) is None
+        assert_on_outline(mesh, column)
+    assert fit.mismatch <= 1e-9
+    assert fit.ease <= 1e-12
+    assert np.abs(lengths(meshes[0], fit.pairs[:, 0]) - lengths(meshes[1], fit.pairs[:, 1])).max() <= 1e-9
+    assert len(fit.pairs) == round(1 / 0.07) + 1
+    assert len(np.unique(fit.pairs[:, 0])) == len(np.unique(fit.pairs[:, 1])) == len(fit.pairs)
+    assert tuple(meshes[0].vertices[fit.pairs[0, 0]]) == (0, 0)
+    assert tuple(meshes[1].vertices[fit.pairs[0, 1]]) == ((0, 1) if backward else (1, 1))
+
+
+def test_ease_notches_and_corners_of_a_curved_side():
+    last = len(CURVED) - 1
+    seam = Seam(SeamSide(0, 1, 2), SeamSide(1, 1, last, backward=False), notches=(0.25, 0.6))
+    meshes, (fit,) = sewn_meshes([SQUARE, CURVED], [seam], edge=0.05)
+    a, b = fit.lengths
+    assert a == pytest.approx(1.0)
+    assert b == pytest.approx(np.hypot(*np.diff(CURVED[1:], axis=0).T).sum())
+    assert fit.ease == pytest.approx((b - a) / a)
+    assert fit.mismatch == pytest.approx((b - a) / (len(fit.pairs) - 1))
+    for notch, at in zip((0.25, 0.6), fit.notches, strict=True):
+        assert lengths(meshes[0], fit.pairs[: at + 1, 0]).sum() == pytest.approx(notch * a, rel=1e-9)
+        assert lengths(meshes[1], fit.pairs[: at + 1, 1]).sum() == pytest.approx(notch * b, rel=2e-3)
+    corner = (meshes[1].vertices[fit.pairs[:, 1]] == CURVED[2]).all(axis=1)
+    assert corner.sum() == 1  # the corner between the straight and the curve is a vertex of the seam
+
+
+def test_deviation_is_told_from_the_outline_that_was_given():
+    bend = np.array([[0, 0], [1, 0], *(0.5 + 0.5 * np.column_stack([np.cos(T), np.sin(T)])), [0.0, 1]])
+    seam = Seam(SeamSide(0, 1, len(bend) - 2), SeamSide(1, 0, 1))
+    for outline in (bend, bend[::-1]):
+        side = seam.a if outline is bend else SeamSide(0, 1, len(bend) - 2)
+        meshes, _ = sewn_meshes([outline, SQUARE], [Seam(side, seam.b)], edge=0.25)
+        sag = 0.5 * (1 - np.cos(np.pi / 4 / 4))  # of four steps over the quarter circle
+        assert 0.5 * sag < meshes[0].report.outline_deviation < 2 * sag
+        assert meshes[1].report.outline_deviation < 1e-12
+
+
+def test_a_panel_sewn_on_two_sides_to_two_others():
+    seams = [
+        Seam(SeamSide(0, 1, 2), SeamSide(1, 0, 3, backward=True)),
+        Seam(SeamSide(0, 3, 0), SeamSide(2, 1, 2)),
+    ]
+    meshes, fits = sewn_meshes([SQUARE, SQUARE, SQUARE * (1, 1.3)], seams, edge=0.08)
+    for seam, fit in zip(seams, fits, strict=True):
+        assert_on_outline(meshes[seam.a.panel], fit.pairs[:, 0])
+        assert_on_outline(meshes[seam.b.panel], fit.pairs[:, 1])
+    assert fits[0].mismatch <= 1e-9
+    assert fits[1].ease == pytest.approx(0.3)
+
+
+def test_a_dart_is_sewn_to_itself():
+    dart = np.array([[0.0, 0], [1, 0], [1, 1], [0.55, 1], [0.5, 0.6], [0.45, 1], [0, 1]])
+    meshes, (fit,) = sewn_meshes(
+        [dart], [Seam(SeamSide(0, 3, 4), SeamSide(0, 5, 4, backward=True))], edge=0.04
+    )
+    assert fit.pairs[-1, 0] == fit.pairs[-1, 1]  # the tip
+    assert fit.mismatch <= 1e-9
+    assert mesh_fault(meshes[0].vertices, meshes[0].faces, meshes[0].boundary) is None
+
+
+BAD = {
+    "seam 0: panel 4": Seam(SeamSide(0, 0, 1), SeamSide(4, 0, 1)),
+    "seam 0: point 9": Seam(SeamSide(0, 0, 9), SeamSide(1, 0, 1)),
+    "notches": Seam(SeamSide(0, 0, 1), SeamSide(1, 0, 1), notches=(1.5,)),
+    "overlap": Seam(SeamSide(0, 0, 2), SeamSide(0, 1, 3)),
+}
+
+
+@pytest.mark.parametrize("message", BAD)
+def test_seams_that_cannot_be_are_named(message):
+    with pytest.raises(OutlineError, match=message):
+        sewn_meshes([SQUARE, SQUARE], [BAD[message]], edge=0.1)

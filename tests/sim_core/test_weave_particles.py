@@ -1,0 +1,301 @@
+"""Stage B against the elastica, its own energy, friction, flattening, jam; leno and laid wefts."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core.errors import WeaveError
+from sim_core.weave import Channels, Draft, Weave, Yarn, plain, satin, twill
+from sim_core.weave.elastica import elastica_crimp, peirce_crimp
+from sim_core.weave.jam import check_jam, jam_limits
+from sim_core.weave.laid import lay_beams
+from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
+from sim_core.weave.particles import relax_particles
+from sim_core.weave.relaxation import beam_stiffness
+from sim_core.weave.solve import ground_of, solve
+from sim_core.weave.strands import strands
+from sim_core.weave.structures import gauze
+
+D = 1e-4
+FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
+
+
+def cloth(
+    draft: Draft, spacing: float, *, picks: float = 0.0, ratio: float = 1.0, flattening: float = 1.0
+) -> Weave:
+    warp, weft = Yarn(D, 5e-6, flattening, 1e-9 * ratio), Yarn(D, 5e-6, flattening, 1e-9)
+    return Weave(draft.name, draft, warp, weft, 1 / (spacing * D), 1 / ((picks or spacing) * D))
+
+
+@pytest.mark.parametrize("spacing", [8, 4, 3, 2])
+@pytest.mark.parametrize("per", [8, 16])
+def test_plain_crimp_within_one_and_a_half_per_cent_of_the_elastica(spacing, per):
+    cell = relax_particles(cloth(plain(), spacing), per=per)
+    assert cell.warp_crimp == pytest.approx(elastica_crimp(spacing), rel=0.015)
+    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-6)
+    assert cell.penetration <= 5e-4
+    assert cell.residual <= 1e-3
+    if spacing > 2:  # round yarns that touch in one point
+        assert sum(cell.crest_to_trough()) == pytest.approx(2 * D, rel=5e-3)
+
+
+def test_elastica_of_small_slope_is_the_beam():
+    assert elastica_crimp(60.0) == pytest.approx(0.6 / 60**2, rel=1e-3)
+
+
+def test_near_jam_the_crimp_is_peirces():
+    assert peirce_crimp(1.76) == pytest.approx(0.199, abs=0.001)
+    for per in (8, 16):
+        assert relax_particles(cloth(plain(), 1.76), per=per).warp_crimp[0] == pytest.approx(0.199, abs=0.003)
+
+
+def test_beyond_jam_is_refused_with_the_limit():
+    with pytest.raises(
+        WeaveError, match=r"jammed.*jam limit of a square sett is 173 um \(0.866 D\).*at most 56"
+    ):
+        relax_particles(cloth(plain(), 1.70))
+
+
+def test_the_limits_of_a_jam_are_the_closest_setts_that_pass():
+    yarn = Yarn(D, 5e-6, 1.6, 1e-9)
+    for draft in (plain(), twill(2, 1), satin(5, 2)):
+        jammed = Weave(draft.name, draft, yarn, yarn, 0.99 / (1.2 * yarn.width), 1 / (1.2 * yarn.width))
+        ends, picks = jam_limits(jammed)
+        for key, most in (("ends_per_m", ends), ("picks_per_m", picks)):
+            check_jam(replace(jammed, **{key: 0.9999 * most}))
+            with pytest.raises(WeaveError, match="jammed"):
+                check_jam(replace(jammed, **{key: 1.0001 * most}))
+
+
+def test_yarns_closer_than_their_height_are_refused_however_open_the_other_system():
+    yarn = Yarn(D, 5e-6, 1.0, 1e-9)
+    with pytest.raises(WeaveError, match="at most 10000 ends_per_m"):
+        check_jam(Weave("x", plain(), yarn, yarn, 10100.0, 1000.0))
+
+
+def test_unequal_stiffness_goes_beyond_the_beams_ratio_as_slopes_grow():
+    wide, close = (relax_particles(cloth(plain(), p, ratio=2), per=16).crest_to_trough() for p in (8, 4))
+    assert wide[1] / wide[0] == pytest.approx(2.0, rel=0.1)
+    assert close[1] / close[0] > wide[1] / wide[0] > 2.0
+
+
+def test_more_particles_change_the_crimp_of_a_satin_little():
+    crimps = [relax_particles(cloth(satin(8, 3), 3), per=per).warp_crimp.mean() for per in (16, 32)]
+    assert crimps[1] == pytest.approx(crimps[0], rel=0.02)
+
+
+def test_friction_holds_a_twill_in_place():
+    """Sideways shift at the crossings of a 2/2 twill: with friction small, without it larger."""
+    held, free = (relax_particles(cloth(twill(2, 2), 2.5), friction=mu, tolerance=2e-4) for mu in (0.3, 0.0))
+    assert max(held.skew) <= 0.05 * D
+    assert max(free.skew) > 1.5 * max(held.skew)
+
+
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("qi", "anhuaduan")]
+
+
+@pytest.mark.parametrize("name", ["gauze", "juan", "kesi", "ling", "satin", "twill", "zhuanghua", *SLOW])
+def test_shipped_weaves_come_to_rest(name):
+    """Steep and flat yarns under tension too: satin and twill once fluttered between two nearest points for ever."""
+    cell = relax_particles(ground_of(Weave.load(FOLDER / f"{name}.toml")))
+    assert cell.residual <= 1e-3
+    assert cell.penetration <= 5e-4
+    assert cell.force.min() >= 0
+
+
+def test_flattened_yarns_touch_at_their_heights_and_cover_more():
+    weave = cloth(plain(), 4, flattening=2.0)
+    cell = relax_particles(weave)
+    assert sum(cell.crest_to_trough()) == pytest.approx(weave.warp.height + weave.weft.height, rel=5e-3)
+    assert weave.openness < cloth(plain(), 4).openness
+
+
+def test_tubes_do_not_meet_when_measured_between_particles():
+    """Independent of the contact kernel: nearest distance of finely sampled splines of crossing yarns."""
+    from scipy.interpolate import CubicSpline
+
+    weave = cloth(twill(2, 2), 2.5)
+    cell = relax_particles(weave, per=16)
+    n = cell.warp_side.shape[1]
+    p = weave.end_spacing
+    t = np.linspace(-1.2, 1.2, 500)
+
+    def curve(side, height, number, crossing):
+        knots = np.arange(n + 1) / 16
+        closed = np.column_stack(
+            [np.append(side[number], side[number][0]), np.append(height[number], height[number][0])]
+        )
+        return CubicSpline(knots, closed, bc_type="periodic")((crossing + t) % 4)
+
+    for j, i in ((0, 0), (0, 1), (1, 3)):
+        warp, weft = (
+            curve(cell.warp_side, cell.warp_height, j, i),
+            curve(cell.weft_side, cell.weft_height, i, j),
+        )
+        a = np.column_stack([warp[:, 0], t * p, warp[:, 1]])
+        b = np.column_stack([t * p, weft[:, 0], weft[:, 1]])
+        nearest = np.linalg.norm(a[:, None] - b[None], axis=2).min()
+        assert nearest >= D * (1 - 2e-3)
+
+
+def test_forces_are_the_slope_of_the_energy():
+    """Bending, tension, side and crossing contact, each against differences of its energy."""
+    rng = np.random.default_rng(3)
+    u, z = 0.05 * rng.standard_normal((3, 16)), 0.3 * rng.standard_normal((3, 16))
+
+    def check(energy, force):
+        for which in (0, 1):
+            for _ in range(6):
+                y, k = rng.integers(3), rng.integers(16)
+                step = np.zeros_like(u)
+                step[y, k] = 1e-6
+                ends = [energy(*((u + s * step, z) if which == 0 else (u, z + s * step))) for s in (1, -1)]
+                assert force[which][y, k] == pytest.approx(-(ends[0] - ends[1]) / 2e-6, rel=1e-4, abs=1e-6)
+
+    def bend(a, b):
+        return yarn_forces(a, b, 0.5, 1.3, 0.2, np.zeros_like(a), np.zeros_like(a))
+
+    g = np.zeros_like(u), np.zeros_like(u)
+    yarn_forces(u, z, 0.5, 1.3, 0.2, *g)
+    check(bend, g)
+    h = [np.zeros_like(u) for _ in range(4)]
+    g = np.zeros_like(u), np.zeros_like(u)
+
+    def side(a, b):
+        return side_forces(a, b, 0.6, 0.9, 0.8, 5.0, np.zeros_like(a), np.zeros_like(a), False, *h[:2])[0]
+
+    assert side_forces(u, z, 0.6, 0.9, 0.8, 5.0, *g, True, *h[:2])[1] > 0.05
+    check(side, g)
+
+
+def test_contact_acts_equally_on_both_yarns():
+    rng = np.random.default_rng(4)
+    lift = np.array([[True, False], [False, True]])
+    shape = (2, 16)
+    wz = 0.4 * np.cos(np.pi * (np.arange(16) / 8 + np.arange(2)[:, None]))
+    state = [0.02 * rng.standard_normal(shape), wz, 0.02 * rng.standard_normal(shape), -wz]
+    g = [np.zeros(shape) for _ in range(4)]
+    stiffness = [np.zeros(shape) for _ in range(4)]
+    everywhere = np.ones((2, 2, 14), np.uint8)
+    values = (
+        *state,
+        *g,
+        lift,
+        np.zeros((2, 2)),
+        everywhere,
+        8,
+        0.3,
+        0.3,
+        1.0,
+        1.0,
+        3,
+        3,
+        100.0,
+        0.0,
+        0.01,
+        False,
+    )
+    _, deepest, largest = contact_forces(*values, *stiffness)
+    assert deepest > 0.05
+    assert largest > 0
+    assert g[1].sum() == pytest.approx(-g[3].sum(), rel=1e-9)
+
+
+def test_the_same_weave_gives_the_same_bits():
+    first, second = (relax_particles(cloth(twill(3, 1), 3)) for _ in range(2))
+    np.testing.assert_array_equal(first.warp_height, second.warp_height)
+
+
+def test_particles_out_of_range_are_named():
+    with pytest.raises(WeaveError, match="particles"):
+        relax_particles(cloth(plain(), 4), per=3)
+
+
+def test_a_beam_laid_over_one_obstacle_is_the_periodic_spline():
+    sign = np.full((1, 8), -1.0)
+    limit = np.full((1, 8), 1e-3)
+    sign[0, 0], limit[0, 0] = 1.0, 2e-4
+    sign[0, 4], limit[0, 4] = -1.0, 0.0
+    z = lay_beams(beam_stiffness(8, 1e-4, 1e-9, 0.0), sign, limit, 4000)[0]
+    assert z[0] == pytest.approx(2e-4, rel=1e-3)
+    assert abs(z[4]) <= 1e-3 * 2e-4
+    assert z[2] == pytest.approx(1e-4, rel=0.01)  # halfway up, by symmetry
+
+
+@pytest.mark.parametrize("name", ["sha", "luo"])
+def test_leno_doups_lie_over_every_pick_and_beneath_the_end_they_cross(name):
+    weave = Weave.load(FOLDER / f"{name}.toml")
+    solve(weave)
+    warp, weft = strands(weave, solve(weave), per=16)[:2]
+    series = weave.draft.channels.end_series
+    assert series is not None
+    doup, ground = series == 1, series == 0
+    need = (weave.warp.height + weave.weft.height) / 2
+    picks = warp.height[:, ::16]
+    at = weft.height[:, ::16].T
+    assert (picks - at)[doup].min() >= need * (1 - 1e-3)
+    assert (at - picks)[ground].min() >= need * (1 - 1e-3)
+    middle = warp.height[:, 8::16]
+    assert middle[ground].mean() - middle[doup].mean() >= weave.warp.height * (1 - 1e-3)
+
+
+def test_brocade_lies_on_its_ground():
+    weave = Weave.load(FOLDER / "zhuanghua.toml")
+    warp, _, extra = strands(weave, solve(weave))
+    shown = extra.height[extra.colour >= 0]
+    assert np.median(shown) > warp.height.max() * 0.5
+    assert (
+        shown.max() < warp.height.max() + 3 * extra.yarn.height
+    )  # floats lie on the ground, no arches over it
+    assert extra.colour.max() <= 3
+
+
+@pytest.mark.parametrize("name", ["sha", "luo"])
+def test_a_leno_is_in_balance_and_says_how_well(name):
+    weave = Weave.load(FOLDER / f"{name}.toml")
+    made = solve(weave)
+    assert 0 < made.residual < 1e-3
+    assert made.force.min() >= 0
+    assert made.force.max() > 0
+    # each pick is pressed up by its ground ends as much as down by its doups
+    signed = np.where(weave.draft.lift, -1, 1) * made.force
+    assert np.abs(signed.sum(axis=1)).max() <= 1e-3 * made.force.max()
+
+
+def test_a_leno_too_large_for_its_dense_problem_is_named():
+    one = gauze(64)
+    channels = {name: np.vstack([v] * 5) if v.ndim == 2 else v for name, v in one.channels.items()}
+    draft = Draft("wide", np.vstack([one.lift] * 5), Channels(**channels))
+    weave = replace(Weave.load(FOLDER / "sha.toml"), draft=draft)
+    with pytest.raises(WeaveError, match="at most 512 crossings"):
+        solve(weave)
+
+
+@pytest.mark.parametrize(("per", "most"), [(8, 2.5e-2), (16, 8e-3)])
+@pytest.mark.parametrize("draft", [twill(2, 2), satin(8, 3)], ids=["twill", "satin"])
+def test_between_particles_the_curves_come_closer_by_little(draft, per, most):
+    """Every warp curve against every weft curve: what the overlap at the particles does not tell."""
+    from scipy.interpolate import CubicSpline
+    from scipy.spatial import KDTree
+
+    weave = cloth(draft, 4)
+    warp, weft = strands(weave, relax_particles(weave, per=per))[:2]
+
+    def curve(system, number):
+        points, axis = system.points(number), 1 if system.along == "warp" else 0
+        n = len(points)
+        points[:, axis] = 0.0
+        t = np.linspace(0, n, 24 * n, endpoint=False)
+        made = CubicSpline(np.arange(n + 1), np.vstack([points, points[:1]]), bc_type="periodic")(t)
+        made[:, axis] = t / n * system.length
+        return made
+
+    size = np.array([*weave.size, 0.0])
+    wefts = np.concatenate([curve(weft, k) for k in range(draft.picks)])
+    copies = [wefts + size * (a, b, 0) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    near, _ = KDTree(np.concatenate(copies)).query(
+        np.concatenate([curve(warp, k) for k in range(draft.ends)])
+    )
+    assert near.min() >= D * (1 - most)

@@ -1,0 +1,276 @@
+"""WIF: every trap, strict writing, identity, fuzz."""
+
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+
+import numpy as np
+import pytest
+from wif_fuzz import damaged, generated
+
+from sim_core.errors import SimCoreError, WeaveError
+from sim_core.weave import Draft, Weave, plain, satin
+from sim_core.weave.algebra import Harness
+from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
+from sim_core.weave.wif import PRIVATE, Wif, wif_of
+from sim_core.weave.wif_read import parse_wif, read_wif
+from sim_core.weave.wif_sections import decoded
+from sim_core.weave.wif_write import wif_text, write_wif
+
+FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
+BASE = """[WIF]
+Version=1.1
+Date=April 20, 1997
+[CONTENTS]
+THREADING=true
+[WEAVING]
+Shafts=2
+Treadles=2
+Rising Shed=true
+[WARP]
+Threads=4
+Color=1
+[WEFT]
+Threads=2
+Color=2
+[COLOR TABLE]
+1=255,0,0
+2=0,0,255
+[THREADING]
+1=1
+2=2
+3=1
+4=2
+[TIEUP]
+1=1
+2=2
+[TREADLING]
+1=1
+2=2
+"""
+TABBY = [[1, 0, 1, 0], [0, 1, 0, 1]]
+# each trap: text, the lift it must give
+TRAPS = {
+    "plain": (BASE, TABBY),
+    "blanks round =": (BASE.replace("=", " = "), TABBY),
+    "any case": (BASE.upper().replace("TRUE", "True"), TABBY),
+    "old Mac line ends": (BASE.replace("\n", "\r"), TABBY),
+    "Windows line ends": (BASE.replace("\n", "\r\n"), TABBY),
+    "byte order mark": ("\ufeff" + BASE, TABBY),
+    "comments": (BASE.replace("1=1\n", "; note\n1=1 ; first\n", 1), TABBY),
+    "yes": (BASE.replace("Rising Shed=true", "Rising Shed=yes"), TABBY),
+    "on": (BASE.replace("Rising Shed=true", "Rising Shed=ON"), TABBY),
+    "1": (BASE.replace("Rising Shed=true", "Rising Shed=1"), TABBY),
+    "sinking shed": (BASE.replace("Rising Shed=true", "Rising Shed=false"), [[0, 1, 0, 1], [1, 0, 1, 0]]),
+    "no contents": (BASE.replace("[CONTENTS]\nTHREADING=true\n", ""), TABBY),
+    "any date": (BASE.replace("April 20, 1997", "3.4.2021"), TABBY),
+    "1.0": (BASE.replace("Version=1.1", "Version=1.0"), TABBY),
+    "no version": (BASE.replace("Version=1.1\n", ""), TABBY),
+    "surplus treadles": (BASE.replace("Treadles=2", "Treadles=10"), TABBY),
+    "treadle beyond what was announced": (BASE.replace("Treadles=2", "Treadles=1"), TABBY),
+    "threads beyond what was announced": (BASE.replace("Threads=4", "Threads=3"), TABBY),
+    "threads without a line": (BASE.replace("4=2\n[TIEUP]", "[TIEUP]"), [[1, 0, 1, 0], [0, 1, 0, 0]]),
+    "several treadles": (
+        BASE.replace("[TREADLING]\n1=1", "[TREADLING]\n1=1,2"),
+        [[1, 1, 1, 1], [0, 1, 0, 1]],
+    ),
+    "several shafts": (BASE.replace("[THREADING]\n1=1", "[THREADING]\n1=1, 2"), [[1, 0, 1, 0], [1, 1, 0, 1]]),
+    "0 is none": (BASE.replace("2=2\n", "2=0\n", 1), [[1, 0, 1, 0], [0, 0, 0, 1]]),
+    "empty is none": (BASE.replace("[TREADLING]\n1=1", "[TREADLING]\n1="), [[0, 0, 0, 0], [0, 1, 0, 1]]),
+    "lift plan": (BASE.split("[TIEUP]")[0] + "[LIFTPLAN]\n1=1\n2=1,2\n", [[1, 0, 1, 0], [1, 1, 1, 1]]),
+    "lift plan beside treadling": (BASE + "[LIFTPLAN]\n1=1\n2=1,2\n", [[1, 0, 1, 0], [1, 1, 1, 1]]),
+    "empty lift plan beside treadling": (BASE + "[LIFTPLAN]\n", TABBY),
+    "unknown sections": (BASE + "[WARP SYMBOLS]\n1=x\n[PRIVATE Other Program]\na=b;c\n", TABBY),
+    "repeated section": (BASE + "[WEFT]\nThickness=0.1\n", TABBY),
+    "end of file mark of DOS": (BASE + "\x1a\n", TABBY),
+}
+
+
+@pytest.mark.parametrize("name", TRAPS)
+def test_each_trap_gives_its_drawdown_and_survives_a_round_trip(name, tmp_path):
+    text, lift = TRAPS[name]
+    path = tmp_path / "trap.wif"
+    path.write_bytes(text.encode("utf-8"))
+    wif = read_wif(path)
+    np.testing.assert_array_equal(wif.draft.lift, lift)
+    assert parse_wif(wif_text(wif)) == replace(wif, remarks=())
+
+
+def test_lift_plan_that_differs_is_remarked_and_one_that_agrees_is_not():
+    assert "lift plan was taken" in parse_wif(TRAPS["lift plan beside treadling"][0]).remarks[0]
+    both = parse_wif(BASE + "[LIFTPLAN]\n1=1\n2=2\n")
+    assert both.remarks == ()
+    assert not both.plan
+
+
+def test_colours_defaults_ranges_and_surplus():
+    wif = parse_wif(BASE + "[WARP COLORS]\n2=2\n9=2\n")
+    assert wif.warp_colours.tolist() == [1, 2, 1, 1]  # absent lines mean the default
+    assert wif.weft_colours.tolist() == [2, 2]
+    wide = parse_wif(
+        BASE.replace("[COLOR TABLE]\n1=255,0,0", "[COLOR PALETTE]\nRange=0,999\n[COLOR TABLE]\n1=999,0,500")
+    )
+    assert (wide.top, wide.palette[0].tolist()) == (999, [999, 0, 500])
+    assert parse_wif(wif_text(wide)) == wide
+    assert parse_wif(BASE.replace("Color=1\n", "")).warp_colours.tolist() == [1] * 4
+
+
+@pytest.mark.parametrize(
+    ("unit", "metres"), [("Centimeters", 0.01), ("Inches", 0.0254), ("decipoints", 0.0254 / 720)]
+)
+def test_units(unit, metres):
+    wif = parse_wif(BASE.replace("[WEFT]\n", f"[WEFT]\nUnits={unit}\nSpacing=.212\n"))
+    assert wif.spacing == (None, pytest.approx(0.212 * metres, rel=1e-12))
+
+
+def test_old_windows_letters():
+    data = BASE.replace("[WEAVING]", "[TEXT]\nTitle=Köper\n[WEAVING]").encode("cp1252")
+    assert parse_wif(decoded(data)).title == "Köper"
+
+
+UNITS = BASE.replace("[WARP]\n", "[WARP]\nUnits={unit}\nSpacing={length}\n")
+
+
+@pytest.mark.parametrize(
+    ("unit", "length"), [("Inches", ".05"), ("decipoints", "29"), ("Centimeters", "0.21200001234567")]
+)
+def test_lengths_survive_whatever_their_unit(unit, length):
+    wif = parse_wif(UNITS.format(unit=unit, length=length) + f"[WARP SPACING]\n2={length}\n")
+    again = parse_wif(wif_text(wif))
+    assert again == wif
+    (_, ((key, value),)) = again.other[0]  # written beside Units=Centimeters
+    assert key == "2"
+    assert float(value) / 100 == pytest.approx(wif.spacing[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(("text", "metres"), [("0,212", 0.00212), ("2.5E-02", 0.00025), ("", None)])
+def test_lengths_as_programs_of_other_countries_write_them(text, metres):
+    spacing = parse_wif(UNITS.format(unit="Centimeters", length=text)).spacing[0]
+    assert spacing == (metres if metres is None else pytest.approx(metres, rel=1e-12))
+
+
+def test_letters_beyond_ascii_come_back_and_the_file_stays_ascii():
+    notes = "[NOTES]\n1=Größe &#38; &#10; Maß\ngoes on\n[TEXT]\nTitle=四经绞罗\nAuthor=Müller\n"
+    wif = parse_wif(BASE + notes + "[PRIVATE OTHER]\nfree words\nschön=wörtlich\n")
+    assert wif.title == "四经绞罗"
+    assert wif.notes == ("Größe & &#10; Maß", "goes on")
+    assert wif.other == (("PRIVATE OTHER", (("schön", "wörtlich"),)),)
+    assert wif_text(wif).isascii()
+    assert parse_wif(wif_text(wif)) == wif
+
+
+BAD = {
+    r"\[WARP\] Spacing: '9e9'": UNITS.format(unit="Inches", length="9e9"),
+    r"\[WARP SPACING\] 1: 'x'": BASE + "[WARP SPACING]\n1=x\n",
+    r"\[WIF\]: missing": BASE.replace("[WIF]", "[WAF]"),
+    r"\[WIF\] Version: '2.0'": BASE.replace("1.1", "2.0"),
+    r"line 1: .*begins with \[WIF\]": "hello\n",
+    r"\[THREADING\]: missing": BASE.replace("[THREADING]", "[THREADS]"),
+    r"\[LIFTPLAN\]: missing": BASE.replace("[TIEUP]", "[TIE]"),
+    r"\[THREADING\] 3: 'x'": BASE.replace("3=1", "3=x"),
+    r"\[THREADING\] 9999: line number": BASE.replace("3=1", "9999=1"),
+    r"\[WARP\] Threads: 'many'": BASE.replace("Threads=4", "Threads=many"),
+    r"\[WARP\] Threads: 99999999": BASE.replace("Threads=4", "Threads=99999999"),
+    r"\[WEAVING\] Rising Shed: 'up'": BASE.replace("Rising Shed=true", "Rising Shed=up"),
+    r"\[COLOR TABLE\] 1: '1,2'": BASE.replace("1=255,0,0", "1=1,2"),
+    r"\[WARP\] Color: colour 7": BASE.replace("Color=1", "Color=7"),
+    r"\[WEFT\] Spacing: 'wide'": BASE.replace("[WEFT]\n", "[WEFT]\nSpacing=wide\n"),
+    r"\[WEFT\] Units: 'furlongs'": BASE.replace("[WEFT]\n", "[WEFT]\nUnits=furlongs\nSpacing=1\n"),
+    r"\[PRIVATE HALL WEAVE\] 1: damaged": BASE + f'[{PRIVATE}]\n1="{{"\n',
+    r"\[PRIVATE HALL WEAVE\] 1: draft": BASE + f'[{PRIVATE}]\n1="{{"draft":{{}}}}"\n',
+    r"\[TIEUP\] line \d+: .*key=value": BASE.replace("[TIEUP]\n", "[TIEUP]\nnonsense\n"),
+    r"close the section": BASE.replace("[TIEUP]", "[TIEUP"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("message", BAD)
+def test_bad_files_give_one_line_with_section_and_key(message, tmp_path):
+    path = tmp_path / "bad.wif"
+    path.write_text(BAD[message], "utf-8")
+    with pytest.raises(SimCoreError, match=message) as caught:
+        read_wif(path)
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).startswith(str(path))
+
+
+def test_writing_is_strict():
+    text = wif_text(wif_of(Draft("缎 \n x", satin(8, 3).lift)))
+    lines = text.split("\r\n")
+    assert text.isascii()
+    assert "\n" not in text.replace("\r\n", "")
+    assert lines[0] == "[WIF]"
+    assert "Version=1.1" in lines
+    assert "Date=April 20, 1997" in lines
+    named = [line[1:-1] for line in lines if line.startswith("[")]
+    contents = lines[lines.index("[CONTENTS]") + 1 :]
+    announced = [line.removesuffix("=true") for line in contents[: contents.index("")]]
+    assert announced == named[2:]
+    assert not any(" =" in line or "= " in line for line in lines if not line.startswith(tuple("0123456789")))
+
+
+CHANNELLED = [
+    gauze(2),
+    four_end_gauze(),
+    warp_compound(np.eye(4, dtype=int), 2),
+    weft_compound(np.eye(4, dtype=int), 2),
+    tapestry(np.indices((4, 6))[1] // 3),
+    brocade(np.pad(np.zeros((2, 4), int), 2, constant_values=-1)),
+]
+
+
+@pytest.mark.parametrize("draft", CHANNELLED, ids=lambda d: d.name)
+def test_what_wif_cannot_say_is_kept(draft):
+    again = parse_wif(wif_text(wif_of(draft)))
+    assert again.draft == draft
+    assert again == wif_of(draft)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_shipped_weave_survives_wif_whole(path, tmp_path):
+    weave = Weave.load(path)
+    file = tmp_path / "w.wif"
+    write_wif(wif_of(weave), file)
+    assert read_wif(file).weave == weave
+
+
+def test_a_draft_changed_by_another_program_beats_the_private_section():
+    text = wif_text(wif_of(plain()))
+    changed = text.replace("[TREADLING]\r\n1=1", "[TREADLING]\r\n1=2")
+    assert changed != text
+    assert parse_wif(changed).draft.lift.tolist() == [[0, 1], [0, 1]]
+
+
+def test_a_thousand_generated_files_come_back_identical():
+    rng = np.random.default_rng(11)
+    plans = 0
+    for _ in range(1000):
+        wif = generated(rng)
+        plans += wif.plan
+        again = parse_wif(wif_text(wif))
+        assert again == wif
+        np.testing.assert_array_equal(again.draft.lift, wif.harness.lift)
+    assert 100 < plans < 900
+
+
+def test_a_thousand_damaged_files_are_answered_in_one_line():
+    rng = np.random.default_rng(12)
+    answers = []
+    for _ in range(1000):
+        text = damaged(rng)
+        begin = perf_counter()
+        try:
+            wif = parse_wif(text)
+            assert wif.draft.lift.size > 0
+        except WeaveError as error:
+            answers.append(str(error))
+        assert perf_counter() - begin < 5  # a hang, not a speed
+    assert 100 < len(answers) < 950
+    assert not [answer for answer in answers if "\n" in answer or not ("[" in answer or "line" in answer)]
+
+
+def test_wif_values_that_do_not_fit_are_named():
+    harness = Harness(np.eye(2), np.eye(2), np.eye(2))
+    with pytest.raises(WeaveError, match="2 are wanted"):
+        Wif("x", harness, warp_colours=np.array([1]))
+    with pytest.raises(WeaveError, match="outside the palette"):
+        Wif("x", harness, warp_colours=np.array([1, 9]))
