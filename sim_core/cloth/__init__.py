@@ -1,5 +1,6 @@
 """Cloth: an explicit edge-tension solver with contact, friction and self-contact. See README.md."""
 
+from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 from sim_core.cloth.draping import Contact, Drape, Phase, drape
 from sim_core.cloth.holding import Holds
@@ -8,6 +9,7 @@ from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.sheet import Sheet
 
 __all__ = [
+    "Air",
     "Box",
     "Capsule",
     "Contact",

@@ -50,7 +50,7 @@ class MovingGrid:
             del self._kept[k]
         for k in (first, second):
             if k not in self._kept:
-                self._kept[k] = np.ascontiguousarray(self.key(k), float)
+                self._kept[k] = np.ascontiguousarray(self.key(k), np.float32)
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
         return Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))

@@ -18,8 +18,8 @@ import numpy as np
 
 from sim_core.cloth import drape
 from sim_core.cloth.draping import FRAME
-from sim_core.cloth.forces import stable_step
 from sim_core.cloth.scenes import Scene, hang_edge
+from sim_core.cloth.stability import stable_step
 
 
 def run(scene: Scene, substeps: int | None) -> tuple[np.ndarray, float, int]:
