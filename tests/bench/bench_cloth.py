@@ -1,6 +1,7 @@
 """Cloth: time and error together, on the sheet that hangs by one edge.
 
     python tests/bench/bench_cloth.py [--quick] [--json FILE]
+    python tests/bench/bench_cloth.py --peers …   beside Newton, MuJoCo and Blender, see cloth_against.py
 
 Every row is a number of substeps per frame of 1/25 s, adaptive first. Error: vertex distance from the solver's own
 limit dt -> 0, taken at the largest number of substeps; the floor is what halving that number still changes. Rows
@@ -62,6 +63,10 @@ def measure(scene: Scene, rounds: int, finest: int) -> dict:
 
 
 def main() -> int:
+    if "--peers" in sys.argv[1:]:
+        from cloth_against import main as against
+
+        return against()
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -1,0 +1,200 @@
+"""What the turns of peers amount to: errors from their own limit and from ours, ratios, a table and a plot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cloth_sweeps import SWEEPS, told
+
+NEAR = 2.0  # [mm] mean: how near its own limit a peer's setting has to be to be compared
+
+COLOURS = {
+    "ours": (24, 90, 140),
+    "Newton VBD": (90, 140, 70),
+    "Newton Style3D": (150, 90, 160),
+    "MuJoCo Euler": (196, 120, 30),
+    "MuJoCo discrete": (190, 60, 60),
+    "Blender": (110, 110, 110),
+}
+
+
+def distance(a: np.ndarray, b: np.ndarray) -> dict[str, float]:
+    """Mean, 99 % and largest distance [mm] of vertices (V, 3); infinite where one is not finite."""
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        return {"mean": float("inf"), "p99": float("inf"), "max": float("inf")}
+    gap = 1e3 * np.linalg.norm(a - b, axis=1)
+    return {"mean": float(gap.mean()), "p99": float(np.percentile(gap, 99)), "max": float(gap.max())}
+
+
+def cheapest(rows: Sequence[dict], within: float = NEAR) -> dict | None:
+    """The row of least milliseconds whose mean distance from its own limit is within so many mm; None: there is none.
+
+    The limit itself is no candidate: its distance from itself says nothing.
+    """
+    near = [row for row in rows if not row["is_limit"] and row["own"]["mean"] <= within]
+    return min(near, key=lambda row: row["cpu_ms"], default=None)
+
+
+def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool, setting: dict) -> dict:
+    """Figures of one setting: medians over all frames of all turns, the ratio as the median of its turns."""
+    frames = np.concatenate([turn["cpu_ms"] for turn in turns])
+    walls = np.concatenate([turn["ms"] for turn in turns])
+    ratios = [float(np.median(t["cpu_ms"]) / np.median(t["ours_cpu_ms"])) for t in turns]
+    return {
+        "setting": setting,
+        "turns": len(turns),
+        "cpu_ms": float(np.median(frames)),
+        "cpu_ms_quartiles": [float(np.percentile(frames, q)) for q in (25, 75)],
+        "wall_ms": float(np.median(walls)),
+        "ratio": float(np.median(ratios)),
+        "ratio_range": [min(ratios), max(ratios)],
+        "own": own,
+        "from_ours": from_ours,
+        "is_limit": is_limit,
+        "build_seconds": turns[0]["build_seconds"],
+        "compile_seconds": max(turn["compile_seconds"] for turn in turns),
+    }
+
+
+def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None:
+    """Rows of one peer with its limit; None where nothing of it was run, {"error"} where it cannot run."""
+    sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
+    run = [(s, key) for s, key in sweep if key in kept.turns]
+    good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
+    if not good:
+        return {"error": kept.turns[run[0][1]][0]["error"]} if run else None
+    ends = [kept.end(key) for _, key in good]
+    rows = [
+        row_of(
+            kept.turns[key],
+            distance(end, ends[-1]),
+            distance(end, reference),
+            is_limit=key == good[-1][1],
+            setting=setting,
+        )
+        for (setting, key), end in zip(good, ends, strict=True)
+    ]
+    finest = len(good) == len(sweep)
+    floor = distance(ends[-2], ends[-1]) if len(ends) > 1 else None
+    found = cheapest(rows)
+    candidates = [r for r in rows if not r["is_limit"]]
+    best = min(candidates, key=lambda r: r["own"]["mean"], default=None)
+    return {
+        "version": kept.turns[good[-1][1]][0]["version"],
+        "limit": told(good[-1][0]) + ("" if finest else " (sweep not complete)"),
+        "floor": floor,
+        "limit_from_ours": distance(ends[-1], reference),
+        "rows": rows,
+        "cheapest_within_2mm": found,
+        "best": best,
+    }
+
+
+def summary(kept: Any, engines: Sequence[str], reference: dict, coarser: dict, usual: dict) -> dict:
+    """All figures of a scene, told as a table."""
+    end = reference["positions"]
+    found: dict[str, Any] = {
+        "ours": {
+            "cpu_ms": float(np.median(usual["cpu_ms"])),
+            "wall_ms": float(np.median(usual["ms"])),
+            "substeps": usual["substeps"],
+            "error": distance(usual["positions"], end),
+            "floor": distance(coarser["positions"], end),
+        },
+        "peers": {},
+    }
+    own = found["ours"]
+    print(
+        f"ours: {own['cpu_ms']:.1f} ms a frame, {own['substeps']:.0f} steps, {own['error']['mean']:.5f} mm mean "
+        f"({own['error']['p99']:.5f} p99) from its limit, floor {own['floor']['mean']:.5f}"
+    )
+    for engine in engines:
+        peer = engine_summary(kept, engine, end)
+        if peer is not None:
+            found["peers"][engine] = peer
+            tell(engine, peer)
+    return found
+
+
+def tell(engine: str, peer: dict) -> None:
+    """The rows of one peer on standard output."""
+    if "error" in peer:
+        print(f"{engine}: not compared – {peer['error']}")
+        return
+    floor = f"{peer['floor']['mean']:.2f} mm" if peer["floor"] else "unknown"
+    print(
+        f"{engine} ({peer['version']}): limit at {peer['limit']}, the next finer setting {floor} from it, "
+        f"itself {peer['limit_from_ours']['mean']:.2f} mm mean from ours"
+    )
+    print(
+        "    setting     turns   cpu ms (quartiles)     x ours     own limit: mean / p99 mm    ours: mean / p99"
+    )
+    for r in peer["rows"]:
+        low, high = r["cpu_ms_quartiles"]
+        own = "the limit" if r["is_limit"] else f"{r['own']['mean']:.3f} / {r['own']['p99']:.3f}"
+        print(
+            f"    {told(r['setting']):<12}{r['turns']:>3}{r['cpu_ms']:>10.0f} ({low:.0f}–{high:.0f})"
+            f"{r['ratio']:>12.1f}{own:>26}{r['from_ours']['mean']:>14.3f} / {r['from_ours']['p99']:.3f}"
+        )
+    near = peer["cheapest_within_2mm"]
+    if near:
+        print(f"    within 2 mm of its own limit at {told(near['setting'])}: {near['ratio']:.1f} times ours")
+    elif peer["best"]:
+        b = peer["best"]
+        print(f"    never within 2 mm; best {b['own']['mean']:.2f} mm mean in {b['cpu_ms']:.0f} ms")
+
+
+def plot(results: dict, path: Path) -> None:
+    """Mean error from the engine's own limit against processor ms a frame, both logarithmic; a scene a panel."""
+    from PIL import Image, ImageDraw, ImageFont
+
+    wide, high, edge, fine = 760, 520, 70, 2
+    image = Image.new("RGB", (wide * fine, high * fine * len(results)), "white")
+    draw, font = ImageDraw.Draw(image), ImageFont.load_default(14 * fine)
+    for row, (scene, figures) in enumerate(results.items()):
+        curves = {"ours": [(figures["ours"]["cpu_ms"], max(figures["ours"]["error"]["mean"], 1e-5))]}
+        for engine, peer in figures["peers"].items():
+            points = [
+                (r["cpu_ms"], r["own"]["mean"])
+                for r in peer.get("rows", [])
+                if not r["is_limit"] and np.isfinite(r["own"]["mean"])
+            ]
+            if points:
+                curves[engine] = points
+        every = np.log10([p for curve in curves.values() for p in curve])
+        low, top = np.floor(every.min(0)), np.ceil(every.max(0))
+
+        def at(x: float, y: float, low=low, top=top, row=row) -> tuple[float, float]:
+            u, v = (np.log10([x, y]) - low) / (top - low)
+            return (edge + u * (wide - edge - 30)) * fine, (
+                row * high + high - edge - v * (high - edge - 50)
+            ) * fine
+
+        draw.text(
+            (edge * fine, (row * high + 16) * fine),
+            f"{scene}: mean distance from own limit [mm] against cpu ms a frame",
+            fill=(20, 20, 20),
+            font=font,
+        )
+        for decade in range(int(low[0]), int(top[0]) + 1):
+            draw.line([at(10.0**decade, 10 ** low[1]), at(10.0**decade, 10 ** top[1])], fill=(225, 225, 225))
+            x, y = at(10.0**decade, 10 ** low[1])
+            draw.text((x - 10 * fine, y + 6 * fine), f"{10.0**decade:g}", fill=(70, 70, 70), font=font)
+        for decade in range(int(low[1]), int(top[1]) + 1):
+            draw.line([at(10 ** low[0], 10.0**decade), at(10 ** top[0], 10.0**decade)], fill=(225, 225, 225))
+            x, y = at(10 ** low[0], 10.0**decade)
+            draw.text((x - 60 * fine, y - 8 * fine), f"{10.0**decade:g}", fill=(70, 70, 70), font=font)
+        draw.line([at(10 ** low[0], NEAR), at(10 ** top[0], NEAR)], fill=(200, 160, 160), width=fine)
+        for name, curve in curves.items():
+            places = [at(*p) for p in sorted(curve)]
+            draw.line(places, fill=COLOURS[name], width=2 * fine)
+            for x, y in places:
+                draw.ellipse([x - 4 * fine, y - 4 * fine, x + 4 * fine, y + 4 * fine], fill=COLOURS[name])
+            draw.text(
+                (places[-1][0] + 6 * fine, places[-1][1] - 18 * fine), name, fill=COLOURS[name], font=font
+            )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    image.resize((wide, high * len(results)), Image.Resampling.LANCZOS).save(path, optimize=True)
