@@ -1,6 +1,6 @@
 """Speed against error beside Newton, MuJoCo and Blender: `simcore bench cloth -- --peers`.
 
-    … --peers [FOLDER] [--scene hang_edge|hanging] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
+    … --peers [FOLDER] [--scene hang_edge|hanging|flag] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
       [--json FILE] [--plot FILE.png]
 
 Every setting of a peer is run in turn with our engine at its default (adaptive) setting: a turn is one run of ours and
@@ -29,6 +29,7 @@ from sim_core.cloth import drape
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
+NAMES = ("hang_edge", "hanging", "flag")
 MAPPING_VERSION = 1  # raise when a peer is given other numbers: what was kept is then run again
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
@@ -114,6 +115,15 @@ def run_turns(
     return complete
 
 
+def told_finite(value):
+    """The same with None for numbers that are not finite, which JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: told_finite(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [told_finite(inner) for inner in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
 def one_core() -> None:
     """This process and those it starts, on the last of the processors it may use."""
     os.environ.update(ONE_THREAD)
@@ -127,7 +137,7 @@ def arguments() -> argparse.Namespace:
     )
     folder = ROOT / "build" / "peers"
     parser.add_argument("--peers", nargs="?", const=folder, default=folder, type=Path, metavar="FOLDER")
-    parser.add_argument("--scene", choices=("hang_edge", "hanging"), action="append", help="default: both")
+    parser.add_argument("--scene", choices=NAMES, action="append", help="default: all")
     parser.add_argument("--only", choices=tuple(SWEEPS), action="append", help="one peer (may be repeated)")
     parser.add_argument("--rounds", type=int, default=3, help="turns of a setting")
     parser.add_argument("--budget", type=float, default=float("inf"), metavar="SECONDS")
@@ -143,7 +153,7 @@ def main() -> int:
     one_core()
     peers = Peers(python, PROGRAM, WARP_CACHE_PATH=str(args.peers / "warp"))
     until, results = time.monotonic() + args.budget, {}
-    for name in args.scene or ["hang_edge", "hanging"]:
+    for name in args.scene or NAMES:
         asked = compared(name, args.vertices)
         engines = [e for e in args.only or list(SWEEPS) if e in asked.engines]
         kept = Kept(args.peers / "cloth-runs", asked)
@@ -159,7 +169,7 @@ def main() -> int:
     peers.close()
     if args.json:
         args.json.parent.mkdir(parents=True, exist_ok=True)
-        args.json.write_text(json.dumps(results, indent=1) + "\n", "utf-8")
+        args.json.write_text(json.dumps(told_finite(results), indent=1) + "\n", "utf-8")
     if args.plot:
         from cloth_figures import plot
 

@@ -157,3 +157,16 @@ def test_sections_of_the_list_of_peers(bench):
     listed = bench["peers"].LIST.read_text("utf-8")
     assert any(line.startswith("bpy==") for line in bench["peers"].requirements(listed, "cloth"))
     assert any(line.startswith("gmsh==") for line in bench["peers"].requirements(listed, "mesh"))
+
+
+def test_wind_presses_as_on_one_triangle(bench):
+    x, v = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 5]]), np.zeros((4, 3))
+    v[:3, 2] = 1.0
+    force = bench["mapping"].pressed(x, v, np.array([[0, 1, 2]]), np.array([7.0, 0, 3]), 1.2)
+    assert force[:3] == pytest.approx(np.tile([0, 0, 0.5 * 1.2 * 0.5 * 2**2 / 3], (3, 1)))
+    assert not force[3].any()
+
+
+def test_figures_are_json_also_where_a_run_exploded(bench):
+    told = bench["cloth_against"].told_finite({"a": [1.0, float("inf")], "b": {"c": float("nan"), "d": "x"}})
+    assert told == {"a": [1.0, None], "b": {"c": None, "d": "x"}}

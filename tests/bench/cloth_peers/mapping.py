@@ -74,3 +74,17 @@ def blender_steps(quality: int) -> int:
     while reached < np.float32(1):
         reached, taken = np.float32(reached + step), taken + 1
     return taken
+
+
+def pressed(x: np.ndarray, v: np.ndarray, faces: np.ndarray, wind: np.ndarray, air: float) -> np.ndarray:
+    """Forces (V, 3) [N] of the wind (3,) [m/s] on vertices x, v (V, 3): air/2 A |u.n| (u.n) n of every triangle.
+
+    air: density times drag coefficient [kg/m3]; u the wind less the triangle's mean velocity; a third to each vertex.
+    """
+    a, b, c = (x[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    doubled = np.linalg.norm(normal, axis=1)
+    through = ((wind - v[faces].mean(1)) * normal).sum(1) / doubled
+    share = normal * (air / 12 * np.abs(through) * through)[:, None]
+    flat = np.repeat(share, 3, axis=0)
+    return np.stack([np.bincount(faces.ravel(), flat[:, k], len(x)) for k in range(3)], axis=1)

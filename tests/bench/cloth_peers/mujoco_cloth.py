@@ -2,7 +2,8 @@
 
 Membrane: the St. Venant-Kirchhoff triangle, as ours; bending: a hinge that stores D kappa^2/2 in a cylinder. One shell
 has both our numbers (`mapping.shell`). Masses are put to ours after compiling. What the scene does not use (contact,
-constraints, limits, sensors, actuators) is switched off. `Euler` is explicit in the elasticity, `discrete` implicit.
+constraints, limits, sensors, actuators) is switched off. It has no air of our kind: forces of the wind are added by
+numpy before every fourth step, as our engine renews them. `Euler` is explicit in the elasticity, `discrete` implicit.
 """
 
 # pyright: reportMissingImports=false
@@ -11,7 +12,7 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-from mapping import FRAME, shell
+from mapping import FRAME, pressed, shell
 
 VERSION = f"mujoco {mujoco.__version__}"
 UNUSED = "contact constraint limit sensor actuation equality frictionloss eulerdamp midphase refsafe".split()
@@ -45,6 +46,10 @@ class MujocoCloth:
         free = np.setdiff1d(np.arange(len(x)), pins)
         self.model.body_mass[self.model.flex_vertbodyid[free]] = given["mass"][free]
         self.data = mujoco.MjData(self.model)
+        self.faces, self.wind, self.air = given["faces"], given.get("wind"), float(given.get("air", 0.0))
+        self.free = free
+        self.dofs = self.model.body_dofadr[self.model.flex_vertbodyid[free]][:, None] + np.arange(3)
+        self.speeds = np.zeros((len(x), 3))
         mujoco.mj_setConst(self.model, self.data)
         mujoco.mj_resetData(self.model, self.data)
 
@@ -53,7 +58,14 @@ class MujocoCloth:
 
     def frame(self) -> None:
         """One frame of 1/25 s."""
-        mujoco.mj_step(self.model, self.data, self.count)
+        if self.wind is None:
+            mujoco.mj_step(self.model, self.data, self.count)
+            return
+        for done in range(0, self.count, 4):
+            self.speeds[self.free] = self.data.qvel[self.dofs]
+            force = pressed(self.positions(), self.speeds, self.faces, self.wind, self.air)
+            self.data.qfrc_applied[self.dofs] = force[self.free]
+            mujoco.mj_step(self.model, self.data, min(4, self.count - done))
 
     def positions(self) -> np.ndarray:
         """(V, 3) [m]."""

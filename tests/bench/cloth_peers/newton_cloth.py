@@ -2,7 +2,7 @@
 
 VBD: stable Neo-Hookean membrane with the Lame parameters of our plane stress, equal to ours to second order in strain;
 a hinge of kappa L theta^2/2 with kappa = B L/(A1+A2) per edge. Its step is recorded once and replayed, which spares it
-the launches from Python.
+the launches from Python. Neither has our air: a kernel of ours presses on the triangles in every step.
 Style3D: Baraff-Witkin stretch A/2 (ku (|Fu|-1)^2 + kv (|Fv|-1)^2 + ks (Fu.Fv)^2) with ku = kv = k, ks = mu; it has no
 Poisson's ratio. Hinge as ours with kappa = B/3. It keeps only 0.998 of the velocity in every step, which would make
 the damping grow with the number of steps: undone here after each step, since the scenes are undamped. Its contact is
@@ -22,7 +22,6 @@ wp.config.quiet = True
 wp.set_device("cpu")
 VERSION = f"newton {newton.__version__}, warp {wp.__version__}"
 KEPT = 0.998  # of the velocity, by Style3D in every step
-RHO_AIR = 1.2  # [kg/m3]
 
 
 @wp.kernel
@@ -84,8 +83,8 @@ class NewtonCloth:
             )
         self.states = [self.model.state(), self.model.state()]
         self.control = self.model.control()
-        wind = given["wind"] if "wind" in given else None
-        self.wind = None if wind is None else wp.vec3(*(float(w) for w in wind))
+        self.wind = wp.vec3(*map(float, given["wind"])) if "wind" in given else None
+        self.half = float(given.get("air", 0.0)) / 2
         self.graph = None
 
     def _model(self, given):
@@ -139,7 +138,7 @@ class NewtonCloth:
         now, then = self.states
         if self.wind is not None:
             now.clear_forces()
-            args = [now.particle_q, now.particle_qd, self.model.tri_indices, self.wind, RHO_AIR / 2]
+            args = [now.particle_q, now.particle_qd, self.model.tri_indices, self.wind, self.half]
             wp.launch(press, dim=len(self.model.tri_indices), inputs=[*args, now.particle_f])
         self.solver.step(now, then, self.control, None, FRAME / self.count)
         if self.style3d:
