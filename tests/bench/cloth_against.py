@@ -159,8 +159,8 @@ def main() -> int:
         kept = Kept(args.peers / "cloth-runs", asked)
         ours(asked)  # compile
         complete = run_turns(asked, engines, kept, args.rounds, until, peers)
-        reference, coarser, usual = ours(asked, 2048), ours(asked, 1024), ours(asked)
-        results[name] = summary(kept, list(SWEEPS), reference, coarser, usual)
+        runs = [ours(asked, substeps) for substeps in (None, 256, 512, 1024, 2048)]
+        results[name] = summary(kept, list(SWEEPS), runs)
         results[name] |= {
             "vertices": len(asked.scene.positions),
             "seconds": asked.seconds,

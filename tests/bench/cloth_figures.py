@@ -93,24 +93,33 @@ def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None
     }
 
 
-def summary(kept: Any, engines: Sequence[str], reference: dict, coarser: dict, usual: dict) -> dict:
-    """All figures of a scene, told as a table."""
-    end = reference["positions"]
+def summary(kept: Any, engines: Sequence[str], runs: Sequence[dict]) -> dict:
+    """All figures of a scene, told as a table. runs: ours, from the default setting to the finest, the reference."""
+    *rows, coarser, finest = runs
+    end = finest["positions"]
     found: dict[str, Any] = {
         "ours": {
-            "cpu_ms": float(np.median(usual["cpu_ms"])),
-            "wall_ms": float(np.median(usual["ms"])),
-            "substeps": usual["substeps"],
-            "error": distance(usual["positions"], end),
+            "rows": [
+                {
+                    "substeps": run["substeps"],
+                    "cpu_ms": float(np.median(run["cpu_ms"])),
+                    "wall_ms": float(np.median(run["ms"])),
+                    "error": distance(run["positions"], end),
+                }
+                for run in rows
+            ],
             "floor": distance(coarser["positions"], end),
         },
         "peers": {},
     }
-    own = found["ours"]
     print(
-        f"ours: {own['cpu_ms']:.1f} ms a frame, {own['substeps']:.0f} steps, {own['error']['mean']:.5f} mm mean "
-        f"({own['error']['p99']:.5f} p99) from its limit, floor {own['floor']['mean']:.5f}"
+        f"ours: limit at {finest['substeps']:.0f} steps, floor {found['ours']['floor']['mean']:.1e} mm mean"
     )
+    for row in found["ours"]["rows"]:
+        error = row["error"]
+        print(
+            f"    {row['substeps']:<12.0f}{row['cpu_ms']:>13.1f} ms{error['mean']:>40.5f} / {error['p99']:.5f}"
+        )
     for engine in engines:
         peer = engine_summary(kept, engine, end)
         if peer is not None:
@@ -155,7 +164,7 @@ def plot(results: dict, path: Path) -> None:
     image = Image.new("RGB", (wide * fine, high * fine * len(results)), "white")
     draw, font = ImageDraw.Draw(image), ImageFont.load_default(14 * fine)
     for row, (scene, figures) in enumerate(results.items()):
-        curves = {"ours": [(figures["ours"]["cpu_ms"], max(figures["ours"]["error"]["mean"], 1e-5))]}
+        curves = {"ours": [(r["cpu_ms"], max(r["error"]["mean"], 1e-5)) for r in figures["ours"]["rows"]]}
         for engine, peer in figures["peers"].items():
             points = [
                 (r["cpu_ms"], r["own"]["mean"])
@@ -188,13 +197,13 @@ def plot(results: dict, path: Path) -> None:
             x, y = at(10 ** low[0], 10.0**decade)
             draw.text((x - 60 * fine, y - 8 * fine), f"{10.0**decade:g}", fill=(70, 70, 70), font=font)
         draw.line([at(10 ** low[0], NEAR), at(10 ** top[0], NEAR)], fill=(200, 160, 160), width=fine)
-        for name, curve in curves.items():
+        for n, (name, curve) in enumerate(curves.items()):
             places = [at(*p) for p in sorted(curve)]
             draw.line(places, fill=COLOURS[name], width=2 * fine)
             for x, y in places:
                 draw.ellipse([x - 4 * fine, y - 4 * fine, x + 4 * fine, y + 4 * fine], fill=COLOURS[name])
             draw.text(
-                (places[-1][0] + 6 * fine, places[-1][1] - 18 * fine), name, fill=COLOURS[name], font=font
+                ((edge + 10) * fine, (row * high + 56 + 17 * n) * fine), name, fill=COLOURS[name], font=font
             )
     path.parent.mkdir(parents=True, exist_ok=True)
     image.resize((wide, high * len(results)), Image.Resampling.LANCZOS).save(path, optimize=True)

@@ -132,8 +132,8 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     again, second = against.Kept(tmp_path, asked), Played()
     assert against.run_turns(asked, engines, again, 2, inf, second)
     assert second.asked == []
-    runs = [against.ours(asked, n) for n in (64, 32, 16)]
-    found = figures.summary(again, list(bench["cloth_sweeps"].SWEEPS), *runs)
+    runs = [against.ours(asked, n) for n in (None, 32, 64)]
+    found = figures.summary(again, list(bench["cloth_sweeps"].SWEEPS), runs)
     assert found["peers"]["MuJoCo discrete"]["floor"]["mean"] == pytest.approx(1e3 / 32 - 1e3 / 64)
     assert found["peers"]["MuJoCo discrete"]["cheapest_within_2mm"] is None
     assert "No module named 'bpy'" in found["peers"]["Blender"]["error"]
