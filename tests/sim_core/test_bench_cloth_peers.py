@@ -170,3 +170,22 @@ def test_wind_presses_as_on_one_triangle(bench):
 def test_figures_are_json_also_where_a_run_exploded(bench):
     told = bench["cloth_against"].told_finite({"a": [1.0, float("inf")], "b": {"c": float("nan"), "d": "x"}})
     assert told == {"a": [1.0, None], "b": {"c": None, "d": "x"}}
+
+
+def test_table_says_what_a_peer_cannot_and_what_explodes(bench, monkeypatch):
+    table = import_module("cloth_table")
+    monkeypatch.delitem(sys.modules, "cloth_table")
+    row = {
+        "cpu_ms": 50.0,
+        "cpu_ms_quartiles": [49.0, 52.0],
+        "ratio": 12.5,
+        "own": {"mean": None, "p99": None},
+    }
+    row["setting"] = {"substeps": 8}
+    peer = {"limit": "64", "floor": {"mean": 0.4}, "limit_from_ours": {"mean": 0.5, "p99": 0.9}}
+    lost = {"error": "ModuleNotFoundError: No module named 'bpy'"}
+    assert "not compared: ModuleNotFoundError" in table.peer_line("Blender", lost)
+    told = table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": None, "best": row})
+    assert "8 (best; never within 2 mm)" in told
+    assert "exploded" in told
+    assert table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": row, "best": row}).endswith("| 12.5 |")
