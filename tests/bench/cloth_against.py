@@ -171,7 +171,7 @@ def main() -> int:
         args.json.parent.mkdir(parents=True, exist_ok=True)
         args.json.write_text(json.dumps(told_finite(results), indent=1) + "\n", "utf-8")
     if args.plot:
-        from cloth_figures import plot
+        from cloth_plot import plot
 
         plot(results, args.plot)
     return 0

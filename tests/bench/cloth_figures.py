@@ -1,24 +1,14 @@
-"""What the turns of peers amount to: errors from their own limit and from ours, ratios, a table and a plot."""
+"""What the turns of peers amount to: errors from their own limit and from ours, ratios, and a table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from cloth_sweeps import SWEEPS, told
 
 NEAR = 2.0  # [mm] mean: how near its own limit a peer's setting has to be to be compared
-
-COLOURS = {
-    "ours": (24, 90, 140),
-    "Newton VBD": (90, 140, 70),
-    "Newton Style3D": (150, 90, 160),
-    "MuJoCo Euler": (196, 120, 30),
-    "MuJoCo discrete": (190, 60, 60),
-    "Blender": (110, 110, 110),
-}
 
 
 def distance(a: np.ndarray, b: np.ndarray) -> dict[str, float]:
@@ -154,56 +144,3 @@ def tell(engine: str, peer: dict) -> None:
     elif peer["best"]:
         b = peer["best"]
         print(f"    never within 2 mm; best {b['own']['mean']:.2f} mm mean in {b['cpu_ms']:.0f} ms")
-
-
-def plot(results: dict, path: Path) -> None:
-    """Mean error from the engine's own limit against processor ms a frame, both logarithmic; a scene a panel."""
-    from PIL import Image, ImageDraw, ImageFont
-
-    wide, high, edge, fine = 760, 520, 70, 2
-    image = Image.new("RGB", (wide * fine, high * fine * len(results)), "white")
-    draw, font = ImageDraw.Draw(image), ImageFont.load_default(14 * fine)
-    for row, (scene, figures) in enumerate(results.items()):
-        curves = {"ours": [(r["cpu_ms"], max(r["error"]["mean"], 1e-5)) for r in figures["ours"]["rows"]]}
-        for engine, peer in figures["peers"].items():
-            points = [
-                (r["cpu_ms"], r["own"]["mean"])
-                for r in peer.get("rows", [])
-                if not r["is_limit"] and np.isfinite(r["own"]["mean"])
-            ]
-            if points:
-                curves[engine] = points
-        every = np.log10([p for curve in curves.values() for p in curve])
-        low, top = np.floor(every.min(0)), np.ceil(every.max(0))
-
-        def at(x: float, y: float, low=low, top=top, row=row) -> tuple[float, float]:
-            u, v = (np.log10([x, y]) - low) / (top - low)
-            return (edge + u * (wide - edge - 30)) * fine, (
-                row * high + high - edge - v * (high - edge - 50)
-            ) * fine
-
-        draw.text(
-            (edge * fine, (row * high + 16) * fine),
-            f"{scene}: mean distance from own limit [mm] against cpu ms a frame",
-            fill=(20, 20, 20),
-            font=font,
-        )
-        for decade in range(int(low[0]), int(top[0]) + 1):
-            draw.line([at(10.0**decade, 10 ** low[1]), at(10.0**decade, 10 ** top[1])], fill=(225, 225, 225))
-            x, y = at(10.0**decade, 10 ** low[1])
-            draw.text((x - 10 * fine, y + 6 * fine), f"{10.0**decade:g}", fill=(70, 70, 70), font=font)
-        for decade in range(int(low[1]), int(top[1]) + 1):
-            draw.line([at(10 ** low[0], 10.0**decade), at(10 ** top[0], 10.0**decade)], fill=(225, 225, 225))
-            x, y = at(10 ** low[0], 10.0**decade)
-            draw.text((x - 60 * fine, y - 8 * fine), f"{10.0**decade:g}", fill=(70, 70, 70), font=font)
-        draw.line([at(10 ** low[0], NEAR), at(10 ** top[0], NEAR)], fill=(200, 160, 160), width=fine)
-        for n, (name, curve) in enumerate(curves.items()):
-            places = [at(*p) for p in sorted(curve)]
-            draw.line(places, fill=COLOURS[name], width=2 * fine)
-            for x, y in places:
-                draw.ellipse([x - 4 * fine, y - 4 * fine, x + 4 * fine, y + 4 * fine], fill=COLOURS[name])
-            draw.text(
-                ((edge + 10) * fine, (row * high + 56 + 17 * n) * fine), name, fill=COLOURS[name], font=font
-            )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    image.resize((wide, high * len(results)), Image.Resampling.LANCZOS).save(path, optimize=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-NAMES = ("cloth_against", "cloth_figures", "cloth_sweeps", "mapping", "peers")
+NAMES = ("cloth_against", "cloth_figures", "cloth_plot", "cloth_sweeps", "mapping", "peers")
 BENCH = Path(__file__).parents[1] / "bench"
 
 
@@ -138,7 +138,7 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     assert found["peers"]["MuJoCo discrete"]["cheapest_within_2mm"] is None
     assert "No module named 'bpy'" in found["peers"]["Blender"]["error"]
     assert "never within 2 mm; best 15.6" in capsys.readouterr().out
-    figures.plot({"hang_edge": found}, tmp_path / "plot.png")
+    bench["cloth_plot"].plot({"hang_edge": found}, tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 5000
 
 
