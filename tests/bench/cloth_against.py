@@ -124,6 +124,14 @@ def told_finite(value):
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
+def added(path: Path, results: dict) -> dict:
+    """Writes the results of some scenes into a file of figures, whose other scenes stay; returns them all."""
+    old = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({**old, **results}, indent=1) + "\n", "utf-8")
+    return {**old, **results}
+
+
 def one_core() -> None:
     """This process and those it starts, on the last of the processors it may use."""
     os.environ.update(ONE_THREAD)
@@ -168,8 +176,7 @@ def main() -> int:
         }
     peers.close()
     if args.json:
-        args.json.parent.mkdir(parents=True, exist_ok=True)
-        args.json.write_text(json.dumps(told_finite(results), indent=1) + "\n", "utf-8")
+        results = added(args.json, told_finite(results))
     if args.plot:
         from cloth_plot import plot
 

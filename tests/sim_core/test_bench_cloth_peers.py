@@ -189,3 +189,13 @@ def test_table_says_what_a_peer_cannot_and_what_explodes(bench, monkeypatch):
     assert "8 (best; never within 2 mm)" in told
     assert "exploded" in told
     assert table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": row, "best": row}).endswith("| 12.5 |")
+
+
+def test_scenes_of_an_earlier_run_stay_in_the_file(bench, tmp_path):
+    added, path = bench["cloth_against"].added, tmp_path / "new" / "figures.json"
+    added(path, {"flag": {"seconds": 0.2}})
+    assert added(path, {"hanging": {"seconds": 0.4}}) == {
+        "flag": {"seconds": 0.2},
+        "hanging": {"seconds": 0.4},
+    }
+    assert added(path, {"flag": {"seconds": 0.3}})["flag"] == {"seconds": 0.3}
