@@ -19,6 +19,7 @@ import sys
 import time
 from hashlib import sha256
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from cloth_figures import summary
@@ -115,7 +116,7 @@ def run_turns(
     return complete
 
 
-def told_finite(value):
+def told_finite(value: Any) -> Any:
     """The same with None for numbers that are not finite, which JSON has no word for."""
     if isinstance(value, dict):
         return {key: told_finite(inner) for key, inner in value.items()}
