@@ -29,15 +29,42 @@ def _grid(*settings: tuple, names: tuple[str, ...], **same) -> tuple[dict, ...]:
 STEPS, ITERATED = ("substeps",), ("substeps", "iterations")
 SWEEPS: dict[str, tuple[dict, ...]] = {
     "Newton VBD": _grid(
-        *[(10, 10), (20, 10), (40, 5), (40, 10), (64, 2), (80, 5), (128, 1), (128, 2), (160, 5), (256, 5)],
+        *[
+            (10, 10),
+            (20, 10),
+            (40, 5),
+            (40, 10),
+            (64, 2),
+            (80, 5),
+            (128, 1),
+            (128, 2),
+            (160, 1),
+            (160, 5),
+            (256, 5),
+        ],
         names=ITERATED,
     ),
     "Newton Style3D": _grid(
-        *[(4, 10), (8, 10), (16, 5), (16, 10), (32, 2), (32, 5), (64, 1), (64, 4), (128, 4), (256, 4)],
+        *[
+            (4, 10),
+            (8, 10),
+            (16, 5),
+            (16, 10),
+            (24, 6),
+            (32, 2),
+            (32, 4),
+            (32, 5),
+            (64, 1),
+            (64, 4),
+            (128, 4),
+            (256, 4),
+        ],
         names=ITERATED,
         linear=10,
     ),
-    "MuJoCo Euler": _grid((160,), (208,), (256,), (512,), (1024,), (2048,), names=STEPS, integrator="Euler"),
+    "MuJoCo Euler": _grid(
+        (150,), (160,), (208,), (256,), (512,), (1024,), (2048,), names=STEPS, integrator="Euler"
+    ),
     "MuJoCo discrete": _grid(
         (4,), (8,), (16,), (32,), (64,), names=STEPS, integrator="discrete", tolerance=1e-6
     ),
