@@ -68,7 +68,7 @@ SWEEPS: dict[str, tuple[dict, ...]] = {
     "MuJoCo discrete": _grid(
         (4,), (8,), (16,), (32,), (64,), names=STEPS, integrator="discrete", tolerance=1e-6
     ),
-    "Blender": _grid((8,), (16,), (20,), (24,), (32,), (64,), (128,), (256,), (512,), names=STEPS),
+    "Blender": _grid((8,), (16,), (20,), (22,), (24,), (32,), (64,), (128,), (256,), (512,), names=STEPS),
 }
 
 
