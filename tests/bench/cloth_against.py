@@ -31,6 +31,7 @@ from sim_core.cloth import drape
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
 NAMES = ("hang_edge", "hanging", "flag")
+DEAR = 1000.0  # [ms a frame] what costs more has one turn, as a limit has
 MAPPING_VERSION = 1  # raise when a peer is given other numbers: what was kept is then run again
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
@@ -91,7 +92,7 @@ class Kept:
 def run_turns(
     asked: Compared, engines: list[str], kept: Kept, rounds: int, until: float, peers: Peers
 ) -> bool:
-    """Turns until every setting has its rounds (its limit: one); False where the time was up before that."""
+    """Turns until every setting has its rounds (a limit or dear one: one); False where the time was up before that."""
     arrays, complete = given(asked), True
     longest = max(len(SWEEPS[engine]) for engine in engines)
     for turn in range(rounds):
@@ -102,7 +103,8 @@ def run_turns(
                 setting = SWEEPS[engine][k]
                 key, limit = kept.key(engine, setting), k >= len(SWEEPS[engine]) - 2
                 done = kept.turns.get(key, [])
-                if len(done) > turn or (limit and done) or any("error" in t for t in done):
+                once = limit or any("error" in t or np.median(t["cpu_ms"]) > DEAR for t in done)
+                if len(done) > turn or (once and done):
                     continue
                 if time.monotonic() > until:
                     complete = False
