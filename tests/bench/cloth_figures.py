@@ -50,12 +50,14 @@ def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool,
 
 
 def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None:
-    """Rows of one peer with its limit; None where nothing of it was run, {"error"} where it cannot run."""
+    """Rows of one peer with its limit; None where nothing of it was run, {"error"} where it cannot run or has no limit yet."""
     sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
     run = [(s, key) for s, key in sweep if key in kept.turns]
     good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
     if not good:
         return {"error": kept.turns[run[0][1]][0]["error"]} if run else None
+    if good[-1][0] != SWEEPS[engine][-1]:
+        return {"error": f"its limit, {told(SWEEPS[engine][-1])}, has not been run – run the bench again"}
     ends = [kept.end(key) for _, key in good]
     rows = [
         row_of(
@@ -67,14 +69,13 @@ def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None
         )
         for (setting, key), end in zip(good, ends, strict=True)
     ]
-    finest = len(good) == len(sweep)
     floor = distance(ends[-2], ends[-1]) if len(ends) > 1 else None
     found = cheapest(rows)
     candidates = [r for r in rows if not r["is_limit"]]
     best = min(candidates, key=lambda r: r["own"]["mean"], default=None)
     return {
         "version": kept.turns[good[-1][1]][0]["version"],
-        "limit": told(good[-1][0]) + ("" if finest else " (sweep not complete)"),
+        "limit": told(good[-1][0]),
         "floor": floor,
         "limit_from_ours": distance(ends[-1], reference),
         "rows": rows,

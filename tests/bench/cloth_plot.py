@@ -67,7 +67,7 @@ class Panel:
             self.draw.line(places, fill=colour, width=2 * FINE)
             for x, y in places:
                 self.draw.ellipse([x - r, y - r, x + r, y + r], fill=colour)
-            place = ((WIDE - 150) * FINE, (self.row * HIGH + 56 + 17 * n) * FINE)
+            place = ((WIDE - 150) * FINE, (self.row * HIGH + HIGH - EDGE - 115 + 17 * n) * FINE)
             self.draw.text(place, name, fill=colour, font=self.font)
 
 

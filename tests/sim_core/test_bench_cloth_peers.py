@@ -138,6 +138,11 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     assert found["peers"]["MuJoCo discrete"]["cheapest_within_2mm"] is None
     assert "No module named 'bpy'" in found["peers"]["Blender"]["error"]
     assert "never within 2 mm; best 15.6" in capsys.readouterr().out
+    del again.turns[again.key("MuJoCo discrete", bench["cloth_sweeps"].SWEEPS["MuJoCo discrete"][-1])]
+    assert (
+        "64, has not been run"
+        in figures.engine_summary(again, "MuJoCo discrete", runs[-1]["positions"])["error"]
+    )
     bench["cloth_plot"].plot({"hang_edge": found}, tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 5000
 
