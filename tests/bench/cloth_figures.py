@@ -50,7 +50,7 @@ def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool,
 
 
 def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None:
-    """Rows of one peer with its limit; None where nothing of it was run, {"error"} where it cannot run or has no limit yet."""
+    """Rows of one peer with its limit; None: nothing of it was run; {"error"}: it cannot run or has no limit yet."""
     sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
     run = [(s, key) for s, key in sweep if key in kept.turns]
     good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
