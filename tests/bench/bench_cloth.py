@@ -1,6 +1,7 @@
 """Cloth: time and error together, for every published scene.
 
     simcore bench cloth [-- --quick] [-- --json FILE] [-- --plot FILE.png]
+    simcore bench cloth -- --peers …    beside Newton, MuJoCo and Blender, see cloth_against.py
 
 Time error: vertex distance from the engine's own limit dt -> 0 (the run with most substeps; the floor is what half
 of them still changes). Mesh error: from the finest mesh, at the same simulated time. Rows take turns; wall
@@ -203,6 +204,10 @@ def plot(found: dict, path: Path) -> None:
 
 
 def main() -> int:
+    if "--peers" in sys.argv[1:]:
+        from cloth_against import main as against
+
+        return against()
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
