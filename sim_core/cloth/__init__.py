@@ -6,7 +6,7 @@ from sim_core.cloth.draping import Contact, Drape, Phase, drape
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.live import Live
 from sim_core.cloth.material import Material
-from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.moving import MovingGrid, moving_mesh
 from sim_core.cloth.sheet import Sheet
 
 __all__ = [
@@ -27,4 +27,5 @@ __all__ = [
     "Solid",
     "Union",
     "drape",
+    "moving_mesh",
 ]

@@ -15,11 +15,13 @@ from sim_core.cloth.forces import energies
 from sim_core.cloth.holding import Holds, bound, draw_together, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.pairs import finder_of, pairs_of
 from sim_core.cloth.phases import FRAME, Contact
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
 from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
+from sim_core.cloth.untangling import faces_at_edges, no_crossings, untangle
 from sim_core.errors import SimCoreError
 
 COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
@@ -27,6 +29,7 @@ SLOW = 2  # substeps between two looks at bending; 3 would resonate with the mem
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
 IMPLICIT_STEPS = 8  # a frame by backward Euler
 IMPLICIT_PASSES = 4  # over the contacts after each of them
+UNTANGLE = 0.1  # of the shell's thickness: one step of taking the cloth out of itself
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
 
 
@@ -58,9 +61,12 @@ class Engine:
         image[self.holds.slaves[:, 0]] = True
         self.vertices = vertices[~image[vertices[:, 0]]]
         self.middles = middles[~image[middles].any(1)]
+        self.third, self.crossed = faces_at_edges(self.sheet.edges, self.sheet.faces), no_crossings()
         longest = int(self.bands.face_runs[:, 1].max())
         samples = (len(self.vertices), len(self.middles))
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
+        layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
+        self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
@@ -137,8 +143,8 @@ class Engine:
         )
         s = self.sheet
         fixed = (self.bands, self.inverse_mass(pins), s.edges, s.faces, s.rest, packed)
-        touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room)
-        advance(*fixed, *touch, x, v, last, dt, count)
+        touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room, self.finder)
+        self.pairs = advance(*fixed, *touch, *self.pairs, x, v, last, dt, count)
 
     def _lead(self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within the frame."""
@@ -211,6 +217,19 @@ class Engine:
                 collide_vertices(packed, inverse, x, v, self.vertices, c.clearance, h, under.friction, cap)
         bound(self.holds, x, v)
         mirror(self.holds, x, v)
+
+    def untangle(self, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> tuple[int, int]:
+        """Takes the cloth x, v (3, V) out of itself in place; pairs of edge and face that crossed before, and after."""
+        rounds, step = self.contact.untangle, UNTANGLE * self.contact.thickness
+        if not rounds or not step:
+            return 0, 0
+        there, speed = np.ascontiguousarray(x.T), np.ascontiguousarray(v.T)
+        s, inverse = self.sheet, self.inverse_mass(pins)
+        sheet = (s.edges, s.faces, self.third, self.holds, self.finder, self.crossed)
+        before, after, self.crossed = untangle(there, speed, inverse, *sheet, step=step, rounds=rounds)
+        if before:
+            x[:], v[:] = there.T, speed.T
+        return before, after
 
     def forget(self) -> None:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""

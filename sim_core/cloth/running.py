@@ -88,6 +88,7 @@ class Run:
                 )
         else:
             x, v, count = self._explicit(state, under, pins, begin)
+        engine.untangle(pins, x, v)
         state.seconds.append(time.perf_counter() - start)
         way = np.sqrt(((x - begin[0]) ** 2).sum(0))
         state.trace.append((float(np.percentile(way, 99)), float(way.max())))

@@ -168,23 +168,26 @@ def advance(
     shell,
     around,
     room,
+    finder,
+    points,
+    crossings,
     xs,
     vs,
     last,
     dt,
     substeps,
 ):
-    """Simulates `substeps` steps of dt [s]; xs, vs (3, V) change in place; returns how often pairs were looked for.
+    """Simulates `substeps` steps of dt [s]; xs, vs (3, V) change in place.
 
-    v lives half a step behind x; `last` is the previous step (0 at the start). Lists of pairs are renewed before
-    the cloth has moved half their margin off its mean.
+    points, crossings (K, 2): lists for pairs, written over; returned, longer where they were full. v lives half a step
+    behind x; `last` is the previous step (0 at the start). Lists of pairs are renewed before the cloth has moved half
+    their margin off its mean.
     """
     x, v, mark = xs.T, vs.T, room.mark.T
     solids, layers = len(packed.kind) > 0, shell.thickness > 0.0
     room.wake_vertices[:] = 0
     room.wake_middles[:] = 0
-    points, crossings = np.zeros((0, 2), np.int32), np.zeros((0, 2), np.int32)
-    look_layer, searches = -1, 0
+    look_layer, counts = -1, (0, 0)
     push = around.cap if solids else 0.0
     g = around.gravity
     if around.beta > 0.0:
@@ -203,13 +206,13 @@ def advance(
             if step >= look_layer:
                 far, fast = _travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
                 if far > 0.3 * shell.skin:
-                    points, crossings = candidate_pairs(
-                        x, rest, faces, edges, bands.length2, holds.same, shell
+                    points, crossings, counts = candidate_pairs(
+                        x, rest, faces, edges, bands.length2, holds.same, shell, finder, points, crossings
                     )
-                    room.mark[:], searches = xs, searches + 1
+                    room.mark[:] = xs
                     far, fast = _travel(x, v, mark)
                 look_layer = step + 1 + _patience(0.5 * shell.skin - far, fast, dt, push)
-            repel(x, v, inverse, faces, edges, points, crossings, shell, dt * shell.every)
+            repel(x, v, inverse, faces, edges, points, crossings, counts, shell, dt * shell.every)
         if around.speed_limit < FREE:
             band_limit(vs[0], vs[1], vs[2], around.speed_limit)
         band_drift(xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], dt)
@@ -226,4 +229,4 @@ def advance(
             _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, end)
         bound(holds, x, v)
         mirror(holds, x, v)
-    return searches
+    return points, crossings

@@ -15,7 +15,7 @@ from sim_core.cloth.phases import schedule
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.schedule import GRAVITY, Pose, Schedule
+from sim_core.garment.schedule import GRAVITY, UNTANGLE, Pose, Schedule
 from sim_core.garment.sewing import Cloth
 from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
@@ -80,7 +80,7 @@ def dress(
     ]
     body = timing.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
-    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5)
+    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5, untangle=UNTANGLE)
     stages = _Stages(cloth, timing, progress, on_frame)
 
     open_ = half_sheet(cloth, cloth.joined, materials, kind, apart)

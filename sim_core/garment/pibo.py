@@ -22,7 +22,7 @@ from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.records import Clock, versions
 from sim_core.garment.scarf import scarf_material
-from sim_core.garment.schedule import Pose
+from sim_core.garment.schedule import UNTANGLE, Pose
 from sim_core.garment.sewing import Cloth
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
@@ -189,7 +189,9 @@ def _draped(
     solid, holds, runs = field.solid(), _holds(half), []
     for run in (0, 1):
         shell = {"spring": s.spring[run], "self_friction": s.self_friction[run], "every": 2}
-        contact = Contact(s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, **shell)
+        contact = Contact(
+            s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
+        )
         first = runs[0].frames if runs else 0
         runs.append(
             drape(
