@@ -1,13 +1,16 @@
 """Cloth: an explicit edge-tension solver with contact, friction and self-contact. See README.md."""
 
+from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 from sim_core.cloth.draping import Contact, Drape, Phase, drape
 from sim_core.cloth.holding import Holds
+from sim_core.cloth.live import Live
 from sim_core.cloth.material import Material
-from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.moving import MovingGrid, moving_mesh
 from sim_core.cloth.sheet import Sheet
 
 __all__ = [
+    "Air",
     "Box",
     "Capsule",
     "Contact",
@@ -16,6 +19,7 @@ __all__ = [
     "GridSdf",
     "HalfSpace",
     "Holds",
+    "Live",
     "Material",
     "MovingGrid",
     "Phase",
@@ -23,4 +27,5 @@ __all__ = [
     "Solid",
     "Union",
     "drape",
+    "moving_mesh",
 ]

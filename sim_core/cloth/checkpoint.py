@@ -13,12 +13,12 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.reading import read_npz
 
-_ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film")
+_ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
 
 
 @dataclass
 class RunState:
-    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety."""
+    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety, mode."""
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -27,8 +27,12 @@ class RunState:
     safety: float = 1.0
     rollbacks: int = 0
     substeps: int = 0
+    fallbacks: int = 0
+    stretch: float = 1.0  # the longest an edge has been, as a share of its rest length
     trace: list[tuple[float, float]] = field(default_factory=list)  # displacement p99, max per frame [m]
+    seconds: list[float] = field(default_factory=list)  # per frame of this process; not kept
     film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
+    mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
 
 
 def run_key(parts: Iterable[object]) -> str:
@@ -44,7 +48,8 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
     """Writes the state beside `path` and renames it over: an interrupt leaves the old or the new one."""
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
-    numbers = np.array([state.frame, state.last_step, state.safety, state.rollbacks, state.substeps], float)
+    counters = (state.rollbacks, state.substeps, state.fallbacks, state.stretch)
+    numbers = np.array([state.frame, state.last_step, state.safety, *counters], float)
     with beside.open("wb") as stream:
         np.savez(
             stream,
@@ -53,6 +58,7 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
             velocities=state.velocities,
             numbers=numbers,
             trace=np.array(state.trace, float).reshape(-1, 2),
+            mode=state.mode,
             film=np.array(state.film, np.float32).reshape(-1, *state.positions.shape),
         )
         stream.flush()
@@ -66,7 +72,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
         data = read_npz(path, _ARRAYS, "a checkpoint", "the run begins anew")
         if str(data["key"]) != key:
             return None
-        frame, last, safety, rollbacks, substeps = data["numbers"]
+        frame, last, safety, rollbacks, substeps, fallbacks, stretch = data["numbers"]
         return RunState(
             positions=data["positions"],
             velocities=data["velocities"],
@@ -75,8 +81,11 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
             safety=float(safety),
             rollbacks=int(rollbacks),
             substeps=int(substeps),
+            fallbacks=int(fallbacks),
+            stretch=float(stretch),
             trace=[(float(p), float(m)) for p, m in data["trace"]],
             film=list(data["film"]),
+            mode=data["mode"],
         )
     except (FileProblem, ValueError, TypeError, OverflowError):
         return None

@@ -11,12 +11,12 @@ from sim_core.errors import SimCoreError
 
 CAPSULE, CYLINDER, BOX, HALFSPACE, GRID, MOVING = range(6)
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
-_NO_GRID = np.zeros((2, 2, 2))
+_NO_GRID = np.zeros((2, 2, 2), np.float32)
 _AT_REST = np.zeros(2)
 
 
 class Packed(NamedTuple):
-    """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid.
+    """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid, float32.
 
     A moving grid lies between `grid` and `later`: blend (2,) is how far, 0..1, and how fast [1/s].
     """
@@ -153,7 +153,7 @@ class GridSdf(Solid):
     values: np.ndarray = field(repr=False)
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
-        values = np.ascontiguousarray(self.values, float)
+        values = np.ascontiguousarray(self.values, np.float32)
         if values.ndim != 3 or min(values.shape) < 2 or not np.isfinite(values).all():
             raise SimCoreError(
                 f"grid: shape {values.shape} – expected a finite (nx, ny, nz), at least 2 each way"

@@ -1,102 +1,272 @@
-"""`simcore cloth`: runs a small named scene and saves where the cloth came to lie."""
+"""`simcore cloth`: runs a published scene, keeps every frame, and says what it cost."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
-from dataclasses import replace
+import time
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim_core.arguments import number
+from sim_core.arguments import ending, number, whole
+from sim_core.errors import WrongArgument
 
 if TYPE_CHECKING:
+    from sim_core.cloth.draping import Drape
     from sim_core.cloth.scenes import Scene
 
 DESCRIPTION = """\
-Simulates small named scenes with the explicit edge-tension solver.
+Simulates the scenes of the published work; --case picks one of their sequences (sim_core/cloth/scenes.toml).
 
-  hang   a 1 x 1 m sheet let go with one edge pinned
-  bar    a 0.3 x 0.8 m sheet dropped on a round bar, with friction and self-contact
+  flag      1.5 x 1 m in the wind, its left side pinned      10 cases, 600 frames
+  teapot    a cloth falls on the Utah teapot                 16 cases, 400 frames
+  hanging   a level sheet let go, held by pins               18 cases, 1200 frames
+  drape     the disc of the Cusick test on its pedestal       3 cases, 100 frames
 
-Each writes SCENE.npz (rest, faces, positions) to --out and, with --picture, SCENE.png.
+A frame is 1/25 s. --out FILE.npz holds positions (T, V, 3) float32 [m], faces, uv, pins, dt and the settings as
+JSON. --error MM lets the shipped table choose mesh and steps; --substeps and --integrator set them by hand.
+With --resume FILE an interrupted run goes on where it was, to the same bits.
 """
+
+
+def _three(text: str) -> tuple[float, float, float]:
+    return _numbers(text, 3, "X,Y,Z [m/s], at most 100 each", 100.0)  # type: ignore[return-value]
+
+
+def _two(text: str) -> tuple[float, float]:
+    parts = text if "," in text else f"{text},{text}"
+    return _numbers(parts, 2, "W,H [m]", 10.0)  # type: ignore[return-value]
+
+
+def _numbers(text: str, count: int, what: str, most: float) -> tuple[float, ...]:
+    try:
+        values = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        values = ()
+    if len(values) != count or not all(np.isfinite(v) and abs(v) <= most for v in values):
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} – give {what}")
+    return values
 
 
 def add_parser(subparsers: Any) -> None:
     """Adds `cloth` to the parsers of `simcore`."""
     parser = subparsers.add_parser(
         "cloth",
-        help="simulate small cloth scenes",
+        help="simulate the published cloth scenes",
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("scenes", nargs="+", choices=("hang", "bar"), metavar="SCENE", help="hang or bar")
-    parser.add_argument(
-        "--edge", type=number(0.001, 0.25, " m"), help="mesh step in metres (default: the scene's own)"
+    add = parser.add_argument
+    scenes = ("flag", "teapot", "hanging", "drape")
+    add("scene", choices=scenes, metavar="SCENE", help="flag, teapot, hanging or drape")
+    add("--frames", type=whole(1, 100_000), metavar="N", help="frames of 1/25 s (default: the scene's own)")
+    add("--case", type=whole(1, 100), default=1, metavar="N", help="which sequence of the scene (default: 1)")
+    add("--pins", metavar="KIND", help="hanging: edge, corners, corner, middle, four or thirds")
+    add("--size", type=_two, metavar="W,H", help="width and height in metres")
+    add("--wind", type=_three, metavar="X,Y,Z", help="flag: wind in m/s; write --wind=-4,0,1 for a negative")
+    add("--gusts", type=number(0, 2), default=0.0, metavar="SHARE", help="flag: rms of gusts, of the wind")
+    add("--vertices", type=whole(12, 400_000), metavar="N", help="about so many vertices")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument(
+        "--error", type=number(0.001, 1000, " mm"), metavar="MM", help="cheapest within this error"
     )
-    parser.add_argument(
-        "--seconds", type=number(0.04, 600, " s"), help="simulated time (default: the scene's own)"
-    )
-    parser.add_argument("--out", type=Path, default=Path("."), help="folder for the results (default: here)")
-    parser.add_argument("--picture", action="store_true", help="also draw the end state")
-    parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
+    way.add_argument("--substeps", type=whole(1, 100_000), metavar="N", help="fixed substeps a frame")
+    add("--integrator", choices=("auto", "explicit", "implicit"), help="default: auto")
+    add("--seed", type=whole(0, 2**31 - 1), default=0, metavar="N", help="of the gusts (default: 0)")
+    add("--resume", type=Path, metavar="FILE", help="keep the state here; go on from it if it is there")
+    add("--out", type=ending(".npz"), metavar="FILE.npz", help="write the frames")
+    add("--video", type=ending(".mp4"), metavar="FILE.mp4", help="film them")
+    add("--json", action="store_true", help="print a machine-readable summary")
+
+
+@dataclass
+class _Heard:
+    """What the frames of a run are watched for."""
+
+    scene: Scene
+    total: int
+    told: bool
+    film: list[np.ndarray] = field(default_factory=list)
+    penetrations: int = 0
+    shown: float = 0.0
+
+    def frame(self, index: int, positions: np.ndarray) -> None:
+        """Keeps a frame, counts what is inside the collider, and says how far the run is."""
+        self.film.append(positions)
+        if self.scene.collider is not None and self.scene.contact is not None:
+            x, sheet = positions.astype(float), self.scene.sheet
+            samples = np.concatenate([x, x[sheet.edges].mean(1), x[sheet.faces].mean(1)])
+            deep = -0.1 * self.scene.contact.clearance
+            self.penetrations += int((self.scene.collider.distance(samples) < deep).sum())
+        if self.told and time.perf_counter() - self.shown > 0.2:
+            self.shown = time.perf_counter()
+            sys.stderr.write(f"\r{self.scene.name}: frame {index + 1} of {self.total}\x1b[K")
+            sys.stderr.flush()
 
 
 def run(args: argparse.Namespace) -> int:
-    """Runs the named scenes; returns the exit status."""
-    from sim_core.cloth.scenes import SCENES
+    """Runs the scene; returns the exit status."""
+    from sim_core.cloth.film import film_needs
+    from sim_core.cloth.scenes import scene
 
-    step = () if args.edge is None else (args.edge,)
-    scenes = {name: SCENES[name](*step) for name in args.scenes}
-    args.out.mkdir(parents=True, exist_ok=True)  # refused before the work, not after it
-    summaries = [_run_scene(name, scene, args) for name, scene in scenes.items()]
-    if args.json:
-        sys.stdout.write(json.dumps(summaries, indent=2) + "\n")
-    else:
-        for s in summaries:
-            line = f"{s['scene']}: {s['vertices']} vertices, {s['simulated']:.2f} s in {s['seconds']:.1f} s"
-            sys.stdout.write(
-                f"{line}, {s['substeps']} substeps, rest p99 {s['rest_p99_m'] * 1e3:.3f} mm/frame\n"
-            )
+    if args.video:
+        film_needs()
+    for path in (args.out, args.video, args.resume):
+        if path is not None and not path.parent.is_dir():
+            raise WrongArgument(f"{path}: there is no folder {path.parent} – make it first")
+    settings = _chosen(args)
+    made = scene(
+        args.scene,
+        args.case,
+        frames=args.frames,
+        vertices=settings["vertices"],
+        size=args.size,
+        wind=args.wind,
+        pins=args.pins,
+        gusts=args.gusts,
+        seed=args.seed,
+    )
+    total = round(made.phases[0].seconds * 25)
+    heard = _Heard(made, total, told=not args.json and sys.stderr.isatty())
+    compiled = _warmed(made, settings)
+    begin = time.perf_counter()
+    try:
+        result = _simulated(made, settings, heard, args.resume)
+    except KeyboardInterrupt:
+        _write(args, made, heard.film, settings)  # what is finished is not lost
+        raise
+    finally:
+        if heard.told:
+            sys.stderr.write("\r\x1b[K")
+    seconds = time.perf_counter() - begin
+    _write(args, made, heard.film, settings)
+    summary = {
+        "scene": args.scene,
+        "vertices": len(made.positions),
+        "frames": result.frames,
+        "seconds": round(seconds, 3),
+        "compile_seconds": round(compiled, 3),
+        "ms_per_frame": round(1e3 * float(np.median(result.frame_seconds or (np.nan,))), 2),
+        "substeps": round(result.substeps / max(result.frames, 1), 1),
+        "integrator": settings["integrator"],
+        "fallbacks": result.fallbacks,
+        "worst_stretch": round(result.worst_stretch, 4),
+        "penetrations": heard.penetrations,
+        "seed": args.seed,
+    }
+    if settings.get("why"):
+        summary["why"] = settings["why"]
+    _tell(args, made, result, summary)
     return 0
 
 
-def _run_scene(name: str, scene: Scene, args: argparse.Namespace) -> dict[str, Any]:
-    from sim_core import metrics
+def _chosen(args: argparse.Namespace) -> dict[str, Any]:
+    """Vertices, substeps and integrator, by hand or from the table."""
+    settings = {
+        "vertices": args.vertices,
+        "substeps": args.substeps,
+        "integrator": args.integrator or "auto",
+    }
+    if args.error is not None:
+        from sim_core.cloth.fidelity import choose
+
+        choice = choose(args.scene, error_mm=args.error)
+        settings |= {"substeps": None, "integrator": choice.integrator, "why": choice.why}
+        settings["vertices"] = args.vertices or choice.vertices
+    return settings
+
+
+def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Path | None) -> Drape:
     from sim_core.cloth.draping import drape
 
-    phases = scene.phases if args.seconds is None else (replace(scene.phases[0], seconds=args.seconds),)
-    result = drape(
-        scene.sheet, scene.positions, phases, collider=scene.collider, contact=scene.contact, pins=scene.pins
+    return drape(
+        made.sheet,
+        made.positions,
+        made.phases,
+        collider=made.collider,
+        contact=made.contact,
+        pins=made.pins,
+        air=made.air,
+        substeps=settings["substeps"],
+        integrator=settings["integrator"],
+        on_frame=heard.frame,
+        checkpoint=resume,
+        keep=resume is not None,
     )
-    target = args.out / f"{name}.npz"
-    np.savez_compressed(target, rest=scene.sheet.rest, faces=scene.sheet.faces, positions=result.positions)
-    if args.picture:
-        _draw(args.out / f"{name}.png", result.positions, scene.sheet.faces)
-    strain = np.abs(metrics.area_strain(scene.sheet.rest, result.positions, scene.sheet.faces))
-    return {
-        "scene": name,
-        "file": str(target),
-        "vertices": len(scene.sheet.rest),
-        "triangles": len(scene.sheet.faces),
-        "simulated": result.frames / 25,
-        "substeps": result.substeps,
-        "rollbacks": result.rollbacks,
-        "seconds": result.seconds,
-        "rest_p99_m": result.rest_p99,
-        "area_strain_p95": float(np.percentile(strain, 95)),
-        "self_intersections": metrics.intersections(result.positions, scene.sheet.faces),
-    }
 
 
-def _draw(path: Path, positions: np.ndarray, faces: np.ndarray) -> None:
-    from sim_core.picture import Camera, Surface, render, save_png
+def _warmed(made: Scene, settings: dict[str, Any]) -> float:
+    """Seconds until the compiled code is there: one frame of a small scene with the same terms."""
+    from sim_core.cloth.draping import drape
+    from sim_core.cloth.scenes import scene
 
-    middle, reach = positions.mean(0), float(np.ptp(positions, axis=0).max())
-    eye = middle + np.array([0.5, 0.35, 1.0]) * 2.2 * reach
-    camera = Camera((eye[0], eye[1], eye[2]), (middle[0], middle[1], middle[2]), 32)
-    save_png(path, render([Surface(positions, faces, (0.55, 0.66, 0.72), sheen=0.3)], camera, (800, 600)))
+    begin = time.perf_counter()
+    small = scene(made.name, frames=1, vertices=60)
+    drape(
+        small.sheet,
+        small.positions,
+        small.phases,
+        collider=made.collider,
+        contact=made.contact,
+        pins=small.pins,
+        air=made.air,
+        integrator=settings["integrator"],
+    )
+    return time.perf_counter() - begin
+
+
+def _write(args: argparse.Namespace, made: Scene, film: list[np.ndarray], settings: dict[str, Any]) -> None:
+    if args.out and film:
+        told = {
+            k: v for k, v in vars(args).items() if k not in ("run", "out", "video", "resume", "json", "debug")
+        }
+        told |= {"material": asdict(made.sheet.material)} | settings
+        beside = args.out.with_name(args.out.name + ".part")
+        with beside.open("wb") as stream:
+            np.savez(
+                stream,
+                positions=np.stack(film).astype(np.float32),
+                faces=made.sheet.faces,
+                uv=made.sheet.rest,
+                pins=np.array(made.pins, np.int64),
+                dt=np.array(1 / 25),
+                settings=np.array(json.dumps(told)),
+            )
+        os.replace(beside, args.out)
+    if args.video and film:
+        from sim_core.cloth.film import write_film
+        from sim_core.cloth.teapot import teapot_mesh
+
+        solid = teapot_mesh() if made.name == "teapot" else None
+        write_film(
+            args.video,
+            film,
+            made.sheet.faces,
+            around=np.concatenate(film[:: max(1, len(film) // 20)]),
+            solid=solid,
+        )
+
+
+def _tell(args: argparse.Namespace, made: Scene, result: Drape, summary: dict[str, Any]) -> None:
+    if args.scene == "drape":
+        from sim_core.cloth.scenes import drape_coefficient
+
+        width = float(np.ptp(made.sheet.rest[:, 0]))
+        summary["drape_coefficient"] = round(drape_coefficient(result.positions, made.sheet.faces, width), 4)
+    if args.json:
+        sys.stdout.write(json.dumps(summary, indent=2) + "\n")
+        return
+    s = summary
+    line = f"{s['scene']}: {s['vertices']} vertices, {s['frames']} frames in {s['seconds']:.1f} s"
+    line += f", {s['ms_per_frame']:.1f} ms a frame (median), {s['substeps']:.0f} substeps, {s['integrator']}"
+    line += f", stretch at most {s['worst_stretch']:.3f}, {s['penetrations']} penetrations"
+    sys.stdout.write(line + "\n")
+    if "drape_coefficient" in s:
+        sys.stdout.write(f"drape coefficient {100 * s['drape_coefficient']:.1f} %\n")
+    if "why" in s:
+        sys.stdout.write(s["why"] + "\n")

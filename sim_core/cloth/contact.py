@@ -13,20 +13,8 @@ from numba import njit
 
 from sim_core.cloth.distance import signed_distance
 
-
-@njit(cache=True, error_model="numpy")
-def near_samples(packed, x, samples, reach):
-    """Those of the samples (S, 3) int32 that are nearer than `reach` [m]: (i, j, i) midpoint, (i, i, i) vertex."""
-    flag = np.zeros(len(samples), np.bool_)
-    for s in range(len(samples)):
-        i, j, k = samples[s]
-        w = 0.0 if i == k else 1.0 / 3.0  # a midpoint is (i, j, i): see collide_samples
-        u = 0.5 * (1.0 - w)
-        px = u * (x[i, 0] + x[j, 0]) + w * x[k, 0]
-        py = u * (x[i, 1] + x[j, 1]) + w * x[k, 1]
-        pz = u * (x[i, 2] + x[j, 2]) + w * x[k, 2]
-        flag[s] = signed_distance(packed, px, py, pz)[0] < reach
-    return samples[flag]
+LONGEST_SLEEP = 40  # substeps
+SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
 @njit(cache=True, error_model="numpy")
@@ -47,53 +35,103 @@ def _resolve(x, v, i, n, depth, speed, dt, friction, cap):
 
 
 @njit(cache=True, error_model="numpy")
+def _meet(packed, x, v, i, clearance, dt, friction, cap):
+    """Resolves vertex i; returns how far outside the clearance it was [m]."""
+    d, nx, ny, nz, speed = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
+    if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
+        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, dt, friction, cap)
+    return d - clearance
+
+
+@njit(cache=True, error_model="numpy")
 def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, cap):
     """Resolves the vertices near[:, 0]; returns the deepest depth seen [m]."""
     deepest = 0.0
     for s in range(len(near)):
-        i = near[s, 0]
-        if inverse_mass[i] == 0.0:
-            continue
-        d, nx, ny, nz, speed = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
-        depth = clearance - d
-        if depth > 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
-            deepest = max(deepest, depth)
-            _resolve(x, v, i, (nx, ny, nz), depth, speed, dt, friction, cap)
+        if inverse_mass[near[s, 0]] > 0.0:
+            deepest = max(deepest, -_meet(packed, x, v, near[s, 0], clearance, dt, friction, cap))
     return deepest
 
 
 @njit(cache=True, error_model="numpy")
+def collide_due_vertices(
+    packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, friction, cap
+):
+    """As `collide_vertices`, for those whose wake (S,) is due: a vertex sleeps for as long as it cannot arrive.
+
+    awake: nobody sleeps.
+    """
+    for s in range(len(samples)):
+        if wake[s] > step and not awake:
+            continue
+        i = samples[s, 0]
+        if inverse_mass[i] == 0.0:
+            continue
+        room = _meet(packed, x, v, i, clearance, dt, friction, cap)
+        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, dt)
+
+
+@njit(cache=True, error_model="numpy")
+def _sleep(room, speed2, dt):
+    """Substeps that `room` [m] lasts at twice the speed and a little more."""
+    if room <= 0.0:
+        return 0
+    return int(min(LONGEST_SLEEP, room / (dt * (2.0 * math.sqrt(speed2) + SLEEP_SPEED))))
+
+
+@njit(cache=True, error_model="numpy")
+def _meet_middle(packed, inverse_mass, x, v, sample, clearance, cap):
+    """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
+    i, j, k = sample[0], sample[1], sample[2]
+    pair = i == k
+    w = 0.5 if pair else 1.0 / 3.0
+    count = 2 if pair else 3
+    px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
+    py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
+    pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
+    d, nx, ny, nz, _ = signed_distance(packed, px, py, pz)
+    if d >= clearance or nx * nx + ny * ny + nz * nz < 0.5:
+        return d - clearance
+    push = min(clearance - d, cap) / (w * w * count)
+    vn = 0.0
+    for a in range(count):
+        u = sample[a]
+        vn += w * (v[u, 0] * nx + v[u, 1] * ny + v[u, 2] * nz)
+    gain = max(-vn, 0.0) / (w * w * count)
+    for a in range(count):
+        u = sample[a]
+        if inverse_mass[u] > 0.0:
+            x[u, 0] += w * push * nx
+            x[u, 1] += w * push * ny
+            x[u, 2] += w * push * nz
+            v[u, 0] += w * gain * nx
+            v[u, 1] += w * gain * ny
+            v[u, 2] += w * gain * nz
+    return d - clearance
+
+
+@njit(cache=True, error_model="numpy")
 def collide_samples(packed, inverse_mass, x, v, near, clearance, cap):
-    """Keeps midpoints (i, j, j') and centroids outside by moving their vertices; no friction here.
+    """Keeps midpoints and centroids outside by moving their vertices; no friction here.
 
     A midpoint is stored as (i, j, i) and means weights 1/2, 1/2; a centroid as (i, j, k).
     """
     for s in range(len(near)):
-        i, j, k = near[s]
-        pair = i == k
-        w = 0.5 if pair else 1.0 / 3.0
-        count = 2 if pair else 3
-        px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
-        py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
-        pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
-        d, nx, ny, nz, _ = signed_distance(packed, px, py, pz)
-        if d >= clearance or nx * nx + ny * ny + nz * nz < 0.5:
+        _meet_middle(packed, inverse_mass, x, v, near[s], clearance, cap)
+
+
+@njit(cache=True, error_model="numpy")
+def collide_due_samples(packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, cap):
+    """As `collide_samples`, for those whose wake (S,) is due."""
+    for s in range(len(samples)):
+        if wake[s] > step and not awake:
             continue
-        push = min(clearance - d, cap) / (w * w * count)
-        vn = 0.0
-        for a in range(count):
-            u = near[s, a]
-            vn += w * (v[u, 0] * nx + v[u, 1] * ny + v[u, 2] * nz)
-        gain = max(-vn, 0.0) / (w * w * count)
-        for a in range(count):
-            u = near[s, a]
-            if inverse_mass[u] > 0.0:
-                x[u, 0] += w * push * nx
-                x[u, 1] += w * push * ny
-                x[u, 2] += w * push * nz
-                v[u, 0] += w * gain * nx
-                v[u, 1] += w * gain * ny
-                v[u, 2] += w * gain * nz
+        room = _meet_middle(packed, inverse_mass, x, v, samples[s], clearance, cap)
+        fast = 0.0
+        for a in range(3):
+            u = samples[s, a]
+            fast = max(fast, v[u, 0] ** 2 + v[u, 1] ** 2 + v[u, 2] ** 2)
+        wake[s] = step + 1 + _sleep(room, fast, dt)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -75,26 +75,29 @@ def _box(r, x, y, z):
 def _grid(r, grid, x, y, z):
     """Trilinear value and gradient; outside the box the value at its border plus the way there."""
     nx, ny, nz = grid.shape
-    u, v, w = (x - r[0]) / r[3], (y - r[1]) / r[3], (z - r[2]) / r[3]
-    cu, cv, cw = (
-        min(max(u, 0.0), nx - 1.000001),
-        min(max(v, 0.0), ny - 1.000001),
-        min(max(w, 0.0), nz - 1.000001),
-    )
+    per = 1.0 / r[3]
+    u, v, w = (x - r[0]) * per, (y - r[1]) * per, (z - r[2]) * per
+    cu = min(max(u, 0.0), nx - 1.000001)
+    cv = min(max(v, 0.0), ny - 1.000001)
+    cw = min(max(w, 0.0), nz - 1.000001)
     ox, oy, oz = (u - cu) * r[3], (v - cv) * r[3], (w - cw) * r[3]
-    i, j, k = int(cu), int(cv), int(cw)
+    i, j, k = np.uint64(cu), np.uint64(cv), np.uint64(cw)
     a, b, c = cu - i, cv - j, cw - k
-    g = grid[i : i + 2, j : j + 2, k : k + 2]
-    lo = (1 - a) * ((1 - b) * g[0, 0, 0] + b * g[0, 1, 0]) + a * ((1 - b) * g[1, 0, 0] + b * g[1, 1, 0])
-    hi = (1 - a) * ((1 - b) * g[0, 0, 1] + b * g[0, 1, 1]) + a * ((1 - b) * g[1, 0, 1] + b * g[1, 1, 1])
-    dx = (1 - c) * ((1 - b) * (g[1, 0, 0] - g[0, 0, 0]) + b * (g[1, 1, 0] - g[0, 1, 0]))
-    dx += c * ((1 - b) * (g[1, 0, 1] - g[0, 0, 1]) + b * (g[1, 1, 1] - g[0, 1, 1]))
-    dy = (1 - c) * ((1 - a) * (g[0, 1, 0] - g[0, 0, 0]) + a * (g[1, 1, 0] - g[1, 0, 0]))
-    dy += c * ((1 - a) * (g[0, 1, 1] - g[0, 0, 1]) + a * (g[1, 1, 1] - g[1, 0, 1]))
+    one = np.uint64(1)
+    g000, g001 = float(grid[i, j, k]), float(grid[i, j, k + one])
+    g010, g011 = float(grid[i, j + one, k]), float(grid[i, j + one, k + one])
+    g100, g101 = float(grid[i + one, j, k]), float(grid[i + one, j, k + one])
+    g110 = float(grid[i + one, j + one, k])
+    g111 = float(grid[i + one, j + one, k + one])
+    x00, x01, x10, x11 = g100 - g000, g101 - g001, g110 - g010, g111 - g011
+    h00, h01, h10, h11 = g000 + a * x00, g001 + a * x01, g010 + a * x10, g011 + a * x11
+    lo, hi = h00 + b * (h10 - h00), h01 + b * (h11 - h01)
+    dx = (1.0 - c) * (x00 + b * (x10 - x00)) + c * (x01 + b * (x11 - x01))
+    dy = (1.0 - c) * (h10 - h00) + c * (h11 - h01)
     away = math.sqrt(ox * ox + oy * oy + oz * oz)
     if away > 0.0:
         return (1 - c) * lo + c * hi + away, ox / away, oy / away, oz / away
-    return (1 - c) * lo + c * hi, dx / r[3], dy / r[3], (hi - lo) / r[3]
+    return (1 - c) * lo + c * hi, dx * per, dy * per, (hi - lo) * per
 
 
 @njit(cache=True, error_model="numpy")

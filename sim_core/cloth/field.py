@@ -162,8 +162,15 @@ def _checked(
         raise SimCoreError("field: vertices are not finite – mend the mesh")
     there = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
     forward = np.where(faces[:, [0, 1, 2]] < faces[:, [1, 2, 0]], 1, -1).ravel()
-    _, index = np.unique(there[:, 0] * len(vertices) + there[:, 1], return_inverse=True)
-    open_edges = int((np.bincount(index.reshape(-1), forward) != 0).sum())
-    if open_edges:
-        raise SimCoreError(f"field: the mesh is open or ill-wound at {open_edges} edges – close it first")
+    _, first, index = np.unique(
+        there[:, 0] * len(vertices) + there[:, 1], return_index=True, return_inverse=True
+    )
+    torn = np.flatnonzero(np.bincount(index.reshape(-1), forward) != 0)
+    if len(torn):
+        a, b = there[first[torn[0]]]
+        x, y, z = (vertices[a] + vertices[b]) / 2
+        raise SimCoreError(
+            f"field: the mesh is open or ill-wound at {len(torn)} edges, the first between vertices {a} and {b} at "
+            f"({x:.3f}, {y:.3f}, {z:.3f}) m – close it first"
+        )
     return vertices, faces

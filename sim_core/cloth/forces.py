@@ -1,4 +1,4 @@
-"""Compiled forces and energies of the edge-tension form, and the largest stable step.
+"""Forces and energies of the edge-tension form as the book has them; `banded.py` is the same, run by run.
 
 Edge e with d = x_i - x_j has eps = |d|^2 - L^2 and tension T = 2 sum K eps; vertex i feels -T d. This is the
 exact force of a St. Venant-Kirchhoff membrane of linear triangles (Delingette 2008), pairwise and central.
@@ -42,80 +42,6 @@ def vertex_forces(stencil, x, tension, force):
             fy += weight * (x[j, 1] - x[i, 1])
             fz += weight * (x[j, 2] - x[i, 2])
         force[i, 0], force[i, 1], force[i, 2] = fx, fy, fz
-
-
-@njit(cache=True, error_model="numpy")
-def kick(stencil, x, v, tension, force, step, damping, gravity):
-    """Leapfrog's velocity update over `step` [s]; gravity (3,) [m/s2]."""
-    vertex_forces(stencil, x, tension, force)
-    keep = (1.0 - 0.5 * damping * step) / (1.0 + 0.5 * damping * step)
-    gain = step / (1.0 + 0.5 * damping * step)
-    for i in range(len(x)):
-        w = stencil.inverse_mass[i]
-        if w == 0.0:
-            v[i, :] = 0.0
-            continue
-        for c in range(3):
-            v[i, c] = keep * v[i, c] + gain * (force[i, c] * w + gravity[c])
-
-
-@njit(cache=True, error_model="numpy")
-def _stiffness_times(stencil, x, tension, p, strain, change, out):
-    """out = K p for the current tangent: derivative of the force above, sign turned."""
-    edges = stencil.edges
-    for e in range(len(edges)):
-        i, j = edges[e, 0], edges[e, 1]
-        total = 0.0
-        for c in range(3):
-            total += (x[i, c] - x[j, c]) * (p[i, c] - p[j, c])
-        strain[e] = 2.0 * total
-    for e in range(len(edges)):
-        total = stencil.own[e] * strain[e]
-        for k in range(4):
-            total += stencil.coupling[e, k] * strain[stencil.around[e, k]]
-        change[e] = 2.0 * total
-    for i in range(len(x)):
-        fx = fy = fz = 0.0
-        for k in range(stencil.rows[i], stencil.rows[i + 1]):
-            j, e = stencil.neighbour[k], stencil.edge_of[k]
-            weight, pull = -stencil.bend[k], 0.0
-            if e >= 0:
-                weight += tension[e]
-                pull = change[e]
-            fx += pull * (x[i, 0] - x[j, 0]) + weight * (p[i, 0] - p[j, 0])
-            fy += pull * (x[i, 1] - x[j, 1]) + weight * (p[i, 1] - p[j, 1])
-            fz += pull * (x[i, 2] - x[j, 2]) + weight * (p[i, 2] - p[j, 2])
-        out[i, 0], out[i, 1], out[i, 2] = fx, fy, fz
-
-
-@njit(cache=True, error_model="numpy")
-def _highest_frequency2(stencil, x, tension, start, rounds):
-    """Largest eigenvalue of M^-1 K by power iteration [1/s2]; the growth of the last round."""
-    p, out = start.copy(), np.zeros_like(x)
-    strain, change = np.zeros(len(stencil.edges)), np.zeros(len(stencil.edges))
-    value = 0.0
-    for _ in range(rounds):
-        size = np.sqrt((p * p).sum())
-        p /= size
-        _stiffness_times(stencil, x, tension, p, strain, change, out)
-        for i in range(len(x)):
-            for c in range(3):
-                out[i, c] *= stencil.inverse_mass[i]
-        value = np.sqrt((out * out).sum())
-        p[:] = out
-    return value
-
-
-def stable_step(stencil: Stencil, x: np.ndarray, beta: float, *, rounds: int = 30) -> float:
-    """Largest stable leapfrog step [s] of the current tangent at x (V, 3), lagged stiffness damping included.
-
-    The start of the power iteration is fixed, so that equal states give equal steps, also after a resume.
-    """
-    strain, tension = np.zeros(len(stencil.edges)), np.zeros(len(stencil.edges))
-    edge_tensions(stencil, x, np.zeros_like(x), 0.0, strain, tension)
-    start = np.random.default_rng(20).standard_normal(x.shape)
-    omega2 = _highest_frequency2(stencil, x, tension, start, rounds)
-    return float(np.sqrt(beta * beta + 4.0 / omega2) - beta)
 
 
 @njit(cache=True, error_model="numpy")

@@ -64,6 +64,12 @@ class Holds(NamedTuple):
             same[same == same[b]] = same[a]
         return Holds(pairs, spans, same, low, high, slaves)
 
+    def renumbered(self, number: np.ndarray, order: np.ndarray) -> Holds:
+        """The same holds for vertices of which i is now called number[i]; order (V,) is the way back."""
+        moved = [number[a].astype(np.int32) for a in (self.pairs, self.same[order], self.slaves)]
+        low, high = (a[order] if len(a) else a for a in (self.low, self.high))
+        return Holds(moved[0], self.spans, moved[1], low, high, moved[2])
+
 
 @njit(cache=True, error_model="numpy")
 def draw_together(holds, inverse_mass, x, v, share, rate):

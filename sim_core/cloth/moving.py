@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -50,7 +51,37 @@ class MovingGrid:
             del self._kept[k]
         for k in (first, second):
             if k not in self._kept:
-                self._kept[k] = np.ascontiguousarray(self.key(k), float)
+                self._kept[k] = np.ascontiguousarray(self.key(k), np.float32)
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
         return Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))
+
+
+def moving_mesh(
+    positions: np.ndarray, faces: np.ndarray, *, cell: float = 0.008, band: float = 0.04
+) -> MovingGrid:
+    """A body given by its vertices frame by frame, as what cloth lies on: one key for each frame.
+
+    positions (T, V, 3) [m]; faces (F, 3) counter-clockwise from outside, closed; cell, band [m] of the distance
+    fields, which are made as the frames come. A phase with body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what
+    is thinner than twice the way of one frame may be missed in between. Raises SimCoreError at once where the mesh is
+    open, ill-wound or not finite, and says where.
+    """
+    from sim_core.cloth.field import field_of
+
+    frames = np.array(positions, float, order="C")
+    if frames.ndim != 3 or frames.shape[2] != 3 or not len(frames):
+        raise SimCoreError(f"moving mesh: positions {frames.shape} – expected (T, V, 3), T at least 1")
+    wrong = np.flatnonzero(~np.isfinite(frames).all((1, 2)))
+    if len(wrong):
+        raise SimCoreError(f"moving mesh: frame {wrong[0]} has vertices that are not finite – mend it")
+    faces = np.array(faces, np.int32, order="C")
+    low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
+    digest = hashlib.sha256(frames.tobytes() + faces.tobytes()).hexdigest()[:16]
+
+    def key(k: int) -> np.ndarray:
+        return field_of(frames[k], faces, cell=cell, band=band, box=(low, high), far=False).values
+
+    first, origin = key(0), (float(low[0]), float(low[1]), float(low[2]))
+    name = f"mesh {digest} cell {cell} band {band}"
+    return MovingGrid(origin, cell, len(frames), key, name, {0: first})

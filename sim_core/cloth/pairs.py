@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
+CELLS = 8  # of the hash grid, at most, for each thing that is looked for
+FAR = 1e6  # [m] beyond it, or not a number, nothing is looked for
 
 
 @njit(cache=True, error_model="numpy")
@@ -62,28 +66,64 @@ def triangle_weights(p, a, b, c):
     return 1.0 - v - w, v, w
 
 
+class Finder(NamedTuple):
+    """Working memory of a search, made once a run: V vertices, E edges, F faces, N the most of them."""
+
+    face_normal: np.ndarray  # (F, 3)
+    vertex_normal: np.ndarray  # (V, 3)
+    centre: np.ndarray  # (F, 3)
+    balls: np.ndarray  # (E, 7)
+    by_cell: np.ndarray  # (N, 7) what is looked for, sorted
+    key: np.ndarray  # (N,) cell of each
+    order: np.ndarray  # (N,)
+    start: np.ndarray  # (cells + 1,)
+    fill: np.ndarray  # (cells + 1,)
+
+
+def finder_of(vertices: int, edges: int, faces: int) -> Finder:
+    """Memory for a sheet of so many vertices, edges and faces."""
+    most = max(vertices, edges, faces)
+    fields = [np.zeros((n, c)) for n, c in ((faces, 3), (vertices, 3), (faces, 3), (edges, 7), (most, 7))]
+    cells = CELLS * most + 65
+    return Finder(*fields, *(np.zeros(n, np.int32) for n in (most, most, cells, cells)))
+
+
+def pairs_of(vertices: int) -> np.ndarray:
+    """An empty list of pairs (K, 2) int32, long enough for most cloths of so many vertices."""
+    return np.zeros((4 * vertices + 64, 2), np.int32)
+
+
 @njit(cache=True, error_model="numpy")
-def hash_points(points, cell):
-    """Sorts points (N, 3) into cells; returns order (N,), start of each cell, dims (3,) and the low corner."""
-    low = np.zeros(3)
-    dims = np.zeros(3, np.int64)
-    for c in range(3):
-        low[c] = points[:, c].min()
-        dims[c] = int((points[:, c].max() - low[c]) / cell) + 1
-    key = np.zeros(len(points), np.int64)
-    start = np.zeros(dims[0] * dims[1] * dims[2] + 1, np.int64)
+def hash_points(points, cell, finder):
+    """Sorts points (N, 3 or more) into cells of `cell` [m] or, where they lie far apart, larger ones.
+
+    finder.order and finder.start are where each cell's points are; returns the cells each way, low corner and cell.
+    """
+    lx = ly = lz = np.inf
+    hx = hy = hz = -np.inf
     for i in range(len(points)):
-        k = 0
-        for c in range(3):
-            k = k * dims[c] + int((points[i, c] - low[c]) / cell)
-        key[i] = k
-        start[k + 1] += 1
-    start[:] = np.cumsum(start)
-    fill, order = start.copy(), np.zeros(len(points), np.int32)
+        lx, hx = min(lx, points[i, 0]), max(hx, points[i, 0])
+        ly, hy = min(ly, points[i, 1]), max(hy, points[i, 1])
+        lz, hz = min(lz, points[i, 2]), max(hz, points[i, 2])
+    if not (hx - lx < FAR and hy - ly < FAR and hz - lz < FAR):
+        return (0, 0, 0), (0.0, 0.0, 0.0), cell  # what blew up is told by whoever checks the frame
+    most = len(finder.start) - 1
+    while ((hx - lx) / cell + 1.0) * ((hy - ly) / cell + 1.0) * ((hz - lz) / cell + 1.0) > most:
+        cell *= 1.25
+    nx, ny, nz = int((hx - lx) / cell) + 1, int((hy - ly) / cell) + 1, int((hz - lz) / cell) + 1
+    start, fill, key, order = finder.start, finder.fill, finder.key, finder.order
+    start[: nx * ny * nz + 1] = 0
+    for i in range(len(points)):
+        k = int((points[i, 0] - lx) / cell) * ny + int((points[i, 1] - ly) / cell)
+        key[i] = k * nz + int((points[i, 2] - lz) / cell)
+        start[key[i] + 1] += 1
+    for k in range(nx * ny * nz):
+        start[k + 1] += start[k]
+        fill[k] = start[k]
     for i in range(len(points)):
         order[fill[key[i]]] = i
         fill[key[i]] += 1
-    return order, start, dims, low
+    return (nx, ny, nz), (lx, ly, lz), cell
 
 
 @njit(cache=True, error_model="numpy")
@@ -96,9 +136,9 @@ def _grown(pairs, count):
 
 
 @njit(cache=True, error_model="numpy")
-def normals_of(x, faces):
-    """Unit normals of faces (F, 3) and vertices (V, 3)."""
-    face, vertex = np.zeros((len(faces), 3)), np.zeros_like(x)
+def normals_of(x, faces, face, vertex):
+    """Unit normals of faces (F, 3) and vertices (V, 3), into `face` and `vertex`."""
+    vertex[:] = 0.0
     for f in range(len(faces)):
         i, j, k = faces[f]
         ax, ay, az = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
@@ -111,8 +151,9 @@ def normals_of(x, faces):
         size = math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-30
         face[f, 0], face[f, 1], face[f, 2] = nx / size, ny / size, nz / size
     for i in range(len(x)):
-        vertex[i] /= math.sqrt((vertex[i] ** 2).sum()) + 1e-30
-    return face, vertex
+        size = math.sqrt(vertex[i, 0] ** 2 + vertex[i, 1] ** 2 + vertex[i, 2] ** 2) + 1e-30
+        for axis in range(3):
+            vertex[i, axis] /= size
 
 
 @njit(cache=True, error_model="numpy")
@@ -141,28 +182,34 @@ def _vertex_near_face(x, i, face, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def vertex_face_pairs(x, rest, faces, same, reach, near):
-    """(vertex, face) pairs (K, 2) int32 nearer than `reach`, without the faces around the vertex.
+def vertex_face_pairs(x, rest, faces, same, reach, near, finder, pairs):
+    """(vertex, face) pairs nearer than `reach`, without the faces around the vertex, into pairs (K, 2) int32.
 
     near [m]: pairs closer than this at rest (V, 2) count as one sheet while their normals agree. same (V,):
-    vertices with equal numbers count as one.
+    vertices with equal numbers count as one. Returns the list, a longer one where it was full, and how many there are.
     """
-    centre = (x[faces[:, 0]] + x[faces[:, 1]] + x[faces[:, 2]]) / 3.0
-    face_normal, vertex_normal = normals_of(x, faces)
+    centre, sorted_x = finder.centre, finder.by_cell
+    normals_of(x, faces, finder.face_normal, finder.vertex_normal)
     size2 = 0.0
     for f in range(len(faces)):
+        a, b, c = faces[f]
+        for axis in range(3):
+            centre[f, axis] = (x[a, axis] + x[b, axis] + x[c, axis]) / 3.0
         for k in range(3):
             j = faces[f, k]
             gap = (
                 (x[j, 0] - centre[f, 0]) ** 2 + (x[j, 1] - centre[f, 1]) ** 2 + (x[j, 2] - centre[f, 2]) ** 2
             )
             size2 = max(size2, gap)
-    cell = math.sqrt(size2) + reach
-    order, start, dims, low = hash_points(x, cell)
-    sorted_x = x[order]
-    pairs, count = np.zeros((4 * len(x) + 64, 2), np.int32), 0
+    span = math.sqrt(size2) + reach
+    dims, low, cell = hash_points(x, span, finder)
+    order, start = finder.order, finder.start
+    for q in range(len(x)):
+        for axis in range(3):
+            sorted_x[q, axis] = x[order[q], axis]
+    count = 0
     for f in range(len(faces)):
-        px, py, pz = centre[f]
+        px, py, pz = centre[f, 0], centre[f, 1], centre[f, 2]
         ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
         for cx in range(max(ax - 1, 0), min(ax + 2, dims[0])):
             for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
@@ -170,15 +217,15 @@ def vertex_face_pairs(x, rest, faces, same, reach, near):
                 for q in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
                     gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
                     i = order[q]
-                    if gap > cell * cell or _one_sheet(
-                        x, rest, i, faces[f, 0], near * near, vertex_normal[i], face_normal[f]
+                    if gap > span * span or _one_sheet(
+                        x, rest, i, faces[f, 0], near * near, finder.vertex_normal[i], finder.face_normal[f]
                     ):
                         continue
                     if _vertex_near_face(x, i, faces[f], same, reach):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = i, f
                         count += 1
-    return pairs[:count]
+    return pairs, count
 
 
 @njit(cache=True, error_model="numpy")
@@ -195,10 +242,11 @@ def _edges_near(x, first, second, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def _balls(x, faces, edges):
-    """Midpoint, half length and mean normal of every edge in columns (E, 7)."""
-    _, normal = normals_of(x, faces)
-    out = np.zeros((len(edges), 7))
+def _balls(x, faces, edges, finder):
+    """Midpoint, half length and mean normal of every edge in columns, into finder.balls; returns the largest half."""
+    face, normal, out = finder.face_normal, finder.vertex_normal, finder.balls
+    normals_of(x, faces, face, normal)
+    most = 0.0
     for e in range(len(edges)):
         i, j = edges[e]
         length2 = 0.0
@@ -207,17 +255,23 @@ def _balls(x, faces, edges):
             out[e, 4 + c] = 0.5 * (normal[i, c] + normal[j, c])
             length2 += (x[i, c] - x[j, c]) ** 2
         out[e, 3] = 0.5 * math.sqrt(length2)
-    return out
+        most = max(most, out[e, 3])
+    return most
 
 
 @njit(cache=True, error_model="numpy")
-def edge_edge_pairs(x, rest, faces, edges, same, reach, near):
-    """(edge, edge) pairs (K, 2) int32 nearer than `reach` that share no vertex; `near` as for vertices and faces."""
-    balls = _balls(x, faces, edges)
-    cell = 2.0 * balls[:, 3].max() + reach
-    order, start, dims, low = hash_points(balls[:, :3].copy(), cell)
-    balls = balls[order]
-    pairs, count = np.zeros((4 * len(x) + 64, 2), np.int32), 0
+def edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, pairs):
+    """(edge, edge) pairs nearer than `reach` that share no vertex, into pairs (K, 2) int32.
+
+    All else as for vertices and faces.
+    """
+    cell = 2.0 * _balls(x, faces, edges, finder) + reach
+    dims, low, cell = hash_points(finder.balls, cell, finder)
+    order, start, balls = finder.order, finder.start, finder.by_cell
+    for s in range(len(edges)):
+        for c in range(7):
+            balls[s, c] = finder.balls[order[s], c]
+    count = 0
     for s in range(len(edges)):
         px, py, pz, half = balls[s, 0], balls[s, 1], balls[s, 2], balls[s, 3] + reach
         ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
@@ -238,4 +292,4 @@ def edge_edge_pairs(x, rest, faces, edges, same, reach, near):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = e, g
                         count += 1
-    return pairs[:count]
+    return pairs, count

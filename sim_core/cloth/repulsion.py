@@ -59,10 +59,10 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def repel(x, v, inverse_mass, faces, edges, points, crossings, shell, dt):
-    """Impulses for all vertex-face pairs `points` and edge-edge pairs `crossings`, in their fixed order."""
+def repel(x, v, inverse_mass, faces, edges, points, crossings, counts, shell, dt):
+    """Impulses for counts[0] vertex-face pairs `points` and counts[1] edge-edge pairs, in their fixed order."""
     reach2 = shell.thickness * shell.thickness
-    for k in range(len(points)):
+    for k in range(counts[0]):
         i, f = points[k]
         a, b, c = faces[f]
         wa, wb, wc = triangle_weights(x[i], x[a], x[b], x[c])
@@ -71,7 +71,7 @@ def repel(x, v, inverse_mass, faces, edges, points, crossings, shell, dt):
         dz = x[i, 2] - wa * x[a, 2] - wb * x[b, 2] - wc * x[c, 2]
         if dx * dx + dy * dy + dz * dz < reach2:
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
-    for k in range(len(crossings)):
+    for k in range(counts[1]):
         a, b = edges[crossings[k, 0]]
         c, d = edges[crossings[k, 1]]
         s, t = segment_parameters(x[a], x[b], x[c], x[d])
@@ -86,12 +86,16 @@ def repel(x, v, inverse_mass, faces, edges, points, crossings, shell, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, rest, faces, edges, length2, same, shell):
-    """Vertex-face and edge-edge candidates within thickness + skin; same (V,): vertices to be sewn share a number."""
+def candidate_pairs(x, rest, faces, edges, length2, same, shell, finder, points, crossings):
+    """Vertex-face and edge-edge candidates within thickness + skin; same (V,): vertices to be sewn share a number.
+
+    Both lists (K, 2) are written over; returns them, longer ones where they were full, and how many are in each.
+    """
     reach = shell.thickness + shell.skin
     side = 0.0
     for e in range(len(edges)):
         side += math.sqrt(length2[e])
     near = 3.5 * side / len(edges)
-    points = vertex_face_pairs(x, rest, faces, same, reach, near)
-    return points, edge_edge_pairs(x, rest, faces, edges, same, reach, near)
+    points, first = vertex_face_pairs(x, rest, faces, same, reach, near, finder, points)
+    crossings, second = edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, crossings)
+    return points, crossings, (first, second)

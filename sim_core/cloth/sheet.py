@@ -13,11 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+from sim_core.cloth.bending import bending_matrix
 from sim_core.cloth.material import Material
 from sim_core.errors import SimCoreError
-
-# Quadratic isometric bending is 3 times too stiff on equilateral meshes (measured: 2.99), in any direction.
-BENDING_SCALE = 1.0 / 3.0
 
 
 class Stencil(NamedTuple):
@@ -106,7 +104,7 @@ class Sheet:
             stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
         own, around, coupling = _membrane(stiffness, face_edges, len(edges))
         bend = np.array([material.bend for material in materials])[kind]
-        bending = _bending(corner, len(rest), faces, edges, face_edges, area, bend)
+        bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
         length2 = _edge_lengths2(corner, face_edges, len(edges))
         stencil = Stencil(1 / mass, edges, length2, own, around, coupling, rows, neighbour, edge_of, bend)
@@ -217,53 +215,6 @@ def _without_repeats(values: np.ndarray) -> list[np.ndarray]:
         parts.append(left[first])
         left = np.delete(left, first)
     return parts
-
-
-def _bending(
-    corner: np.ndarray,
-    count: int,
-    faces: np.ndarray,
-    edges: np.ndarray,
-    face_edges: np.ndarray,
-    area: np.ndarray,
-    bend: np.ndarray,
-) -> sparse.csr_array:
-    """Q (V, V) of the quadratic isometric bending energy x.Q.x/2 (Bergou et al. 2006), hinge by hinge.
-
-    bend: (F,) [N m]; a hinge between two cloths takes the mean.
-    """
-    face = np.repeat(np.arange(len(faces)), 3)
-    order = np.argsort(face_edges.ravel(), kind="stable")
-    edge_sorted = face_edges.ravel()[order]
-    inner = np.flatnonzero(edge_sorted[1:] == edge_sorted[:-1])
-    first, second = order[inner], order[inner + 1]
-    edge = edge_sorted[inner]
-    start, end = edges[edge, 0], edges[edge, 1]
-    opposite = [faces.ravel()[first], faces.ravel()[second]]
-    cotangent = _cotangents(corner)
-
-    def at(flat: np.ndarray, vertex: np.ndarray) -> np.ndarray:
-        """Cotangent of the face of corner `flat` at `vertex`, one of its two other corners."""
-        own, ahead = flat // 3, (flat + 1) % 3
-        ahead = np.where(faces[own, ahead] == vertex, ahead, (flat + 2) % 3)
-        return cotangent[own, ahead]
-
-    # flat % 3 is the corner; (flat + 1) % 3 and (flat + 2) % 3 are the others, since faces start at multiples of 3
-    c01, c02 = at(first, start), at(second, start)
-    c03, c04 = at(first, end), at(second, end)
-    weights = np.stack([c03 + c04, c01 + c02, -c01 - c03, -c02 - c04], axis=1)
-    stiff = 0.5 * (bend[face[first]] + bend[face[second]])
-    factor = BENDING_SCALE * 3 * stiff / (area[face[first]] + area[face[second]])
-    index = np.stack([start, end, *opposite], axis=1)
-    values = factor[:, None, None] * weights[:, :, None] * weights[:, None, :]
-    row, column = np.repeat(index, 4, axis=1), np.tile(index, (1, 4))
-    return sparse.coo_array((values.ravel(), (row.ravel(), column.ravel())), (count, count)).tocsr()
-
-
-def _cotangents(corner: np.ndarray) -> np.ndarray:
-    """Cotangent (F, 3) of the angle at every corner."""
-    a, b = np.roll(corner, -1, axis=1) - corner, np.roll(corner, -2, axis=1) - corner
-    return (a * b).sum(2) / np.abs(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _neighbours(

@@ -1,4 +1,4 @@
-"""The compiled time loop: leapfrog, contact and self-contact, over one frame."""
+"""The compiled time loop: leapfrog with bending and air at longer steps, contact and self-contact, over one frame."""
 
 from __future__ import annotations
 
@@ -7,15 +7,32 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.banded import (
+    band_add,
+    band_ahead,
+    band_air,
+    band_bends,
+    band_damped_strains,
+    band_drift,
+    band_kick,
+    band_limit,
+    band_pulls,
+    band_strain_before,
+    band_strains,
+    band_tensions,
+)
 from sim_core.cloth.collider import MOVING
-from sim_core.cloth.contact import collide_samples, collide_vertices, near_samples
-from sim_core.cloth.forces import edge_tensions, kick
+from sim_core.cloth.contact import (
+    collide_due_samples,
+    collide_due_vertices,
+)
 from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
-CONTACT_REACH = 0.02  # [m] samples further away than this are left out until the cloth has moved half of it
-
 SAMPLES_EVERY = 4  # substeps between two looks at midpoints and centroids (and always the last of a frame)
+AIR_EVERY = 2  # substeps between two looks at the air
+LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
+FREE = 1e3  # [m/s] a speed limit from here on is none
 
 
 class Surroundings(NamedTuple):
@@ -35,97 +52,181 @@ class Surroundings(NamedTuple):
     body: tuple[
         float, float
     ]  # where a moving grid stands between its keys, 0..1, at begin and end of the frame
+    wind: np.ndarray  # (2, 3) [m/s] at begin and end of the frame
+    press: float  # rho Cd / 12 [kg/m3]; 0: no air
+    pulled: np.ndarray  # (P,) vertices that are pulled
+    pull: np.ndarray  # (P, 3) [N]
+    slow: int  # substeps between two looks at bending
+
+
+class Room(NamedTuple):
+    """Working memory of the loop, made once a run."""
+
+    strain: np.ndarray
+    before: np.ndarray
+    tension: np.ndarray
+    change: np.ndarray
+    force: np.ndarray
+    air: np.ndarray
+    air_now: np.ndarray
+    air_past: np.ndarray
+    face: np.ndarray
+    mark: np.ndarray
+    wake_vertices: np.ndarray
+    wake_middles: np.ndarray
+
+
+def room_of(edges: int, vertices: int, longest: int, samples: tuple[int, int]) -> Room:
+    """Room for E edges, V vertices, runs of `longest` faces and so many vertex and middle samples."""
+    lines = [np.zeros(n) for n in (edges, edges, edges + vertices, edges + vertices)]
+    fields = [np.zeros((3, n)) for n in (vertices, vertices, vertices, vertices, max(longest, 1), vertices)]
+    return Room(*lines, *fields, *(np.zeros(n, np.int32) for n in samples))
 
 
 @njit(cache=True, error_model="numpy")
-def _drift(x, v, dt, speed_limit):
-    """x += dt v with speeds held below the limit; returns the mean step (3,) and the longest off the mean [m]."""
-    mean = np.zeros(3)
+def _travel(x, v, mark):
+    """How far (V, 3) x has come from its mark and how fast it goes, at most, off the cloth's mean."""
+    dx = dy = dz = vx = vy = vz = 0.0
     for i in range(len(x)):
-        speed2 = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
-        if speed2 > speed_limit * speed_limit:
-            slower = speed_limit / np.sqrt(speed2)
-            v[i, 0], v[i, 1], v[i, 2] = v[i, 0] * slower, v[i, 1] * slower, v[i, 2] * slower
-        for c in range(3):
-            x[i, c] += dt * v[i, c]
-            mean[c] += v[i, c]
-    mean /= len(x)
-    fastest = 0.0
+        dx, dy, dz = dx + x[i, 0] - mark[i, 0], dy + x[i, 1] - mark[i, 1], dz + x[i, 2] - mark[i, 2]
+        vx, vy, vz = vx + v[i, 0], vy + v[i, 1], vz + v[i, 2]
+    share = 1.0 / len(x)
+    dx, dy, dz, vx, vy, vz = share * dx, share * dy, share * dz, share * vx, share * vy, share * vz
+    far = fast = 0.0
     for i in range(len(x)):
-        off = (v[i, 0] - mean[0]) ** 2 + (v[i, 1] - mean[1]) ** 2 + (v[i, 2] - mean[2]) ** 2
-        fastest = max(fastest, off)
-    return dt * mean, dt * np.sqrt(fastest)
+        a, b, c = x[i, 0] - mark[i, 0] - dx, x[i, 1] - mark[i, 1] - dy, x[i, 2] - mark[i, 2] - dz
+        far = max(far, a * a + b * b + c * c)
+        a, b, c = v[i, 0] - vx, v[i, 1] - vy, v[i, 2] - vz
+        fast = max(fast, a * a + b * b + c * c)
+    return np.sqrt(far), np.sqrt(fast)
 
 
 @njit(cache=True, error_model="numpy")
-def _moved(x, mark, shift):
-    """Largest distance of any vertex from its mark moved by shift (3,) [m]."""
-    far = 0.0
-    for i in range(len(x)):
-        dx, dy, dz = (
-            x[i, 0] - mark[i, 0] - shift[0],
-            x[i, 1] - mark[i, 1] - shift[1],
-            x[i, 2] - mark[i, 2] - shift[2],
-        )
-        far = max(far, dx * dx + dy * dy + dz * dz)
-    return np.sqrt(far)
+def _patience(left, fast, dt, cap):
+    """Substeps until `left` [m] may be used up at twice the speed `fast`, with pushes of `cap` each."""
+    if not left > 0.0:
+        return 0
+    return int(min(LOOK_EVERY, left / (2.0 * fast * dt + cap + 1e-12)))
 
 
 @njit(cache=True, error_model="numpy")
-def advance(stencil, rest, faces, packed, vertices, middles, holds, shell, around, x, v, last, dt, substeps):
-    """Simulates `substeps` steps of dt [s]; x, v (V, 3) change in place; returns how often pairs were looked for.
+def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
+    """Everything that pulls on the vertices, into room.force [N]."""
+    f, air = room.force, room.air
+    runs, length2, c = bands.edge_runs, bands.length2, bands.coupling
+    if around.beta > 0.0:
+        rate = around.beta / last if last > 0.0 else 0.0
+        band_damped_strains(runs, length2, x[0], x[1], x[2], rate, room.before, room.strain)
+    else:
+        band_strains(runs, length2, x[0], x[1], x[2], room.strain)
+    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    band_pulls(bands.vertex_runs, room.tension, x[0], x[1], x[2], f[0], f[1], f[2])
+    if slow_now:
+        band_bends(bands.bend_runs, bands.bend, float(around.slow), x[0], x[1], x[2], f[0], f[1], f[2])
+    if around.press > 0.0:
+        if air_now:
+            h, u, wind = room.face, around.press, around.wind
+            wx = wind[0, 0] + part * (wind[1, 0] - wind[0, 0])
+            wy = wind[0, 1] + part * (wind[1, 1] - wind[0, 1])
+            wz = wind[0, 2] + part * (wind[1, 2] - wind[0, 2])
+            raw, past = room.air_now, room.air_past
+            ends = (raw[0], raw[1], raw[2], h[0], h[1], h[2])
+            band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], wx, wy, wz, u, *ends)
+            # Held for the next steps, it acts on average half an interval later: that far it is carried on.
+            ahead = 0.5 if part > 0.0 else 0.0
+            for k in range(3):
+                band_ahead(raw[k], past[k], ahead, air[k])
+        band_add(f[0], f[1], f[2], air[0], air[1], air[2])
+    for k in range(len(around.pulled)):
+        for axis in range(3):
+            f[axis, around.pulled[k]] += around.pull[k, axis]
 
-    v lives half a step behind x; `last` is the previous step (0 at the start). Lists are renewed before the cloth
-    has moved half their margin (for pairs: off its mean).
+
+@njit(cache=True, error_model="numpy")
+def _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, last):
+    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
+    r, c, cap = around.sample_clearance, around.clearance, around.cap
+    moving = packed.kind[0] == MOVING  # comes nearer on its own: nobody sleeps
+    if step % SAMPLES_EVERY == 0 or last:
+        awake = moving or last
+        collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
+    wake = room.wake_vertices
+    collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
+
+
+@njit(cache=True, error_model="numpy")
+def advance(
+    bands,
+    inverse,
+    edges,
+    faces,
+    rest,
+    packed,
+    vertices,
+    middles,
+    holds,
+    shell,
+    around,
+    room,
+    finder,
+    points,
+    crossings,
+    xs,
+    vs,
+    last,
+    dt,
+    substeps,
+):
+    """Simulates `substeps` steps of dt [s]; xs, vs (3, V) change in place.
+
+    points, crossings (K, 2): lists for pairs, written over; returned, longer where they were full. v lives half a step
+    behind x; `last` is the previous step (0 at the start). Lists of pairs are renewed before the cloth has moved half
+    their margin off its mean.
     """
-    strain, tension = np.zeros(len(stencil.edges)), np.zeros(len(stencil.edges))
-    force, inverse = np.zeros_like(x), stencil.inverse_mass
+    x, v, mark = xs.T, vs.T, room.mark.T
     solids, layers = len(packed.kind) > 0, shell.thickness > 0.0
-    mark_solid, mark_layer, near_v, near_m = x.copy(), x.copy(), vertices[:0], middles[:0]
-    points, crossings = np.zeros((0, 2), np.int32), np.zeros((0, 2), np.int32)
-    moved_solid, moved_layer, searches = np.inf, np.inf, 0
-    shift, still = np.zeros(3), np.zeros(3)
+    room.wake_vertices[:] = 0
+    room.wake_middles[:] = 0
+    look_layer, counts = -1, (0, 0)
+    push = around.cap if solids else 0.0
+    g = around.gravity
+    if around.beta > 0.0:
+        band_strain_before(
+            bands.edge_runs, bands.length2, xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], last, room.before
+        )
     for step in range(substeps):
-        edge_tensions(stencil, x, v, around.beta, strain, tension)
-        kick(stencil, x, v, tension, force, 0.5 * (last + dt), around.damping, around.gravity)
+        slow_now, air_now = step % around.slow == 0, step % AIR_EVERY == 0
+        _forces(bands, around, room, xs, vs, step / substeps, slow_now, air_now, last)
+        span = 0.5 * (last + dt)
+        loss = 0.5 * around.damping * span
+        f, keep, gain = room.force, (1.0 - loss) / (1.0 + loss), span / (1.0 + loss)
+        band_kick(inverse, f[0], f[1], f[2], g[0], g[1], g[2], keep, gain, vs[0], vs[1], vs[2])
         last = dt
         if layers and step % shell.every == 0:
-            if moved_layer > 0.5 * shell.skin:
-                moved_layer = _moved(x, mark_layer, shift) if moved_layer < np.inf else np.inf
-                if moved_layer > 0.4 * shell.skin:
-                    points, crossings = candidate_pairs(
-                        x, rest, faces, stencil.edges, stencil.length2, holds.same, shell
+            if step >= look_layer:
+                far, fast = _travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
+                if far > 0.3 * shell.skin:
+                    points, crossings, counts = candidate_pairs(
+                        x, rest, faces, edges, bands.length2, holds.same, shell, finder, points, crossings
                     )
-                    mark_layer[:], shift[:], moved_layer, searches = x, 0.0, 0.0, searches + 1
-            repel(x, v, inverse, faces, stencil.edges, points, crossings, shell, dt * shell.every)
-        mean, way = _drift(x, v, dt, around.speed_limit)
-        shift += mean
-        moved_layer += way + around.cap * solids
-        moved_solid += way + np.sqrt((mean * mean).sum()) + around.cap * solids
+                    room.mark[:] = xs
+                    far, fast = _travel(x, v, mark)
+                look_layer = step + 1 + _patience(0.5 * shell.skin - far, fast, dt, push)
+            repel(x, v, inverse, faces, edges, points, crossings, counts, shell, dt * shell.every)
+        if around.speed_limit < FREE:
+            band_limit(vs[0], vs[1], vs[2], around.speed_limit)
+        band_drift(xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], dt)
         if len(holds.pairs) > 0:
             early, late = around.sewing
             share = early + (late - early) * (step + 1) / substeps
             draw_together(holds, inverse, x, v, share, (early - late) / (substeps * dt))
-        if not solids:
-            bound(holds, x, v)
-            mirror(holds, x, v)
-            continue
-        if packed.kind[0] == MOVING:
-            early, late = around.body
-            packed.blend[0] = early + (late - early) * (step + 1) / substeps
-            packed.blend[1] = (late - early) / (substeps * dt)
-        if moved_solid > 0.5 * CONTACT_REACH:
-            moved_solid = _moved(x, mark_solid, still) if moved_solid < np.inf else np.inf
-            if moved_solid > 0.4 * CONTACT_REACH:
-                reach = around.clearance + CONTACT_REACH
-                near_v, near_m = (
-                    near_samples(packed, x, vertices, reach),
-                    near_samples(packed, x, middles, reach),
-                )
-                mark_solid[:], moved_solid = x, 0.0
-        if step % SAMPLES_EVERY == 0 or step == substeps - 1:
-            collide_samples(packed, inverse, x, v, near_m, around.sample_clearance, around.cap)
-        collide_vertices(packed, inverse, x, v, near_v, around.clearance, dt, around.friction, around.cap)
+        if solids:
+            if packed.kind[0] == MOVING:
+                early, late = around.body
+                packed.blend[0] = early + (late - early) * (step + 1) / substeps
+                packed.blend[1] = (late - early) / (substeps * dt)
+            end = step == substeps - 1
+            _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, end)
         bound(holds, x, v)
         mirror(holds, x, v)
-    return searches
+    return points, crossings

@@ -1,6 +1,7 @@
 """Garments: patterns, placing, the drape as a value, levels of detail and GLB. See README.md."""
 
 from sim_core.garment.detail import choose_detail, detail
+from sim_core.garment.following import follow
 from sim_core.garment.glb import write_glb
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
@@ -16,6 +17,7 @@ __all__ = [
     "Stand",
     "choose_detail",
     "detail",
+    "follow",
     "robe_on_figure",
     "scarf_on_stand",
     "write_glb",

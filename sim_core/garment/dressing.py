@@ -15,9 +15,9 @@ from sim_core.cloth.phases import schedule
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.schedule import GRAVITY, Pose, Schedule
+from sim_core.garment.schedule import GRAVITY, UNTANGLE, Pose, Schedule
 from sim_core.garment.sewing import Cloth
-from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
+from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
 __all__ = ["FigureLike", "Worn", "dress"]
 
@@ -72,13 +72,15 @@ def dress(
     [m], as a display stitch keeps them. checkpoint: file to go on from; a second is written beside it.
     """
     cloth = pattern.cloth(edge)
-    materials, kind, choices = robe_materials(cloth_parameters(weave, relax(weave)), pattern, cloth, edge)
+    materials, kind, choices = robe_materials(
+        parameters_of(weave, solve(weave, particles=True)), pattern, cloth, edge
+    )
     apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[
         cloth.panel
     ]
     body = timing.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
-    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5)
+    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5, untangle=UNTANGLE)
     stages = _Stages(cloth, timing, progress, on_frame)
 
     open_ = half_sheet(cloth, cloth.joined, materials, kind, apart)

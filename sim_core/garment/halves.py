@@ -1,4 +1,4 @@
-"""One half of a mirrored garment as a sheet: its middle lies in x = 0, two rings of images continue it there.
+"""One half of a mirrored garment as a sheet: its middle lies in x = 0, rings of images continue it there.
 
 The images take the places their masters have, so that membrane and bending across the middle are those of the whole
 garment, at half the price, and both halves come out equal to the bit.
@@ -16,6 +16,7 @@ from sim_core.garment.sewing import Cloth
 
 __all__ = ["Half", "half_sheet"]
 
+RINGS = 3  # of images: what bends at the middle is a face, its neighbours, and at a border theirs
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
 
 
@@ -52,10 +53,10 @@ def half_sheet(
     middle = np.unique(number[cloth.middle])
     on = np.zeros(number.max() + 1, bool)
     on[middle] = True
-    ring = on[faces].any(1)
-    near = on.copy()
-    near[faces[ring]] = True
-    ring = near[faces].any(1)
+    ring, near = on[faces].any(1), on.copy()
+    for _ in range(RINGS - 1):
+        near[faces[ring]] = True
+        ring = near[faces].any(1)
     masters = np.setdiff1d(np.unique(faces[ring]), middle)
     image = np.arange(len(on))
     image[masters] = len(on) + np.arange(len(masters))

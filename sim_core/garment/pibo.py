@@ -22,11 +22,11 @@ from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.records import Clock, versions
 from sim_core.garment.scarf import scarf_material
-from sim_core.garment.schedule import Pose
+from sim_core.garment.schedule import UNTANGLE, Pose
 from sim_core.garment.sewing import Cloth
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
-from sim_core.weave import Weave, cloth_parameters, relax
+from sim_core.weave import Weave, parameters_of, solve
 
 __all__ = ["HELD", "PiboSettings", "field_under", "pibo_on_figure", "solids_under"]
 
@@ -101,7 +101,7 @@ def pibo_on_figure(
     field = field_under(solids, s)
     clock.lap("field")
     path, forearm, accordion = _laying(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
-    parameters = cloth_parameters(weave, relax(weave))
+    parameters = parameters_of(weave, solve(weave, particles=True))
     material, choices = scarf_material(parameters, float(np.ptp(cloth.vertices[:, 0])) / 2, step)
     half = half_sheet(cloth, cloth.closed, [material], *np.zeros((2, len(cloth.faces)), np.int32))
     start = half.gathered(swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed)))
@@ -189,7 +189,9 @@ def _draped(
     solid, holds, runs = field.solid(), _holds(half), []
     for run in (0, 1):
         shell = {"spring": s.spring[run], "self_friction": s.self_friction[run], "every": 2}
-        contact = Contact(s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, **shell)
+        contact = Contact(
+            s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
+        )
         first = runs[0].frames if runs else 0
         runs.append(
             drape(

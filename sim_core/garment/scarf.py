@@ -20,10 +20,10 @@ from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.placing import Gathering, gathered_strip
 from sim_core.garment.records import Clock, versions
+from sim_core.garment.schedule import GRAVITY, UNTANGLE
 from sim_core.garment.stand import Stand
-from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
+from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
-GRAVITY = 9.81  # [m/s2]
 SAG = 0.005  # strain at the bar under the hanging end's own weight; more stretch than this would be seen
 PHASES = (
     Phase(0.08, (0.0, 0.0), 400.0, 1.0, "letting go"),
@@ -60,7 +60,7 @@ def scarf_on_stand(
     clock = Clock()
     panel = pattern.mesh(step)
     clock.lap("mesh")
-    parameters = cloth_parameters(weave, relax(weave))
+    parameters = parameters_of(weave, solve(weave, particles=True))
     material, choices = scarf_material(parameters, gathering.front, step)
     clock.lap("weave")
     sheet = Sheet.of(panel.vertices, panel.faces, material)
@@ -145,7 +145,7 @@ def scarf_material(
 def scarf_contact(edge: float, bar_radius: float) -> Contact:
     """Clearance of the vertices such that chords and centroids of the mesh stay off the round bar."""
     sagitta = edge * edge / (6 * bar_radius)  # centroids lie lower than midpoints: L^2 / 6R against L^2 / 8R
-    return Contact(clearance=0.0012 + sagitta, sample_clearance=0.0008, thickness=0.003, speed_limit=2.5)
+    return Contact(0.0012 + sagitta, 0.0008, 0.003, speed_limit=2.5, untangle=UNTANGLE)
 
 
 def _check_fits(pattern: Pattern, stand: Stand, gathering: Gathering) -> None:

@@ -12,7 +12,8 @@ from sim_core.cloth.draping import FRAME
 
 __all__ = ["Pose", "Schedule"]
 
-GRAVITY = 9.81
+GRAVITY = 9.81  # [m/s2]
+UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
 @dataclass(frozen=True)

@@ -1,89 +1,227 @@
-"""Cloth: time and error together, on the sheet that hangs by one edge.
+"""Cloth: time and error together, for every published scene.
 
-    python tests/bench/bench_cloth.py [--quick] [--json FILE]
+    simcore bench cloth [-- --quick] [-- --json FILE] [-- --plot FILE.png]
+    simcore bench cloth -- --peers …    beside Newton, MuJoCo and Blender, see cloth_against.py
 
-Every row is a number of substeps per frame of 1/25 s, adaptive first. Error: vertex distance from the solver's own
-limit dt -> 0, taken at the largest number of substeps; the floor is what halving that number still changes. Rows
-take turns and the median CPU time per frame is told. The scene states gf-cm units; air is left out.
+Time error: vertex distance from the engine's own limit dt -> 0 (the run with most substeps; the floor is what half
+of them still changes). Mesh error: from the finest mesh, at the same simulated time. Rows take turns; wall
+milliseconds of a frame of 1/25 s, medians. Also told: how the cost grows with the mesh, when two runs of the flag
+part (its chaotic horizon), and what two processes do at once beside two spin loops.
 """
 
 import argparse
 import json
+import multiprocessing
 import statistics
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
+from cloth_runs import Timed, across, distance, simulate
 
-from sim_core.cloth import drape
-from sim_core.cloth.draping import FRAME
-from sim_core.cloth.forces import stable_step
-from sim_core.cloth.scenes import Scene, hang_edge
+from sim_core.cloth.scenes import Scene, hang_edge, scene
 
-
-def run(scene: Scene, substeps: int | None) -> tuple[np.ndarray, float, int]:
-    """End positions, CPU milliseconds per frame and substeps per frame."""
-    begin = time.process_time()
-    end = drape(scene.sheet, scene.positions, scene.phases, pins=scene.pins, substeps=substeps)
-    return end.positions, (time.process_time() - begin) / end.frames * 1e3, end.substeps // end.frames
+FINEST = 2048
 
 
-def distance(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
-    """Mean and largest vertex distance [mm]."""
-    gap = np.linalg.norm(a - b, axis=1) * 1e3
-    return float(gap.mean()), float(gap.max())
-
-
-def measure(scene: Scene, rounds: int, finest: int) -> dict:
-    """All rows, their errors, and the floor of the reference."""
-    reference = run(scene, finest)[0]
-    floor = distance(run(scene, finest // 2)[0], reference)
-    lowest = int(np.ceil(FRAME / (0.9 * stable_step(scene.sheet.stencil, scene.positions, 2e-5))))
-    settings: list[int | None] = [None, lowest, *(n for n in (256, 320, 512) if lowest < n < finest // 2)]
-    times: dict[int | None, list[float]] = {n: [] for n in settings}
-    ends: dict[int | None, tuple[np.ndarray, int]] = {}
+def timed(made: Scene, seconds: float, settings: list, rounds: int, finest: int, undamped: bool) -> dict:
+    """Rows of (integrator, substeps), with errors against the limit of most substeps."""
+    kinds = {"undamped": undamped}
+    reference = simulate(made, seconds, substeps=finest, **kinds).positions
+    floor = distance(simulate(made, seconds, substeps=finest // 2, **kinds).positions, reference)
+    runs: dict[tuple, list[Timed]] = {s: [] for s in settings}
     for _ in range(rounds):
-        for n in settings:
-            end, spent, count = run(scene, n)
-            times[n].append(spent)
-            ends[n] = (end, count)
+        for integrator, substeps in settings:
+            one = simulate(made, seconds, substeps=substeps, integrator=integrator, **kinds)
+            runs[integrator, substeps].append(one)
     rows = [
         {
-            "substeps": ends[n][1],
-            "adaptive": n is None,
-            "cpu_ms_per_frame": statistics.median(times[n]),
-            "error_mean_mm": distance(ends[n][0], reference)[0],
-            "error_max_mm": distance(ends[n][0], reference)[1],
+            "integrator": integrator,
+            "substeps": ran[0].substeps,
+            "adaptive": substeps is None,
+            "ms": statistics.median(r.ms for r in ran),
+            "error_mm": distance(ran[0].positions, reference),
         }
-        for n in settings
+        for (integrator, substeps), ran in runs.items()
     ]
-    return {"vertices": len(scene.positions), "reference_substeps": finest, "floor_mm": floor, "rows": rows}
+    return {
+        "vertices": len(made.positions),
+        "seconds": seconds,
+        "reference_substeps": finest,
+        "floor_mm": floor,
+        "rows": rows,
+    }
+
+
+def meshes(make, seconds: float, edges: list[float]) -> dict:
+    """Distance of coarser meshes from the finest, and the order of convergence from the last three."""
+    made = [make(edge) for edge in edges]
+    ends = [simulate(s, seconds) for s in made]
+    rows = [
+        {"edge_mm": 1e3 * edge, "vertices": len(s.positions), "ms": end.ms}
+        | {"error_mm": across(s, end.positions, made[-1], ends[-1].positions)}
+        for edge, s, end in zip(edges, made[:-1], ends[:-1], strict=False)
+    ]
+    steps = [
+        across(a, p.positions, b, q.positions)["mean"]
+        for a, p, b, q in zip(made[:-1], ends[:-1], made[1:], ends[1:], strict=True)
+    ]
+    orders = [float(np.log2(a / b)) for a, b in zip(steps[:-1], steps[1:], strict=True)]
+    return {"seconds": seconds, "finest_mm": 1e3 * edges[-1], "rows": rows, "order": orders}
+
+
+def growth(counts: list[int]) -> dict:
+    """Microseconds a substep for sheets of more and more vertices, and the exponent of a line through them."""
+    rows = []
+    for count in counts:
+        made = hang_edge(float(np.sqrt(2 / np.sqrt(3) / count)))
+        ran = simulate(made, 0.04 * (6 if count < 30_000 else 2), substeps=200)
+        rows.append({"vertices": len(made.positions), "us": 1e3 * ran.ms / 200})
+    line = np.polyfit(np.log([r["vertices"] for r in rows]), np.log([r["us"] for r in rows]), 1)
+    return {"rows": rows, "exponent": float(line[0])}
+
+
+def horizon(seconds: float, vertices: int) -> dict:
+    """How far two runs of the flag with steps of dt and dt/2 are apart, as time goes on."""
+    made = scene("flag", vertices=vertices)
+    rows, frames = [], (5, 10, 15, 20, 25, 38, 50)
+    for frame in frames:
+        if frame * 0.04 <= seconds:
+            a, b = (simulate(made, frame * 0.04, substeps=n).positions for n in (256, 512))
+            rows.append({"seconds": frame * 0.04, "apart_mm": distance(a, b)["mean"]})
+    gone = [r["seconds"] for r in rows if r["apart_mm"] > 1.0]
+    return {"rows": rows, "horizon_s": gone[0] if gone else None}
+
+
+def _work(frames: int) -> float:
+    made = hang_edge(0.02)
+    simulate(made, 0.04, substeps=200)
+    begin = time.perf_counter()
+    simulate(made, 0.04 * frames, substeps=200)
+    return frames / (time.perf_counter() - begin)
+
+
+def _spin(count: int) -> float:
+    begin, total = time.perf_counter(), 0
+    for k in range(count):
+        total += k & 3
+    return count / (time.perf_counter() - begin)
+
+
+def together(frames: int) -> dict:
+    """Throughput of two processes over that of one, for the engine and for a spin loop."""
+    out = {}
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        for name, work, size in (("engine", _work, frames), ("spin", _spin, 6_000_000)):
+            pool.map(work, [size, size])
+            one = pool.map(work, [size])[0]
+            out[name] = sum(pool.map(work, [size, size], chunksize=1)) / one
+    return out
+
+
+def all_of(quick: bool, rounds: int) -> dict:
+    """Every figure; `quick` takes coarse meshes, few runs and no growth beyond 3 000 vertices."""
+    finest = 512 if quick else FINEST
+    count = 600 if quick else None
+    explicit = [("explicit", n) for n in ((64, 128) if quick else (180, 256, 400, 560))]
+    settings = [("auto", None), *explicit, *(("implicit", n) for n in (1, 8))]
+    edge = 0.04 if quick else 0.0134
+    simulate(hang_edge(0.2), 0.04)
+    published = {
+        "hanging by an edge, undamped": (hang_edge(edge), 0.2, True),
+        "hanging by an edge": (hang_edge(edge), 1.0, False),
+        "hanging by two corners": (scene("hanging", vertices=count), 1.0, False),
+        "flag": (scene("flag", vertices=count), 0.4, False),
+        "teapot": (scene("teapot", vertices=count), 0.4, False),
+    }
+    out: dict = {"time": {n: timed(s, t, settings, rounds, finest, u) for n, (s, t, u) in published.items()}}
+    edges = [0.08, 0.04, 0.02] if quick else [0.04, 0.02, 0.01, 0.005]
+    out["mesh"] = {
+        "hanging by an edge": meshes(hang_edge, 0.4, edges),
+        "flag": meshes(lambda e: scene("flag", vertices=_count(1.5, e)), 0.2, edges),
+    }
+    out["growth"] = growth([300, 1000, 3000] if quick else [1000, 3000, 10_000, 30_000, 100_000])
+    out["flag horizon"] = horizon(0.4 if quick else 2.0, count or 6182)
+    out["two processes"] = together(10 if quick else 40)
+    return out
+
+
+def _count(area: float, edge: float) -> int:
+    return round(area * 2 / np.sqrt(3) / edge**2)
+
+
+def tell(found: dict) -> None:
+    """Prints the tables."""
+    for name, result in found["time"].items():
+        floor = result["floor_mm"]
+        print(f"{name}: {result['vertices']} vertices, after {result['seconds']} s")
+        print(f"  limit at {result['reference_substeps']} substeps, floor {floor['mean']:.1e} mm mean")
+        print("  integrator  substeps   ms/frame   stretch    error mean / 99 % / max [mm]")
+        for row in result["rows"]:
+            e, mark = row["error_mm"], "*" if row["adaptive"] else " "
+            errors = f"{e['mean']:.2e} / {e['p99']:.2e} / {e['max']:.2e}"
+            cost = f"{row['ms']:10.1f} {row['ms'] / 40:9.2f}"
+            print(f"  {row['integrator']:10s} {row['substeps']:8.0f}{mark} {cost}    {errors}")
+    for name, result in found["mesh"].items():
+        print(f"{name}, mesh error after {result['seconds']} s against {result['finest_mm']:.0f} mm:")
+        for row in result["rows"]:
+            e = row["error_mm"]
+            size = f"{row['edge_mm']:5.0f} mm {row['vertices']:7d} vertices {row['ms']:8.1f} ms"
+            print(f"  {size}   {e['mean']:.2f} / {e['max']:.2f} mm")
+        print("  order", ", ".join(f"{o:.2f}" for o in result["order"]))
+    for row in found["growth"]["rows"]:
+        print(f"  {row['vertices']:7d} vertices {row['us']:8.1f} us a substep")
+    print(f"  exponent {found['growth']['exponent']:.3f}")
+    apart = ", ".join(f"{r['seconds']:.1f} s {r['apart_mm']:.3g}" for r in found["flag horizon"]["rows"])
+    print(f"flag, dt against dt/2, mm: {apart}; chaotic from {found['flag horizon']['horizon_s']} s")
+    two = found["two processes"]
+    print(f"two processes: {two['engine']:.2f} of one; a spin loop {two['spin']:.2f}")
+
+
+def plot(found: dict, path: Path) -> None:
+    """Speed against error, one panel a scene."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, panels = pyplot.subplots(
+        1, len(found["time"]), figsize=(4 * len(found["time"]), 3.6), sharey=True
+    )
+    for panel, (name, result) in zip(np.atleast_1d(panels), found["time"].items(), strict=True):
+        for kind, mark in (("explicit", "o"), ("auto", "s"), ("implicit", "^")):
+            rows = [r for r in result["rows"] if r["integrator"] == kind and r["error_mm"]["mean"] < 1e4]
+            panel.loglog(
+                [r["ms"] for r in rows], [r["error_mm"]["mean"] for r in rows], mark + "-", label=kind
+            )
+        panel.axvline(40, color="0.7", lw=1)
+        panel.set(title=name, xlabel="ms a frame (40 = real time)")
+    np.atleast_1d(panels)[0].set_ylabel("mean vertex error [mm]")
+    np.atleast_1d(panels)[0].legend()
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
 
 
 def main() -> int:
+    if "--peers" in sys.argv[1:]:
+        from cloth_against import main as against
+
+        return against()
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--quick", action="store_true", help="a coarse mesh and one round")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes")
+    parser.add_argument("--rounds", type=int, default=3, help="runs of every setting, in turns (default: 3)")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument("--plot", type=Path, help="draw speed against error (needs matplotlib)")
     args = parser.parse_args()
-    edge, rounds, finest = (0.04, 1, 512) if args.quick else (0.0134, 3, 2048)
-    run(hang_edge(0.2, seconds=FRAME), None)  # compile
-    results = {f"hang_edge {t} s": measure(hang_edge(edge, seconds=t), rounds, finest) for t in (0.2, 0.4)}
-    for name, result in results.items():
-        mean, largest = result["floor_mm"]
-        print(
-            f"{name}: {result['vertices']} vertices, limit at {result['reference_substeps']} substeps per frame"
-        )
-        print(f"  floor (half of them): mean {mean:.1e} mm, max {largest:.1e} mm")
-        print("  substeps/frame      CPU ms/frame    error mean / max, mm")
-        for row in result["rows"]:
-            mark = "adaptive" if row["adaptive"] else ""
-            errors = f"{row['error_mean_mm']:.2e} / {row['error_max_mm']:.2e}"
-            print(f"  {row['substeps']:6d} {mark:10s} {row['cpu_ms_per_frame']:12.1f}        {errors}")
+    found = all_of(args.quick, args.rounds)
+    tell(found)
     if args.json:
-        args.json.write_text(json.dumps(results, indent=2))
+        args.json.write_text(json.dumps(found, indent=2))
+    if args.plot:
+        plot(found, args.plot)
     return 0
 
 

@@ -20,7 +20,7 @@ from sim_core.cloth import (
     Union,
     drape,
 )
-from sim_core.cloth.pairs import edge_edge_pairs, vertex_face_pairs
+from sim_core.cloth.pairs import edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
 from sim_core.cloth.scenes import bar, equilateral_sheet
 from sim_core.errors import SimCoreError
 from sim_core.garment.solids import solid_mesh
@@ -162,7 +162,9 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     rest, faces = equilateral_sheet(0.2, 0.2, 0.04)
     edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     x, reach, same = rng.normal(0, 0.03, (len(rest), 3)), 0.01, np.arange(len(rest), dtype=np.int32)
-    found = {(int(v), int(f)) for v, f in vertex_face_pairs(x, rest, faces, same, reach, 0.0)}
+    finder = finder_of(len(x), len(edges), len(faces))
+    pairs, count = vertex_face_pairs(x, rest, faces, same, reach, 0.0, finder, pairs_of(0))
+    found = {(int(v), int(f)) for v, f in pairs[:count]}
     expected = {
         (v, f)
         for f, face in enumerate(faces)
@@ -172,7 +174,8 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     assert found == expected
     t = np.linspace(0, 1, 60)
     dense = x[edges[:, 0], None] * (1 - t[:, None]) + x[edges[:, 1], None] * t[:, None]
-    met = {tuple(sorted(map(int, pair))) for pair in edge_edge_pairs(x, rest, faces, edges, same, reach, 0.0)}
+    pairs, count = edge_edge_pairs(x, rest, faces, edges, same, reach, 0.0, finder, pairs_of(0))
+    met = {tuple(sorted(map(int, pair))) for pair in pairs[:count]}
     for a in range(len(edges)):
         for b in range(a + 1, len(edges)):
             if set(edges[a]) & set(edges[b]):

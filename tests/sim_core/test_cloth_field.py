@@ -147,7 +147,10 @@ def test_gradient_is_the_slope_and_solid_agrees(field: DistanceField) -> None:
 def test_bad_meshes_are_refused_in_one_line() -> None:
     vertices, faces = ball()
     for wrong, word in (
-        ((vertices, faces[:-1]), "open or ill-wound"),
+        (
+            (vertices, faces[:-1]),
+            r"open or ill-wound at 3 edges, the first between vertices \d+ and \d+ at \(",
+        ),
         ((vertices, np.r_[faces[:-1], faces[-1:, ::-1]]), "open or ill-wound"),
         ((np.where(vertices > 0.09, np.nan, vertices), faces), "not finite"),
         ((vertices[:, :2], faces), "shapes"),

@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from sim_core.cloth import Capsule, Contact, GridSdf, Holds, Material, MovingGrid, Phase, Sheet, drape
+from sim_core.cloth import (
+    Capsule,
+    Contact,
+    GridSdf,
+    Holds,
+    Material,
+    MovingGrid,
+    Phase,
+    Sheet,
+    drape,
+)
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
 from sim_core.errors import SimCoreError
 from sim_core.garment.halves import half_sheet

@@ -370,7 +370,8 @@ def test_garments_with_an_odd_header(tmp_path: Path, key: str, value: object) ->
 
 def test_a_checkpoint_comes_back_whole(tmp_path: Path) -> None:
     x = np.arange(6.0).reshape(2, 3)
-    state = RunState(x, -x, 3, 1e-4, 0.9, 1, 20, [(1e-3, 2e-3)], [x.astype(np.float32)])
+    state = RunState(x, -x, 3, 1e-4, 0.9, 1, 20, 2, 1.1, trace=[(1e-3, 2e-3)], film=[x.astype(np.float32)])
+    state.mode = x.T.copy()
     save_checkpoint(tmp_path / "run", "key", state)
     assert load_checkpoint(tmp_path / "run", "other") is None
     again = load_checkpoint(tmp_path / "run", "key")
@@ -382,6 +383,8 @@ def test_a_checkpoint_comes_back_whole(tmp_path: Path) -> None:
         1,
         20,
     )
+    assert (again.fallbacks, again.stretch) == (2, 1.1)
+    assert np.array_equal(again.mode, x.T)
     assert again.trace == state.trace
     assert np.array_equal(again.film[0], state.film[0])
     assert np.array_equal(again.velocities, -x)

@@ -1,0 +1,302 @@
+"""One frame of one sheet: bands, contact lists and working memory, made once and used by every frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim_core.cloth.air import Air
+from sim_core.cloth.bands import bands_of, ordered
+from sim_core.cloth.collider import Packed, Solid
+from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
+from sim_core.cloth.forces import energies
+from sim_core.cloth.holding import Holds, bound, draw_together, mirror
+from sim_core.cloth.implicit import Implicit, Load
+from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.pairs import finder_of, pairs_of
+from sim_core.cloth.phases import FRAME, Contact
+from sim_core.cloth.repulsion import Shell
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
+from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
+from sim_core.cloth.untangling import faces_at_edges, no_crossings, untangle
+from sim_core.errors import SimCoreError
+
+COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
+SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
+AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
+IMPLICIT_STEPS = 8  # a frame by backward Euler
+IMPLICIT_PASSES = 4  # over the contacts after each of them
+UNTANGLE = 0.1  # of the shell's thickness: one step of taking the cloth out of itself
+_NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
+
+
+class Engine:
+    """A sheet with what it may touch, ready to be moved frame by frame; arrays in the caller's vertex order."""
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        *,
+        collider: Solid | MovingGrid | None = None,
+        contact: Contact | None = None,
+        holds: Holds | None = None,
+    ) -> None:
+        self.sheet, self.order = ordered(sheet)
+        count = len(self.order)
+        self.number = np.zeros(count, np.int64)
+        self.number[self.order] = np.arange(count)
+        self.bands = bands_of(self.sheet)
+        self.moving = collider if isinstance(collider, MovingGrid) else None
+        self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
+        self.holds = (holds or Holds.of(count)).renumbered(self.number, self.order)
+        self.contact = c = contact or Contact()
+        self.shell = Shell(
+            float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every)
+        )
+        vertices, middles = contact_samples(self.sheet.edges, self.sheet.faces, count)
+        image = np.zeros(count, bool)
+        image[self.holds.slaves[:, 0]] = True
+        self.vertices = vertices[~image[vertices[:, 0]]]
+        self.middles = middles[~image[middles].any(1)]
+        self.third, self.crossed = faces_at_edges(self.sheet.edges, self.sheet.faces), no_crossings()
+        longest = int(self.bands.face_runs[:, 1].max())
+        samples = (len(self.vertices), len(self.middles))
+        self.room = room_of(len(self.sheet.edges), count, longest, samples)
+        layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
+        self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
+        free = self.sheet.stencil.inverse_mass
+        self.lightest = _lightest(self.sheet)
+        self.implicit = Implicit(self.sheet, self.bands, self.room)
+        self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
+        self._inverse: dict[tuple[int, ...], np.ndarray] = {(): free}
+
+    def inverse_mass(self, pins: Sequence[int]) -> np.ndarray:
+        """1/m (V,) [1/kg] in band order, 0 at the pins; raises SimCoreError for a pin that is no vertex."""
+        key = tuple(pins)
+        if key not in self._inverse:
+            index = np.asarray(key, np.int64)
+            if index.min() < 0 or index.max() >= len(self.order):
+                wrong = index.max() if index.max() >= len(self.order) else index.min()
+                raise SimCoreError(f"pins: index {wrong} – the sheet has vertices 0 to {len(self.order) - 1}")
+            inverse = self.sheet.stencil.inverse_mass.copy()
+            inverse[self.number[index]] = 0.0
+            self._inverse[key] = inverse
+        return self._inverse[key]
+
+    def inward(self, array: np.ndarray) -> np.ndarray:
+        """(V, 3) in the caller's order as (3, V) in band order."""
+        return np.ascontiguousarray(array[self.order].T)
+
+    def outward(self, array: np.ndarray) -> np.ndarray:
+        """(3, V) in band order as (V, 3) in the caller's order."""
+        return np.ascontiguousarray(array.T[self.number])
+
+    def step(self, pins: Sequence[int], x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
+        """Largest stable step [s] at x (3, V); mode (3, V) is kept from frame to frame. Raises if there is none."""
+        inverse = self.inverse_mass(pins)
+        if not inverse.any():
+            return FRAME
+        omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
+        step = stable_step(omega2, self.sheet.material.stiffness_damping)
+        if not np.isfinite(step) or step <= 0:
+            raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
+        return step
+
+    def air_step(self, under: Conditions, v: np.ndarray) -> float:
+        """Largest step [s] at which the lagging air still brakes and does not throw, at velocities v (3, V)."""
+        if under.press == 0.0:
+            return np.inf
+        blow = 0.0 if under.wind is None else float(np.sqrt((under.wind**2).sum(1).max()))
+        speed = blow + float(np.sqrt((v * v).sum(0).max()))
+        return AIR_SHARE * self.lightest / (12 * under.press * max(speed, 1e-9)) / AIR_EVERY
+
+    def slow(self, dt: float) -> int:
+        """Substeps of dt [s] that bending may be left alone for: SLOW, or 1 where bending is what limits the step."""
+        return SLOW if SLOW * dt * np.sqrt(self.bend_omega2) <= 2 * COURANT else 1
+
+    def advance(
+        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, last: float, count: int
+    ) -> None:
+        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it."""
+        material, c, dt = self.sheet.material, self.contact, FRAME / count
+        self._lead(under, pins, x, v)
+        packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
+        around = Surroundings(
+            np.asarray(under.gravity, float),
+            float(under.damping),
+            float(material.stiffness_damping),
+            float(under.friction),
+            float(c.clearance),
+            float(c.sample_clearance),
+            float(c.cap),
+            float(under.speed_limit),
+            (float(under.sewing[0]), float(under.sewing[1])),
+            (float(body[0]), float(body[1])),
+            np.zeros((2, 3)) if under.wind is None else np.ascontiguousarray(under.wind, float),
+            float(under.press),
+            self.number[under.pulls[0]],
+            np.ascontiguousarray(under.pulls[1], float),
+            self.slow(dt) if count % SLOW == 0 else 1,
+        )
+        s = self.sheet
+        fixed = (self.bands, self.inverse_mass(pins), s.edges, s.faces, s.rest, packed)
+        touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room, self.finder)
+        self.pairs = advance(*fixed, *touch, *self.pairs, x, v, last, dt, count)
+
+    def _lead(self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> None:
+        """What is pinned rests, or has the speed that brings it where it is led within the frame."""
+        v[:, self.inverse_mass(pins) == 0.0] = 0.0
+        index, there = self.number[under.led[0]], under.led[1]
+        v[:, index] = (there.T - x[:, index]) / FRAME
+
+    def advance_implicit(
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        count: int = IMPLICIT_STEPS,
+        newtons: int | None = None,
+    ) -> None:
+        """Moves x, v (3, V) through one frame by `count` steps of backward Euler; layers do not feel each other.
+
+        newtons: Newton steps in each (None: one where the steps are short, three where they are long).
+        """
+        with np.errstate(all="ignore"):  # what overflows is told by whoever checks the frame
+            self._stepped(under, pins, x, v, count, newtons)
+
+    def _stepped(
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        count: int,
+        newtons: int | None,
+    ) -> None:
+        newtons = newtons or (1 if count >= IMPLICIT_STEPS // 2 else 3)
+        material, h, inverse = self.sheet.material, FRAME / count, self.inverse_mass(pins)
+        self._lead(under, pins, x, v)
+        wind = np.zeros((2, 3)) if under.wind is None else under.wind
+        pulled, pull = self.number[under.pulls[0]], under.pulls[1]
+        for step in range(count):
+            now = wind[0] + (step + 0.5) / count * (wind[1] - wind[0])
+            load = Load(
+                np.asarray(under.gravity, float),
+                float(under.damping),
+                float(material.stiffness_damping),
+                now,
+                float(under.press),
+                pulled,
+                pull,
+            )
+            there = self.implicit.step(x, v, inverse, h, load, newtons)
+            v[:], x[:] = (there - x) / h, there
+            if under.speed_limit < FREE:
+                speed = np.sqrt((v * v).sum(0))
+                v *= np.minimum(1.0, under.speed_limit / np.maximum(speed, 1e-30))
+            self._held(under, inverse, x.T, v.T, (step + 1) / count, h)
+
+    def _held(
+        self, under: Conditions, inverse: np.ndarray, x: np.ndarray, v: np.ndarray, part: float, h: float
+    ) -> None:
+        """Seams, solids, bounds and images after an implicit step."""
+        if len(self.holds.pairs):
+            early, late = under.sewing
+            draw_together(self.holds, inverse, x, v, early + (late - early) * part, (early - late) / FRAME)
+        packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
+        if len(packed.kind):
+            if self.moving:
+                packed.blend[:] = body[0] + (body[1] - body[0]) * part, (body[1] - body[0]) / FRAME
+            c, cap = self.contact, self.contact.clearance
+            for _ in range(IMPLICIT_PASSES):
+                collide_samples(packed, inverse, x, v, self.middles, c.sample_clearance, cap)
+                collide_vertices(packed, inverse, x, v, self.vertices, c.clearance, h, under.friction, cap)
+        bound(self.holds, x, v)
+        mirror(self.holds, x, v)
+
+    def untangle(self, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> tuple[int, int]:
+        """Takes the cloth x, v (3, V) out of itself in place; pairs of edge and face that crossed before, and after."""
+        rounds, step = self.contact.untangle, UNTANGLE * self.contact.thickness
+        if not rounds or not step:
+            return 0, 0
+        there, speed = np.ascontiguousarray(x.T), np.ascontiguousarray(v.T)
+        s, inverse = self.sheet, self.inverse_mass(pins)
+        sheet = (s.edges, s.faces, self.third, self.holds, self.finder, self.crossed)
+        before, after, self.crossed = untangle(there, speed, inverse, *sheet, step=step, rounds=rounds)
+        if before:
+            x[:], v[:] = there.T, speed.T
+        return before, after
+
+    def forget(self) -> None:
+        """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
+        for part in self.room:
+            part[:] = 0
+
+    def stretch(self, x: np.ndarray) -> float:
+        """The longest an edge is at x (3, V), as a share of its rest length."""
+        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
+        return float(np.sqrt((((x[:, ends[:, 0]] - x[:, ends[:, 1]]) ** 2).sum(0) / rest2).max()))
+
+    def energy(self, x: np.ndarray, v: np.ndarray, gravity: np.ndarray) -> tuple[float, float]:
+        """Stored and kinetic energy, and that of height [J], of x, v (3, V)."""
+        stored = sum(energies(self.sheet.stencil, x.T, v.T))
+        # Sums, not products of matrices: those start threads, and add up in an order of their own.
+        along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
+        return stored, -float((self.sheet.mass * along).sum())
+
+    def healthy(
+        self, under: Conditions, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
+    ) -> bool:
+        """Finite, and no more energy than before: by 1 mm of the whole cloth's height, by 20 where contact lifts it.
+
+        Where something does work on the cloth, no edge may become three times its length instead.
+        """
+        if not all(np.isfinite(a).all() for a in after):
+            return False
+        if not under.quiet:
+            return self.whole(before[0], after[0]) and self._likely(under, before[1], after[1])
+        (stored, height), (stored_after, height_after) = (
+            self.energy(*state, under.gravity) for state in (before, after)
+        )
+        weight = float(self.sheet.mass.sum()) * max(float(np.linalg.norm(under.gravity)), 1.0)
+        touches = len(self.packed.kind) > 0 or self.moving is not None or self.shell.thickness > 0
+        allowed = (0.02 if touches else 0.001) * weight
+        return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + allowed
+
+    def whole(self, before: np.ndarray, after: np.ndarray) -> bool:
+        """Finite, and no edge is three times its length, nor three times what it was, if that was longer."""
+        if not np.isfinite(after).all():
+            return False
+        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
+        longer = ((after[:, ends[:, 0]] - after[:, ends[:, 1]]) ** 2).sum(0) / rest2
+        earlier = ((before[:, ends[:, 0]] - before[:, ends[:, 1]]) ** 2).sum(0) / rest2
+        return bool((longer < 9.0 * np.maximum(1.0, earlier)).all())
+
+    def air(self, air: Air | None, seconds: float) -> tuple[np.ndarray | None, float]:
+        """Wind (2, 3) [m/s] at the begin and end of the frame that starts at `seconds`, and its press."""
+        if air is None:
+            return None, 0.0
+        return np.stack([air.at(seconds), air.at(seconds + FRAME)]), air.press
+
+    def _likely(self, under: Conditions, before: np.ndarray, after: np.ndarray) -> bool:
+        """No vertex is ten times as fast as anything that could have made it so."""
+        if len(under.pulls[0]):
+            return True
+
+        def fastest(v: np.ndarray) -> float:
+            return float(np.sqrt((v * v).sum(0).max()))
+
+        wind = 0.0 if under.wind is None else fastest(under.wind.T)
+        fall = float(np.linalg.norm(under.gravity)) * FRAME
+        return fastest(after) <= 10 * (fastest(before) + wind + fall + 1.0)
+
+
+def _lightest(sheet: Sheet) -> float:
+    """The least mass per area [kg/m2] of any vertex."""
+    a, b = sheet.corner[:, 1] - sheet.corner[:, 0], sheet.corner[:, 2] - sheet.corner[:, 0]
+    third = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 6
+    return float((sheet.mass / np.bincount(sheet.faces.ravel(), np.repeat(third, 3), len(sheet.mass))).min())

@@ -1,0 +1,143 @@
+"""A cloth that is stepped frame by frame while someone changes the wind, moves its pins and pulls at it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim_core.cloth.air import Air
+from sim_core.cloth.checkpoint import RunState
+from sim_core.cloth.collider import Solid
+from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.running import Run, checked_state
+from sim_core.cloth.sheet import Sheet
+from sim_core.errors import SimCoreError
+
+
+class Live:
+    """The state of a running cloth; `step` moves it on by one frame of 1/25 s.
+
+    sheet and positions (V, 3) [m] as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the material's). The same
+    calls give the same bits. Raises SimCoreError on bad input.
+    """
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        positions: np.ndarray,
+        *,
+        collider: Solid | MovingGrid | None = None,
+        contact: Contact | None = None,
+        pins: Sequence[int] = (),
+        air: Air | None = None,
+        gravity: Sequence[float] = (0.0, -9.81, 0.0),
+        damping: float | None = None,
+        integrator: str = "auto",
+    ) -> None:
+        x, v = checked_state(sheet, positions, None)
+        down = np.array([0.0, -1.0, 0.0])
+        phases = [Phase(FRAME)]
+        self._run = Run(
+            sheet,
+            phases,
+            collider,
+            contact,
+            pins,
+            None,
+            air=air,
+            down=down,
+            substeps=None,
+            integrator=integrator,
+        )
+        self._state = RunState(x, v)
+        self._gravity = np.asarray(gravity, float)
+        self._damping = sheet.material.mass_damping if damping is None else damping
+        self._limit = (contact or Contact()).speed_limit
+        self.pins, self.air, self.body = tuple(int(i) for i in pins), air, 0.0
+
+    @property
+    def positions(self) -> np.ndarray:
+        """(V, 3) [m] after the last step; a copy."""
+        return self._state.positions.copy()
+
+    @property
+    def velocities(self) -> np.ndarray:
+        """(V, 3) [m/s], half a substep before the positions; a copy."""
+        return self._state.velocities.copy()
+
+    @property
+    def frame(self) -> int:
+        """Frames stepped so far."""
+        return self._state.frame
+
+    @property
+    def fallbacks(self) -> int:
+        """Frames that the implicit scheme had to take over."""
+        return self._state.fallbacks
+
+    def step(
+        self,
+        *,
+        wind: Sequence[float] | None = None,
+        pins: Sequence[int] | None = None,
+        targets: np.ndarray | None = None,
+        pulls: tuple[np.ndarray, np.ndarray] | None = None,
+        body: float | None = None,
+    ) -> np.ndarray:
+        """Moves on by a frame; returns positions (V, 3) [m].
+
+        wind (x, y, z) [m/s] from now on, reached within the frame; pins: the vertices held from now on; targets
+        (len(pins), 3) [m]: where they are led within the frame (None: they stay); pulls: vertices (P,) and forces
+        (P, 3) [N] of this frame; body: the key a moving collider reaches at the end of the frame.
+        """
+        if pins is not None:
+            self.pins = tuple(int(i) for i in pins)
+        before = None if self.air is None else self.air.at(self._state.frame * FRAME)
+        if wind is not None:
+            self.air = (self.air or Air()).blowing(wind)
+        blown, press = None, 0.0
+        if self.air is not None:
+            after = self.air.at((self._state.frame + 1) * FRAME)
+            blown, press = np.stack([np.zeros(3) if before is None else before, after]), self.air.press
+        early = self.body
+        self.body = early if body is None else float(body)
+        under = Conditions(
+            gravity=self._gravity,
+            damping=self._damping,
+            friction=self._run.sheet.material.friction,
+            speed_limit=self._limit,
+            body=(early, self.body),
+            wind=blown,
+            press=press,
+            pulls=self._checked_pulls(pulls),
+            led=self._checked_targets(targets),
+        )
+        self._run.frame_under(self._state, under, tuple(sorted(set(self.pins))))
+        self._state.trace, self._state.seconds = self._state.trace[-1:], self._state.seconds[-1:]
+        return self.positions
+
+    def _checked_targets(self, targets: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        if targets is None:
+            return np.zeros(0, np.int64), np.zeros((0, 3))
+        targets = np.asarray(targets, float)
+        if targets.shape != (len(self.pins), 3) or not np.isfinite(targets).all():
+            raise SimCoreError(
+                f"targets: shape {targets.shape} – one finite place for each of {len(self.pins)} pins"
+            )
+        return np.array(self.pins, np.int64), targets
+
+    def _checked_pulls(self, pulls: tuple[np.ndarray, np.ndarray] | None) -> tuple[np.ndarray, np.ndarray]:
+        if pulls is None:
+            return np.zeros(0, np.int64), np.zeros((0, 3))
+        index, force = np.asarray(pulls[0], np.int64), np.asarray(pulls[1], float)
+        count = len(self._state.positions)
+        if force.shape != (len(index), 3) or not np.isfinite(force).all():
+            raise SimCoreError(
+                f"pulls: {len(index)} vertices and forces {force.shape} – one finite force for each"
+            )
+        if len(index) and (index.min() < 0 or index.max() >= count):
+            raise SimCoreError(f"pulls: vertex {index.max()} – the sheet has 0 to {count - 1}")
+        return index, force

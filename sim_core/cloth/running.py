@@ -1,0 +1,174 @@
+"""The unchanging part of a run, and one frame of it: adaptive step, watchdog, roll-back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim_core.cloth.air import Air
+from sim_core.cloth.checkpoint import RunState
+from sim_core.cloth.collider import Solid
+from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.engine import COURANT, IMPLICIT_STEPS, SLOW, Engine
+from sim_core.cloth.holding import Holds
+from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.phases import FRAME, Contact, Moment, Phase
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.stability import first_mode
+from sim_core.errors import SimCoreError
+
+MAX_HALVINGS = 8
+MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
+INTEGRATORS = ("auto", "explicit", "implicit")
+
+
+class Run:
+    """A sheet, what it goes through and what it may touch."""
+
+    def __init__(
+        self,
+        sheet: Sheet,
+        phases: Sequence[Phase],
+        collider: Solid | MovingGrid | None,
+        contact: Contact | None,
+        pins: Sequence[int],
+        holds: Holds | None,
+        *,
+        air: Air | None,
+        down: np.ndarray,
+        substeps: int | None,
+        integrator: str,
+    ) -> None:
+        if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
+            raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
+        if substeps is not None and not substeps > 0:
+            raise SimCoreError(f"substeps: {substeps} – a frame needs at least one")
+        self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down
+        if integrator not in INTEGRATORS:
+            raise SimCoreError(f"integrator: {integrator!r} – there are {', '.join(INTEGRATORS)}")
+        self.integrator = integrator
+        self.pins = tuple(int(i) for i in pins)
+        self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds)
+        self._given = (contact or Contact(), holds or Holds.of(len(sheet.rest)))
+        for phase in self.phases:
+            self.engine.inverse_mass(self._pinned(phase))
+
+    def identity(self) -> tuple[object, ...]:
+        """What, beside sheet and start, decides the bits of the result."""
+        body = self.engine.moving
+        moving = body and (body.name, body.origin, body.cell, body.count)
+        contact, holds = self._given
+        settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
+        return (*settings, *self.engine.packed, *holds)
+
+    def _pinned(self, phase: Phase) -> tuple[int, ...]:
+        return tuple(sorted({*self.pins, *phase.pins}))
+
+    def frame(self, state: RunState, now: Moment) -> None:
+        """One frame, by the explicit scheme at 0.7 of the stable step of the current tangent.
+
+        If it blows up it is rolled back and done with half the step, then by the implicit scheme; where layers touch
+        or that does not help either, with half the step again and again.
+        """
+        self.frame_under(state, self._conditions(now, state.frame), self._pinned(now.phase))
+
+    def frame_under(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
+        """One frame under the given conditions."""
+        engine = self.engine
+        begin = engine.inward(state.positions), engine.inward(state.velocities)
+        start = time.perf_counter()
+        if self.integrator == "implicit":
+            count = self.fixed or IMPLICIT_STEPS
+            x, v = self._implicit(under, pins, begin, count)
+            if not np.isfinite(x).all():
+                raise SimCoreError(
+                    f"frame {state.frame}: the implicit scheme found no way on – use the explicit"
+                )
+        else:
+            x, v, count = self._explicit(state, under, pins, begin)
+        engine.untangle(pins, x, v)
+        state.seconds.append(time.perf_counter() - start)
+        way = np.sqrt(((x - begin[0]) ** 2).sum(0))
+        state.trace.append((float(np.percentile(way, 99)), float(way.max())))
+        state.stretch = max(state.stretch, engine.stretch(x))
+        state.positions, state.velocities = engine.outward(x), engine.outward(v)
+        state.last_step = FRAME / count
+        state.frame, state.substeps = state.frame + 1, state.substeps + count
+
+    def _implicit(
+        self, under: Conditions, pins: tuple[int, ...], begin: tuple[np.ndarray, np.ndarray], count: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        x, v = begin[0].copy(), begin[1].copy()
+        self.engine.advance_implicit(under, pins, x, v, count)
+        return x, v
+
+    def _gives_in(self, attempt: int, count: int) -> bool:
+        """Half the step did not help either, or there would be too many: the implicit scheme's turn, if it may."""
+        late = attempt == 1 or (attempt == 0 and count > MOST_SUBSTEPS)
+        return late and self.integrator == "auto" and self.engine.shell.thickness == 0.0
+
+    def _explicit(
+        self,
+        state: RunState,
+        under: Conditions,
+        pins: tuple[int, ...],
+        begin: tuple[np.ndarray, np.ndarray],
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """Positions, velocities (3, V) and steps of one frame; the state's safety, mode and counters change."""
+        engine, step = self.engine, 0.0
+        if not self.fixed:
+            first = state.mode.shape != begin[0].shape
+            mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
+            step = engine.step(pins, begin[0], mode, first=first)
+            step = min(step, engine.air_step(under, begin[1]) / COURANT)
+            state.mode = mode
+        for attempt in range(MAX_HALVINGS):
+            count = self.fixed or SLOW * int(np.ceil(FRAME / (SLOW * COURANT * state.safety * step)))
+            if count <= MOST_SUBSTEPS:
+                x, v = begin[0].copy(), begin[1].copy()
+                engine.advance(under, pins, x, v, state.last_step, count)
+                if self.fixed or engine.healthy(under, begin, (x, v)):
+                    state.safety = min(1.0, state.safety * 1.1)
+                    return x, v, count
+                engine.forget()
+            if self._gives_in(attempt, count):
+                x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
+                if engine.healthy(under, begin, (x, v)):
+                    state.fallbacks += 1
+                    return x, v, IMPLICIT_STEPS
+                engine.forget()
+            state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
+        raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
+
+    def _conditions(self, now: Moment, frame: int) -> Conditions:
+        material, phase = self.sheet.material, now.phase
+        wind, press = self.engine.air(self.air, frame * FRAME)
+        limit = self._given[0].speed_limit if phase.speed_limit is None else phase.speed_limit
+        return Conditions(
+            gravity=self.down * now.gravity,
+            damping=material.mass_damping if phase.damping is None else phase.damping,
+            friction=material.friction if phase.friction is None else phase.friction,
+            speed_limit=limit,
+            sewing=now.sewing,
+            body=now.body,
+            wind=wind,
+            press=press,
+        )
+
+
+def checked_state(
+    sheet: Sheet, positions: np.ndarray, velocities: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
+    shape = (len(sheet.rest), 3)
+    x = np.array(positions, float, order="C")
+    v = np.zeros(shape) if velocities is None else np.array(velocities, float, order="C")
+    for name, array in (("positions", x), ("velocities", v)):
+        if array.shape != shape:
+            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
+        if not np.isfinite(array).all():
+            wrong = np.flatnonzero(~np.isfinite(array).all(1))[0]
+            raise SimCoreError(f"{name}: vertex {wrong} is not finite")
+    return x, v

@@ -1,0 +1,98 @@
+"""The largest stable step of the current tangent, by power iteration that goes on where the last frame left it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from sim_core.cloth.banded import (
+    band_add,
+    band_bends,
+    band_pulls,
+    band_strain_changes,
+    band_strains,
+    band_tensions,
+)
+from sim_core.cloth.bands import Bands
+from sim_core.cloth.stepping import Room
+
+FIRST_ROUNDS, NEXT_ROUNDS = 40, 8
+
+
+@njit(cache=True, error_model="numpy")
+def stiffness_times(bands, room, x, p, out, stiffer=1.0):
+    """out = -K p (3, V) for the tangent at x, whose tensions lie in room.tension: the derivative of the force.
+
+    stiffer: what the elastic part is multiplied with (an implicit step's damping).
+    """
+    g, c = room.air, bands.coupling
+    band_strain_changes(bands.edge_runs, x[0], x[1], x[2], p[0], p[1], p[2], room.strain)
+    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.change)
+    if stiffer != 1.0:
+        room.change[:] *= stiffer
+    band_pulls(bands.vertex_runs, room.change, x[0], x[1], x[2], out[0], out[1], out[2])
+    band_pulls(bands.vertex_runs, room.tension, p[0], p[1], p[2], g[0], g[1], g[2])
+    band_add(out[0], out[1], out[2], g[0], g[1], g[2])
+    band_bends(bands.bend_runs, bands.bend, 1.0, p[0], p[1], p[2], out[0], out[1], out[2])
+
+
+@njit(cache=True, error_model="numpy")
+def tensions_at(bands, room, x):
+    """Fills room.strain and room.tension for positions x (3, V), without damping."""
+    c = bands.coupling
+    band_strains(bands.edge_runs, bands.length2, x[0], x[1], x[2], room.strain)
+    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+
+
+@njit(cache=True, error_model="numpy")
+def _grown(bands, inverse, room, x, mode, rounds, bend_only):
+    """Largest eigenvalue of M^-1 K [1/s2] after `rounds` of power iteration on mode (3, V), which is renewed."""
+    out = room.force
+    value = 0.0
+    for _ in range(rounds):
+        if bend_only:
+            out[:] = 0.0
+            band_bends(bands.bend_runs, bands.bend, 1.0, mode[0], mode[1], mode[2], out[0], out[1], out[2])
+        else:
+            stiffness_times(bands, room, x, mode, out)
+        square = 0.0
+        for c in range(3):
+            for i in range(len(inverse)):
+                out[c, i] *= inverse[i]
+                square += out[c, i] * out[c, i]
+        value = np.sqrt(square)
+        scale = 1.0 / value if value > 0.0 else 0.0
+        for c in range(3):
+            for i in range(len(inverse)):
+                mode[c, i] = -scale * out[c, i]
+    return value
+
+
+def first_mode(count: int) -> np.ndarray:
+    """Where the iteration starts (3, V): the same for every run, so that equal input gives equal bits."""
+    mode = np.random.default_rng(20).standard_normal((3, count))
+    return mode / np.sqrt((mode * mode).sum())
+
+
+def highest_frequency2(
+    bands: Bands, inverse: np.ndarray, room: Room, x: np.ndarray, mode: np.ndarray, *, first: bool
+) -> float:
+    """Largest eigenvalue of M^-1 K [1/s2] of the tangent at x (3, V); mode (3, V) is where it was and then is.
+
+    A share of the fixed start is mixed in, so that a mode that becomes the stiffest elsewhere is found.
+    """
+    tensions_at(bands, room, x)
+    if not first:
+        mode += 0.2 * first_mode(mode.shape[1])
+    return float(_grown(bands, inverse, room, x, mode, FIRST_ROUNDS if first else NEXT_ROUNDS, False))
+
+
+def bending_frequency2(bands: Bands, inverse: np.ndarray, room: Room) -> float:
+    """Largest eigenvalue of M^-1 Q [1/s2]: bending alone, which does not change."""
+    mode = first_mode(len(inverse))
+    return float(_grown(bands, inverse, room, mode.copy(), mode, FIRST_ROUNDS, True))
+
+
+def stable_step(omega2: float, beta: float) -> float:
+    """Largest stable leapfrog step [s] at omega2 [1/s2], lagged stiffness damping beta [s] included."""
+    return float(np.sqrt(beta * beta + 4.0 / omega2) - beta)

@@ -1,0 +1,191 @@
+"""Speed against error beside Newton, MuJoCo and Blender: `simcore bench cloth -- --peers`.
+
+    … --peers [FOLDER] [--scene hang_edge|hanging|flag] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
+      [--json FILE] [--plot FILE.png]
+
+Every setting of a peer is run in turn with our engine at its default (adaptive) setting: a turn is one run of ours and
+one of the peer's, settings and peers alternate, and the ratio of a setting is the median over its turns. One thread,
+one core, processor milliseconds a frame of 1/25 s; building the model and compiling are left out and told. Errors are
+vertex distances at the end: from the peer's own limit (its finest setting; `floor` is what the next finer one still
+differs from it) and from ours. What has been run is kept in FOLDER, so a long sweep goes in pieces: with --budget no
+run is begun after so many seconds, and the next call goes on.
+Peers are put into FOLDER (build/peers) by the lines of peers.txt; a peer that cannot run is named with its reason.
+"""
+
+import argparse
+import json
+import os
+import sys
+import time
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from cloth_figures import summary
+from cloth_sweeps import SWEEPS, Compared, compared, given, told
+from peers import Peers, peer_python
+
+from sim_core.cloth import drape
+
+ROOT = Path(__file__).parents[2]
+PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
+NAMES = ("hang_edge", "hanging", "flag")
+DEAR = 1000.0  # [ms a frame] what costs more has one turn, as a limit has
+MAPPING_VERSION = 1  # raise when a peer is given other numbers: what was kept is then run again
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+
+
+def ours(asked: Compared, substeps: int | None = None) -> dict:
+    """One run of our engine: processor and wall milliseconds of every frame, and the end (V, 3) [m]."""
+    clock, scene = [time.process_time()], asked.scene
+    end = drape(
+        scene.sheet,
+        scene.positions,
+        scene.phases,
+        pins=scene.pins,
+        air=scene.air,
+        substeps=substeps,
+        on_frame=lambda *_: clock.append(time.process_time()),
+    )
+    return {
+        "ms": [1e3 * s for s in end.frame_seconds],
+        "cpu_ms": list(1e3 * np.diff(clock)),
+        "substeps": end.substeps / end.frames,
+        "positions": end.positions,
+    }
+
+
+class Kept:
+    """Runs of one scene in a folder: a JSON file of turns and the end of each setting as npz."""
+
+    def __init__(self, folder: Path, asked: Compared) -> None:
+        arrays = given(asked)
+        digest = sha256(b"".join(np.ascontiguousarray(arrays[k]).tobytes() for k in sorted(arrays)))
+        self.folder = folder / f"{asked.scene.name}-{digest.hexdigest()[:12]}-{MAPPING_VERSION}"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.file = self.folder / "turns.json"
+        self.turns: dict[str, list[dict]] = (
+            json.loads(self.file.read_text("utf-8")) if self.file.is_file() else {}
+        )
+
+    @staticmethod
+    def key(engine: str, setting: dict) -> str:
+        return f"{engine} {json.dumps(setting, sort_keys=True)}"
+
+    def _end(self, key: str) -> Path:
+        return self.folder / f"{sha256(key.encode()).hexdigest()[:16]}.npy"
+
+    def add(self, key: str, turn: dict, end: np.ndarray | None) -> None:
+        self.turns.setdefault(key, []).append(turn)
+        if end is not None:
+            np.save(self._end(key), end)
+        written = self.file.with_suffix(".part")
+        written.write_text(json.dumps(self.turns), "utf-8")
+        written.replace(self.file)
+
+    def end(self, key: str) -> np.ndarray | None:
+        path = self._end(key)
+        return np.load(path) if path.is_file() else None
+
+
+def run_turns(
+    asked: Compared, engines: list[str], kept: Kept, rounds: int, until: float, peers: Peers
+) -> bool:
+    """Turns until every setting has its rounds (a limit or dear one: one); False where the time was up before that."""
+    arrays, complete = given(asked), True
+    longest = max(len(SWEEPS[engine]) for engine in engines)
+    for turn in range(rounds):
+        for k in range(longest):
+            for engine in engines:
+                if k >= len(SWEEPS[engine]):
+                    continue
+                setting = SWEEPS[engine][k]
+                key, limit = kept.key(engine, setting), k >= len(SWEEPS[engine]) - 2
+                done = kept.turns.get(key, [])
+                once = limit or any("error" in t or np.median(t["cpu_ms"]) > DEAR for t in done)
+                if len(done) > turn or (once and done):
+                    continue
+                if time.monotonic() > until:
+                    complete = False
+                    continue
+                own = ours(asked)
+                found = peers.run(engine, setting, **arrays)
+                end = found.pop("positions", None)
+                kept.add(key, {**found, "ours_ms": own["ms"], "ours_cpu_ms": own["cpu_ms"]}, end)
+                said = found.get("error") or f"{np.median(found['cpu_ms']):.0f} ms a frame"
+                print(f"  {engine} {told(setting)}: {said}", flush=True)
+    return complete
+
+
+def told_finite(value: Any) -> Any:
+    """The same with None for numbers that are not finite, which JSON has no word for."""
+    if isinstance(value, dict):
+        return {key: told_finite(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [told_finite(inner) for inner in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def added(path: Path, results: dict) -> dict:
+    """Writes the results of some scenes into a file of figures, whose other scenes stay; returns them all."""
+    old = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({**old, **results}, indent=1) + "\n", "utf-8")
+    return {**old, **results}
+
+
+def one_core() -> None:
+    """This process and those it starts, on the last of the processors it may use."""
+    os.environ.update(ONE_THREAD)
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    folder = ROOT / "build" / "peers"
+    parser.add_argument("--peers", nargs="?", const=folder, default=folder, type=Path, metavar="FOLDER")
+    parser.add_argument("--scene", choices=NAMES, action="append", help="default: all")
+    parser.add_argument("--only", choices=tuple(SWEEPS), action="append", help="one peer (may be repeated)")
+    parser.add_argument("--rounds", type=int, default=3, help="turns of a setting")
+    parser.add_argument("--budget", type=float, default=float("inf"), metavar="SECONDS")
+    parser.add_argument("--vertices", type=int, help="another mesh size")
+    parser.add_argument("--json", type=Path, help="write the figures as JSON")
+    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="draw error against time")
+    return parser.parse_args()
+
+
+def main() -> int:
+    args = arguments()
+    python = peer_python(args.peers, "cloth")
+    one_core()
+    peers = Peers(python, PROGRAM, WARP_CACHE_PATH=str(args.peers / "warp"))
+    until, results = time.monotonic() + args.budget, {}
+    for name in args.scene or NAMES:
+        asked = compared(name, args.vertices)
+        engines = [e for e in args.only or list(SWEEPS) if e in asked.engines]
+        kept = Kept(args.peers / "cloth-runs", asked)
+        ours(asked)  # compile
+        complete = run_turns(asked, engines, kept, args.rounds, until, peers)
+        runs = [ours(asked, substeps) for substeps in (None, 256, 512, 1024, 2048)]
+        results[name] = summary(kept, list(SWEEPS), runs)
+        results[name] |= {
+            "vertices": len(asked.scene.positions),
+            "seconds": asked.seconds,
+            "complete": complete,
+        }
+    peers.close()
+    if args.json:
+        results = added(args.json, told_finite(results))
+    if args.plot:
+        from cloth_plot import plot
+
+        plot(results, args.plot)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

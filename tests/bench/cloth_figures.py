@@ -1,0 +1,147 @@
+"""What the turns of peers amount to: errors from their own limit and from ours, ratios, and a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from cloth_sweeps import SWEEPS, told
+
+NEAR = 2.0  # [mm] mean: how near its own limit a peer's setting has to be to be compared
+
+
+def distance(a: np.ndarray, b: np.ndarray) -> dict[str, float]:
+    """Mean, 99 % and largest distance [mm] of vertices (V, 3); infinite where one is not finite."""
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        return {"mean": float("inf"), "p99": float("inf"), "max": float("inf")}
+    gap = 1e3 * np.linalg.norm(a - b, axis=1)
+    return {"mean": float(gap.mean()), "p99": float(np.percentile(gap, 99)), "max": float(gap.max())}
+
+
+def cheapest(rows: Sequence[dict], within: float = NEAR) -> dict | None:
+    """The row of least milliseconds whose mean distance from its own limit is within so many mm; None: there is none.
+
+    The limit itself is no candidate: its distance from itself says nothing.
+    """
+    near = [row for row in rows if not row["is_limit"] and row["own"]["mean"] <= within]
+    return min(near, key=lambda row: row["cpu_ms"], default=None)
+
+
+def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool, setting: dict) -> dict:
+    """Figures of one setting: medians over all frames of all turns, the ratio as the median of its turns."""
+    frames = np.concatenate([turn["cpu_ms"] for turn in turns])
+    walls = np.concatenate([turn["ms"] for turn in turns])
+    ratios = [float(np.median(t["cpu_ms"]) / np.median(t["ours_cpu_ms"])) for t in turns]
+    return {
+        "setting": setting,
+        "turns": len(turns),
+        "cpu_ms": float(np.median(frames)),
+        "cpu_ms_quartiles": [float(np.percentile(frames, q)) for q in (25, 75)],
+        "wall_ms": float(np.median(walls)),
+        "ratio": float(np.median(ratios)),
+        "ratio_range": [min(ratios), max(ratios)],
+        "own": own,
+        "from_ours": from_ours,
+        "is_limit": is_limit,
+        "build_seconds": turns[0]["build_seconds"],
+        "compile_seconds": max(turn["compile_seconds"] for turn in turns),
+    }
+
+
+def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None:
+    """Rows of one peer with its limit; None: nothing of it was run; {"error"}: it cannot run or has no limit yet."""
+    sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
+    run = [(s, key) for s, key in sweep if key in kept.turns]
+    good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
+    if not good:
+        return {"error": kept.turns[run[0][1]][0]["error"]} if run else None
+    if good[-1][0] != SWEEPS[engine][-1]:
+        return {"error": f"its limit, {told(SWEEPS[engine][-1])}, has not been run – run the bench again"}
+    ends = [kept.end(key) for _, key in good]
+    rows = [
+        row_of(
+            kept.turns[key],
+            distance(end, ends[-1]),
+            distance(end, reference),
+            is_limit=key == good[-1][1],
+            setting=setting,
+        )
+        for (setting, key), end in zip(good, ends, strict=True)
+    ]
+    floor = distance(ends[-2], ends[-1]) if len(ends) > 1 else None
+    found = cheapest(rows)
+    candidates = [r for r in rows if not r["is_limit"]]
+    best = min(candidates, key=lambda r: r["own"]["mean"], default=None)
+    return {
+        "version": kept.turns[good[-1][1]][0]["version"],
+        "limit": told(good[-1][0]),
+        "floor": floor,
+        "limit_from_ours": distance(ends[-1], reference),
+        "rows": rows,
+        "cheapest_within_2mm": found,
+        "best": best,
+    }
+
+
+def summary(kept: Any, engines: Sequence[str], runs: Sequence[dict]) -> dict:
+    """All figures of a scene, told as a table. runs: ours, from the default setting to the finest, the reference."""
+    *rows, coarser, finest = runs
+    end = finest["positions"]
+    found: dict[str, Any] = {
+        "ours": {
+            "rows": [
+                {
+                    "substeps": run["substeps"],
+                    "cpu_ms": float(np.median(run["cpu_ms"])),
+                    "wall_ms": float(np.median(run["ms"])),
+                    "error": distance(run["positions"], end),
+                }
+                for run in rows
+            ],
+            "floor": distance(coarser["positions"], end),
+        },
+        "peers": {},
+    }
+    print(
+        f"ours: limit at {finest['substeps']:.0f} steps, floor {found['ours']['floor']['mean']:.1e} mm mean"
+    )
+    for row in found["ours"]["rows"]:
+        error = row["error"]
+        print(
+            f"    {row['substeps']:<12.0f}{row['cpu_ms']:>13.1f} ms{error['mean']:>40.5f} / {error['p99']:.5f}"
+        )
+    for engine in engines:
+        peer = engine_summary(kept, engine, end)
+        if peer is not None:
+            found["peers"][engine] = peer
+            tell(engine, peer)
+    return found
+
+
+def tell(engine: str, peer: dict) -> None:
+    """The rows of one peer on standard output."""
+    if "error" in peer:
+        print(f"{engine}: not compared – {peer['error']}")
+        return
+    floor = f"{peer['floor']['mean']:.2f} mm" if peer["floor"] else "unknown"
+    print(
+        f"{engine} ({peer['version']}): limit at {peer['limit']}, the next finer setting {floor} from it, "
+        f"itself {peer['limit_from_ours']['mean']:.2f} mm mean from ours"
+    )
+    print(
+        "    setting     turns   cpu ms (quartiles)     x ours     own limit: mean / p99 mm    ours: mean / p99"
+    )
+    for r in peer["rows"]:
+        low, high = r["cpu_ms_quartiles"]
+        own = "the limit" if r["is_limit"] else f"{r['own']['mean']:.3f} / {r['own']['p99']:.3f}"
+        print(
+            f"    {told(r['setting']):<12}{r['turns']:>3}{r['cpu_ms']:>10.0f} ({low:.0f}–{high:.0f})"
+            f"{r['ratio']:>12.1f}{own:>26}{r['from_ours']['mean']:>14.3f} / {r['from_ours']['p99']:.3f}"
+        )
+    near = peer["cheapest_within_2mm"]
+    if near:
+        print(f"    within 2 mm of its own limit at {told(near['setting'])}: {near['ratio']:.1f} times ours")
+    elif peer["best"]:
+        b = peer["best"]
+        print(f"    never within 2 mm; best {b['own']['mean']:.2f} mm mean in {b['cpu_ms']:.0f} ms")

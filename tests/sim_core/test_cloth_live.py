@@ -1,0 +1,111 @@
+"""Stepping by hand, mending of meshes, and the choice of mesh and scheme."""
+
+import numpy as np
+import pytest
+
+from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
+from sim_core.cloth.fidelity import SAFETY, choose, table
+from sim_core.cloth.mending import mended
+from sim_core.cloth.rows import equilateral_sheet
+from sim_core.errors import SimCoreError, WrongArgument
+
+CLOTH = Material(0.05, 50.0, 0.3, 5e-5)
+
+
+def hung(**more) -> tuple[Live, Sheet, np.ndarray, list[int]]:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.05)
+    sheet = Sheet.of(rest, faces, CLOTH)
+    start = np.column_stack([rest[:, 0], -rest[:, 1], np.zeros(len(rest))])
+    pins = np.flatnonzero(rest[:, 1] < 1e-9).tolist()
+    return Live(sheet, start, pins=pins, **more), sheet, start, pins
+
+
+def test_frame_by_frame_is_the_run_in_one_go() -> None:
+    live, sheet, start, pins = hung(air=Air((2.0, 0.0, 1.0), gusts=0.3, seed=3))
+    for _ in range(6):
+        live.step()
+    end = drape(sheet, start, [Phase(0.24)], pins=pins, air=Air((2.0, 0.0, 1.0), gusts=0.3, seed=3))
+    assert live.positions == pytest.approx(end.positions, abs=1e-9)
+    assert live.frame == 6
+
+
+def test_pins_go_where_they_are_led_and_are_let_go() -> None:
+    live, _, start, pins = hung()
+    there = start[pins] + [0.0, 0.0, 0.03]
+    x = live.step(targets=there)
+    assert x[pins] == pytest.approx(there, abs=1e-12)
+    x = live.step()
+    assert x[pins] == pytest.approx(there, abs=1e-12)
+    for _ in range(5):
+        x = live.step(pins=pins[:1])
+    assert x[pins[0]] == pytest.approx(there[0], abs=1e-12)
+    assert x[pins[1:], 1].max() < start[pins[1:], 1].min() - 0.005
+
+
+def test_wind_and_pulls_move_it_the_way_they_go() -> None:
+    live, _, start, _ = hung()
+    low = int(np.argmin(start[:, 1]))
+    for _ in range(4):
+        x = live.step(pulls=(np.array([low]), np.array([[0.0, 0.0, 0.01]])))
+    assert x[low, 2] > 0.002
+    blown, _, _, _ = hung()
+    for _ in range(4):
+        x = blown.step(wind=(0.0, 0.0, -3.0))
+    assert x[:, 2].min() < -0.002
+    assert x[:, 2].max() < 1e-3
+
+
+def test_what_cannot_be_done_is_named() -> None:
+    live, sheet, start, _ = hung()
+    with pytest.raises(SimCoreError, match="targets: shape"):
+        live.step(targets=np.zeros((2, 2)))
+    with pytest.raises(SimCoreError, match="pulls: vertex 999"):
+        live.step(pulls=(np.array([999]), np.zeros((1, 3))))
+    with pytest.raises(SimCoreError, match="pins: index 999"):
+        live.step(pins=[999])
+    with pytest.raises(SimCoreError, match="positions"):
+        Live(sheet, start[:-1])
+    with pytest.raises(SimCoreError, match="air.wind"):
+        Air((float("nan"), 0.0, 0.0))
+
+
+def test_mended_meshes_have_no_doubles_and_no_empty_faces() -> None:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.05)
+    torn, alone = rest[faces].reshape(-1, 2), np.arange(3 * len(faces)).reshape(-1, 3)
+    flat = np.vstack([torn, torn[0] * 0.5 + torn[1] * 0.5])
+    alone = np.vstack([alone, [0, 1, len(torn)], alone[0]])
+    points, index, number = mended(flat, alone)
+    assert len(points) == len(rest)
+    assert len(index) == len(faces)
+    assert number[-1] == -1
+    assert points[number[:-1]] == pytest.approx(torn, abs=1e-6)
+    assert Sheet.of(points, index, CLOTH).mass.sum() == pytest.approx(Sheet.of(rest, faces, CLOTH).mass.sum())
+    with pytest.raises(SimCoreError, match="empty once mended"):
+        mended(np.zeros((3, 2)), np.array([[0, 1, 2]]))
+
+
+def test_the_choice_is_the_cheapest_row_within_the_budget() -> None:
+    for name, part in table().items():
+        errors = [row["error_mm"] for row in part["rows"]]
+        for budget in (2.1 * SAFETY * min(errors), SAFETY * max(errors)):
+            found = choose(name, error_mm=budget)
+            kept = [r for r in part["rows"] if SAFETY * r["error_mm"] <= budget]
+            assert found.ms == min(r["ms"] for r in kept)
+            assert SAFETY * found.error_mm <= budget
+            assert f"{found.error_mm:.2g} mm" in found.why
+        with pytest.raises(WrongArgument, match="the finest mesh in the table keeps"):
+            choose(name, error_mm=0.5 * SAFETY * min(errors))
+    with pytest.raises(WrongArgument, match="no table for"):
+        choose("curtain", error_mm=5.0)
+    with pytest.raises(WrongArgument, match="above 0"):
+        choose("flag", error_mm=float("nan"))
+
+
+def test_a_falling_cloth_meets_a_floor_in_live_mode() -> None:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.05)
+    start = np.column_stack([rest[:, 0], np.full(len(rest), 0.02), rest[:, 1]])
+    live = Live(Sheet.of(rest, faces, CLOTH), start, collider=HalfSpace(), contact=Contact(clearance=0.003))
+    for _ in range(10):
+        x = live.step()
+    assert x[:, 1].min() > 0.0029
+    assert x[:, 1].max() < 0.01

@@ -1,0 +1,95 @@
+"""Cloth that passed through itself is taken apart again; where it passes is found as the metrics find it."""
+
+import numpy as np
+import pytest
+
+from sim_core import metrics
+from sim_core.cloth import Contact, Material, Phase, Sheet, drape
+from sim_core.cloth.holding import Holds
+from sim_core.cloth.pairs import finder_of
+from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.untangling import crossings_of, faces_at_edges, no_crossings, untangle
+
+CLOTH = Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0)
+
+
+def edges_of(faces: np.ndarray) -> np.ndarray:
+    return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
+
+
+def two_layers(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rest (2V, 2), faces and positions of a flat layer and one 2 mm above whose corner dips 3 mm through it."""
+    both = np.concatenate([rest, rest + [0.5, 0.0]])
+    dip = np.clip(1 - np.linalg.norm(rest - rest.max(0) * 0.8, axis=1) / 0.04, 0, 1)
+    low = np.column_stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]])
+    high = low + [0.0051, 0.002, 0.0037]
+    high[:, 1] -= 0.005 * dip
+    return both, np.concatenate([faces, faces + len(rest)]).astype(np.int32), np.concatenate([low, high])
+
+
+def test_crossings_are_those_of_the_metrics_on_a_crumpled_sheet() -> None:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.02)
+    x, edges = np.random.default_rng(2).normal(0, 0.03, (len(rest), 3)), edges_of(faces)
+    faces, same = faces.astype(np.int32), np.arange(len(rest), dtype=np.int32)
+    finder = finder_of(len(x), len(edges), len(faces))
+    pairs, place, count = crossings_of(x, edges, faces, same, finder, *no_crossings())
+    assert count == metrics.intersections(x, faces) > 64
+    ends, corners = x[edges[pairs[:count, 0]]], x[faces[pairs[:count, 1]]]
+    t, weights = place[:count, :1], place[:count, 1:]
+    there = (1 - t) * ends[:, 0] + t * ends[:, 1]
+    assert there == pytest.approx((weights[:, :, None] * corners).sum(1), abs=1e-9)
+    assert weights.min() >= 0.0
+    sewn = np.zeros(len(rest), np.int32)
+    assert crossings_of(x, edges, faces, sewn, finder, *no_crossings())[2] == 0
+
+
+def test_every_edge_knows_its_faces() -> None:
+    _, faces = equilateral_sheet(0.1, 0.1, 0.02)
+    edges = edges_of(faces)
+    third = faces_at_edges(edges, faces)
+    met = {tuple(sorted(map(int, face))) for face in faces}
+    told = [
+        {tuple(sorted((int(a), int(b), int(c)))) for c in row if c >= 0}
+        for (a, b), row in zip(edges, third, strict=True)
+    ]
+    assert all(0 < len(own) <= 2 and own <= met for own in told)
+    assert sum(len(own) for own in told) == 3 * len(faces)
+
+
+def test_a_corner_that_dips_through_is_drawn_back() -> None:
+    both, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
+    edges, holds, start = edges_of(faces), Holds.of(len(x)), x.copy()
+    v = np.tile([0.0, 1.0, 0.0], (len(x), 1))
+    finder, inverse = finder_of(len(x), len(edges), len(faces)), np.ones(len(x))
+    args = (inverse, edges, faces, faces_at_edges(edges, faces), holds, finder, no_crossings())
+    before, after, _ = untangle(x, v, *args, step=3e-4, rounds=40)
+    assert before == metrics.intersections(start, faces) > 0
+    assert after == metrics.intersections(x, faces) == 0
+    moved = np.linalg.norm(x - start, axis=1)
+    assert moved.max() < 0.006
+    assert (moved > 0).sum() < 0.2 * len(x)  # what does not cross stays where it is
+    assert x.mean(0) == pytest.approx(start.mean(0), abs=1e-5)  # one side as far as the other
+    going = ((x - start) * v).sum(1)
+    assert going.min() >= -1e-12
+
+
+def test_what_is_held_is_not_moved() -> None:
+    _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
+    edges, start, half = edges_of(faces), x.copy(), len(x) // 2
+    finder = finder_of(len(x), len(edges), len(faces))
+    inverse = np.r_[np.zeros(half), np.ones(half)]
+    args = (inverse, edges, faces, faces_at_edges(edges, faces), Holds.of(len(x)), finder, no_crossings())
+    assert untangle(x, np.zeros_like(x), *args, step=3e-4, rounds=40)[1] == 0
+    assert (x[:half] == start[:half]).all()
+
+
+def test_a_run_ends_untangled_where_repulsion_alone_keeps_it_tangled() -> None:
+    both, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
+    sheet = Sheet.of(both, faces, CLOTH)
+    left = {}
+    for rounds in (0, 20):
+        contact = Contact(thickness=0.002, spring=0.001, speed_limit=0.1, untangle=rounds)
+        end = drape(sheet, x, [Phase(0.2, (0.0, 0.0), 5.0)], contact=contact)
+        left[rounds] = metrics.intersections(end.positions, faces)
+        assert end.worst_stretch < 1.2
+    assert left[20] == 0 < left[0]
