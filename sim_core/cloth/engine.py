@@ -16,14 +16,13 @@ from sim_core.cloth.holding import Holds, bound, draw_together, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact
+from sim_core.cloth.precision import COURANT, Pace, Single
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
 from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
 from sim_core.errors import SimCoreError
 
-COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
-SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
 IMPLICIT_STEPS = 8  # a frame by backward Euler
 IMPLICIT_PASSES = 4  # over the contacts after each of them
@@ -40,7 +39,9 @@ class Engine:
         collider: Solid | MovingGrid | None = None,
         contact: Contact | None = None,
         holds: Holds | None = None,
+        pace: Pace | None = None,
     ) -> None:
+        self.pace = pace or Pace()
         self.sheet, self.order = ordered(sheet)
         count = len(self.order)
         self.number = np.zeros(count, np.int64)
@@ -61,6 +62,7 @@ class Engine:
         longest = int(self.bands.face_runs[:, 1].max())
         samples = (len(self.vertices), len(self.middles))
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
+        self.single = Single(self.sheet, longest, samples) if self.pace.precision == "single" else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
@@ -108,20 +110,31 @@ class Engine:
         return AIR_SHARE * self.lightest / (12 * under.press * max(speed, 1e-9)) / AIR_EVERY
 
     def slow(self, dt: float) -> int:
-        """Substeps of dt [s] that bending may be left alone for: SLOW, or 1 where bending is what limits the step."""
-        return SLOW if SLOW * dt * np.sqrt(self.bend_omega2) <= 2 * COURANT else 1
+        """Substeps of dt [s] that bending may be left alone for: fewer, or 1, where it is what limits the step."""
+        most = 2 * COURANT / (dt * np.sqrt(self.bend_omega2))
+        return next((n for n in (self.pace.slow, self.pace.slow // 2) if n <= most), 1)
 
     def advance(
-        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, last: float, count: int
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        last: float,
+        count: int,
+        guard: float = 0.0,
     ) -> None:
-        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it."""
+        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it.
+
+        guard: least stiffness damping [s].
+        """
         material, c, dt = self.sheet.material, self.contact, FRAME / count
         self._lead(under, pins, x, v)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
             np.asarray(under.gravity, float),
             float(under.damping),
-            float(material.stiffness_damping),
+            max(float(material.stiffness_damping), guard),
             float(under.friction),
             float(c.clearance),
             float(c.sample_clearance),
@@ -133,8 +146,12 @@ class Engine:
             float(under.press),
             self.number[under.pulls[0]],
             np.ascontiguousarray(under.pulls[1], float),
-            self.slow(dt) if count % SLOW == 0 else 1,
+            self.slow(dt) if count % self.pace.slow == 0 else 1,
         )
+        if self.single:
+            touching = ((self.vertices, self.middles), self.holds, self.shell)
+            self.single.advance(self.inverse_mass(pins), packed, *touching, around, x, v, last, dt, count)
+            return
         s = self.sheet
         fixed = (self.bands, self.inverse_mass(pins), s.edges, s.faces, s.rest, packed)
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room)
@@ -216,6 +233,8 @@ class Engine:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
+        if self.single:
+            self.single.forget()
 
     def stretch(self, x: np.ndarray) -> float:
         """The longest an edge is at x (3, V), as a share of its rest length."""

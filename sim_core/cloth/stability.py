@@ -96,3 +96,8 @@ def bending_frequency2(bands: Bands, inverse: np.ndarray, room: Room) -> float:
 def stable_step(omega2: float, beta: float) -> float:
     """Largest stable leapfrog step [s] at omega2 [1/s2], lagged stiffness damping beta [s] included."""
     return float(np.sqrt(beta * beta + 4.0 / omega2) - beta)
+
+
+def stable_with(step: float, beta: float) -> float:
+    """Largest stable step [s] with lagged stiffness damping beta [s] where it is `step` [s] without."""
+    return float(np.sqrt(beta * beta + step * step) - beta)
