@@ -11,7 +11,6 @@ from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
-from sim_core.cloth.forces import energies
 from sim_core.cloth.holding import Holds, bound, draw_together, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
@@ -21,6 +20,7 @@ from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
 from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
+from sim_core.cloth.watching import longest2, stored_energy
 from sim_core.errors import SimCoreError
 
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
@@ -67,6 +67,7 @@ class Engine:
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
         self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
+        self._stored = np.zeros((3, 0)), 0.0  # positions whose energy is known
         self._inverse: dict[tuple[int, ...], np.ndarray] = {(): free}
 
     def inverse_mass(self, pins: Sequence[int]) -> np.ndarray:
@@ -95,7 +96,10 @@ class Engine:
         inverse = self.inverse_mass(pins)
         if not inverse.any():
             return FRAME
-        omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
+        if self.single:
+            omega2 = self.single.frequency2(inverse, x, mode, first=first)
+        else:
+            omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
         step = stable_step(omega2, self.sheet.material.stiffness_damping)
         if not np.isfinite(step) or step <= 0:
             raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
@@ -238,12 +242,18 @@ class Engine:
 
     def stretch(self, x: np.ndarray) -> float:
         """The longest an edge is at x (3, V), as a share of its rest length."""
-        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
-        return float(np.sqrt((((x[:, ends[:, 0]] - x[:, ends[:, 1]]) ** 2).sum(0) / rest2).max()))
+        return float(np.sqrt(longest2(self.sheet.stencil.edges, self.sheet.stencil.length2, x)))
 
     def energy(self, x: np.ndarray, v: np.ndarray, gravity: np.ndarray) -> tuple[float, float]:
         """Stored and kinetic energy, and that of height [J], of x, v (3, V)."""
-        stored = sum(energies(self.sheet.stencil, x.T, v.T))
+        known, stored = self._stored
+        if known is not x:  # a frame begins where the last one ended
+            free = self.sheet.stencil.inverse_mass
+            if self.single:
+                stored = self.single.stored(free, x, v)
+            else:
+                stored = float(stored_energy(self.bands, free, self.room, x, v))
+            self._stored = x, stored
         # Sums, not products of matrices: those start threads, and add up in an order of their own.
         along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
         return stored, -float((self.sheet.mass * along).sum())

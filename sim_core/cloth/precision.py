@@ -12,7 +12,9 @@ from sim_core.cloth.lattice import lanes_of
 from sim_core.cloth.leaping import advance_single
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.stability import FIRST_ROUNDS, first_mode
 from sim_core.cloth.stepping import Surroundings, room_of
+from sim_core.cloth.watching import single_mode, stored_single
 from sim_core.errors import SimCoreError
 
 PRECISIONS = ("double", "single")
@@ -20,7 +22,8 @@ COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen
 MOST_COURANT = 0.95
 SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
 GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonance down
-GUARD = 1.5  # of the damping at which bending impulses feed no mode of the membrane
+GUARD = 6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
+ROUNDS = 4  # of the power iteration a frame, which goes on where the last frame left it
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,8 @@ class Single:
         self.sheet, self.lanes = sheet, lanes_of(sheet)
         self.room = room_of(self.lanes.edges, count, longest, samples, np.float32)
         self._state = [np.zeros((3, count), np.float32) for _ in range(3)]
+        self._ones = np.ones(count, np.float32)
+        self._start = 0.2 * first_mode(count)
         self._inverse: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
     def _light(self, inverse: np.ndarray) -> np.ndarray:
@@ -104,6 +109,20 @@ class Single:
         kept = x[:, still] + v[:, still] * (dt * count)
         x[:] = here + middle
         x[:, still] = kept  # what is pinned is exactly where it was, or was led to
+
+    def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
+        """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""
+        here, there, _ = self._state
+        here[:] = x - x.mean(axis=1, keepdims=True)
+        there[:] = mode if first else mode + self._start
+        rounds = FIRST_ROUNDS if first else ROUNDS
+        value = single_mode(self.lanes, self._light(inverse), self.room, here, there, rounds)
+        mode[:] = there
+        return float(value)
+
+    def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
+        """`watching.stored_energy` [J]."""
+        return float(stored_single(self.lanes, inverse, self._ones, self.room, x, v))
 
     def forget(self) -> None:
         """Clears what a frame that blew up has left."""

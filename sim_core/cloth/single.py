@@ -167,3 +167,15 @@ def single_strain_before(runs, length2, x, y, z, u, v, w, step, before):
             b = y[i] - y[j] - dt * (v[i] - v[j])
             c = z[i] - z[j] - dt * (w[i] - w[j])
             before[e0 + t] = a * a + b * b + c * c - length2[e0 + t]
+
+
+@distinct_contracted
+def single_strain_changes(runs, x, y, z, p, q, s, change):
+    """2 d.(p_i - p_j) of every edge: the derivative of eps along (p, q, s)."""
+    for r in range(len(runs)):
+        e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
+        for t in range(count):
+            i, j = i0 + t, j0 + t
+            along = (x[i] - x[j]) * (p[i] - p[j]) + (y[i] - y[j]) * (q[i] - q[j])
+            along += (z[i] - z[j]) * (s[i] - s[j])
+            change[e0 + t] = along + along

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numba import njit
 
@@ -68,10 +70,15 @@ def _grown(bands, inverse, room, x, mode, rounds, bend_only):
     return value
 
 
-def first_mode(count: int) -> np.ndarray:
-    """Where the iteration starts (3, V): the same for every run, so that equal input gives equal bits."""
+@lru_cache(maxsize=4)
+def _start(count: int) -> np.ndarray:
     mode = np.random.default_rng(20).standard_normal((3, count))
     return mode / np.sqrt((mode * mode).sum())
+
+
+def first_mode(count: int) -> np.ndarray:
+    """Where the iteration starts (3, V), a copy: the same for every run, so that equal input gives equal bits."""
+    return _start(count).copy()
 
 
 def highest_frequency2(
@@ -83,7 +90,7 @@ def highest_frequency2(
     """
     tensions_at(bands, room, x)
     if not first:
-        mode += 0.2 * first_mode(mode.shape[1])
+        mode += 0.2 * _start(mode.shape[1])
     return float(_grown(bands, inverse, room, x, mode, FIRST_ROUNDS if first else NEXT_ROUNDS, False))
 
 
