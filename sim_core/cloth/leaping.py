@@ -38,13 +38,11 @@ def _tensions(lanes, around, room, x, last):
 
 
 @njit(cache=True, error_model="numpy")
-def _kicks(lanes, around, room, inverse, x, v, gain, part, slow_now, air_now):
+def _kicks(lanes, around, room, inverse, x, v, gain, part, last, slow_now, air_now):
     """What pulls beside the membrane's first six neighbours changes v (3, V); gain [s]."""
     b = lanes.bands
     if len(lanes.further_runs) > 0:
-        single_further(
-            lanes.further_runs, room.tension, inverse, x[0], x[1], x[2], gain, v[0], v[1], v[2]
-        )
+        single_further(lanes.further_runs, room.tension, inverse, x[0], x[1], x[2], gain, v[0], v[1], v[2])
     if slow_now:
         most = gain * around.slow
         single_bends(b.bend_runs, b.bend, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
@@ -59,7 +57,7 @@ def _kicks(lanes, around, room, inverse, x, v, gain, part, slow_now, air_now):
             wz = wind[0, 2] + part * (wind[1, 2] - wind[0, 2])
             ends = (raw[0], raw[1], raw[2], h[0], h[1], h[2])
             band_air(
-                b.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], wx, wy, wz, around.press, *ends
+                b.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], 0.5 * last, wx, wy, wz, around.press, *ends
             )
             ahead = 0.5 if part > 0.0 else 0.0
             for k in range(3):
@@ -112,13 +110,13 @@ def advance_single(
         keep, gain = max((1.0 - loss) / (1.0 + loss), LEAST_KEPT), span / (1.0 + loss)
         _tensions(lanes, around, room, here, last)
         slow_now, air_now = step % around.slow == 0, step % AIR_EVERY == 0
-        _kicks(
-            lanes, around, room, inverse, here, vs, gain / keep, step / substeps, slow_now, air_now
-        )
+        _kicks(lanes, around, room, inverse, here, vs, gain / keep, step / substeps, last, slow_now, air_now)
         ends = (there[0], there[1], there[2])
         begin, speed = (here[0], here[1], here[2]), (vs[0], vs[1], vs[2])
         way = 0.0 if halved else dt
-        single_leap(b.vertex_runs, room.tension, inverse, *begin, around.gravity, keep, gain, way, *speed, *ends)
+        single_leap(
+            b.vertex_runs, room.tension, inverse, *begin, around.gravity, keep, gain, way, *speed, *ends
+        )
         last = dt
         here, there = there, here
         x, v = here.T, vs.T

@@ -22,7 +22,9 @@ COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen
 MOST_COURANT = 0.95
 SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
 GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonance down
-GUARD = 6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
+GUARD = (
+    6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
+)
 ROUNDS = 4  # of the power iteration a frame, which goes on where the last frame left it
 
 
@@ -40,7 +42,9 @@ class Pace:
         if self.precision not in PRECISIONS:
             raise SimCoreError(f"precision: {self.precision!r} – there are {', '.join(PRECISIONS)}")
         if not 0.01 <= self.courant <= MOST_COURANT:
-            raise SimCoreError(f"courant: {self.courant} – a share of 0.01 to {MOST_COURANT} of the stable step")
+            raise SimCoreError(
+                f"courant: {self.courant} – a share of 0.01 to {MOST_COURANT} of the stable step"
+            )
 
     @property
     def guarded(self) -> bool:

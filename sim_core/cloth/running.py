@@ -21,6 +21,7 @@ from sim_core.cloth.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
 
 MAX_HALVINGS = 8
+AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 INTEGRATORS = ("auto", "explicit", "implicit")
 
@@ -66,6 +67,7 @@ class Run:
         moving = body and (body.name, body.origin, body.cell, body.count)
         contact, holds = self._given
         settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
+        settings += () if self.air is None else (AIR_VERSION,)
         settings += () if self.pace == Pace() else (self.pace,)
         return (*settings, *self.engine.packed, *holds)
 
@@ -141,7 +143,9 @@ class Run:
             step = min(step, engine.air_step(under, begin[1]) / pace.courant)
             state.mode = mode
         for attempt in range(MAX_HALVINGS):
-            count = self.fixed or pace.slow * int(np.ceil(FRAME / (pace.slow * pace.courant * state.safety * step)))
+            count = self.fixed or pace.slow * int(
+                np.ceil(FRAME / (pace.slow * pace.courant * state.safety * step))
+            )
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
                 engine.advance(under, pins, x, v, state.last_step, count, guard)

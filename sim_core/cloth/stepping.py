@@ -134,8 +134,9 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
             wz = wind[0, 2] + part * (wind[1, 2] - wind[0, 2])
             raw, past = room.air_now, room.air_past
             ends = (raw[0], raw[1], raw[2], h[0], h[1], h[2])
-            band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], wx, wy, wz, u, *ends)
-            # Held for the next steps, it acts on average half an interval later: that far it is carried on.
+            band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], 0.5 * last, wx, wy, wz, u, *ends)
+            # Taken where velocities are, half a step ago, and held for the next steps, it acts on average half an
+            # interval later: that far it is carried on.
             ahead = 0.5 if part > 0.0 else 0.0
             for k in range(3):
                 band_ahead(raw[k], past[k], ahead, air[k])
