@@ -106,7 +106,8 @@ def band_air(runs, x, y, z, u, v, w, back, ux, uy, uz, press, fx, fy, fz, hx, hy
     """Air on every face into (fx, fy, fz): a quarter rho Cd |s| s / |c|^2 c, c twice the area vector.
 
     s = (wind - mean velocity).c, wind (ux, uy, uz) [m/s], press = rho Cd / 12 (a third of it for each corner);
-    hx, hy, hz: room for the longest run. Faces are taken where they were `back` [s] ago, when they had these velocities.
+    hx, hy, hz: room for the longest run. Faces are taken where they were `back` [s] ago, with these
+    velocities.
     """
     fx[:] = 0.0
     fy[:] = 0.0

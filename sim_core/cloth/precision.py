@@ -57,7 +57,7 @@ class Pace:
         return GUARDED_SLOW if self.guarded else SLOW
 
     def guard(self, step: float, bend_omega2: float) -> float:
-        """Stiffness damping [s] that keeps impulses of bending (of largest frequency² [1/s²]) from feeding the membrane.
+        """Stiffness damping [s] at which impulses of bending, of largest frequency² [1/s²], do not feed the membrane.
 
         An impulse every T feeds a mode whose half period fits into T at the rate bend² / 2 omega, damping takes
         beta omega² / 2. step [s]: the largest stable one, 2 / omega of the fastest mode, where the need is greatest

@@ -1,4 +1,4 @@
-"""What a frame is watched by, in passes as cheap as the loop's own: energies, stretch, and the stiffest mode in single."""
+"""What a frame is watched by, in passes as cheap as the loop's: energies, stretch, the stiffest mode in single."""
 
 from __future__ import annotations
 
