@@ -102,11 +102,12 @@ def band_bends(runs, bend, factor, x, y, z, fx, fy, fz):
 
 
 @distinct
-def band_air(runs, x, y, z, u, v, w, ux, uy, uz, press, fx, fy, fz, hx, hy, hz):
+def band_air(runs, x, y, z, u, v, w, back, ux, uy, uz, press, fx, fy, fz, hx, hy, hz):
     """Air on every face into (fx, fy, fz): a quarter rho Cd |s| s / |c|^2 c, c twice the area vector.
 
     s = (wind - mean velocity).c, wind (ux, uy, uz) [m/s], press = rho Cd / 12 (a third of it for each corner);
-    hx, hy, hz: room for the longest run.
+    hx, hy, hz: room for the longest run. Faces are taken where they were `back` [s] ago, with these
+    velocities.
     """
     fx[:] = 0.0
     fy[:] = 0.0
@@ -116,8 +117,12 @@ def band_air(runs, x, y, z, u, v, w, ux, uy, uz, press, fx, fy, fz, hx, hy, hz):
         count, a, b, c = runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
         for t in range(count):
             i, j, k = a + t, b + t, c + t
-            ex, ey, ez = x[j] - x[i], y[j] - y[i], z[j] - z[i]
-            gx, gy, gz = x[k] - x[i], y[k] - y[i], z[k] - z[i]
+            ex = x[j] - x[i] - back * (u[j] - u[i])
+            ey = y[j] - y[i] - back * (v[j] - v[i])
+            ez = z[j] - z[i] - back * (w[j] - w[i])
+            gx = x[k] - x[i] - back * (u[k] - u[i])
+            gy = y[k] - y[i] - back * (v[k] - v[i])
+            gz = z[k] - z[i] - back * (w[k] - w[i])
             cx, cy, cz = ey * gz - ez * gy, ez * gx - ex * gz, ex * gy - ey * gx
             wx = ux - third * (u[i] + u[j] + u[k])
             wy = uy - third * (v[i] + v[j] + v[k])

@@ -2,7 +2,8 @@
 
 LLVM has to assume that a written array may be one of those read, and guards a loop only while there are few of them.
 `distinct` promises that no two array arguments of the function share memory. It is for functions whose arguments
-hold to that; nothing checks it. Arithmetic is neither re-ordered nor contracted: equal input gives equal bits.
+hold to that; nothing checks it. Arithmetic is not re-ordered, and but for
+`distinct_contracted` not contracted: equal input gives equal bits.
 """
 
 from __future__ import annotations
@@ -35,3 +36,9 @@ class _Distinct(Compiler):
 def distinct(function: Callable[..., Any]) -> Any:
     """`njit` with a cache for a function none of whose array arguments overlap."""
     return njit(cache=True, error_model="numpy", pipeline_class=_Distinct)(function)
+
+
+def distinct_contracted(function: Callable[..., Any]) -> Any:
+    """`distinct` where a product and a sum may become one instruction: for single precision, which promises less."""
+    made = njit(cache=True, error_model="numpy", pipeline_class=_Distinct, fastmath={"contract"})
+    return made(function)

@@ -15,6 +15,7 @@ from sim_core.cloth.collider import Solid
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, schedule
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 
@@ -60,6 +61,7 @@ def drape(
     down: Sequence[float] = (0.0, -1.0, 0.0),
     substeps: int | None = None,
     integrator: str = "auto",
+    pace: Pace | None = None,
     velocities: np.ndarray | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
@@ -72,6 +74,7 @@ def drape(
     substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
     integrator: "explicit", "implicit" (backward Euler, substeps steps a frame or 8), or "auto": explicit, with the
     implicit scheme for frames that would blow up.
+    pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
     air: what blows, and brakes; None costs nothing.
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
@@ -91,6 +94,7 @@ def drape(
         down=np.asarray(down, float),
         substeps=substeps,
         integrator=integrator,
+        pace=pace,
     )
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)

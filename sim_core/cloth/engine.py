@@ -11,21 +11,20 @@ from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
-from sim_core.cloth.forces import energies
 from sim_core.cloth.holding import Holds, bound, draw_together, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.pairs import finder_of, pairs_of
 from sim_core.cloth.phases import FRAME, Contact
+from sim_core.cloth.precision import COURANT, Pace, Single
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
 from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
 from sim_core.cloth.untangling import faces_at_edges, no_crossings, untangle
+from sim_core.cloth.watching import longest2, stored_energy
 from sim_core.errors import SimCoreError
 
-COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
-SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
 IMPLICIT_STEPS = 8  # a frame by backward Euler
 IMPLICIT_PASSES = 4  # over the contacts after each of them
@@ -43,7 +42,9 @@ class Engine:
         collider: Solid | MovingGrid | None = None,
         contact: Contact | None = None,
         holds: Holds | None = None,
+        pace: Pace | None = None,
     ) -> None:
+        self.pace = pace or Pace()
         self.sheet, self.order = ordered(sheet)
         count = len(self.order)
         self.number = np.zeros(count, np.int64)
@@ -67,10 +68,12 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
+        self.single = Single(self.sheet, longest, samples) if self.pace.precision == "single" else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
         self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
+        self._stored = np.zeros((3, 0)), 0.0  # positions whose energy is known
         self._inverse: dict[tuple[int, ...], np.ndarray] = {(): free}
 
     def inverse_mass(self, pins: Sequence[int]) -> np.ndarray:
@@ -99,7 +102,10 @@ class Engine:
         inverse = self.inverse_mass(pins)
         if not inverse.any():
             return FRAME
-        omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
+        if self.single:
+            omega2 = self.single.frequency2(inverse, x, mode, first=first)
+        else:
+            omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
         step = stable_step(omega2, self.sheet.material.stiffness_damping)
         if not np.isfinite(step) or step <= 0:
             raise SimCoreError("positions: no stable step – edges of zero length or a non-finite state")
@@ -114,20 +120,31 @@ class Engine:
         return AIR_SHARE * self.lightest / (12 * under.press * max(speed, 1e-9)) / AIR_EVERY
 
     def slow(self, dt: float) -> int:
-        """Substeps of dt [s] that bending may be left alone for: SLOW, or 1 where bending is what limits the step."""
-        return SLOW if SLOW * dt * np.sqrt(self.bend_omega2) <= 2 * COURANT else 1
+        """Substeps of dt [s] that bending may be left alone for: fewer, or 1, where it is what limits the step."""
+        most = 2 * COURANT / (dt * np.sqrt(self.bend_omega2))
+        return next((n for n in (self.pace.slow, self.pace.slow // 2) if n <= most), 1)
 
     def advance(
-        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, last: float, count: int
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        last: float,
+        count: int,
+        guard: float = 0.0,
     ) -> None:
-        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it."""
+        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it.
+
+        guard: least stiffness damping [s].
+        """
         material, c, dt = self.sheet.material, self.contact, FRAME / count
         self._lead(under, pins, x, v)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
             np.asarray(under.gravity, float),
             float(under.damping),
-            float(material.stiffness_damping),
+            max(float(material.stiffness_damping), guard),
             float(under.friction),
             float(c.clearance),
             float(c.sample_clearance),
@@ -139,8 +156,16 @@ class Engine:
             float(under.press),
             self.number[under.pulls[0]],
             np.ascontiguousarray(under.pulls[1], float),
-            self.slow(dt) if count % SLOW == 0 else 1,
+            self.slow(dt) if count % self.pace.slow == 0 else 1,
         )
+        if self.single:
+            touching = ((self.vertices, self.middles), self.holds, self.shell)
+            searched = (self.finder, *self.pairs)
+            inverse = self.inverse_mass(pins)
+            self.pairs = self.single.advance(
+                inverse, packed, *touching, around, *searched, x, v, last, dt, count
+            )
+            return
         s = self.sheet
         fixed = (self.bands, self.inverse_mass(pins), s.edges, s.faces, s.rest, packed)
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room, self.finder)
@@ -235,15 +260,23 @@ class Engine:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
+        if self.single:
+            self.single.forget()
 
     def stretch(self, x: np.ndarray) -> float:
         """The longest an edge is at x (3, V), as a share of its rest length."""
-        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
-        return float(np.sqrt((((x[:, ends[:, 0]] - x[:, ends[:, 1]]) ** 2).sum(0) / rest2).max()))
+        return float(np.sqrt(longest2(self.sheet.stencil.edges, self.sheet.stencil.length2, x)))
 
     def energy(self, x: np.ndarray, v: np.ndarray, gravity: np.ndarray) -> tuple[float, float]:
         """Stored and kinetic energy, and that of height [J], of x, v (3, V)."""
-        stored = sum(energies(self.sheet.stencil, x.T, v.T))
+        known, stored = self._stored
+        if known is not x:  # a frame begins where the last one ended
+            free = self.sheet.stencil.inverse_mass
+            if self.single:
+                stored = self.single.stored(free, x, v)
+            else:
+                stored = float(stored_energy(self.bands, free, self.room, x, v))
+            self._stored = x, stored
         # Sums, not products of matrices: those start threads, and add up in an order of their own.
         along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
         return stored, -float((self.sheet.mass * along).sum())

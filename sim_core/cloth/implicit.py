@@ -116,7 +116,7 @@ class Implicit:
         """Force of air and pulls (3, V) [N] at the begin of the step."""
         out = np.zeros_like(x)
         if load.press > 0:
-            band_air(self.bands.face_runs, *x, *v, *load.wind, load.press, *out, *self.room.face)
+            band_air(self.bands.face_runs, *x, *v, 0.0, *load.wind, load.press, *out, *self.room.face)
         np.add.at(out.T, load.pulled, load.pull)
         return out
 

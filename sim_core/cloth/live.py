@@ -12,6 +12,7 @@ from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 from sim_core.errors import SimCoreError
@@ -36,6 +37,7 @@ class Live:
         gravity: Sequence[float] = (0.0, -9.81, 0.0),
         damping: float | None = None,
         integrator: str = "auto",
+        pace: Pace | None = None,
     ) -> None:
         x, v = checked_state(sheet, positions, None)
         down = np.array([0.0, -1.0, 0.0])
@@ -51,6 +53,7 @@ class Live:
             down=down,
             substeps=None,
             integrator=integrator,
+            pace=pace,
         )
         self._state = RunState(x, v)
         self._gravity = np.asarray(gravity, float)

@@ -11,15 +11,17 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
-from sim_core.cloth.engine import COURANT, IMPLICIT_STEPS, SLOW, Engine
+from sim_core.cloth.engine import IMPLICIT_STEPS, Engine
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
-from sim_core.cloth.stability import first_mode
+from sim_core.cloth.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
 
 MAX_HALVINGS = 8
+AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 INTEGRATORS = ("auto", "explicit", "implicit")
 
@@ -40,6 +42,7 @@ class Run:
         down: np.ndarray,
         substeps: int | None,
         integrator: str,
+        pace: Pace | None = None,
     ) -> None:
         if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
             raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
@@ -50,7 +53,10 @@ class Run:
             raise SimCoreError(f"integrator: {integrator!r} – there are {', '.join(INTEGRATORS)}")
         self.integrator = integrator
         self.pins = tuple(int(i) for i in pins)
-        self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds)
+        self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
+        self.pace = self.engine.pace
+        none = np.zeros((0, 3))
+        self._left = (none, none), (none, none)  # what the last frame left, as given out and in band order
         self._given = (contact or Contact(), holds or Holds.of(len(sheet.rest)))
         for phase in self.phases:
             self.engine.inverse_mass(self._pinned(phase))
@@ -61,13 +67,15 @@ class Run:
         moving = body and (body.name, body.origin, body.cell, body.count)
         contact, holds = self._given
         settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
+        settings += () if self.air is None else (AIR_VERSION,)
+        settings += () if self.pace == Pace() else (self.pace,)
         return (*settings, *self.engine.packed, *holds)
 
     def _pinned(self, phase: Phase) -> tuple[int, ...]:
         return tuple(sorted({*self.pins, *phase.pins}))
 
     def frame(self, state: RunState, now: Moment) -> None:
-        """One frame, by the explicit scheme at 0.7 of the stable step of the current tangent.
+        """One frame, by the explicit scheme at 0.7 (or the pace's share) of the stable step of the current tangent.
 
         If it blows up it is rolled back and done with half the step, then by the implicit scheme; where layers touch
         or that does not help either, with half the step again and again.
@@ -77,7 +85,7 @@ class Run:
     def frame_under(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
         """One frame under the given conditions."""
         engine = self.engine
-        begin = engine.inward(state.positions), engine.inward(state.velocities)
+        begin = self._begin(state)
         start = time.perf_counter()
         if self.integrator == "implicit":
             count = self.fixed or IMPLICIT_STEPS
@@ -94,8 +102,16 @@ class Run:
         state.trace.append((float(np.percentile(way, 99)), float(way.max())))
         state.stretch = max(state.stretch, engine.stretch(x))
         state.positions, state.velocities = engine.outward(x), engine.outward(v)
+        self._left = (state.positions, state.velocities), (x, v)
         state.last_step = FRAME / count
         state.frame, state.substeps = state.frame + 1, state.substeps + count
+
+    def _begin(self, state: RunState) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and velocities (3, V) in band order: those the last frame left, if they are the state's."""
+        given, arrays = self._left
+        if given[0] is state.positions and given[1] is state.velocities:
+            return arrays
+        return self.engine.inward(state.positions), self.engine.inward(state.velocities)
 
     def _implicit(
         self, under: Conditions, pins: tuple[int, ...], begin: tuple[np.ndarray, np.ndarray], count: int
@@ -117,18 +133,23 @@ class Run:
         begin: tuple[np.ndarray, np.ndarray],
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Positions, velocities (3, V) and steps of one frame; the state's safety, mode and counters change."""
-        engine, step = self.engine, 0.0
+        engine, pace, step, guard = self.engine, self.pace, 0.0, 0.0
         if not self.fixed:
             first = state.mode.shape != begin[0].shape
             mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
             step = engine.step(pins, begin[0], mode, first=first)
-            step = min(step, engine.air_step(under, begin[1]) / COURANT)
+            guard = pace.guard(step, engine.bend_omega2)
+            if guard > self.sheet.material.stiffness_damping:
+                step = stable_with(step, guard)
+            step = min(step, engine.air_step(under, begin[1]) / pace.courant)
             state.mode = mode
         for attempt in range(MAX_HALVINGS):
-            count = self.fixed or SLOW * int(np.ceil(FRAME / (SLOW * COURANT * state.safety * step)))
+            count = self.fixed or pace.slow * int(
+                np.ceil(FRAME / (pace.slow * pace.courant * state.safety * step))
+            )
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
-                engine.advance(under, pins, x, v, state.last_step, count)
+                engine.advance(under, pins, x, v, state.last_step, count, guard)
                 if self.fixed or engine.healthy(under, begin, (x, v)):
                     state.safety = min(1.0, state.safety * 1.1)
                     return x, v, count

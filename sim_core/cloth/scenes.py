@@ -15,6 +15,7 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
 from sim_core.cloth.material import Material
 from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.precision import COURANT
 from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.teapot import teapot_solid
@@ -29,7 +30,10 @@ GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` 
 
 @dataclass(frozen=True)
 class Scene:
-    """What `drape` needs: sheet, start positions (V, 3) [m], phases, pins, collider, contact, air."""
+    """What `drape` needs: sheet, start positions (V, 3) [m], phases, pins, collider, contact, air.
+
+    courant: the share of the stable step at which the scene's time error is small (see the README's table).
+    """
 
     name: str
     sheet: Sheet
@@ -39,6 +43,7 @@ class Scene:
     collider: Solid | None = None
     contact: Contact | None = None
     air: Air | None = None
+    courant: float = COURANT
 
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
@@ -96,6 +101,7 @@ def scene(
     )
     if made.air is not None:
         made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
+    made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
     return made.lasting(frames or data["frames"])
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numba import njit
 
@@ -68,10 +70,15 @@ def _grown(bands, inverse, room, x, mode, rounds, bend_only):
     return value
 
 
-def first_mode(count: int) -> np.ndarray:
-    """Where the iteration starts (3, V): the same for every run, so that equal input gives equal bits."""
+@lru_cache(maxsize=4)
+def _start(count: int) -> np.ndarray:
     mode = np.random.default_rng(20).standard_normal((3, count))
     return mode / np.sqrt((mode * mode).sum())
+
+
+def first_mode(count: int) -> np.ndarray:
+    """Where the iteration starts (3, V), a copy: the same for every run, so that equal input gives equal bits."""
+    return _start(count).copy()
 
 
 def highest_frequency2(
@@ -83,7 +90,7 @@ def highest_frequency2(
     """
     tensions_at(bands, room, x)
     if not first:
-        mode += 0.2 * first_mode(mode.shape[1])
+        mode += 0.2 * _start(mode.shape[1])
     return float(_grown(bands, inverse, room, x, mode, FIRST_ROUNDS if first else NEXT_ROUNDS, False))
 
 
@@ -96,3 +103,8 @@ def bending_frequency2(bands: Bands, inverse: np.ndarray, room: Room) -> float:
 def stable_step(omega2: float, beta: float) -> float:
     """Largest stable leapfrog step [s] at omega2 [1/s2], lagged stiffness damping beta [s] included."""
     return float(np.sqrt(beta * beta + 4.0 / omega2) - beta)
+
+
+def stable_with(step: float, beta: float) -> float:
+    """Largest stable step [s] with lagged stiffness damping beta [s] where it is `step` [s] without."""
+    return float(np.sqrt(beta * beta + step * step) - beta)

@@ -76,15 +76,18 @@ class Room(NamedTuple):
     wake_middles: np.ndarray
 
 
-def room_of(edges: int, vertices: int, longest: int, samples: tuple[int, int]) -> Room:
+def room_of(
+    edges: int, vertices: int, longest: int, samples: tuple[int, int], kind: type = np.float64
+) -> Room:
     """Room for E edges, V vertices, runs of `longest` faces and so many vertex and middle samples."""
-    lines = [np.zeros(n) for n in (edges, edges, edges + vertices, edges + vertices)]
-    fields = [np.zeros((3, n)) for n in (vertices, vertices, vertices, vertices, max(longest, 1), vertices)]
+    lines = [np.zeros(n, kind) for n in (edges, edges, edges + vertices, edges + vertices)]
+    sizes = (vertices, vertices, vertices, vertices, max(longest, 1), vertices)
+    fields = [np.zeros((3, n), kind) for n in sizes]
     return Room(*lines, *fields, *(np.zeros(n, np.int32) for n in samples))
 
 
 @njit(cache=True, error_model="numpy")
-def _travel(x, v, mark):
+def travel(x, v, mark):
     """How far (V, 3) x has come from its mark and how fast it goes, at most, off the cloth's mean."""
     dx = dy = dz = vx = vy = vz = 0.0
     for i in range(len(x)):
@@ -102,7 +105,7 @@ def _travel(x, v, mark):
 
 
 @njit(cache=True, error_model="numpy")
-def _patience(left, fast, dt, cap):
+def patience(left, fast, dt, cap):
     """Substeps until `left` [m] may be used up at twice the speed `fast`, with pushes of `cap` each."""
     if not left > 0.0:
         return 0
@@ -131,8 +134,9 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
             wz = wind[0, 2] + part * (wind[1, 2] - wind[0, 2])
             raw, past = room.air_now, room.air_past
             ends = (raw[0], raw[1], raw[2], h[0], h[1], h[2])
-            band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], wx, wy, wz, u, *ends)
-            # Held for the next steps, it acts on average half an interval later: that far it is carried on.
+            band_air(bands.face_runs, x[0], x[1], x[2], v[0], v[1], v[2], 0.5 * last, wx, wy, wz, u, *ends)
+            # Taken where velocities are, half a step ago, and held for the next steps, it acts on average half an
+            # interval later: that far it is carried on.
             ahead = 0.5 if part > 0.0 else 0.0
             for k in range(3):
                 band_ahead(raw[k], past[k], ahead, air[k])
@@ -143,7 +147,7 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
 
 
 @njit(cache=True, error_model="numpy")
-def _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, last):
+def against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, last):
     """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
     r, c, cap = around.sample_clearance, around.clearance, around.cap
     moving = packed.kind[0] == MOVING  # comes nearer on its own: nobody sleeps
@@ -152,6 +156,24 @@ def _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, 
         collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
     wake = room.wake_vertices
     collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
+
+
+@njit(cache=True, error_model="numpy")
+def held(holds, packed, inverse, vertices, middles, around, room, x, v, dt, step, substeps):
+    """Seams, solids, bounds and images at the end of a substep: x, v (V, 3) change in place."""
+    if len(holds.pairs) > 0:
+        early, late = around.sewing
+        share = early + (late - early) * (step + 1) / substeps
+        draw_together(holds, inverse, x, v, share, (early - late) / (substeps * dt))
+    if len(packed.kind) > 0:
+        if packed.kind[0] == MOVING:
+            early, late = around.body
+            packed.blend[0] = early + (late - early) * (step + 1) / substeps
+            packed.blend[1] = (late - early) / (substeps * dt)
+        end = step == substeps - 1
+        against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, end)
+    bound(holds, x, v)
+    mirror(holds, x, v)
 
 
 @njit(cache=True, error_model="numpy")
@@ -184,11 +206,10 @@ def advance(
     their margin off its mean.
     """
     x, v, mark = xs.T, vs.T, room.mark.T
-    solids, layers = len(packed.kind) > 0, shell.thickness > 0.0
+    layers, push = shell.thickness > 0.0, around.cap if len(packed.kind) > 0 else 0.0
     room.wake_vertices[:] = 0
     room.wake_middles[:] = 0
     look_layer, counts = -1, (0, 0)
-    push = around.cap if solids else 0.0
     g = around.gravity
     if around.beta > 0.0:
         band_strain_before(
@@ -204,29 +225,17 @@ def advance(
         last = dt
         if layers and step % shell.every == 0:
             if step >= look_layer:
-                far, fast = _travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
+                far, fast = travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
                 if far > 0.3 * shell.skin:
                     points, crossings, counts = candidate_pairs(
                         x, rest, faces, edges, bands.length2, holds.same, shell, finder, points, crossings
                     )
                     room.mark[:] = xs
-                    far, fast = _travel(x, v, mark)
-                look_layer = step + 1 + _patience(0.5 * shell.skin - far, fast, dt, push)
+                    far, fast = travel(x, v, mark)
+                look_layer = step + 1 + patience(0.5 * shell.skin - far, fast, dt, push)
             repel(x, v, inverse, faces, edges, points, crossings, counts, shell, dt * shell.every)
         if around.speed_limit < FREE:
             band_limit(vs[0], vs[1], vs[2], around.speed_limit)
         band_drift(xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], dt)
-        if len(holds.pairs) > 0:
-            early, late = around.sewing
-            share = early + (late - early) * (step + 1) / substeps
-            draw_together(holds, inverse, x, v, share, (early - late) / (substeps * dt))
-        if solids:
-            if packed.kind[0] == MOVING:
-                early, late = around.body
-                packed.blend[0] = early + (late - early) * (step + 1) / substeps
-                packed.blend[1] = (late - early) / (substeps * dt)
-            end = step == substeps - 1
-            _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, end)
-        bound(holds, x, v)
-        mirror(holds, x, v)
+        held(holds, packed, inverse, vertices, middles, around, room, x, v, dt, step, substeps)
     return points, crossings

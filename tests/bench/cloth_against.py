@@ -1,10 +1,12 @@
 """Speed against error beside Newton, MuJoCo and Blender: `simcore bench cloth -- --peers`.
 
     … --peers [FOLDER] [--scene hang_edge|hanging|flag] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
-      [--json FILE] [--plot FILE.png]
+      [--deciding] [--json FILE] [--plot FILE.png]
 
-Every setting of a peer is run in turn with our engine at its default (adaptive) setting: a turn is one run of ours and
-one of the peer's, settings and peers alternate, and the ratio of a setting is the median over its turns. One thread,
+Every setting of a peer is run in turn with ours: a turn is one run of each of our settings (the default and cheaper
+ones, OURS) and one of the peer's, settings and peers alternate, and a ratio is the median over turns. Two are told:
+over our default, and over our cheapest setting that stays within 2 mm mean of our own limit. With --deciding only each
+peer's cheapest setting within 2 mm of its limit and the next ones of its sweep are run, the first so often. One thread,
 one core, processor milliseconds a frame of 1/25 s; building the model and compiling are left out and told. Errors are
 vertex distances at the end: from the peer's own limit (its finest setting; `floor` is what the next finer one still
 differs from it) and from ours. What has been run is kept in FOLDER, so a long sweep goes in pieces: with --budget no
@@ -22,11 +24,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from cloth_figures import summary
-from cloth_sweeps import SWEEPS, Compared, compared, given, told
+from cloth_figures import deciding, summary
+from cloth_sweeps import OURS, SWEEPS, Compared, compared, given, told
 from peers import Peers, peer_python
 
 from sim_core.cloth import drape
+from sim_core.cloth.precision import Pace
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
@@ -36,7 +39,7 @@ MAPPING_VERSION = 1  # raise when a peer is given other numbers: what was kept i
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 
-def ours(asked: Compared, substeps: int | None = None) -> dict:
+def ours(asked: Compared, substeps: int | None = None, pace: Pace | None = None) -> dict:
     """One run of our engine: processor and wall milliseconds of every frame, and the end (V, 3) [m]."""
     clock, scene = [time.process_time()], asked.scene
     end = drape(
@@ -46,6 +49,7 @@ def ours(asked: Compared, substeps: int | None = None) -> dict:
         pins=scene.pins,
         air=scene.air,
         substeps=substeps,
+        pace=pace,
         on_frame=lambda *_: clock.append(time.process_time()),
     )
     return {
@@ -90,9 +94,18 @@ class Kept:
 
 
 def run_turns(
-    asked: Compared, engines: list[str], kept: Kept, rounds: int, until: float, peers: Peers
+    asked: Compared,
+    engines: list[str],
+    kept: Kept,
+    rounds: int,
+    until: float,
+    peers: Peers,
+    only: dict | None,
 ) -> bool:
-    """Turns until every setting has its rounds (a limit or dear one: one); False where the time was up before that."""
+    """Turns until every setting has its rounds (a limit or dear one: one); False where the time was up before that.
+
+    only: per engine the settings that are run, the first of them in all rounds however dear (None: all of the sweep).
+    """
     arrays, complete = given(asked), True
     longest = max(len(SWEEPS[engine]) for engine in engines)
     for turn in range(rounds):
@@ -102,17 +115,23 @@ def run_turns(
                     continue
                 setting = SWEEPS[engine][k]
                 key, limit = kept.key(engine, setting), k >= len(SWEEPS[engine]) - 2
-                done = kept.turns.get(key, [])
-                once = limit or any("error" in t or np.median(t["cpu_ms"]) > DEAR for t in done)
-                if len(done) > turn or (once and done):
+                every = kept.turns.get(key, [])
+                done = [t for t in every if "ours" in t or "error" in t]
+                once = limit or any("error" in t or np.median(t["cpu_ms"]) > DEAR for t in every)
+                chosen = None if only is None else only.get(engine, [])
+                if chosen is not None and setting not in chosen:
+                    continue
+                if chosen and setting == chosen[0]:
+                    once = False
+                if len(done) > turn or (once and (done or (limit and every))):
                     continue
                 if time.monotonic() > until:
                     complete = False
                     continue
-                own = ours(asked)
+                own = {name: ours(asked, pace=pace) for name, pace in OURS.items()}
                 found = peers.run(engine, setting, **arrays)
                 end = found.pop("positions", None)
-                kept.add(key, {**found, "ours_ms": own["ms"], "ours_cpu_ms": own["cpu_ms"]}, end)
+                kept.add(key, {**found, "ours": {name: run["cpu_ms"] for name, run in own.items()}}, end)
                 said = found.get("error") or f"{np.median(found['cpu_ms']):.0f} ms a frame"
                 print(f"  {engine} {told(setting)}: {said}", flush=True)
     return complete
@@ -151,6 +170,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--scene", choices=NAMES, action="append", help="default: all")
     parser.add_argument("--only", choices=tuple(SWEEPS), action="append", help="one peer (may be repeated)")
     parser.add_argument("--rounds", type=int, default=3, help="turns of a setting")
+    parser.add_argument("--deciding", action="store_true", help="only the settings that decide")
     parser.add_argument("--budget", type=float, default=float("inf"), metavar="SECONDS")
     parser.add_argument("--vertices", type=int, help="another mesh size")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
@@ -168,10 +188,13 @@ def main() -> int:
         asked = compared(name, args.vertices)
         engines = [e for e in args.only or list(SWEEPS) if e in asked.engines]
         kept = Kept(args.peers / "cloth-runs", asked)
-        ours(asked)  # compile
-        complete = run_turns(asked, engines, kept, args.rounds, until, peers)
-        runs = [ours(asked, substeps) for substeps in (None, 256, 512, 1024, 2048)]
-        results[name] = summary(kept, list(SWEEPS), runs)
+        for pace in OURS.values():  # compile
+            ours(asked, pace=pace)
+        only = deciding(kept, engines) if args.deciding else None
+        complete = run_turns(asked, engines, kept, args.rounds, until, peers, only) and only is None
+        mine = {label: ours(asked, pace=pace) for label, pace in OURS.items()}
+        runs = [ours(asked, substeps) for substeps in (256, 512, 1024, 2048)]
+        results[name] = summary(kept, list(SWEEPS), mine, runs)
         results[name] |= {
             "vertices": len(asked.scene.positions),
             "seconds": asked.seconds,

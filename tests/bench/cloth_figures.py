@@ -28,19 +28,52 @@ def cheapest(rows: Sequence[dict], within: float = NEAR) -> dict | None:
     return min(near, key=lambda row: row["cpu_ms"], default=None)
 
 
-def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool, setting: dict) -> dict:
-    """Figures of one setting: medians over all frames of all turns, the ratio as the median of its turns."""
+def deciding(kept: Any, engines: Sequence[str]) -> dict[str, list[dict]]:
+    """Per engine its cheapest kept setting within NEAR of its limit and the settings beside it in its sweep."""
+    found = {}
+    for engine in engines:
+        peer = engine_summary(kept, engine, None, "default", every=True)
+        near = peer and peer.get("cheapest_within_2mm")
+        if near:
+            order = [s for s in SWEEPS[engine][:-2]]
+            at = order.index(near["setting"]) if near["setting"] in order else len(order)
+            found[engine] = [near["setting"], *order[max(at - 1, 0) : at], *order[at + 1 : at + 2]]
+    return found
+
+
+def row_of(
+    turns: Sequence[dict],
+    own: dict,
+    from_ours: dict,
+    *,
+    is_limit: bool,
+    setting: dict,
+    mine: str,
+    every: bool,
+) -> dict:
+    """Figures of one setting: medians over all frames of all turns, ratios as medians of the turns that have ours.
+
+    mine: the name of our cheapest setting. Milliseconds are of those turns too, if there are any (every: of all).
+    """
+    shared = [turn for turn in turns if "ours" in turn]
+    turns = turns if every or not shared else shared
     frames = np.concatenate([turn["cpu_ms"] for turn in turns])
     walls = np.concatenate([turn["ms"] for turn in turns])
-    ratios = [float(np.median(t["cpu_ms"]) / np.median(t["ours_cpu_ms"])) for t in turns]
+    ratios, cheap = (
+        [float(np.median(t["cpu_ms"]) / np.median(t["ours"][name])) for t in shared]
+        for name in ("default", mine)
+    )
     return {
         "setting": setting,
         "turns": len(turns),
         "cpu_ms": float(np.median(frames)),
         "cpu_ms_quartiles": [float(np.percentile(frames, q)) for q in (25, 75)],
         "wall_ms": float(np.median(walls)),
-        "ratio": float(np.median(ratios)),
-        "ratio_range": [min(ratios), max(ratios)],
+        "turns_beside_ours": len(shared),
+        "ratio": float(np.median(ratios)) if ratios else None,
+        "ratio_range": [min(ratios), max(ratios)] if ratios else None,
+        "ratio_cheapest": float(np.median(cheap)) if cheap else None,
+        "ratio_cheapest_range": [min(cheap), max(cheap)] if cheap else None,
         "own": own,
         "from_ours": from_ours,
         "is_limit": is_limit,
@@ -49,8 +82,13 @@ def row_of(turns: Sequence[dict], own: dict, from_ours: dict, *, is_limit: bool,
     }
 
 
-def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None:
-    """Rows of one peer with its limit; None: nothing of it was run; {"error"}: it cannot run or has no limit yet."""
+def engine_summary(
+    kept: Any, engine: str, reference: np.ndarray | None, mine: str, *, every: bool = False
+) -> dict | None:
+    """Rows of one peer with its limit; None: nothing of it was run; {"error"}: it cannot run or has no limit yet.
+
+    reference: our own limit (None: distances from it are those from the peer's); mine: our cheapest setting.
+    """
     sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
     run = [(s, key) for s, key in sweep if key in kept.turns]
     good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
@@ -59,6 +97,7 @@ def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None
     if good[-1][0] != SWEEPS[engine][-1]:
         return {"error": f"its limit, {told(SWEEPS[engine][-1])}, has not been run – run the bench again"}
     ends = [kept.end(key) for _, key in good]
+    reference = ends[-1] if reference is None else reference
     rows = [
         row_of(
             kept.turns[key],
@@ -66,6 +105,8 @@ def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None
             distance(end, reference),
             is_limit=key == good[-1][1],
             setting=setting,
+            mine=mine,
+            every=every,
         )
         for (setting, key), end in zip(good, ends, strict=True)
     ]
@@ -84,12 +125,31 @@ def engine_summary(kept: Any, engine: str, reference: np.ndarray) -> dict | None
     }
 
 
-def summary(kept: Any, engines: Sequence[str], runs: Sequence[dict]) -> dict:
-    """All figures of a scene, told as a table. runs: ours, from the default setting to the finest, the reference."""
+def _mine(kept: Any, name: str, run: dict, end: np.ndarray) -> dict:
+    """One of our settings: milliseconds of all kept turns, or of this run where there are none."""
+    turns = [t["ours"][name] for every in kept.turns.values() for t in every if name in t.get("ours", {})]
+    frames = np.concatenate([*turns, *([] if turns else [run["cpu_ms"]])])
+    return {
+        "name": name,
+        "substeps": run["substeps"],
+        "turns": len(turns),
+        "cpu_ms": float(np.median(frames)),
+        "cpu_ms_quartiles": [float(np.percentile(frames, q)) for q in (25, 75)],
+        "error": distance(run["positions"], end),
+    }
+
+
+def summary(kept: Any, engines: Sequence[str], own: dict[str, dict], runs: Sequence[dict]) -> dict:
+    """All figures of a scene, told as a table. own: a run of each of our settings; runs: ours up to the reference."""
     *rows, coarser, finest = runs
     end = finest["positions"]
+    settings = [_mine(kept, name, run, end) for name, run in own.items()]
+    near = [row for row in settings if row["error"]["mean"] <= NEAR]
+    mine = min(near, key=lambda row: row["cpu_ms"], default=settings[0])
     found: dict[str, Any] = {
         "ours": {
+            "settings": settings,
+            "cheapest_within_2mm": mine,
             "rows": [
                 {
                     "substeps": run["substeps"],
@@ -106,17 +166,23 @@ def summary(kept: Any, engines: Sequence[str], runs: Sequence[dict]) -> dict:
     print(
         f"ours: limit at {finest['substeps']:.0f} steps, floor {found['ours']['floor']['mean']:.1e} mm mean"
     )
-    for row in found["ours"]["rows"]:
+    for row in settings + found["ours"]["rows"]:
         error = row["error"]
         print(
-            f"    {row['substeps']:<12.0f}{row['cpu_ms']:>13.1f} ms{error['mean']:>40.5f} / {error['p99']:.5f}"
+            f"    {row.get('name', ''):<14}{row['substeps']:<12.0f}{row['cpu_ms']:>13.1f} ms"
+            f"{error['mean']:>40.5f} / {error['p99']:.5f}"
         )
     for engine in engines:
-        peer = engine_summary(kept, engine, end)
+        peer = engine_summary(kept, engine, end, mine["name"])
         if peer is not None:
             found["peers"][engine] = peer
             tell(engine, peer)
     return found
+
+
+def told_ratio(value: float | None) -> str:
+    """A ratio; one that was not measured is a dash."""
+    return "–" if value is None else f"{value:.1f}"
 
 
 def tell(engine: str, peer: dict) -> None:
@@ -130,18 +196,23 @@ def tell(engine: str, peer: dict) -> None:
         f"itself {peer['limit_from_ours']['mean']:.2f} mm mean from ours"
     )
     print(
-        "    setting     turns   cpu ms (quartiles)     x ours     own limit: mean / p99 mm    ours: mean / p99"
+        "    setting     turns   cpu ms (quartiles)     x ours, our cheapest     own limit: mean / p99 mm"
+        "    ours: mean / p99"
     )
     for r in peer["rows"]:
         low, high = r["cpu_ms_quartiles"]
         own = "the limit" if r["is_limit"] else f"{r['own']['mean']:.3f} / {r['own']['p99']:.3f}"
         print(
             f"    {told(r['setting']):<12}{r['turns']:>3}{r['cpu_ms']:>10.0f} ({low:.0f}–{high:.0f})"
-            f"{r['ratio']:>12.1f}{own:>26}{r['from_ours']['mean']:>14.3f} / {r['from_ours']['p99']:.3f}"
+            f"{told_ratio(r['ratio']):>8}{told_ratio(r['ratio_cheapest']):>8}"
+            f"{own:>26}{r['from_ours']['mean']:>14.3f} / {r['from_ours']['p99']:.3f}"
         )
     near = peer["cheapest_within_2mm"]
     if near:
-        print(f"    within 2 mm of its own limit at {told(near['setting'])}: {near['ratio']:.1f} times ours")
+        print(
+            f"    within 2 mm of its own limit at {told(near['setting'])}: {told_ratio(near['ratio'])} times ours, "
+            f"{told_ratio(near['ratio_cheapest'])} times our cheapest within 2 mm"
+        )
     elif peer["best"]:
         b = peer["best"]
         print(f"    never within 2 mm; best {b['own']['mean']:.2f} mm mean in {b['cpu_ms']:.0f} ms")

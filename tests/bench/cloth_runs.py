@@ -11,6 +11,7 @@ from scipy.interpolate import LinearNDInterpolator
 
 from sim_core.cloth import drape
 from sim_core.cloth.phases import FRAME
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import Scene
 
 
@@ -33,6 +34,7 @@ def simulate(
     substeps: int | None = None,
     integrator: str = "explicit",
     undamped: bool = False,
+    pace: Pace | None = None,
 ) -> Timed:
     """Runs `scene` for so many simulated seconds; undamped: without mass damping, as peers are compared."""
     frames = max(1, round(seconds / FRAME))
@@ -52,6 +54,7 @@ def simulate(
         air=scene.air,
         substeps=substeps,
         integrator=integrator,
+        pace=pace or Pace(courant=scene.courant),
     )
     cpu = (time.process_time() - begin) / frames
     ms = 1e3 * statistics.median(end.frame_seconds)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import GF_CM, Scene, hang_edge, scene
 
 GRAVITY = 9.81
@@ -26,6 +27,13 @@ def _grid(*settings: tuple, names: tuple[str, ...], **same) -> tuple[dict, ...]:
     return tuple({**dict(zip(names, values, strict=True)), **same} for values in settings)
 
 
+OURS = {
+    "default": Pace(),
+    "double, 0.9": Pace(courant=0.9),
+    "single, 0.7": Pace("single"),
+    "single, 0.9": Pace("single", 0.9),
+    "single, 0.95": Pace("single", 0.95),
+}
 STEPS, ITERATED = ("substeps",), ("substeps", "iterations")
 SWEEPS: dict[str, tuple[dict, ...]] = {
     "Newton VBD": _grid(

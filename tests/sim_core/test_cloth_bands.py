@@ -102,7 +102,9 @@ def test_air_on_the_faces_adds_up(make) -> None:
         speed = (wind - v[f].mean(0)) @ area / size
         expected[f] += 12 * press / 2 * size * abs(speed) * speed * area / size / 3
     out, room = np.zeros((3, len(x))), engine.room
-    band_air(engine.bands.face_runs, *engine.inward(x), *engine.inward(v), *wind, press, *out, *room.face)
+    band_air(
+        engine.bands.face_runs, *engine.inward(x), *engine.inward(v), 0.0, *wind, press, *out, *room.face
+    )
     assert np.abs(engine.outward(out) - expected).max() < 1e-12 * np.abs(expected).max()
 
 

@@ -1,0 +1,139 @@
+"""How a run is paced, and the state of one that runs in single precision."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.cloth.collider import Packed
+from sim_core.cloth.holding import Holds
+from sim_core.cloth.lattice import lanes_of
+from sim_core.cloth.leaping import advance_single
+from sim_core.cloth.pairs import Finder
+from sim_core.cloth.repulsion import Shell
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.stability import FIRST_ROUNDS, first_mode
+from sim_core.cloth.stepping import Surroundings, room_of
+from sim_core.cloth.watching import single_mode, stored_single
+from sim_core.errors import SimCoreError
+
+PRECISIONS = ("double", "single")
+COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
+MOST_COURANT = 0.95
+SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
+GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonance down
+GUARD = (
+    6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
+)
+ROUNDS = 4  # of the power iteration a frame, which goes on where the last frame left it
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Precision of the time loop and the share of the stable step that is taken; beyond 0.7 bending is damped a little.
+
+    Raises SimCoreError for another precision and for a share not within 0.01 to 0.95.
+    """
+
+    precision: str = "double"
+    courant: float = COURANT
+
+    def __post_init__(self) -> None:
+        if self.precision not in PRECISIONS:
+            raise SimCoreError(f"precision: {self.precision!r} – there are {', '.join(PRECISIONS)}")
+        if not 0.01 <= self.courant <= MOST_COURANT:
+            raise SimCoreError(
+                f"courant: {self.courant} – a share of 0.01 to {MOST_COURANT} of the stable step"
+            )
+
+    @property
+    def guarded(self) -> bool:
+        """The step is so long that the membrane's fastest modes would resonate with impulses at every second one."""
+        return self.courant > COURANT
+
+    @property
+    def slow(self) -> int:
+        """Substeps between two looks at bending, where it is soft enough."""
+        return GUARDED_SLOW if self.guarded else SLOW
+
+    def guard(self, step: float, bend_omega2: float) -> float:
+        """Stiffness damping [s] at which impulses of bending, of largest frequency² [1/s²], do not feed the membrane.
+
+        An impulse every T feeds a mode whose half period fits into T at the rate bend² / 2 omega, damping takes
+        beta omega² / 2. step [s]: the largest stable one, 2 / omega of the fastest mode, where the need is greatest
+        as bend² goes with the fourth power of the wave number and omega³ with the third.
+        """
+        return GUARD * bend_omega2 * (0.5 * step) ** 3 if self.guarded else 0.0
+
+
+class Single:
+    """A sheet in band order ready to be moved in single precision."""
+
+    def __init__(self, sheet: Sheet, longest: int, samples: tuple[int, int]) -> None:
+        count = len(sheet.mass)
+        self.sheet, self.lanes = sheet, lanes_of(sheet)
+        self.room = room_of(self.lanes.edges, count, longest, samples, np.float32)
+        self._state = [np.zeros((3, count), np.float32) for _ in range(3)]
+        self._ones = np.ones(count, np.float32)
+        self._start = 0.2 * first_mode(count)
+        self._inverse: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+
+    def _light(self, inverse: np.ndarray) -> np.ndarray:
+        """inverse (V,) [1/kg] in single precision, made once; the original is kept so that its id stays its own."""
+        if id(inverse) not in self._inverse:
+            self._inverse[id(inverse)] = inverse, inverse.astype(np.float32)
+        return self._inverse[id(inverse)][1]
+
+    def advance(
+        self,
+        inverse: np.ndarray,
+        packed: Packed,
+        samples: tuple[np.ndarray, np.ndarray],
+        holds: Holds,
+        shell: Shell,
+        around: Surroundings,
+        finder: Finder,
+        points: np.ndarray,
+        crossings: np.ndarray,
+        x: np.ndarray,
+        v: np.ndarray,
+        last: float,
+        dt: float,
+        count: int,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """`stepping.advance`: x, v (3, V) float64 change in place. What touches nothing is counted from its middle."""
+        here, there, speed = self._state
+        absolute = len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
+        middle = np.zeros((3, 1)) if absolute else x.mean(axis=1, keepdims=True)
+        here[:] = x - middle
+        speed[:] = v
+        s = self.sheet
+        fixed = (self.lanes, self._light(inverse), s.edges, s.faces, s.rest, s.stencil.length2, packed)
+        touch = (*samples, holds, shell, around, self.room, finder, points, crossings)
+        pairs = advance_single(*fixed, *touch, here, speed, there, last, dt, count)
+        v[:] = speed
+        still = inverse == 0.0
+        kept = x[:, still] + v[:, still] * (dt * count)
+        x[:] = here + middle
+        x[:, still] = kept  # what is pinned is exactly where it was, or was led to
+        return pairs
+
+    def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
+        """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""
+        here, there, _ = self._state
+        here[:] = x - x.mean(axis=1, keepdims=True)
+        there[:] = mode if first else mode + self._start
+        rounds = FIRST_ROUNDS if first else ROUNDS
+        value = single_mode(self.lanes, self._light(inverse), self.room, here, there, rounds)
+        mode[:] = there
+        return float(value)
+
+    def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
+        """`watching.stored_energy` [J]."""
+        return float(stored_single(self.lanes, inverse, self._ones, self.room, x, v))
+
+    def forget(self) -> None:
+        """Clears what a frame that blew up has left."""
+        for part in self.room:
+            part[:] = 0

@@ -1,0 +1,120 @@
+"""What a frame is watched by, in passes as cheap as the loop's: energies, stretch, the stiffest mode in single."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from sim_core.cloth.banded import band_bends, band_strains, band_tensions
+from sim_core.cloth.single import (
+    single_bends,
+    single_further,
+    single_leap,
+    single_odd_bends,
+    single_strain_changes,
+    single_strains,
+    single_tensions,
+)
+
+
+@njit(cache=True, error_model="numpy")
+def _works(f, inverse, x, v):
+    """Sum of f.x and of m v.v over the vertices: f, x, v (3, V); axis by axis, so that sums do not wait for another."""
+    ax, ay, az = x[0, 0], x[1, 0], x[2, 0]  # forces sum to zero: what they are counted from does not matter
+    bx = by = bz = kx = ky = kz = 0.0
+    for i in range(len(inverse)):
+        bx += f[0, i] * (x[0, i] - ax)
+        by += f[1, i] * (x[1, i] - ay)
+        bz += f[2, i] * (x[2, i] - az)
+        m = 1.0 / inverse[i] if inverse[i] > 0.0 else 0.0
+        kx += m * (v[0, i] * v[0, i])
+        ky += m * (v[1, i] * v[1, i])
+        kz += m * (v[2, i] * v[2, i])
+    return bx + by + bz, kx + ky + kz
+
+
+@njit(cache=True, error_model="numpy")
+def stored_single(lanes, inverse, ones, room, x, v):
+    """`stored_energy` of x, v (3, V) in double precision, its terms taken from x in single; ones (V,)."""
+    b, here, f = lanes.bands, room.air_now, room.force
+    c = b.coupling
+    for k in range(3):
+        for i in range(len(inverse)):
+            here[k, i] = x[k, i] - x[k, 0]
+    single_strains(b.edge_runs, b.length2, here[0], here[1], here[2], room.strain)
+    single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    half = len(room.strain) // 2
+    stretch, other = 0.0, room.tension[2 * half] * room.strain[-1] if len(room.strain) > 2 * half else 0.0
+    for e in range(half):
+        stretch += room.tension[e] * room.strain[e]
+        other += room.tension[half + e] * room.strain[half + e]
+    f[:] = 0.0
+    p, q = (here[0], here[1], here[2]), (f[0], f[1], f[2])
+    single_bends(b.bend_runs, b.bend, ones, 1.0, *p, *q)
+    single_odd_bends(lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
+    bend, kinetic = _works(f, inverse, x, v)
+    return 0.25 * (stretch + other) - 0.5 * bend + 0.5 * kinetic
+
+
+@njit(cache=True, error_model="numpy")
+def stored_energy(bands, inverse, room, x, v):
+    """Membrane, bending and kinetic energy [J] of x, v (3, V); inverse (V,) [1/kg] without pins. Uses the room."""
+    c, f = bands.coupling, room.force
+    band_strains(bands.edge_runs, bands.length2, x[0], x[1], x[2], room.strain)
+    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    stretch = 0.0
+    for e in range(len(room.strain)):
+        stretch += room.tension[e] * room.strain[e]
+    f[:] = 0.0
+    band_bends(bands.bend_runs, bands.bend, 1.0, x[0], x[1], x[2], f[0], f[1], f[2])
+    bend, kinetic = _works(f, inverse, x, v)
+    return 0.25 * stretch - 0.5 * bend + 0.5 * kinetic
+
+
+@njit(cache=True, error_model="numpy")
+def longest2(edges, length2, x):
+    """The largest |d|^2 / L^2 of any edge at x (3, V)."""
+    most = 0.0
+    for e in range(len(edges)):
+        i, j = edges[e, 0], edges[e, 1]
+        a, b, c = x[0, i] - x[0, j], x[1, i] - x[1, j], x[2, i] - x[2, j]
+        ratio = (a * a + b * b + c * c) / length2[e]
+        if not ratio <= most:  # NaN is the longest of all
+            most = ratio
+    return most
+
+
+@njit(cache=True, error_model="numpy")
+def single_mode(lanes, inverse, room, x, mode, rounds):
+    """`stability._grown` for lanes: the largest eigenvalue of M^-1 K [1/s2] at x, mode (3, V), which is renewed."""
+    b, out, aside = lanes.bands, room.force, room.air
+    c, tension, change = b.coupling, room.tension, room.change
+    odd = (lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
+    none = np.zeros(3)
+    single_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
+    single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
+    value = 0.0
+    out[:] = 0.0
+    for _ in range(rounds):
+        single_strain_changes(b.edge_runs, x[0], x[1], x[2], mode[0], mode[1], mode[2], room.strain)
+        single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, change)
+        f, h = (out[0], out[1], out[2]), (aside[0], aside[1], aside[2])
+        p, y = (mode[0], mode[1], mode[2]), (x[0], x[1], x[2])
+        single_leap(b.vertex_runs, change, inverse, *y, none, 0.0, 1.0, 0.0, *f, *h)
+        single_leap(b.vertex_runs, tension, inverse, *p, none, 1.0, 1.0, 0.0, *f, *h)
+        if len(lanes.further_runs) > 0:
+            single_further(lanes.further_runs, change, inverse, *y, 1.0, *f)
+            single_further(lanes.further_runs, tension, inverse, *p, 1.0, *f)
+        single_bends(b.bend_runs, b.bend, inverse, 1.0, *p, *f)
+        single_odd_bends(odd[0], odd[1], odd[2], inverse, 1.0, *p, *f)
+        sx = sy = sz = 0.0
+        for i in range(len(inverse)):
+            sx += out[0, i] * out[0, i]
+            sy += out[1, i] * out[1, i]
+            sz += out[2, i] * out[2, i]
+        value = np.sqrt(sx + sy + sz)
+        scale = np.float32(-1.0 / value if value > 0.0 else 0.0)
+        for k in range(3):
+            for i in range(len(inverse)):
+                mode[k, i] = scale * out[k, i]
+    return value

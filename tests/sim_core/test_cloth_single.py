@@ -1,0 +1,168 @@
+"""The time loop in single precision, its lanes, and the pace of a run."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from sim_core.cloth import Live, Phase, drape
+from sim_core.cloth.bands import ordered
+from sim_core.cloth.engine import Engine
+from sim_core.cloth.lattice import lanes_of
+from sim_core.cloth.precision import Pace
+from sim_core.cloth.rows import disc
+from sim_core.cloth.scenes import GF_CM, bar, hang_edge, scene
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.single import single_bends, single_leap, single_odd_bends, single_strains, single_tensions
+from sim_core.errors import SimCoreError
+
+SINGLE, LONG = Pace("single"), Pace("single", 0.95)
+UNDAMPED = replace(GF_CM, mass_damping=0.0, stiffness_damping=0.0)
+
+
+def run(made, pace=None, **more):
+    given = {"pins": made.pins, "air": made.air, "collider": made.collider, "contact": made.contact}
+    return drape(made.sheet, made.positions, made.phases, pace=pace, **given, **more)
+
+
+def apart(a, b):
+    return 1e3 * float(np.linalg.norm(a.positions - b.positions, axis=1).mean())
+
+
+def accelerations(sheet, x):
+    """M^-1 f of membrane and bending by lanes: (3, V) for x (3, V), and by the engine in double."""
+    lanes, inverse = lanes_of(sheet), sheet.stencil.inverse_mass.astype(np.float32)
+    b, c, here = lanes.bands, lanes.bands.coupling, x.astype(np.float32)
+    strain, tension = (np.zeros(lanes.edges + len(sheet.mass), np.float32) for _ in range(2))
+    out, aside = np.zeros_like(here), np.zeros_like(here)
+    single_strains(b.edge_runs, b.length2, *here, strain)
+    single_tensions(b.tension_runs, b.own, *c, strain, tension)
+    single_leap(b.vertex_runs, tension, inverse, *here, np.zeros(3), 0.0, 1.0, 0.0, *out, *aside)
+    single_bends(b.bend_runs, b.bend, inverse, 1.0, *here, *out)
+    single_odd_bends(lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, inverse, 1.0, *here, *out)
+    return out
+
+
+def expected(sheet, x):
+    from sim_core.cloth.forces import edge_tensions, vertex_forces
+
+    s, place = sheet.stencil, np.ascontiguousarray(x.T)
+    strain, tension, force = np.zeros(len(s.edges)), np.zeros(len(s.edges)), np.zeros_like(place)
+    edge_tensions(s, place, np.zeros_like(place), 0.0, strain, tension)
+    vertex_forces(s, place, tension, force)
+    return (force * s.inverse_mass[:, None]).T
+
+
+def test_lanes_of_a_lattice_have_the_forces_of_the_book():
+    sheet, _ = ordered(hang_edge(0.06).sheet)
+    rng = np.random.default_rng(1)
+    flat = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))]).T
+    x = flat * 1.02 + 1e-3 * rng.standard_normal(flat.shape)
+    there = expected(sheet, x)
+    assert np.abs(accelerations(sheet, x) - there).max() < 2e-4 * np.abs(there).max()
+
+
+def test_a_lattice_is_one_run_an_offset_and_a_disc_stays_in_bands():
+    sheet, _ = ordered(hang_edge(0.03).sheet)
+    lanes = lanes_of(sheet)
+    assert len(lanes.bands.edge_runs) == len(lanes.bands.tension_runs) == 3
+    assert lanes.bands.vertex_runs[:, 1].sum() == len(sheet.mass)
+    assert lanes.edges < 1.1 * len(sheet.edges)
+    rest, faces = disc(0.3, 0.02)
+    round_, _ = ordered(Sheet.of(rest, faces, GF_CM))
+    assert lanes_of(round_).edges == len(round_.edges)
+
+
+def test_a_disc_in_single_falls_as_in_double():
+    made = scene("drape", frames=4, vertices=400)
+    assert apart(run(made, SINGLE), run(made)) < 0.02
+
+
+def test_undamped_sheet_stays_within_a_tenth_of_a_millimetre_of_the_limit():
+    made = hang_edge(0.03, seconds=0.2, material=UNDAMPED)
+    limit = run(made, substeps=800)
+    for pace in (SINGLE, LONG, Pace("double", 0.95)):
+        found = run(made, pace)
+        assert apart(found, limit) < 0.1, pace
+        assert found.rollbacks == found.fallbacks == 0
+
+
+@pytest.mark.parametrize("pace", [LONG, Pace("double", 0.95)])
+def test_impulses_of_bending_feed_no_mode_at_the_longest_step(pace):
+    made = hang_edge(0.03, seconds=2.0, material=UNDAMPED)
+    rng = np.random.default_rng(2)
+    noisy = replace(made, positions=made.positions + 1e-6 * rng.standard_normal(made.positions.shape))
+    found, limit = run(noisy, pace), run(made, substeps=512)
+    assert found.rollbacks == found.fallbacks == 0
+    assert found.worst_stretch < 1.02 * limit.worst_stretch
+
+
+def test_single_with_solids_and_layers_keeps_out_and_falls_like_double():
+    made = bar(0.04, seconds=0.4)
+    found, usual = run(made, SINGLE), run(made)
+    assert made.collider.distance(found.positions).min() > -1e-4
+    assert abs(found.positions[:, 1].mean() - usual.positions[:, 1].mean()) < 0.01
+
+
+def test_single_in_wind_and_far_from_the_origin():
+    made = scene("flag", frames=5, vertices=400)
+    away = np.array([300.0, 20.0, -100.0])
+    near, far = run(made, SINGLE), run(replace(made, positions=made.positions + away), SINGLE)
+    assert apart(near, run(made)) < 0.5
+    assert 1e3 * np.abs(near.positions - (far.positions - away)).max() < 0.5
+
+
+def test_single_resumes_with_the_same_bits(tmp_path):
+    made, kept = hang_edge(0.06, seconds=0.4), tmp_path / "run"
+
+    def stop(index, _):
+        if index == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(made, LONG, checkpoint=kept, on_frame=stop)
+    resumed = run(made, LONG, checkpoint=kept, on_frame=lambda *_: None)
+    assert np.array_equal(resumed.positions, run(made, LONG).positions)
+
+
+def test_pins_in_single_are_exactly_where_they_are_led():
+    made = hang_edge(0.1)
+    live = Live(made.sheet, made.positions, pins=made.pins, pace=SINGLE)
+    aim = made.positions[list(made.pins)] + [0.0, 0.01, 0.0]
+    assert np.abs(live.step(targets=aim)[list(made.pins)] - aim).max() < 1e-9
+
+
+def test_a_pace_that_is_none_is_refused():
+    with pytest.raises(SimCoreError, match="precision"):
+        Pace("half")
+    for share in (0.0, 1.0, float("nan")):
+        with pytest.raises(SimCoreError, match="courant"):
+            Pace(courant=share)
+
+
+def test_default_pace_guards_nothing():
+    engine = Engine(hang_edge(0.1).sheet)
+    assert engine.pace.guard(1e-3, engine.bend_omega2) == 0.0
+
+
+def test_cases_of_the_hanging_cloth_name_the_step_their_corners_need():
+    assert scene("hanging", 2).courant == 0.7  # an edge
+    assert scene("hanging", 1).courant < 0.5  # two corners
+
+
+def test_error_of_the_corners_at_the_step_of_the_scene():
+    made = scene("hanging", 1, frames=10, vertices=600)
+    limit = run(made, substeps=600)
+    assert apart(run(made, Pace(courant=made.courant)), limit) < 0.05
+
+
+def test_flag_is_within_half_a_millimetre_of_its_limit():
+    made = scene("flag", frames=10, vertices=800)
+    assert apart(run(made), run(made, substeps=1024)) < 0.5
+
+
+def test_phases_of_a_garment_run_in_single():
+    made = hang_edge(0.08)
+    phases = (Phase(0.08, damping=3.0, speed_limit=2.0), Phase(0.08, gravity=(0.0, 9.81)))
+    found = run(replace(made, phases=phases), SINGLE)
+    assert apart(found, run(replace(made, phases=phases))) < 0.1
