@@ -112,11 +112,21 @@ class Engine:
         return SLOW if SLOW * dt * np.sqrt(self.bend_omega2) <= 2 * COURANT else 1
 
     def advance(
-        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, last: float, count: int
+        self,
+        under: Conditions,
+        pins: Sequence[int],
+        x: np.ndarray,
+        v: np.ndarray,
+        last: float,
+        count: int,
+        share: float = 1.0,
     ) -> None:
-        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it."""
-        material, c, dt = self.sheet.material, self.contact, FRAME / count
-        self._lead(under, pins, x, v)
+        """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it.
+
+        share: of a frame that `under` lasts for.
+        """
+        material, c, dt = self.sheet.material, self.contact, share * FRAME / count
+        self._lead(under, pins, x, v, share * FRAME)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
             np.asarray(under.gravity, float),
@@ -140,11 +150,13 @@ class Engine:
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room)
         advance(*fixed, *touch, x, v, last, dt, count)
 
-    def _lead(self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> None:
-        """What is pinned rests, or has the speed that brings it where it is led within the frame."""
+    def _lead(
+        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, seconds: float = FRAME
+    ) -> None:
+        """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""
         v[:, self.inverse_mass(pins) == 0.0] = 0.0
         index, there = self.number[under.led[0]], under.led[1]
-        v[:, index] = (there.T - x[:, index]) / FRAME
+        v[:, index] = (there.T - x[:, index]) / seconds
 
     def advance_implicit(
         self,

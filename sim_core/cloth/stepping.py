@@ -25,6 +25,7 @@ from sim_core.cloth.collider import MOVING
 from sim_core.cloth.contact import (
     collide_due_samples,
     collide_due_vertices,
+    settle_samples,
 )
 from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
@@ -150,6 +151,8 @@ def _against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, 
     if step % SAMPLES_EVERY == 0 or last:
         awake = moving or last
         collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
+        if last:
+            settle_samples(packed, inverse, x, v, middles, room.wake_middles, step, r, cap)
     wake = room.wake_vertices
     collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
 
