@@ -30,7 +30,7 @@ from sim_core.cloth.contact import (
 from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
-SAMPLES_EVERY = 4  # substeps between two looks at midpoints and centroids (and always the last of a frame)
+SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
 AIR_EVERY = 2  # substeps between two looks at the air
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 FREE = 1e3  # [m/s] a speed limit from here on is none
