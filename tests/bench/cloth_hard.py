@@ -31,23 +31,31 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", default="", help="cases whose name holds this")
-    parser.add_argument("--readme", action="store_true", help="write the table into the room's README")
+    parser.add_argument("--readme", action="store_true", help="write their rows into the room's README")
     args = parser.parse_args()
-    lines = ["| case | kept | rule | figures | implicit frames |", "|-|-|-|-|-|"]
-    kept = True
+    rows, kept = {}, True
     for name, case in CASES.items():
         if args.only in name:
             begin = time.perf_counter()
             found = case()
             kept &= found.kept
             mark = "yes" if found.kept else "**no**"
-            lines.append(f"| {name} | {mark} | {found.rule} | {found.figures} | {found.fallbacks} |")
-            print(lines[-1], f" {time.perf_counter() - begin:.1f} s", flush=True)
-    if args.readme:
-        text = README.read_text("utf-8")
-        head, tail = text.split(BEGIN)[0], text.split(END)[1]
-        README.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + tail, "utf-8")
+            rows[name] = f"| {name} | {mark} | {found.rule} | {found.figures} | {found.fallbacks} |"
+            print(rows[name], f" {time.perf_counter() - begin:.1f} s", flush=True)
+            if args.readme:
+                _written(rows)
     return 0 if kept else 1
+
+
+def _written(rows: dict[str, str]) -> None:
+    """The table of the README with these rows new and all others of a case as they were."""
+    text = README.read_text("utf-8")
+    head, rest = text.split(BEGIN)
+    old, tail = rest.split(END)
+    known = {line.split("|")[1].strip(): line for line in old.splitlines() if line.startswith("|")}
+    lines = ["| case | kept | rule | figures | implicit frames |", "|-|-|-|-|-|"]
+    lines += [(known | rows)[name] for name in CASES if name in known | rows]
+    README.write_text(head + BEGIN + "\n" + "\n".join(lines) + "\n" + END + tail, "utf-8")
 
 
 if __name__ == "__main__":

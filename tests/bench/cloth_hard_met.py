@@ -23,7 +23,7 @@ def on_a_spike() -> Outcome:
     spike = Union((Capsule((0, 0, 0), (0, 0.25, 0), 0.004), HalfSpace()))
     contact = Contact(clearance=0.003, thickness=0.002)
     damping = settling(1.0, 6.0, 25)
-    return calm(Setting(sheet, start, 150, collider=spike, contact=contact, damping=damping))
+    return calm(Setting(sheet, start, 250, collider=spike, contact=contact, damping=damping))
 
 
 def ring(radius: float, thick: float, parts: int = 24) -> Solid:
@@ -76,7 +76,7 @@ def layers(count: int = 10) -> Outcome:
 
     damping = settling(2.0, 10.0, 10)
     sheet = Sheet.of(flat, index, GF_CM)
-    given = Setting(sheet, start, 75, collider=HalfSpace(), contact=contact, damping=damping)
+    given = Setting(sheet, start, 45, collider=HalfSpace(), contact=contact, damping=damping)
     return calm(given, also=apart)
 
 
@@ -142,11 +142,11 @@ def knot_determinant(line: np.ndarray) -> int:
 
 
 def knot() -> Outcome:
-    """A ribbon of 2 cm in an overhand knot, its ends drawn apart at 0.5 m/s: the knot tightens and stays one."""
+    """A ribbon of 15 mm in an overhand knot, its ends drawn apart at 0.5 m/s: the knot tightens and stays one."""
     t = np.linspace(-2.15, 2.15, 2001)
-    curve = 0.016 * np.column_stack([2.2 * (t**3 - 3 * t), 1.6 * (t**4 - 4 * t**2), 0.5 * (t**5 - 10 * t)])
+    curve = 0.02 * np.column_stack([2.2 * (t**3 - 3 * t), 1.6 * (t**4 - 4 * t**2), 0.5 * (t**5 - 10 * t)])
     length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))]
-    rest, faces = equilateral_sheet(0.02, float(length[-1]), 0.01)
+    rest, faces = equilateral_sheet(0.015, float(length[-1]), 0.0075)
     along = np.gradient(curve, length, axis=0)
     across = np.zeros_like(curve)  # carried along without turning about the line
     across[0] = np.cross(along[0], [0.0, 1.0, 0.0])
@@ -158,7 +158,7 @@ def knot() -> Outcome:
     def at(s: np.ndarray, of: np.ndarray) -> np.ndarray:
         return np.column_stack([np.interp(s, length, of[:, k]) for k in range(3)])
 
-    start = at(rest[:, 1], curve) + (rest[:, :1] - 0.01) * at(rest[:, 1], across)
+    start = at(rest[:, 1], curve) + (rest[:, :1] - 0.0075) * at(rest[:, 1], across)
     low, high = (np.flatnonzero(abs(rest[:, 1] - s) < 1e-6) for s in (0.0, rest[:, 1].max()))
     pins = [*low.tolist(), *high.tolist()]
     home = start[pins]
