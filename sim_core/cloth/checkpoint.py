@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from sim_core.cloth.certificate import Tally
 from sim_core.errors import FileProblem
 from sim_core.reading import read_npz
 
@@ -33,6 +34,7 @@ class RunState:
     seconds: list[float] = field(default_factory=list)  # per frame of this process; not kept
     film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
     mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
+    tally: Tally = field(default_factory=Tally)  # of the certifier
 
 
 def run_key(parts: Iterable[object]) -> str:
@@ -49,6 +51,7 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
     counters = (state.rollbacks, state.substeps, state.fallbacks, state.stretch)
+    counters += (state.tally.redone, state.tally.zones, state.tally.uncertified)
     numbers = np.array([state.frame, state.last_step, state.safety, *counters], float)
     with beside.open("wb") as stream:
         np.savez(
@@ -72,7 +75,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
         data = read_npz(path, _ARRAYS, "a checkpoint", "the run begins anew")
         if str(data["key"]) != key:
             return None
-        frame, last, safety, rollbacks, substeps, fallbacks, stretch = data["numbers"]
+        frame, last, safety, rollbacks, substeps, fallbacks, stretch, *tally = data["numbers"]
         return RunState(
             positions=data["positions"],
             velocities=data["velocities"],
@@ -86,6 +89,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
             trace=[(float(p), float(m)) for p, m in data["trace"]],
             film=list(data["film"]),
             mode=data["mode"],
+            tally=Tally(*map(int, tally)),
         )
     except (FileProblem, ValueError, TypeError, OverflowError):
         return None

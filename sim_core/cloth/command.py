@@ -91,6 +91,7 @@ def add_parser(subparsers: Any) -> None:
         help="of the stable step (default: the scene's)",
     )
     add("--integrator", choices=("auto", "explicit", "implicit"), help="default: auto")
+    add("--certify", action="store_true", help="every frame: did anything pass through? (needs ipctk)")
     add("--seed", type=whole(0, 2**31 - 1), default=0, metavar="N", help="of the gusts (default: 0)")
     add("--resume", type=Path, metavar="FILE", help="keep the state here; go on from it if it is there")
     add("--out", type=ending(".npz"), metavar="FILE.npz", help="write the frames")
@@ -134,6 +135,10 @@ def run(args: argparse.Namespace) -> int:
         if path is not None and not path.parent.is_dir():
             raise WrongArgument(f"{path}: there is no folder {path.parent} – make it first")
     settings = _chosen(args)
+    if args.certify:
+        from sim_core.cloth.certifier import need_ipctk
+
+        need_ipctk()
     made = scene(
         args.scene,
         args.case,
@@ -173,12 +178,30 @@ def run(args: argparse.Namespace) -> int:
         "fallbacks": result.fallbacks,
         "worst_stretch": round(result.worst_stretch, 4),
         "penetrations": heard.penetrations,
+        "intersections": _crossed(made, result),
         "seed": args.seed,
     }
+    if result.certificate is not None:
+        found = result.certificate
+        summary["certified"] = {
+            k: v for k, v in asdict(found).items() if k not in ("intersections", "seconds")
+        }
+        summary["certified"]["ms_per_frame"] = round(
+            1e3 * found.seconds / max(len(result.frame_seconds), 1), 2
+        )
     if settings.get("why"):
         summary["why"] = settings["why"]
     _tell(args, made, result, summary)
     return 0
+
+
+def _crossed(made: Scene, result: Drape) -> int:
+    """(edge, face) pairs that pass through each other at the end."""
+    from sim_core.metrics import intersections
+
+    if result.certificate is not None:
+        return result.certificate.intersections
+    return intersections(result.positions, made.sheet.faces)
 
 
 def _chosen(args: argparse.Namespace) -> dict[str, Any]:
@@ -187,6 +210,7 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
         "vertices": args.vertices,
         "substeps": args.substeps,
         "integrator": args.integrator or "auto",
+        "certify": args.certify,
     }
     if args.error is not None:
         from sim_core.cloth.fidelity import choose
@@ -220,6 +244,7 @@ def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Pat
         on_frame=heard.frame,
         checkpoint=resume,
         keep=resume is not None,
+        certify=settings["certify"],
     )
 
 
@@ -289,6 +314,7 @@ def _tell(args: argparse.Namespace, made: Scene, result: Drape, summary: dict[st
     line = f"{s['scene']}: {s['vertices']} vertices, {s['frames']} frames in {s['seconds']:.1f} s"
     line += f", {s['ms_per_frame']:.1f} ms a frame (median), {s['substeps']:.0f} substeps, {s['integrator']}"
     line += f", stretch at most {s['worst_stretch']:.3f}, {s['penetrations']} penetrations"
+    line += f", {s['intersections']} intersections"
     sys.stdout.write(line + "\n")
     if "drape_coefficient" in s:
         sys.stdout.write(f"drape coefficient {100 * s['drape_coefficient']:.1f} %\n")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,21 @@ class Conditions:
     press: float = 0.0
     pulls: tuple[np.ndarray, np.ndarray] = _NO_PULL
     led: tuple[np.ndarray, np.ndarray] = _NO_PULL
+
+    def part(self, early: float, late: float, places: np.ndarray) -> Conditions:
+        """What holds from `early` to `late`, shares of the frame; places (V, 3) [m]: where the vertices are now."""
+
+        def between(ends: tuple[float, float]) -> tuple[float, float]:
+            first, last = ends
+            return first + (last - first) * early, first + (last - first) * late
+
+        index, there = self.led
+        here = places[index]
+        on = here + (there - here) * (late - early) / (1.0 - early)
+        wind = self.wind
+        if wind is not None:
+            wind = np.stack([wind[0] + (wind[1] - wind[0]) * share for share in (early, late)])
+        return replace(self, sewing=between(self.sewing), body=between(self.body), wind=wind, led=(index, on))
 
     @property
     def quiet(self) -> bool:

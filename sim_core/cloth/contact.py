@@ -14,6 +14,7 @@ from numba import njit
 from sim_core.cloth.distance import signed_distance
 
 LONGEST_SLEEP = 40  # substeps
+SETTLE = 6  # more looks at samples inside, at the end of a frame
 SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
@@ -80,6 +81,20 @@ def _sleep(room, speed2, dt):
 
 
 @njit(cache=True, error_model="numpy")
+def _way_of_corners(packed, x, sample, count):
+    """Which way out (unit, or 0) the corners know where a sample has none: in a lip thinner than a cell."""
+    gx = gy = gz = 0.0
+    for a in range(count):
+        u = sample[a]
+        _, nx, ny, nz, _ = signed_distance(packed, x[u, 0], x[u, 1], x[u, 2])
+        gx, gy, gz = gx + nx, gy + ny, gz + nz
+    size = math.sqrt(gx * gx + gy * gy + gz * gz)
+    if size < 0.25:
+        return 0.0, 0.0, 0.0
+    return gx / size, gy / size, gz / size
+
+
+@njit(cache=True, error_model="numpy")
 def _meet_middle(packed, inverse_mass, x, v, sample, clearance, cap):
     """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
     i, j, k = sample[0], sample[1], sample[2]
@@ -90,8 +105,12 @@ def _meet_middle(packed, inverse_mass, x, v, sample, clearance, cap):
     py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
     pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
     d, nx, ny, nz, _ = signed_distance(packed, px, py, pz)
-    if d >= clearance or nx * nx + ny * ny + nz * nz < 0.5:
+    if d >= clearance:
         return d - clearance
+    if nx * nx + ny * ny + nz * nz < 0.5:
+        nx, ny, nz = _way_of_corners(packed, x, sample, count)
+        if nx * nx + ny * ny + nz * nz < 0.5:
+            return d - clearance
     push = min(clearance - d, cap) / (w * w * count)
     vn = 0.0
     for a in range(count):
@@ -118,6 +137,19 @@ def collide_samples(packed, inverse_mass, x, v, near, clearance, cap):
     """
     for s in range(len(near)):
         _meet_middle(packed, inverse_mass, x, v, near[s], clearance, cap)
+
+
+@njit(cache=True, error_model="numpy")
+def settle_samples(packed, inverse_mass, x, v, samples, wake, step, clearance, cap):
+    """Goes again over the samples that were found inside in this step, until none is or SETTLE times."""
+    for _ in range(SETTLE):
+        inside = 0
+        for s in range(len(samples)):
+            if wake[s] == step + 1:
+                if _meet_middle(packed, inverse_mass, x, v, samples[s], clearance, cap) < 0.0:
+                    inside += 1
+        if inside == 0:
+            return
 
 
 @njit(cache=True, error_model="numpy")

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.cloth.air import Air
+from sim_core.cloth.certificate import Certificate
+from sim_core.cloth.certifier import Mesh
 from sim_core.cloth.checkpoint import RunState, load_checkpoint, run_key, save_checkpoint
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.holding import Holds
@@ -46,6 +48,7 @@ class Drape:
         1.0  # longest an edge has been at the end of a frame, as a share of its rest length
     )
     frame_seconds: tuple[float, ...] = field(default=(), repr=False)  # what each frame of this process took
+    certificate: Certificate | None = None  # of a run under the certifier
 
 
 def drape(
@@ -68,6 +71,7 @@ def drape(
     checkpoint: Path | None = None,
     checkpoint_seconds: float | None = None,
     keep: bool = False,
+    certify: bool | Mesh = False,
 ) -> Drape:
     """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
 
@@ -79,6 +83,9 @@ def drape(
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
     it behind, finished, for a caller who has more to do.
+    certify: look, every frame, whether anything passed through the cloth, by continuous collision detection (needs
+    ipctk), and do the frame again where it did; or the mesh, vertices (S, 3) [m] and faces, of a still collider to
+    be looked at as well. The start must be free of intersections.
     Raises SimCoreError on bad input or when the step had to be halved 8 times in one frame.
     """
     start = time.perf_counter()
@@ -96,6 +103,8 @@ def drape(
         integrator=integrator,
         pace=pace,
     )
+    if certify is not False:
+        run.certify(x, None if certify is True else certify)
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
     )
@@ -106,7 +115,7 @@ def drape(
         save_checkpoint(checkpoint, key, state)
     elif checkpoint:
         checkpoint.unlink(missing_ok=True)
-    return _result(state, time.perf_counter() - start)
+    return _result(run, state, time.perf_counter() - start)
 
 
 @dataclass(frozen=True)
@@ -152,7 +161,9 @@ def _run_frames(run: Run, state: RunState, hooks: _Hooks) -> None:
         raise
 
 
-def _result(state: RunState, seconds: float) -> Drape:
+def _result(run: Run, state: RunState, seconds: float) -> Drape:
+    looked = run.certified
+    found = looked and looked.certificate(state.tally, len(state.trace), state.positions)
     p99, most = state.trace[-1] if state.trace else (0.0, 0.0)
     return Drape(
         state.positions,
@@ -167,6 +178,7 @@ def _result(state: RunState, seconds: float) -> Drape:
         state.fallbacks,
         state.stretch,
         tuple(state.seconds),
+        found,
     )
 
 

@@ -133,13 +133,14 @@ class Engine:
         last: float,
         count: int,
         guard: float = 0.0,
+        share: float = 1.0,
     ) -> None:
         """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it.
 
-        guard: least stiffness damping [s].
+        guard: least stiffness damping [s]; share: of a frame that `under` lasts for.
         """
-        material, c, dt = self.sheet.material, self.contact, FRAME / count
-        self._lead(under, pins, x, v)
+        material, c, dt = self.sheet.material, self.contact, share * FRAME / count
+        self._lead(under, pins, x, v, share * FRAME)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
             np.asarray(under.gravity, float),
@@ -171,11 +172,13 @@ class Engine:
         touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room, self.finder)
         self.pairs = advance(*fixed, *touch, *self.pairs, x, v, last, dt, count)
 
-    def _lead(self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray) -> None:
-        """What is pinned rests, or has the speed that brings it where it is led within the frame."""
+    def _lead(
+        self, under: Conditions, pins: Sequence[int], x: np.ndarray, v: np.ndarray, seconds: float = FRAME
+    ) -> None:
+        """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""
         v[:, self.inverse_mass(pins) == 0.0] = 0.0
         index, there = self.number[under.led[0]], under.led[1]
-        v[:, index] = (there.T - x[:, index]) / FRAME
+        v[:, index] = (there.T - x[:, index]) / seconds
 
     def advance_implicit(
         self,

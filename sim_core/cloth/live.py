@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim_core.cloth.air import Air
+from sim_core.cloth.certificate import Certificate
+from sim_core.cloth.certifier import Mesh
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
@@ -21,8 +23,9 @@ from sim_core.errors import SimCoreError
 class Live:
     """The state of a running cloth; `step` moves it on by one frame of 1/25 s.
 
-    sheet and positions (V, 3) [m] as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the material's). The same
-    calls give the same bits. Raises SimCoreError on bad input.
+    sheet, positions (V, 3) [m], substeps and certify as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the
+    material's), which may be set anew between two frames. The same calls give the same bits. Raises SimCoreError on
+    bad input.
     """
 
     def __init__(
@@ -37,7 +40,9 @@ class Live:
         gravity: Sequence[float] = (0.0, -9.81, 0.0),
         damping: float | None = None,
         integrator: str = "auto",
+        substeps: int | None = None,
         pace: Pace | None = None,
+        certify: bool | Mesh = False,
     ) -> None:
         x, v = checked_state(sheet, positions, None)
         down = np.array([0.0, -1.0, 0.0])
@@ -51,13 +56,15 @@ class Live:
             None,
             air=air,
             down=down,
-            substeps=None,
+            substeps=substeps,
             integrator=integrator,
             pace=pace,
         )
+        if certify is not False:
+            self._run.certify(x, None if certify is True else certify)
         self._state = RunState(x, v)
         self._gravity = np.asarray(gravity, float)
-        self._damping = sheet.material.mass_damping if damping is None else damping
+        self.damping = sheet.material.mass_damping if damping is None else damping
         self._limit = (contact or Contact()).speed_limit
         self.pins, self.air, self.body = tuple(int(i) for i in pins), air, 0.0
 
@@ -80,6 +87,17 @@ class Live:
     def fallbacks(self) -> int:
         """Frames that the implicit scheme had to take over."""
         return self._state.fallbacks
+
+    @property
+    def substeps(self) -> int:
+        """Steps of the last frame."""
+        return round(FRAME / self._state.last_step) if self._state.last_step else 0
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What the certifier saw so far, if there is one."""
+        looked, state = self._run.certified, self._state
+        return looked and looked.certificate(state.tally, state.frame, state.positions)
 
     def step(
         self,
@@ -109,7 +127,7 @@ class Live:
         self.body = early if body is None else float(body)
         under = Conditions(
             gravity=self._gravity,
-            damping=self._damping,
+            damping=self.damping,
             friction=self._run.sheet.material.friction,
             speed_limit=self._limit,
             body=(early, self.body),

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim_core.cloth.air import Air
+from sim_core.cloth.certifier import Mesh
+from sim_core.cloth.certifying import Certified
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
@@ -55,11 +57,18 @@ class Run:
         self.pins = tuple(int(i) for i in pins)
         self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
         self.pace = self.engine.pace
+        self.certified: Certified | None = None
         none = np.zeros((0, 3))
         self._left = (none, none), (none, none)  # what the last frame left, as given out and in band order
         self._given = (contact or Contact(), holds or Holds.of(len(sheet.rest)))
         for phase in self.phases:
             self.engine.inverse_mass(self._pinned(phase))
+
+    def certify(self, start: np.ndarray, solid: Mesh | None) -> None:
+        """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider."""
+        if self.integrator == "implicit":
+            raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
+        self.certified = Certified(self.engine, start, solid)
 
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
@@ -69,7 +78,8 @@ class Run:
         settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
         settings += () if self.air is None else (AIR_VERSION,)
         settings += () if self.pace == Pace() else (self.pace,)
-        return (*settings, *self.engine.packed, *holds)
+        looked = () if self.certified is None else self.certified.certifier.solid
+        return (*settings, *self.engine.packed, *holds, self.certified is not None, *looked)
 
     def _pinned(self, phase: Phase) -> tuple[int, ...]:
         return tuple(sorted({*self.pins, *phase.pins}))
@@ -97,6 +107,9 @@ class Run:
         else:
             x, v, count = self._explicit(state, under, pins, begin)
         engine.untangle(pins, x, v)
+        if self.certified is not None:
+            last = state.last_step
+            x, v, count = self.certified.frame(state.tally, under, pins, begin, (x, v), last, count)
         state.seconds.append(time.perf_counter() - start)
         way = np.sqrt(((x - begin[0]) ** 2).sum(0))
         state.trace.append((float(np.percentile(way, 99)), float(way.max())))

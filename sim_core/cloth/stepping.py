@@ -25,11 +25,12 @@ from sim_core.cloth.collider import MOVING
 from sim_core.cloth.contact import (
     collide_due_samples,
     collide_due_vertices,
+    settle_samples,
 )
 from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
-SAMPLES_EVERY = 4  # substeps between two looks at midpoints and centroids (and always the last of a frame)
+SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
 AIR_EVERY = 2  # substeps between two looks at the air
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 FREE = 1e3  # [m/s] a speed limit from here on is none
@@ -154,6 +155,8 @@ def against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, s
     if step % SAMPLES_EVERY == 0 or last:
         awake = moving or last
         collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
+        if last:
+            settle_samples(packed, inverse, x, v, middles, room.wake_middles, step, r, cap)
     wake = room.wake_vertices
     collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
 
