@@ -92,7 +92,7 @@ def law(pins: list[str], scenes: list[dict], k: int) -> dict:
     off = np.stack([(b - a @ solved(who != i))[who == i] for i in range(len(scenes))])
     found, spread = solved(who >= 0), np.sqrt((off**2).mean(0))
     measured = np.array(EDGES[first:])
-    edges = np.geomspace(measured[0], measured[-1], 2 * len(measured) - 1)
+    edges = np.sort(np.concatenate([measured, np.round(np.sqrt(measured[1:] * measured[:-1]), 5)]))
     margin = np.exp(SURE * np.interp(np.log(edges), np.log(measured), spread))
     return {
         "pilot_mm": 1e3 * pilot,
