@@ -215,7 +215,9 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
     if args.error is not None:
         from sim_core.cloth.fidelity import choose
 
-        choice = choose(args.scene, error_mm=args.error)
+        choice = choose(
+            args.scene, error_mm=args.error, case=args.case, size=args.size, pins=args.pins, wind=args.wind
+        )
         settings |= {"substeps": None, "integrator": choice.integrator, "why": choice.why}
         settings["vertices"] = args.vertices or choice.vertices
     return settings

@@ -1,28 +1,45 @@
-"""The cheapest mesh and scheme whose measured error stays within a budget, from the table the bench makes.
+"""The cheapest mesh whose measured error stays within a budget: the scene tried coarsely, the table for the rest.
 
-`fidelity.json` holds, scene by scene, meshes from coarse to fine with their error against the finest (mesh and time
-error together, mean over the vertices, at a stated time before chaos) and their cost. An error of another sheet is
-read off at the same edge length and taken SAFETY times, because pins, sizes and materials differ.
+The scene is first tried with edges of 64, 45 and 32 mm. d, the geometric mean of how far the first two are from the
+third, is measured on that very sheet: size, pins, wind and material are all in it. How errors fall from there on is
+what `fidelity.json` knows, from scenes of the kind run on meshes from 8 to 90 mm:
+
+    error(h) = d exp(a[pins] + p[pins] log(h / h0) + r log(h / h0)^2) * margin(h)
+
+with h0 = 32 mm. If no mesh down to h0 / sqrt 2 keeps the budget, it is tried with 23 mm as well, and 16, each with its
+own law: a try lasts 5 to 15 frames, on meshes coarser than the one that is chosen.
+A flag is chaotic after half a second; its edges are no longer than those at which the statistics of all watched flags
+(mean shape, fluctuation, kinetic energy, frequency of the free corner) agree with those on finer meshes. The margin
+covers what measured scenes are off by when the law is fitted to the others alone. A sheet outside what was
+measured is refused, not guessed.
 """
 
 from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from sim_core.cloth.material import Material
+from sim_core.cloth.phases import FRAME
+from sim_core.cloth.pilot import PILOTS, gap, pilot
+from sim_core.cloth.scenes import Scene, case_values, material, scene
 from sim_core.errors import WrongArgument
 
 FILE = Path(__file__).with_name("fidelity.json")
-SAFETY = 4.0
+GRAVITY, AIR = 9.81, 0.6  # [m/s2]; half the density of air times Cd [kg/m3]
+LEAST_CROSS = 0.2  # [m/s] of wind across a flag: without it, rounding decides to which side it buckles
+SLACK = {"width": 1.25, "height": 1.25}  # how far beyond the measured scenes a sheet may lie; else twice
+TWICE = 2.0
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What to run: edge [m], vertices, integrator; its expected error [mm] and cost [ms a frame]; why in words."""
+    """What to run: edge [m], vertices, integrator; bound of its error [mm] and cost [ms a frame]; why in words."""
 
     edge: float
     vertices: int
@@ -32,37 +49,195 @@ class Choice:
     why: str
 
 
+@dataclass(frozen=True)
+class Asked:
+    """A sheet in a scene: kind, width and height [m], material, pins (hanging), wind [m/s] (flag)."""
+
+    kind: str
+    size: tuple[float, float]
+    cloth: Material
+    pins: str = ""
+    wind: tuple[float, float, float] | None = None
+    case: int = 1
+
+    def on(self, edge: float) -> Scene:
+        """The scene on a mesh of about such edges [m]."""
+        return scene(
+            self.kind,
+            self.case,
+            vertices=vertices(self.size, edge),
+            size=self.size,
+            pins=self.pins or None,
+            wind=self.wind,
+            cloth=self.cloth,
+        )
+
+    @property
+    def traits(self) -> dict[str, float]:
+        """What the measured scenes span: m, length over bending length, weight over stretch, wind over weight."""
+        weight, length = self.cloth.density * GRAVITY, math.sqrt(self.size[0] * self.size[1])
+        found = {"width": self.size[0], "height": self.size[1]}
+        found["L/c"] = length / (self.cloth.bend / weight) ** (1 / 3) if self.cloth.bend else math.inf
+        found["load"] = weight * length / self.cloth.stretch
+        if self.wind is not None:
+            found["wind"] = AIR * sum(w * w for w in self.wind) / weight
+        return found
+
+    def cost_terms(self, edge: float) -> list[float]:
+        """The terms of the cost's law: 1, log of vertices and of substeps, up to a factor."""
+        speed = math.sqrt(self.cloth.stretch / self.cloth.density)
+        return [1.0, math.log(vertices(self.size, edge)), math.log(speed / edge)]
+
+
 @lru_cache(maxsize=1)
 def table() -> dict[str, Any]:
-    """The shipped table: per scene `seconds`, `area` [m2] and rows of edge_mm, integrator, substeps, error_mm, ms."""
+    """The shipped table: see the head of this module; made by tests/bench/cloth_table.py."""
     return json.loads(FILE.read_text("utf-8"))
 
 
-def choose(scene: str, *, error_mm: float, area: float | None = None) -> Choice:
-    """The cheapest row of the table within `error_mm` [mm, mean over the vertices] for a sheet of `area` [m2].
+def vertices(size: Sequence[float], edge: float) -> int:
+    """Vertices of a sheet of `size` [m] with equilateral triangles of such edges [m]."""
+    return max(12, round(size[0] * size[1] * 2 / math.sqrt(3) / edge**2))
 
-    area: the scene's own if left out. Raises WrongArgument for a scene the table does not know, and for a budget
-    that not even its finest mesh keeps.
+
+def law_terms(edge: float, pilot: float) -> tuple[float, float]:
+    """log(h / h0) of an edge [m] over the finer pilot's, and its square."""
+    fine = math.log(edge / pilot)
+    return fine, fine * fine
+
+
+def bounds(asked: Asked, law: dict[str, Any], told: float) -> list[tuple[float, float, float]]:
+    """Edge [m], bound of the error [mm] and cost [ms a frame] of every mesh a law offers, finest first; error monotone.
+
+    told: what the pilots of that law tell [mm], see `gap`.
+    """
+    found, worst = [], 0.0
+    start, slope = law["pins"][asked.pins]
+    for edge_mm, margin in zip(law["edges_mm"], law["margin"], strict=True):
+        fine, square = law_terms(edge_mm, law["pilot_mm"])
+        worst = max(worst, told * math.exp(start + slope * fine + law["curve"] * square) * margin)
+        terms = asked.cost_terms(edge_mm / 1e3)
+        cost = sum(a * b for a, b in zip(table()[asked.kind]["cost"], terms, strict=True))
+        found.append((edge_mm / 1e3, worst, math.exp(cost)))
+    return found
+
+
+def choose(
+    name: str,
+    *,
+    error_mm: float,
+    case: int = 1,
+    size: Sequence[float] | None = None,
+    pins: str | None = None,
+    wind: Sequence[float] | None = None,
+    cloth: Material | None = None,
+) -> Choice:
+    """The cheapest mesh of a published scene, changed by what is given, that keeps `error_mm` [mm].
+
+    The error is the mean distance of the sheet's material points from where they would be, in the worst frame of the
+    table's `seconds`, mesh and time error together; for a flag also that of its mean shape after 0.5 s. Raises
+    WrongArgument for a scene the table does not know, a sheet outside what was measured, and a budget that not even
+    the finest mesh keeps.
     """
     known = table()
-    if scene not in known:
-        raise WrongArgument(f"error: no table for {scene!r} – there is one for {', '.join(sorted(known))}")
+    if name not in known:
+        raise WrongArgument(f"error: no table for {name!r} – there is one for {', '.join(sorted(known))}")
     if not (math.isfinite(error_mm) and error_mm > 0):
         raise WrongArgument(f"error {error_mm} mm – a budget is above 0")
-    part = known[scene]
-    area = float(part["area"]) if area is None else area
-    rows = sorted(part["rows"], key=lambda r: r["ms"])
-    within = [r for r in rows if SAFETY * r["error_mm"] <= error_mm]
-    if not within:
-        least = SAFETY * min(r["error_mm"] for r in rows)
-        raise WrongArgument(f"error {error_mm} mm – the finest mesh in the table keeps {least:.2g} mm")
-    best = within[0]
-    edge = best["edge_mm"] / 1000
-    count = round(area * 2 / math.sqrt(3) / edge**2)
-    why = (
-        f"edges of {best['edge_mm']:g} mm, {best['integrator']}: measured error {best['error_mm']:.2g} mm after "
-        f"{part['seconds']:g} s, taken {SAFETY:g} times; the next cheaper row "
+    asked = _asked(name, case, size, pins, wind, cloth)
+    _within(asked)
+    part = known[name]
+    frames = round(part["seconds"] / FRAME)
+    films, offered = [pilot(asked.on(edge), asked.size, frames) for edge in PILOTS[:2]], []
+    for edge, law in zip(PILOTS[2:], part["laws"], strict=True):
+        films.append(pilot(asked.on(edge), asked.size, frames))
+        told = gap(films[-3:])
+        offered = bounds(asked, law, told)
+        calm = 1e-3 * part.get("calm_mm", math.inf)
+        kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
+        if kept:
+            best = min(kept, key=lambda row: row[2])
+            why = _why(part, law, told, best, [row for row in offered if row[0] > best[0]])
+            return Choice(best[0], vertices(asked.size, best[0]), "auto", best[1], best[2], why)
+    edge, least, _ = offered[0]
+    raise WrongArgument(
+        f"error {error_mm:g} mm – the finest mesh measured, of {1e3 * edge:.0f} mm, keeps {_up(least)} mm for this "
+        f"sheet; ask for that, or give --vertices"
     )
-    cheaper = [r for r in rows if r["ms"] < best["ms"]]
-    why += f"has {cheaper[-1]['error_mm']:.2g} mm" if cheaper else "does not exist"
-    return Choice(edge, count, best["integrator"], best["error_mm"], best["ms"] * area / part["area"], why)
+
+
+def _asked(
+    name: str,
+    case: int,
+    size: Sequence[float] | None,
+    pins: str | None,
+    wind: Sequence[float] | None,
+    cloth: Material | None,
+) -> Asked:
+    """The sheet that is meant. Raises WrongArgument for what the scene does not take."""
+    if pins is not None and name != "hanging":
+        raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
+    if wind is not None and name != "flag":
+        raise WrongArgument(f"wind – only the flag stands in one, not {name}")
+    values = case_values(name, case)
+    width, height = values["size"] if size is None else size
+    blown = None
+    if name == "flag":
+        x, y, z = values["wind"] if wind is None else wind
+        blown = float(x), float(y), float(z)
+    held = str(values.get("pins", "")) if pins is None else pins
+    return Asked(name, (float(width), float(height)), cloth or material(), held, blown, case)
+
+
+def _up(value: float) -> str:
+    """Two digits, rounded up, so that what is printed can be asked for."""
+    place = 10 ** (1 - math.floor(math.log10(value)))
+    return f"{math.ceil(value * place - 1e-9) / place:g}"
+
+
+def _why(
+    part: dict[str, Any],
+    law: dict[str, Any],
+    told: float,
+    best: tuple[float, ...],
+    coarser: list[tuple[float, ...]],
+) -> str:
+    text = (
+        f"edges of {1e3 * best[0]:.3g} mm, explicit: tried with edges down to {law['pilot_mm']:.3g} mm, this sheet "
+        f"changes by {told:.2g} mm, from which {len(part['scenes'])} measured scenes tell an error of at most "
+        f"{best[1]:.2g} mm in the first {part['seconds']:g} s; "
+    )
+    if coarser:
+        return (
+            text + f"the next coarser mesh, {1e3 * coarser[0][0]:.3g} mm, may err by {coarser[0][1]:.2g} mm"
+        )
+    return text + "no coarser mesh was measured"
+
+
+def _within(asked: Asked) -> None:
+    """Raises WrongArgument for a sheet outside the measured scenes."""
+    part = table()[asked.kind]
+    known = part["laws"][0]["pins"]
+    if asked.pins not in known:
+        raise WrongArgument(f"pins {asked.pins!r} – the table has {', '.join(sorted(known))}")
+    if asked.wind is not None and abs(asked.wind[2]) < LEAST_CROSS:
+        raise WrongArgument(
+            f"wind {asked.wind} – with less than {LEAST_CROSS} m/s across the flag rounding decides where it buckles, "
+            "and no error can be told; give --vertices"
+        )
+    for name, value in asked.traits.items():
+        low, high = part["measured"][name]
+        slack = SLACK.get(name, TWICE)
+        if not low / slack <= value <= high * slack:
+            raise WrongArgument(
+                f"{_TOLD[name]} {value:.3g} – measured are {low:.3g} to {high:.3g}; give --vertices instead of --error"
+            )
+
+
+_TOLD = {
+    "width": "width [m]",
+    "height": "height [m]",
+    "L/c": "length over bending length",
+    "load": "weight over stretch stiffness",
+    "wind": "pressure of the wind over weight",
+}

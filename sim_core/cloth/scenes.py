@@ -60,6 +60,18 @@ def cases(name: str) -> int:
     return len(_data()[name]["cases"])
 
 
+def case_values(name: str, case: int = 1) -> dict[str, Any]:
+    """What `scenes.toml` says of a case (from 1): size and pins, wind or place.
+
+    Raises WrongArgument for a scene or case that is not there.
+    """
+    if name not in NAMES:
+        raise WrongArgument(f"scene {name!r} – there are {', '.join(NAMES)}")
+    if not 1 <= case <= cases(name):
+        raise WrongArgument(f"case {case} – {name} has 1 to {cases(name)}")
+    return dict(_data()[name]["cases"][case - 1])
+
+
 def material() -> Material:
     """The material of all scenes of `scenes.toml`."""
     return Material(**_data()["material"])
@@ -83,16 +95,12 @@ def scene(
     size: width and height [m]; wind [m/s] (flag); gusts: share of the wind, rms, seeded; pins: one of PINS (hanging);
     cloth: another material. Raises WrongArgument for what the scene does not have.
     """
-    if name not in NAMES:
-        raise WrongArgument(f"scene {name!r} – there are {', '.join(NAMES)}")
+    values = case_values(name, case)
     data = _data()[name]
-    if not 1 <= case <= len(data["cases"]):
-        raise WrongArgument(f"case {case} – {name} has 1 to {len(data['cases'])}")
     if wind is not None and name != "flag":
         raise WrongArgument(f"wind – only the flag stands in one, not {name}")
     if pins is not None and name != "hanging":
         raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
-    values = dict(data["cases"][case - 1])
     values |= {k: v for k, v in (("size", size), ("wind", wind), ("pins", pins)) if v is not None}
     width, height = _checked_size(values["size"])
     count, cloth = vertices or data["vertices"], cloth or material()

@@ -1,13 +1,12 @@
-"""Stepping by hand, mending of meshes, and the choice of mesh and scheme."""
+"""Stepping by hand, and mending of meshes."""
 
 import numpy as np
 import pytest
 
 from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
-from sim_core.cloth.fidelity import SAFETY, choose, table
 from sim_core.cloth.mending import mended
 from sim_core.cloth.rows import equilateral_sheet
-from sim_core.errors import SimCoreError, WrongArgument
+from sim_core.errors import SimCoreError
 
 CLOTH = Material(0.05, 50.0, 0.3, 5e-5)
 
@@ -82,23 +81,6 @@ def test_mended_meshes_have_no_doubles_and_no_empty_faces() -> None:
     assert Sheet.of(points, index, CLOTH).mass.sum() == pytest.approx(Sheet.of(rest, faces, CLOTH).mass.sum())
     with pytest.raises(SimCoreError, match="empty once mended"):
         mended(np.zeros((3, 2)), np.array([[0, 1, 2]]))
-
-
-def test_the_choice_is_the_cheapest_row_within_the_budget() -> None:
-    for name, part in table().items():
-        errors = [row["error_mm"] for row in part["rows"]]
-        for budget in (2.1 * SAFETY * min(errors), SAFETY * max(errors)):
-            found = choose(name, error_mm=budget)
-            kept = [r for r in part["rows"] if SAFETY * r["error_mm"] <= budget]
-            assert found.ms == min(r["ms"] for r in kept)
-            assert SAFETY * found.error_mm <= budget
-            assert f"{found.error_mm:.2g} mm" in found.why
-        with pytest.raises(WrongArgument, match="the finest mesh in the table keeps"):
-            choose(name, error_mm=0.5 * SAFETY * min(errors))
-    with pytest.raises(WrongArgument, match="no table for"):
-        choose("curtain", error_mm=5.0)
-    with pytest.raises(WrongArgument, match="above 0"):
-        choose("flag", error_mm=float("nan"))
 
 
 def test_a_falling_cloth_meets_a_floor_in_live_mode() -> None:
