@@ -22,6 +22,8 @@ from sim_core.weave.model import Weave
 __all__ = ["beam_stiffness", "relax"]
 
 TOLERANCE = 1e-9
+MANY = 10_000  # crossings, beyond which maps and parameters are content with less
+TOLERANCE_MANY = 1e-5
 ITERATIONS = 20_000
 OVER_RELAXATION = 1.7
 
@@ -49,26 +51,36 @@ def relax(
     weave: Weave,
     *,
     tension: tuple[float, float] = (0.0, 0.0),
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     share: int = 1,
+    start: YarnGeometry | None = None,
 ) -> YarnGeometry:
     """Yarn geometry of one repeat in force balance (stage A), periodic and free of penetration.
 
     tension: (T of each warp end, T of each pick) [N], added to that of the yarns.  tolerance: on gap and force,
-    relative to D and to the largest crossing force.  share: yarns of a compound weave that share one place.
+    relative to D and to the largest crossing force, 1e-9 unless there are more than 10,000 crossings, then 1e-5.
+    share: yarns of a compound weave that share one place.  start: of a weave that differs little, to begin from.
     Slopes are taken as small: expect crimp up to a few per cent to be exact, near jam it is not.
     Raises WeaveError for a jammed sett, or where the iteration does not reach the tolerance.
     """
     if share == 1:
         check_jam(weave)
     picks, ends = weave.draft.lift.shape
+    if tolerance is None:
+        tolerance = TOLERANCE if picks * ends <= MANY else TOLERANCE_MANY
     pulls = weave.warp.tension + tension[0], weave.weft.tension + tension[1]
     warp = beam_stiffness(picks, weave.pick_spacing, weave.warp.stiffness, pulls[0])[:, None]
     weft = beam_stiffness(ends, weave.end_spacing, weave.weft.stiffness, pulls[1])[None, :]
     distance = (weave.warp.height + weave.weft.height) / 2
     unit = float(np.sqrt(warp.max() * weft.max()))
     problem = _Problem(warp / unit, weft / unit, np.where(weave.draft.lift, 1.0, -1.0))
-    force, gap, iterations, error = _contact_forces(problem, tolerance)
+    first = None
+    if start is not None:
+        first = (
+            (start.warp_height - start.weft_height) / distance,
+            problem.sign * start.force / (unit * distance),
+        )
+    force, gap, iterations, error = _contact_forces(problem, tolerance, first)
     if error > 1e3 * tolerance:
         raise WeaveError(
             f"weave {weave.name}: yarn heights do not settle (error {error:.1e} after {iterations} steps) – "
@@ -77,8 +89,13 @@ def relax(
     return _geometry(weave, problem, force, gap, distance, unit, iterations)
 
 
-def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """ADMM on the gap g = zw - zf with a penalty that is balanced as it goes. Returns force on the warp, gap, ..."""
+def _contact_forces(
+    problem: _Problem, tolerance: float, start=None
+) -> tuple[np.ndarray, np.ndarray, int, float]:
+    """ADMM on the gap g = zw - zf with a penalty that is balanced as it goes. Returns force on the warp, gap, ...
+
+    start: gap and force to begin from.
+    """
     together = np.maximum(problem.warp + problem.weft, 1e-300)
     resist = problem.warp * problem.weft / together  # 1 / H, zero where a yarn may move as a whole
     resist = resist[:, : problem.sign.shape[1] // 2 + 1]  # of a real pattern half the spectrum is enough
@@ -86,6 +103,8 @@ def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np
     rho = float(np.sqrt(stiff.min() * stiff.max()))
     gap = problem.sign.copy()
     dual = np.zeros_like(gap)
+    if start is not None:
+        gap, dual = start[0], -start[1] / rho
     error = np.inf
     for iteration in range(1, ITERATIONS + 1):
         free = np.asarray(irfft2(rho / (rho + resist) * np.asarray(rfft2(gap - dual)), s=gap.shape))
