@@ -14,7 +14,7 @@ __all__ = ["areal_density", "cloth_parameters", "tensile_compliance"]
 SHEAR_ANGLE = radians(8)  # the angle to which the cell is sheared for the secant modulus
 YARN_FRICTION = 0.25  # between crossing silk yarns, assumption
 PROBE = 1e-3  # tension of the probe: strains stay near this
-PROBE_MANY = 0.02  # where heights are known to 1e-5 only
+PROBE_MANY = 2e-3  # where heights are known to 1e-6 only
 
 
 def cloth_parameters(weave: Weave, geometry: YarnGeometry) -> ClothParameters:
