@@ -15,6 +15,7 @@ from survey.slug import COLUMN_KEY, SLUG
 __all__ = [
     "LANGUAGES",
     "META_COLUMNS",
+    "UNSEEN",
     "Item",
     "Language",
     "Module",
@@ -29,6 +30,9 @@ LANGUAGES: tuple[Language, ...] = ("zh", "en")
 # Columns of an export beside the items; an item of that name would hide one.
 META_COLUMNS = ("submission", "version", "language", "exhibit", "received")
 
+UNSEEN = (
+    9  # "not seen" where a file needs a number for it: above every scale, which have at most seven points
+)
 
 SUGGESTION = "suggestion_"
 

@@ -19,6 +19,7 @@ from survey.questionnaire import META_COLUMNS, SUGGESTION, Questionnaire, sugges
 
 __all__ = ["SECONDS", "ScoreTable", "read_scores", "scores_of"]
 
+SYNTHETIC = "synthetic-"  # how the ids begin in a sample that nobody answered
 SECONDS = "seconds"  # column of the time an answer took
 MISSING = {"", "NA", "."}  # how spreadsheets, R and SPSS write a missing score
 
@@ -33,7 +34,7 @@ class ScoreTable:
     """scores: (n, p), NaN where missing. seconds: (n,) spent on each answer, or None.
 
     suggestions: (module, text) as they were written. source: where it all comes from, for a heading.
-    beside: a sentence on answers to other versions, may be empty.
+    synthetic: whether nobody gave these answers. beside: a sentence on answers to other versions, may be empty.
     """
 
     scores: NDArray[np.float64]
@@ -62,7 +63,12 @@ def read_scores(path: Path, questionnaire: Questionnaire | None = None) -> Score
     table = ScoreTable(
         scores.reshape(len(body), len(columns)), tuple(name for name, _ in columns), seconds, source=path.name
     )
-    return replace(table, questionnaire=questionnaire, suggestions=_written(header, body, questionnaire))
+    return replace(
+        table,
+        questionnaire=questionnaire,
+        suggestions=_written(header, body, questionnaire),
+        synthetic=_synthetic(header, body),
+    )
 
 
 def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.float64]:
@@ -174,6 +180,14 @@ def _number(path: Path, cell: str, name: str, line: int) -> float:
     if not _is_number(cell):
         raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it")
     return float(cell)
+
+
+def _synthetic(header: list[str], body: Lines) -> bool:
+    """Whether every row says of itself that nobody gave it."""
+    if META_COLUMNS[0] not in header:
+        return False
+    at = header.index(META_COLUMNS[0])
+    return all(line[at].startswith(SYNTHETIC) for _, line in body)
 
 
 def _written(

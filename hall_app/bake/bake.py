@@ -170,6 +170,7 @@ def _record(
         "seconds": seconds,
         "stages": facts["seconds"],
         "hall_budget_m": detail.get("budget_m"),
+        "weave_seam": float(inputs.maps.seam),
         "versions": facts["versions"],
     }
 

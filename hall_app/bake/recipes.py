@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sim_core.garment import Garment, Pattern
     from sim_core.garment.figure import Figure
     from sim_core.garment.schedule import Pose
-    from sim_core.weave import SurfaceMaps, Weave
+    from sim_core.weave import TextureMaps, Weave
 
 __all__ = ["RECIPES", "Inputs", "Recipe", "read_inputs"]
 
@@ -35,11 +35,11 @@ class Inputs:
     table: GarmentRecipe
     pattern: Pattern
     weave: Weave
-    maps: SurfaceMaps
+    maps: TextureMaps
     mannequin: Path | None
     robe_pattern: Pattern | None = None
     robe_weave: Weave | None = None
-    robe_maps: SurfaceMaps | None = None
+    robe_maps: TextureMaps | None = None
 
 
 class Recipe(Protocol):
@@ -73,25 +73,25 @@ class Recipe(Protocol):
 def read_inputs(folder: Path, table: GarmentRecipe) -> Inputs:
     """Reads pattern and weave, and draws the weave's maps. Raises what reading raises, naming file and remedy."""
     from sim_core.garment import Pattern
-    from sim_core.weave import Weave, solve, surface_maps
+    from sim_core.weave import Weave, relax, texture_maps
 
     pattern, weave = Pattern.load(folder / table.pattern), Weave.load(folder / table.weave)
     mannequin = folder / table.mannequin if table.mannequin else None
-    maps = surface_maps(weave, solve(weave, particles=True), pixels=512)
+    maps = texture_maps(weave, relax(weave), pixels=512)
     if table.robe_pattern is None or table.robe_weave is None:
         return Inputs(table, pattern, weave, maps, mannequin)
     robe, cloth = Pattern.load(folder / table.robe_pattern), Weave.load(folder / table.robe_weave)
-    woven = surface_maps(cloth, solve(cloth, particles=True), pixels=512)
+    woven = texture_maps(cloth, relax(cloth), pixels=512)
     return Inputs(table, pattern, weave, maps, mannequin, robe, cloth, woven)
 
 
-def shown_colour(dye: Colour | None, maps: SurfaceMaps) -> Colour:
+def shown_colour(dye: Colour | None, maps: TextureMaps) -> Colour:
     """The colour [sRGB] of cloth seen from afar: its dye, else the mean of its yarns."""
     red, green, blue = dye if dye is not None else maps.albedo.reshape(-1, 3).mean(axis=0) / 255
     return (float(red), float(green), float(blue))
 
 
-def cover(maps: SurfaceMaps) -> float:
+def cover(maps: TextureMaps) -> float:
     """Share of the light that the cloth stops."""
     return float(maps.opacity.mean() / 255)
 

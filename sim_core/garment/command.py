@@ -73,13 +73,13 @@ def add_parser(subparsers: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Runs the recipe and writes the files; returns the exit status."""
     from sim_core.garment import Pattern, choose_detail, write_glb
-    from sim_core.weave import Weave, solve, surface_maps
+    from sim_core.weave import Weave, relax, texture_maps
 
     pattern, weave = Pattern.load(args.pattern), Weave.load(args.weave)
     worn_by = _figure(args)
     args.out.mkdir(parents=True, exist_ok=True)
     garment = _draped(args, pattern, weave, worn_by)
-    maps = surface_maps(weave, solve(weave, particles=True), pixels=args.pixels)
+    maps = texture_maps(weave, relax(weave), pixels=args.pixels)
     hall = choose_detail(garment, args.budget)
     garment.save(args.out / "garment.npz")
     sizes = {

@@ -17,7 +17,7 @@ from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.schedule import GRAVITY, Pose, Schedule
 from sim_core.garment.sewing import Cloth
-from sim_core.weave import ClothParameters, Weave, parameters_of, solve
+from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 
 __all__ = ["FigureLike", "Worn", "dress"]
 
@@ -72,9 +72,7 @@ def dress(
     [m], as a display stitch keeps them. checkpoint: file to go on from; a second is written beside it.
     """
     cloth = pattern.cloth(edge)
-    materials, kind, choices = robe_materials(
-        parameters_of(weave, solve(weave, particles=True)), pattern, cloth, edge
-    )
+    materials, kind, choices = robe_materials(cloth_parameters(weave, relax(weave)), pattern, cloth, edge)
     apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[
         cloth.panel
     ]

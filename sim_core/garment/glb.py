@@ -37,7 +37,7 @@ class Shown:
 
 
 class MapsLike(Protocol):
-    """The part of `sim_core.weave.SurfaceMaps` a GLB holds."""
+    """The part of `sim_core.weave.TextureMaps` a GLB holds."""
 
     @property
     def albedo(self) -> np.ndarray: ...

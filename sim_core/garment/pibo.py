@@ -26,7 +26,7 @@ from sim_core.garment.schedule import Pose
 from sim_core.garment.sewing import Cloth
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
-from sim_core.weave import Weave, parameters_of, solve
+from sim_core.weave import Weave, cloth_parameters, relax
 
 __all__ = ["HELD", "PiboSettings", "field_under", "pibo_on_figure", "solids_under"]
 
@@ -101,7 +101,7 @@ def pibo_on_figure(
     field = field_under(solids, s)
     clock.lap("field")
     path, forearm, accordion = _laying(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
-    parameters = parameters_of(weave, solve(weave, particles=True))
+    parameters = cloth_parameters(weave, relax(weave))
     material, choices = scarf_material(parameters, float(np.ptp(cloth.vertices[:, 0])) / 2, step)
     half = half_sheet(cloth, cloth.closed, [material], *np.zeros((2, len(cloth.faces)), np.int32))
     start = half.gathered(swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed)))

@@ -21,7 +21,7 @@ from sim_core.garment.pattern import Pattern
 from sim_core.garment.placing import Gathering, gathered_strip
 from sim_core.garment.records import Clock, versions
 from sim_core.garment.stand import Stand
-from sim_core.weave import ClothParameters, Weave, parameters_of, solve
+from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax
 
 GRAVITY = 9.81  # [m/s2]
 SAG = 0.005  # strain at the bar under the hanging end's own weight; more stretch than this would be seen
@@ -60,7 +60,7 @@ def scarf_on_stand(
     clock = Clock()
     panel = pattern.mesh(step)
     clock.lap("mesh")
-    parameters = parameters_of(weave, solve(weave, particles=True))
+    parameters = cloth_parameters(weave, relax(weave))
     material, choices = scarf_material(parameters, gathering.front, step)
     clock.lap("weave")
     sheet = Sheet.of(panel.vertices, panel.faces, material)

@@ -19,7 +19,8 @@ The outline file is JSON in metres, y down; either direction, first point repeat
   {"outline": [[0, 0], [0.6, 0], [0.6, 0.9], [0, 0.9]], "holes": [[[0.2, 0.2], [0.4, 0.2], [0.3, 0.4]]],
    "constraints": [[[0.1, 0], [0.1, 0.9]]]}
 or a drawing (.svg, .dxf): the largest closed line is the outline, other closed lines are holes, open lines are
-constraints, inner lines that edges follow (pleat folds, motif borders).
+constraints, inner lines that edges follow (pleat folds, motif borders). SVG's <use> and DXF's blocks are drawn where
+they stand; text, pictures, hidden things and paper space are left out, and a line on stderr names them.
 
 --quality fair is the paper's method and nothing else; best adds a row of points along the outline, smoothing,
 insertion and deletion. A size field is JSON {"points": [[x, y, size], ...], "gradation": 0.2}: the edge length is
@@ -77,12 +78,15 @@ def add_parser(subparsers) -> None:
 def run(args: argparse.Namespace) -> int:
     """Read, mesh, write; returns the exit status."""
     from sim_core.errors import OutlineError, OutlineWarning
+    from sim_core.mesh.drawing import mesh_picture
     from sim_core.mesh.sizes import read_size_field
-    from sim_core.mesh.writing import read_outline, write_mesh
+    from sim_core.mesh.writing import read_outline, write_mesh, write_picture
 
-    drawing = read_outline(args.file)
+    with warnings.catch_warnings(record=True) as read:
+        warnings.simplefilter("always", OutlineWarning)
+        drawing = read_outline(args.file)
     sizes = read_size_field(args.size_field) if args.size_field else None
-    compile_seconds = _warm_up(args.quality)
+    compile_seconds = _warm_up(args.quality, graded=sizes is not None)
     from sim_core.mesh import panel_mesh
 
     try:
@@ -99,37 +103,29 @@ def run(args: argparse.Namespace) -> int:
             )
     except OutlineError as error:
         raise OutlineError(f"{args.file}: {error}") from error
-    for warning in told:
+    for warning in [*read, *told]:
         sys.stderr.write(f"simcore mesh: {args.file}: {warning.message}\n")
     if args.out:
         write_mesh(args.out, mesh)
     if args.picture:
-        _draw(args.picture, mesh)
+        write_picture(args.picture, mesh_picture(mesh))
     summary = _summary(mesh, compile_seconds)
     sys.stdout.write((json.dumps(summary, indent=2) if args.json else _text(args.file, summary)) + "\n")
     return 0
 
 
-def _warm_up(quality: str) -> float:
+def _warm_up(quality: str, *, graded: bool) -> float:
     """Load or compile every kernel on a small panel, so that `seconds` is the work alone."""
     begin = perf_counter()
     import numpy as np
 
-    from sim_core.mesh import panel_mesh
+    from sim_core.mesh import SizeField, panel_mesh
 
     square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
     line = [[0.2, 0.1], [0.2, 0.9]]
-    panel_mesh(square, edge=0.1, holes=[square / 3 + 0.4], constraints=[line], quality=quality)
+    field = SizeField(np.zeros((1, 2)), np.array([0.05])) if graded else None
+    panel_mesh(square, edge=0.1, holes=[square / 3 + 0.4], constraints=[line], quality=quality, sizes=field)
     return perf_counter() - begin
-
-
-def _draw(path: Path, mesh) -> None:
-    from PIL import Image
-
-    from sim_core.mesh.drawing import mesh_picture
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(mesh_picture(mesh)).save(path)
 
 
 def _summary(mesh, compile_seconds: float) -> dict:

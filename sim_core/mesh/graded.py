@@ -3,14 +3,15 @@
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.lattice import staggered_points
+from sim_core.mesh.lattice import lattice_points, lattice_size
 from sim_core.mesh.layer import apart, layer_points
 from sim_core.mesh.raycast import inside
 from sim_core.mesh.sampling import Rim
 from sim_core.mesh.sizes import SizeField
 
-__all__ = ["graded_points"]
+__all__ = ["graded_points", "lattice_near"]
 
+TILE = 32  # rows and columns of a candidate lattice that are made, or left out, together
 FINER = 3  # candidates lie on lattices of this part of the local edge
 APART = 0.9  # of the local edge: distance of inner points; smoothing evens it out
 LAYER_APART = 0.7
@@ -30,8 +31,8 @@ def graded_points(rim: Rim, edge: float, sizes: SizeField) -> np.ndarray:
     _check(low, high, edge, sizes)
     found = []
     longest = edge
-    while longest > float(sizes.sizes.min()) / 2:
-        points = staggered_points(low, high, longest / FINER)
+    while longest > min(edge, float(sizes.sizes.min())) / 2:
+        points = lattice_near(low, high, longest, edge, sizes)
         wanted = sizes.at(points, edge)
         found.append(points[(wanted <= longest) & (wanted > longest / 2)])
         longest /= 2
@@ -45,6 +46,27 @@ def graded_points(rim: Rim, edge: float, sizes: SizeField) -> np.ndarray:
     reach = sizes.at(every, edge) * APART
     reach[first : first + len(row)] *= LAYER_APART / APART
     return every[first:][apart(every, reach, first)[first:]]
+
+
+def lattice_near(low, high, longest: float, edge: float, sizes: SizeField) -> np.ndarray:
+    """The staggered points of step longest / 3 in tiles that may want edges of longest / 2 to longest. (n, 2) [m]
+
+    A lattice of the finest edges over a whole panel may have hundreds of millions of points, nearly all unwanted.
+    """
+    step = longest / FINER
+    rows, columns = lattice_size(low, high, step)
+    i, j = (
+        at.ravel() for at in np.meshgrid(np.arange(0, rows, TILE), np.arange(0, columns, TILE), indexing="ij")
+    )
+    half = TILE * step / 2
+    middle = low + np.column_stack([j * step + half, i * step * np.sqrt(3) / 2 + half])
+    reach = sizes.gradation * 2 * half  # a tile's points are nearer to its middle than its side
+    wanted = sizes.at(middle, edge)
+    near = (wanted - reach <= longest) & (wanted + reach >= longest / 2)
+    row, column = np.divmod(np.arange(TILE * TILE), TILE)
+    i, j = (i[near, None] + row).ravel(), (j[near, None] + column).ravel()
+    within = (i < rows) & (j < columns)
+    return lattice_points(low, step, i[within], j[within])
 
 
 def _check(low, high, edge: float, sizes: SizeField) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-__all__ = ["staggered_points"]
+__all__ = ["lattice_points", "lattice_size", "staggered_points"]
 
 
 def staggered_points(low: np.ndarray, high: np.ndarray, edge: float) -> np.ndarray:
@@ -12,9 +12,18 @@ def staggered_points(low: np.ndarray, high: np.ndarray, edge: float) -> np.ndarr
     Row i lies at y0 + i L sqrt(3)/2 (Eq. 8), column j at x0 + j L, moved by -L/2 in odd rows (Eq. 1-7). The paper
     prints the parity condition of Eq. 7 for the column j; its own Eq. 3 and 5 stagger the row, as done here.
     """
+    rows, columns = lattice_size(low, high, edge)
+    return lattice_points(low, edge, *np.divmod(np.arange(rows * columns), columns))
+
+
+def lattice_size(low: np.ndarray, high: np.ndarray, edge: float) -> tuple[int, int]:
+    """Rows and columns of `staggered_points`."""
     rows = int(np.floor((high[1] - low[1]) / (edge * np.sqrt(3) / 2))) + 1
-    columns = int(np.floor((high[0] - low[0]) / edge)) + 2
-    i, j = np.divmod(np.arange(rows * columns), columns)
+    return rows, int(np.floor((high[0] - low[0]) / edge)) + 2
+
+
+def lattice_points(low: np.ndarray, edge: float, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Points (n, 2) [m] of `staggered_points` in rows i and columns j (n,)."""
     x = low[0] + j * edge - (i % 2) * edge / 2
     y = low[1] + i * edge * np.sqrt(3) / 2
     return np.column_stack([x, y])

@@ -15,7 +15,8 @@ class MeshReport:
     mean_quality, worst_quality: of q = 4 sqrt(3) area / sum of squared edges, 1 = equilateral.
     mean_edge_ratio, worst_edge_ratio: of shortest / longest edge of a triangle.
     area_error: |mesh area - polygon area| / polygon area.  conformity: fraction of outline steps that are mesh edges.
-    outline_deviation: largest distance [m] of a given outline point from the meshed outline.
+    outline_deviation: Hausdorff distance [m] between the contours given (holes that touch: the rim they leave) and
+    the meshed ones.
     """
 
     seconds: float

@@ -3,23 +3,25 @@
 from math import fsum, isfinite, sqrt
 
 import numpy as np
-from numba import njit
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.exact import orient
+from sim_core.mesh.crossings import first_crossing
 from sim_core.mesh.merging import merged
 
 __all__ = [
     "CORNER_DEGREES",
+    "LARGEST",
     "check_count",
     "check_edge",
     "clean_contour",
     "clean_contours",
     "clean_points",
+    "cleaned_contours",
     "outline_samples",
     "outline_turning",
     "sharpest_corner",
     "signed_area",
+    "swept_area",
 ]
 
 CORNER_DEGREES = 20.0
@@ -34,8 +36,12 @@ def signed_area(contour: np.ndarray) -> float:
     Every product is split into two floats without error and all are summed exactly, so that a thin strip far from the
     origin has its area to the last bit.
     """
-    x, y = contour[:, 0], -contour[:, 1]
-    terms = [*_product(x, np.roll(y, -1)), *_product(-np.roll(x, -1), y)]
+    return swept_area(contour, np.roll(contour, -1, axis=0))
+
+
+def swept_area(a: np.ndarray, b: np.ndarray) -> float:
+    """Area [m2] between the origin and directed edges a -> b (n, 2) each, y down, summed exactly."""
+    terms = [*_product(a[:, 0], -b[:, 1]), *_product(b[:, 0], a[:, 1])]
     return 0.5 * fsum(np.concatenate(terms).tolist())
 
 
@@ -132,12 +138,20 @@ def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndar
     edge: [m]; with it, holes that touch the outline or each other are merged (`merging.py`), with an OutlineWarning.
     Raises OutlineError for crossing contours (naming the segments), zero area, and holes outside.
     """
+    return cleaned_contours(outline, holes, edge=edge)[0]
+
+
+def cleaned_contours(
+    outline, holes, *, edge: float | None = None
+) -> tuple[list[np.ndarray], list[np.ndarray] | None]:
+    """`clean_contours`, and the rim of the cloth as it was given where holes were merged (None elsewhere)."""
     named = [("outline", clean_contour(outline, "outline"))]
     named += [(f"hole {k}", clean_contour(hole, f"hole {k}")) for k, hole in enumerate(holes)]
     for name, contour in named:
         _check_crossings([(name, contour)])
+    given = None
     if edge is not None and len(named) > 1:
-        named = merged(named, edge)
+        named, given = merged(named, edge)
     _check_crossings(named)
     contours = []
     for name, contour in named:
@@ -147,7 +161,7 @@ def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndar
         outer = not contours
         contours.append(contour if (area > 0) == outer else contour[::-1].copy())
     _check_nesting([name for name, _ in named], contours)
-    return contours
+    return contours, given
 
 
 def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
@@ -159,7 +173,7 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
         [np.roll(np.arange(len(c)), -1) + s for c, s in zip(contours, first, strict=False)]
     )
     left = np.minimum(points[:, 0], points[following, 0])
-    i, j = _first_crossing(points, following, np.argsort(left, kind="stable"))
+    i, j = first_crossing(points, following, np.argsort(left, kind="stable"))
     if i < 0:
         return
     i, j = min(i, j), max(i, j)
@@ -174,52 +188,6 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
     raise OutlineError(
         f"{named[k][0]} segment {here} and {named[m][0]} segment {there} cross or touch {spot} – keep them apart"
     )
-
-
-@njit(cache=True)
-def _first_crossing(points, following, order):
-    """Two segments that meet elsewhere than at the point they share, or (-1, -1). Sweep over the left ends."""
-    for s in range(order.size):
-        i = order[s]
-        i2 = following[i]
-        right = max(points[i, 0], points[i2, 0])
-        low, high = min(points[i, 1], points[i2, 1]), max(points[i, 1], points[i2, 1])
-        for t in range(s + 1, order.size):
-            j = order[t]
-            j2 = following[j]
-            if min(points[j, 0], points[j2, 0]) > right:
-                break
-            if min(points[j, 1], points[j2, 1]) > high or max(points[j, 1], points[j2, 1]) < low:
-                continue
-            if i2 == j:
-                meet = _folds_back(points, i, i2, j2)
-            elif j2 == i:
-                meet = _folds_back(points, j, i, i2)
-            else:
-                meet = _meet(points, i, i2, j, j2)
-            if meet:
-                return i, j
-    return -1, -1
-
-
-@njit(cache=True)
-def _folds_back(points, a, b, c):
-    """Whether b -> c runs back along a -> b."""
-    if orient(points[a, 0], points[a, 1], points[b, 0], points[b, 1], points[c, 0], points[c, 1]) != 0:
-        return False
-    ux, uy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
-    vx, vy = points[c, 0] - points[b, 0], points[c, 1] - points[b, 1]
-    return ux * vx + uy * vy < 0
-
-
-@njit(cache=True)
-def _meet(points, a, b, c, d):
-    """Whether the closed segments a b and c d, whose bounding boxes overlap, have a common point. Exact."""
-    ax, ay, bx, by = points[a, 0], points[a, 1], points[b, 0], points[b, 1]
-    cx, cy, dx, dy = points[c, 0], points[c, 1], points[d, 0], points[d, 1]
-    s1, s2 = orient(ax, ay, bx, by, cx, cy), orient(ax, ay, bx, by, dx, dy)
-    s3, s4 = orient(cx, cy, dx, dy, ax, ay), orient(cx, cy, dx, dy, bx, by)
-    return not ((s1 > 0 and s2 > 0) or (s1 < 0 and s2 < 0) or (s3 > 0 and s4 > 0) or (s3 < 0 and s4 < 0))
 
 
 def _check_nesting(names: list[str], contours: list[np.ndarray]) -> None:

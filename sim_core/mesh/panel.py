@@ -1,5 +1,6 @@
 """Outline to panel mesh: samples, staggered points, redundant points out, growth, check."""
 
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -11,16 +12,16 @@ from sim_core.mesh.growth import CLOSED, Growth, grow_points
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.lines import clean_lines
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import check_edge, clean_contours, sharpest_corner
+from sim_core.mesh.outline import check_edge, cleaned_contours, sharpest_corner
 from sim_core.mesh.quality import quality as face_quality
 from sim_core.mesh.raycast import keep_points
-from sim_core.mesh.report import measured
+from sim_core.mesh.report import deviation, measured
 from sim_core.mesh.sampling import Rim, sampled_rim
 from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.smoothing import smoothed
 from sim_core.mesh.verify import fills, verify
 
-__all__ = ["QUALITIES", "panel_mesh"]
+__all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh"]
 
 UPRIGHT = np.array([1.0, -1.0])  # y down -> y up; exact
 ENOUGH_DEGREES = 30.0
@@ -54,19 +55,35 @@ def panel_mesh(
     Raises OutlineError saying what is wrong with the outline, where, and what to do.
     """
     begin = perf_counter()
-    if quality not in QUALITIES:
-        raise OutlineError(f"quality {quality!r} – give one of {', '.join(QUALITIES)}")
-    if not 0.5 <= threshold <= 0.9:
-        raise OutlineError(f"threshold {threshold} – give a fraction of the edge between 0.5 and 0.9")
-    contours = clean_contours(outline, holes, edge=edge)
+    check_options(threshold, quality)
+    contours, given = cleaned_contours(outline, holes, edge=edge)
     check_edge(edge, contours)
     if sizes is not None:
         sizes.check(edge)
     rim = _rim(contours, constraints, edge, sizes, sampled)
+    mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
+    strays = deviation(given or contours, rim.contours, merged=given is not None)
+    return replace(
+        mesh, report=replace(mesh.report, outline_deviation=strays, seconds=perf_counter() - begin)
+    )
+
+
+def check_options(threshold: float, quality: str) -> None:
+    """Raise OutlineError for a threshold or quality that `panel_mesh` does not know."""
+    if quality not in QUALITIES:
+        raise OutlineError(f"quality {quality!r} – give one of {', '.join(QUALITIES)}")
+    if not 0.5 <= threshold <= 0.9:
+        raise OutlineError(f"threshold {threshold} – give a fraction of the edge between 0.5 and 0.9")
+
+
+def filled_mesh(
+    rim: Rim, *, edge: float, threshold: float, quality: str, sizes: SizeField | None
+) -> PanelMesh:
+    """The checked mesh of a sampled rim; options as in `panel_mesh`. Its report's `outline_deviation` and `seconds`
+    are 0: the rim does not know them. Raises OutlineError."""
     vertices, faces = _filled(rim, edge, threshold, quality, sizes)
     free = verify(vertices, faces, rim.loops, edge, rim.lines)
-    report = measured(vertices, faces, rim.loops, contours, free, perf_counter() - begin)
-    return PanelMesh(vertices, faces, rim.loops, report, rim.lines)
+    return PanelMesh(vertices, faces, rim.loops, measured(vertices, faces, rim.loops, free), rim.lines)
 
 
 def _rim(contours, constraints, edge: float, sizes: SizeField | None, sampled: bool) -> Rim:

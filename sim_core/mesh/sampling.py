@@ -1,10 +1,11 @@
 """Sampling of all contours and inner lines of a panel: corners kept, finer where curves bend or lines run close."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import KDTree
 
+from sim_core.mesh.crossings import crossed_steps
 from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
 from sim_core.mesh.sizes import SizeField
 
@@ -12,8 +13,10 @@ __all__ = ["Rim", "sampled_contours", "sampled_rim"]
 
 SPLITTING_PASSES = 12
 FINEST = 32
+SAME = 1e-9  # of a chain's length: places nearer to each other are one
 DEVIATION = 0.045  # of the edge: a step that leaves the given line by more is halved
-PARTS = 256  # of a chain between corners over which edge lengths of a size field are summed
+PARTS = 256  # of a chain between corners, at least, over which edge lengths of a size field are summed
+MOST_PARTS = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,20 +53,36 @@ class Rim:
 
 @dataclass(frozen=True, eq=False)
 class _Chain:
-    """A contour (its first point repeated at the end) or an inner line, and where it is sampled, by arc length."""
+    """A contour (its first point repeated at the end) or an inner line, and where it is sampled, by arc length.
+
+    fixed: where steps begin that stay as they are.
+    """
 
     points: np.ndarray
     arc: np.ndarray
     at: np.ndarray
     closed: bool
+    fixed: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     def sampled(self) -> np.ndarray:
         return np.column_stack([np.interp(self.at, self.arc, self.points[:, axis]) for axis in range(2)])
 
     def halved(self, split: np.ndarray) -> "_Chain":
         middle = (self.at[:-1] + self.at[1:]) / 2
-        at = np.insert(self.at, np.flatnonzero(split) + 1, middle[split])
-        return _Chain(self.points, self.arc, at, self.closed)
+        return replace(self, at=np.insert(self.at, np.flatnonzero(split) + 1, middle[split]))
+
+    @property
+    def free(self) -> np.ndarray:
+        """Steps (bool) that may be divided."""
+        return ~np.isin(self.at[:-1], self.fixed)
+
+    def as_given(self, steps: np.ndarray) -> "_Chain":
+        """The chain with all its given points in the marked steps (bool)."""
+        step = np.clip(np.searchsorted(self.at, self.arc, side="right") - 1, 0, len(steps) - 1)
+        given = self.arc[steps[step]]
+        gap = np.abs(self.at[:, None] - given).min(axis=1, initial=np.inf)
+        kept = self.at[(gap == 0) | (gap > SAME * self.arc[-1])]  # no sample within rounding of a given point
+        return replace(self, at=np.union1d(kept, given))
 
 
 def sampled_contours(contours: list[np.ndarray], edge: float) -> list[np.ndarray]:
@@ -78,19 +97,23 @@ def sampled_rim(
     lines: tuple[np.ndarray, ...] = (),
     kept: np.ndarray | None = None,
     sizes: SizeField | None = None,
+    fixed: np.ndarray | None = None,
 ) -> Rim:
     """Sample contours and inner lines: every corner, and equal steps of at most `edge` between corners.
 
     contours: (n, 2) [m] each, closed without repeating a point.  edge: [m].  lines: (n, 2) [m] each, open, meeting
     contours and each other only at their own points.  kept: (k, 2) [m] further points of contours that stay.
-    sizes: shorter steps by place.
+    sizes: shorter steps by place.  fixed: (n,) bool, steps of the first contour, by the point they begin at, that
+    are sampled already (a seam's).
     A step is halved, along the given line, where it leaves that line by more than 0.045 edge, and while a sample that
     is no neighbour lies in the circle over it as diameter: then it is a Delaunay edge, and growth follows it without
-    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32.
+    recovery of constraints. Spikes would halve for ever: steps stay above edge / 32. Steps that cross each other,
+    where bent lines run closer than that, follow the given line point by point, which crosses nothing.
     """
     corners = {tuple(point) for line in lines for point in line[[0, -1]]}
     corners |= {tuple(point) for point in (() if kept is None else kept)}
-    chains = [_chain(contour, True, corners, edge, sizes) for contour in contours]
+    chains = [_chain(contours[0], True, corners, edge, sizes, fixed)]
+    chains += [_chain(contour, True, corners, edge, sizes) for contour in contours[1:]]
     chains += [_chain(line, False, corners, edge, sizes) for line in lines]
     finest = edge / FINEST if sizes is None else min(edge, float(sizes.sizes.min())) / FINEST
     for _ in range(SPLITTING_PASSES):
@@ -99,18 +122,29 @@ def sampled_rim(
         crowded = _crowded(places, [chain.closed for chain in chains])
         steps = [np.hypot(*np.diff(place, axis=0).T) > finest for place in places]
         split = [(a | b) & c for a, b, c in zip(split, crowded, steps, strict=True)]
+        if fixed is not None:
+            split[0] &= chains[0].free
         if not any(mark.any() for mark in split):
             break
         chains = [chain.halved(mark) for chain, mark in zip(chains, split, strict=True)]
+    for _ in range(SPLITTING_PASSES):
+        crossed = crossed_steps([chain.sampled() for chain in chains])
+        if not any(mark.any() for mark in crossed):
+            break
+        chains = [chain.as_given(mark) for chain, mark in zip(chains, crossed, strict=True)]
     return _joined(chains)
 
 
-def _chain(points: np.ndarray, closed: bool, kept: set, edge: float, sizes: SizeField | None) -> _Chain:
-    """A chain with its first samples: corners, kept points, and even steps between them."""
+def _chain(
+    points: np.ndarray, closed: bool, kept: set, edge: float, sizes: SizeField | None, fixed=None
+) -> _Chain:
+    """A chain with its first samples: corners, kept points, and even steps between them; fixed: as `sampled_rim`."""
     turning = outline_turning(points)
     corner = turning > CORNER_DEGREES
     if kept:
         corner |= np.array([tuple(point) in kept for point in points])
+    if fixed is not None:
+        corner |= fixed | np.roll(fixed, 1)
     if not closed:
         corner[[0, -1]] = True
     elif not corner.any():
@@ -118,12 +152,17 @@ def _chain(points: np.ndarray, closed: bool, kept: set, edge: float, sizes: Size
     if closed:
         first = int(np.flatnonzero(corner)[0])
         points, corner = np.roll(points, -first, axis=0), np.roll(corner, -first)
+        fixed = None if fixed is None else np.roll(fixed, -first)
         points, corner = np.vstack([points, points[:1]]), np.append(corner, True)
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     marks = arc[corner]
     least = max(1, -(-3 // (len(marks) - 1))) if closed else 1
-    at = [_even(points, arc, a, b, edge, sizes, least) for a, b in zip(marks[:-1], marks[1:], strict=True)]
-    return _Chain(points, arc, np.concatenate([*at, marks[-1:]]), closed)
+    whole = set() if fixed is None else set(arc[:-1][fixed].tolist())
+    at = [
+        np.array([a]) if a in whole else _even(points, arc, a, b, edge, sizes, least)
+        for a, b in zip(marks[:-1], marks[1:], strict=True)
+    ]
+    return _Chain(points, arc, np.concatenate([*at, marks[-1:]]), closed, np.array(sorted(whole)))
 
 
 def _even(
@@ -138,7 +177,8 @@ def _even(
             if not _strays(_Chain(points[inner], arc[inner], at, False), DEVIATION * edge).any():
                 return at[:-1]
         return np.linspace(begin, end, fewest + 1)[:-1]
-    fine = np.linspace(begin, end, PARTS + 1)
+    parts = int(np.clip(2 * (end - begin) / sizes.sizes.min(), PARTS, MOST_PARTS))
+    fine = np.linspace(begin, end, parts + 1)
     middle = (fine[:-1] + fine[1:]) / 2
     places = np.column_stack([np.interp(middle, arc, points[:, axis]) for axis in range(2)])
     count = np.concatenate([[0.0], np.cumsum(np.diff(fine) / sizes.at(places, edge))])

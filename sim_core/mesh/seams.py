@@ -1,21 +1,31 @@
 """Seams: the two sides get the same number of steps and their vertices pair one to one; ease and notches are told.
 
 A side is a stretch of a panel's outline from one of its points to another. Both sides are sampled at the same
-fractions of their length: N = max(1, round(longer / edge)) steps in all, corners and notches of either side kept.
+fractions of their length: corners and notches of either side are kept, and max(1, round(longer / edge)) steps made
+between each two.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from time import perf_counter
+from typing import TypeVar
 
 import numpy as np
 
 from sim_core.errors import OutlineError
+from sim_core.mesh.lines import clean_lines
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import CORNER_DEGREES, clean_contour, outline_samples, outline_turning, signed_area
-from sim_core.mesh.panel import panel_mesh
+from sim_core.mesh.outline import check_edge, clean_contour, clean_contours, cleaned_contours, signed_area
+from sim_core.mesh.panel import check_options, filled_mesh
+from sim_core.mesh.report import deviation
+from sim_core.mesh.sampling import sampled_rim
+from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
+from sim_core.mesh.sizes import SizeField
 
 __all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
 
-SAME = 1e-9  # of the length: fractions nearer than this are one
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -44,7 +54,9 @@ class SeamFit:
 
     pairs: (N + 1, 2) int32, vertex of panel a and vertex of panel b.  notches: places of the notches in pairs.
     lengths: [m] of both sides along the given outlines.  ease: |length a - length b| / the shorter.
-    mismatch: [m] |length a - length b| / N, what each step must be eased or stretched by.
+    mismatch: [m] |length a - length b| / N, what each step must be eased or stretched by.  joined: [m] greatest
+    distance between marks (corners, notches, ends of inner lines) that became one vertex because they lay nearer than
+    0.2 edge, 0 where none did.
     """
 
     pairs: np.ndarray
@@ -52,152 +64,207 @@ class SeamFit:
     lengths: tuple[float, float]
     ease: float
     mismatch: float
+    joined: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Panel:
+    """A panel before its seams are sampled.
+
+    outline: (n, 2) [m] in the direction given, with the points where inner lines end.  number: (N,) the place in it
+    of each given point.  holes, lines: checked, [m].  kept: ends of inner lines, as tuples.  given: contours [m] the
+    deviation is told from, `merged` where holes were.
+    """
+
+    outline: np.ndarray
+    number: np.ndarray
+    holes: list[np.ndarray]
+    lines: tuple[np.ndarray, ...]
+    kept: set[tuple[float, float]]
+    given: list[np.ndarray]
+    merged: bool
 
 
 def sewn_meshes(
-    outlines, seams: list[Seam], *, edge: float, quality: str = "light"
+    outlines,
+    seams: list[Seam],
+    *,
+    edge: float,
+    holes=(),
+    constraints=(),
+    sizes: Sequence[SizeField | None] = (),
+    threshold: float = 0.7,
+    quality: str = "light",
 ) -> tuple[list[PanelMesh], list[SeamFit]]:
     """Mesh panels whose seams match vertex for vertex.
 
     outlines: (N, 2) [m] each, y down.  seams: see `Seam`; the sides of one outline do not overlap.  edge: [m].
-    Returns one mesh a panel and one fit a seam. Raises OutlineError naming the panel or seam that cannot be.
+    holes, constraints, sizes: one entry a panel (a list of contours, a list of lines, a field or None), or none at all;
+    these, threshold and quality as in `panel_mesh`. An inner line that ends on a seam has a vertex there on both
+    sides; both follow the shorter of their size fields. Holes may touch each other, not the outline.
+    Returns one mesh a panel, its `outline_deviation` from the contours given, and one fit a seam.
+    Raises OutlineError naming the panel or seam that cannot be.
     """
-    contours = [clean_contour(outline, f"panel {k}") for k, outline in enumerate(outlines)]
-    for k, (outline, contour) in enumerate(zip(outlines, contours, strict=True)):
-        if len(contour) != len(outline):
-            raise OutlineError(
-                f"panel {k}: holds a point twice – give each once, so that seams can name them"
-            )
-    chains = [[_chain(seam, side, contours, k) for side in (seam.a, seam.b)] for k, seam in enumerate(seams)]
-    fractions = [
-        _fractions(pair, seam, edge, k) for k, (pair, seam) in enumerate(zip(chains, seams, strict=True))
+    check_options(threshold, quality)
+    count = len(outlines)
+    every = [
+        _one_each(name, given, count, none)
+        for name, given, none in (
+            ("holes", holes, ()),
+            ("constraints", constraints, ()),
+            ("sizes", sizes, None),
+        )
+    ]
+    panels = [
+        _of_panel(k, partial(_prepared, outline, inner, lines, field, edge))
+        for k, (outline, inner, lines, field) in enumerate(zip(outlines, *every, strict=True))
+    ]
+    chains = [[_chain(side, panels, k) for side in (seam.a, seam.b)] for k, seam in enumerate(seams)]
+    fields = every[2]
+    steps = [
+        _steps(number, seam, pair, panels, fields, edge)
+        for number, (seam, pair) in enumerate(zip(seams, chains, strict=True))
+    ]
+    points = [
+        [at_lengths(chain, arc_lengths(chain), at) for chain, at in zip(pair, step.at, strict=True)]
+        for pair, step in zip(chains, steps, strict=True)
     ]
     meshes, places = [], []
-    for k, contour in enumerate(contours):
-        pieces = {}
-        for seam, pair, at in zip(seams, chains, fractions, strict=True):
-            for side, chain in zip((seam.a, seam.b), pair, strict=True):
+    for k, panel in enumerate(panels):
+        pieces: dict = {}
+        for seam, pair in zip(seams, points, strict=True):
+            for side, samples in zip((seam.a, seam.b), pair, strict=True):
                 if side.panel == k:
-                    _put(pieces, side, _along(chain, at), k)
-        samples = _sampled(contour, pieces, edge)
-        turned = signed_area(samples) < 0
-        try:
-            mesh = panel_mesh(samples, edge=edge, sampled=True, quality=quality)
-        except OutlineError as error:
-            raise OutlineError(f"panel {k}: {error}") from error
-        loop = mesh.vertices[mesh.boundary[0]]
-        if not np.array_equal(loop, samples[::-1] if turned else samples):
-            raise OutlineError(f"panel {k}: samples fall together – give a larger seam or a smaller edge")
-        meshes.append(mesh)
+                    _of_panel(k, partial(_put, pieces, side, panel, samples))
+        work = partial(_meshed, panel, pieces, edge, fields[k], threshold, quality)
+        meshes.append(_of_panel(k, work))
+        loop = meshes[-1].boundary[0]
         places.append(
-            {tuple(point): int(v) for v, point in zip(mesh.boundary[0], loop.tolist(), strict=True)}
+            {tuple(point): int(v) for v, point in zip(loop, meshes[-1].vertices[loop].tolist(), strict=True)}
         )
     fits = []
-    for seam, pair, at in zip(seams, chains, fractions, strict=True):
+    for seam, pair, samples, step in zip(seams, chains, points, steps, strict=True):
         vertices = [
-            [places[side.panel][tuple(point)] for point in _along(chain, at).tolist()]
-            for side, chain in zip((seam.a, seam.b), pair, strict=True)
+            [places[side.panel][tuple(point)] for point in sampled.tolist()]
+            for side, sampled in zip((seam.a, seam.b), samples, strict=True)
         ]
-        fits.append(_fit(np.array(vertices, dtype=np.int32).T, seam, pair, at))
+        a, b = (float(arc_lengths(chain)[-1]) for chain in pair)
+        pairs = np.array(vertices, dtype=np.int32).T
+        mismatch = abs(a - b) / (len(pairs) - 1)
+        fits.append(SeamFit(pairs, step.notches, (a, b), abs(a - b) / min(a, b), mismatch, step.joined))
     return meshes, fits
 
 
-def _chain(seam: Seam, side: SeamSide, contours: list[np.ndarray], number: int) -> np.ndarray:
-    """The points of a side (n, 2), first to last."""
-    if not 0 <= side.panel < len(contours):
-        raise OutlineError(f"seam {number}: panel {side.panel} – there are {len(contours)}")
-    contour = contours[side.panel]
-    count = len(contour)
-    for point in (side.first, side.last):
-        if not 0 <= point < count:
-            raise OutlineError(f"seam {number}: point {point} – panel {side.panel} has {count} points")
-    steps = ((side.first - side.last if side.backward else side.last - side.first) - 1) % count + 1
-    way = -1 if side.backward else 1
-    return contour[(side.first + way * np.arange(steps + 1)) % count]
+def _one_each(name: str, given, count: int, none) -> list:
+    if len(given) not in (0, count):
+        raise OutlineError(f"{name}: {len(given)} entries for {count} panels – give one a panel")
+    return list(given) if len(given) else [none] * count
 
 
-def _arc(chain: np.ndarray) -> np.ndarray:
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(chain, axis=0).T))])
+def _of_panel(k: int, work: Callable[[], Made]) -> Made:
+    """What `work` returns; its OutlineError names the panel."""
+    try:
+        return work()
+    except OutlineError as error:
+        raise OutlineError(f"panel {k}: {error}") from error
 
 
-def _fractions(pair: list[np.ndarray], seam: Seam, edge: float, number: int) -> np.ndarray:
-    """Where both sides have their vertices, as fractions of their length, 0 and 1 included."""
+def _prepared(outline, holes, constraints, sizes: SizeField | None, edge: float) -> _Panel:
+    """Check a panel and put the ends of its inner lines into its contours."""
+    contour = clean_contour(outline, "outline")
+    if len(contour) != len(outline):
+        raise OutlineError("outline: holds a point twice – give each once, so that seams can name them")
+    contours, given = cleaned_contours(outline, holes, edge=edge)
+    turned = signed_area(contour) < 0
+    if given is not None:
+        if {tuple(point) for point in contours[0].tolist()} != {tuple(point) for point in contour.tolist()}:
+            raise OutlineError(
+                "a hole touches the outline – draw it as part of that, so that seams can name its points"
+            )
+        contours[0] = contour[::-1] if turned else contour
+    check_edge(edge, contours)
+    if sizes is not None:
+        sizes.check(edge)
+    lines, joined, kept = (
+        clean_lines(constraints, contours) if len(constraints) else ((), contours, np.zeros((0, 2)))
+    )
+    whole = joined[0][::-1] if turned else joined[0]
+    place = {tuple(point): k for k, point in enumerate(whole.tolist())}
+    number = np.array([place[tuple(point)] for point in contour.tolist()])
+    ends = {(float(x), float(y)) for x, y in kept}
+    return _Panel(whole, number, joined[1:], lines, ends, given or contours, given is not None)
+
+
+def _steps(number: int, seam: Seam, pair, panels: list[_Panel], fields, edge: float) -> Steps:
     if not all(0 < notch < 1 for notch in seam.notches):
         raise OutlineError(f"seam {number}: notches {seam.notches} – give fractions above 0 and below 1")
-    marks = [0.0, 1.0, *seam.notches]
-    for chain in pair:
-        arc = _arc(chain)
-        corner = outline_turning(chain) > CORNER_DEGREES
-        corner[[0, -1]] = False
-        marks.extend((arc[corner] / arc[-1]).tolist())
-    marks = sorted(marks)
-    marks = [m for k, m in enumerate(marks) if k == 0 or m - marks[k - 1] > SAME]
-    longest = max(_arc(chain)[-1] for chain in pair)
-    found = [
-        np.linspace(a, b, max(1, round((b - a) * longest / edge)) + 1)[:-1]
-        for a, b in zip(marks[:-1], marks[1:], strict=True)
-    ]
-    return np.append(np.concatenate(found), 1.0)
+    a, b = seam.a.panel, seam.b.panel
+    kept = panels[a].kept, panels[b].kept
+    return seam_steps((pair[0], pair[1]), kept, seam.notches, edge, (fields[a], fields[b]))
 
 
-def _along(chain: np.ndarray, at: np.ndarray) -> np.ndarray:
-    arc = _arc(chain)
-    where = at * arc[-1]
-    near = np.abs(arc[:, None] - where).argmin(axis=0)
-    where = np.where(
-        np.abs(arc[near] - where) <= SAME * arc[-1], arc[near], where
-    )  # corners stay what they are
-    return np.column_stack([np.interp(where, arc, chain[:, axis]) for axis in range(2)])
+def _meshed(panel: _Panel, pieces: dict, edge: float, sizes, threshold: float, quality: str) -> PanelMesh:
+    """The mesh of a panel whose seams are sampled: pieces as `_put` notes them."""
+    begin = perf_counter()
+    contour, fixed = _sampled(panel.outline, pieces)
+    if len(clean_contours(contour, panel.holes)[0]) != len(contour):
+        raise OutlineError("samples fall together – give a larger seam or a smaller edge")
+    if signed_area(contour) < 0:  # steps are named by the point they begin at, which is the other one now
+        contour, fixed = contour[::-1], np.roll(fixed[::-1], -1)
+    kept = np.array(sorted(panel.kept)).reshape(-1, 2)
+    rim = sampled_rim([contour, *panel.holes], edge, lines=panel.lines, kept=kept, sizes=sizes, fixed=fixed)
+    mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
+    strays = deviation(panel.given, rim.contours, merged=panel.merged)
+    return replace(
+        mesh, report=replace(mesh.report, outline_deviation=strays, seconds=perf_counter() - begin)
+    )
 
 
-def _put(pieces: dict, side: SeamSide, points: np.ndarray, panel: int) -> None:
+def _chain(side: SeamSide, panels: list[_Panel], number: int) -> np.ndarray:
+    """The points of a side (n, 2), first to last."""
+    if not 0 <= side.panel < len(panels):
+        raise OutlineError(f"seam {number}: panel {side.panel} – there are {len(panels)}")
+    panel = panels[side.panel]
+    for point in (side.first, side.last):
+        if not 0 <= point < len(panel.number):
+            raise OutlineError(
+                f"seam {number}: point {point} – panel {side.panel} has {len(panel.number)} points"
+            )
+    count = len(panel.outline)
+    first, last = panel.number[side.first], panel.number[side.last]
+    steps = ((first - last if side.backward else last - first) - 1) % count + 1
+    way = -1 if side.backward else 1
+    return panel.outline[(first + way * np.arange(steps + 1)) % count]
+
+
+def _put(pieces: dict, side: SeamSide, panel: _Panel, points: np.ndarray) -> None:
     """Note a side's samples under its first point in the outline's own direction."""
     first, last = (side.last, side.first) if side.backward else (side.first, side.last)
-    if first in pieces and not np.array_equal(pieces[first][1], points):
-        raise OutlineError(f"panel {panel}: two seams begin at point {first} – seams must not overlap")
-    pieces[first] = (last, points[::-1] if side.backward else points)
+    begin = int(panel.number[first])
+    if begin in pieces and not np.array_equal(pieces[begin][1], points):
+        raise OutlineError(f"two seams begin at point {first} – seams must not overlap")
+    pieces[begin] = (int(panel.number[last]), points[::-1] if side.backward else points)
 
 
-def _sampled(contour: np.ndarray, pieces: dict, edge: float) -> np.ndarray:
-    """The whole outline sampled: seam sides as they are given, the rest at equal steps."""
+def _sampled(contour: np.ndarray, pieces: dict) -> tuple[np.ndarray, np.ndarray]:
+    """The outline with its seams sampled, and which of its steps those are, by the point they begin at."""
     if not pieces:
-        return outline_samples(contour, edge)
-    count, found = len(contour), []
+        return contour, np.zeros(len(contour), dtype=bool)
+    count, found, fixed = len(contour), [], []
     begin = here = min(pieces)
     while True:
         if here in pieces:
             last, points = pieces[here]
             passed = {(here + k) % count for k in range(1, ((last - here - 1) % count) + 1)}
             if (passed - {last}) & set(pieces) or begin in passed - {last}:
-                raise OutlineError(f"outline: seams overlap behind point {here} – seams must not overlap")
+                x, y = contour[here]
+                raise OutlineError(f"seams overlap behind ({x:.4f}, {y:.4f}) m – seams must not overlap")
             found.append(points[:-1])
+            fixed.append(np.ones(len(points) - 1, dtype=bool))
             here = last
         else:
-            ends = [
-                k for k in range(1, count + 1) if (here + k) % count in pieces or (here + k) % count == begin
-            ]
-            chain = contour[(here + np.arange(ends[0] + 1)) % count]
-            found.append(_free(chain, edge))
-            here = (here + ends[0]) % count
+            found.append(contour[here : here + 1])
+            fixed.append(np.zeros(1, dtype=bool))
+            here = (here + 1) % count
         if here == begin:
-            return np.concatenate(found)
-
-
-def _free(chain: np.ndarray, edge: float) -> np.ndarray:
-    """Equal steps between the corners of an open stretch, its last point left out."""
-    arc = _arc(chain)
-    corner = outline_turning(chain) > CORNER_DEGREES
-    corner[[0, -1]] = True
-    marks = arc[corner]
-    at = [
-        np.linspace(a, b, max(1, int(np.ceil((b - a) / edge - 1e-9))) + 1)[:-1]
-        for a, b in zip(marks[:-1], marks[1:], strict=True)
-    ]
-    where = np.concatenate(at)
-    return np.column_stack([np.interp(where, arc, chain[:, axis]) for axis in range(2)])
-
-
-def _fit(pairs: np.ndarray, seam: Seam, pair: list[np.ndarray], at: np.ndarray) -> SeamFit:
-    a, b = (float(_arc(chain)[-1]) for chain in pair)
-    notches = np.array([int(np.abs(at - notch).argmin()) for notch in seam.notches], dtype=np.int32)
-    return SeamFit(pairs, notches, (a, b), abs(a - b) / min(a, b), abs(a - b) / (len(at) - 1))
+            return np.concatenate(found), np.concatenate(fixed)

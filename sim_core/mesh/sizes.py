@@ -1,18 +1,21 @@
 """A size field: shorter edges around given points, growing outward no faster than a bounded gradation."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from pathlib import Path
 
 import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError
+from sim_core.mesh.nearest import SizeBoxes, least_sizes, size_boxes
+from sim_core.mesh.numbers import check_numbers
 from sim_core.reading import read_json, shown
 
 __all__ = ["SizeField", "read_size_field"]
 
 SHORTEST = 64  # a point's edge is at least edge / SHORTEST
-BLOCK = 4_000_000  # distances held at a time
+LARGEST = 1e6  # [m] sizes and places beyond this are no metres
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,20 +34,23 @@ class SizeField:
             raise OutlineError(f"size field: points of shape {self.points.shape} – give (k, 2), at least one")
         if self.sizes.shape != (len(self.points),):
             raise OutlineError(f"size field: {self.sizes.shape} sizes for {len(self.points)} points")
-        if not np.isfinite(self.points).all() or not (np.isfinite(self.sizes) & (self.sizes > 0)).all():
+        near = (np.abs(self.points) <= LARGEST).all()  # false for NaN too
+        if not near or not ((self.sizes > 0) & (self.sizes <= LARGEST)).all():
             raise OutlineError(
-                "size field: not finite, or a size that is not positive – give [x, y, size] in metres"
+                "size field: not finite, or a size that is not positive – give [x, y, size] in metres, "
+                f"at most {LARGEST:g}"
             )
         if not (isfinite(self.gradation) and 0 < self.gradation <= 1):
             raise OutlineError(f"size field: gradation {self.gradation} – give a number above 0, at most 1")
 
     def at(self, points: np.ndarray, edge: float) -> np.ndarray:
         """Edge lengths (n,) [m] at points (n, 2) [m]; `edge` [m] is the longest."""
-        found = np.full(len(points), edge)
-        for block in np.array_split(np.arange(len(points)), max(1, len(points) * len(self.points) // BLOCK)):
-            gap = np.sqrt(((points[block, None] - self.points) ** 2).sum(axis=2))
-            found[block] = np.minimum(edge, (self.sizes + self.gradation * gap).min(axis=1))
-        return found
+        places = np.ascontiguousarray(points, dtype=np.float64)
+        return least_sizes(places, float(edge), float(self.gradation), *self._boxes)
+
+    @cached_property
+    def _boxes(self) -> SizeBoxes:
+        return size_boxes(np.asarray(self.points, dtype=np.float64), np.asarray(self.sizes, dtype=np.float64))
 
     def check(self, edge: float) -> None:
         """Raise OutlineError where a size is far below the edge."""
@@ -68,6 +74,7 @@ def read_size_field(path: Path) -> SizeField:
     gradation = values.get("gradation", 0.2)
     if isinstance(gradation, bool) or not isinstance(gradation, int | float):
         raise FileProblem(f"{path}: gradation: {shown(gradation)} – give a number above 0, at most 1")
+    check_numbers(path, "points", values["points"], "[x, y, size] in metres")
     try:
         rows = np.array(values["points"], dtype=float)
     except (TypeError, ValueError, OverflowError, RecursionError) as error:

@@ -10,20 +10,25 @@ from sim_core.mesh.exact import orient
 
 __all__ = ["Walls", "crosses", "hidden", "wall_cells"]
 
+RECENT = 4
+
 
 class Walls(NamedTuple):
-    """ends: (w, 2) int32 points.  first: (cells + 1,) and items: per cell the walls whose bounding box meets it."""
+    """ends: (w, 2) int32 points.  first: (cells + 1,) and items: per cell the walls whose bounding box meets it.
+    recent: (RECENT,) int32, walls that hid the last points, latest first, or -1: under a wide circle, as a triangle
+    across a narrow gap has it, a few walls hide nearly everything."""
 
     ends: np.ndarray
     first: np.ndarray
     items: np.ndarray
+    recent: np.ndarray
 
 
 def wall_cells(places: np.ndarray, ends: np.ndarray, cells: Cells) -> Walls:
     """Sort walls (w, 2) into the grid of the points they join."""
     ends = np.unique(np.sort(ends, axis=1), axis=0).astype(np.int32)
     first, items = _fill(places, ends, cells.x0, cells.y0, cells.per_metre, cells.columns, cells.rows)
-    return Walls(ends, first, items)
+    return Walls(ends, first, items, np.full(RECENT, -1, np.int32))
 
 
 @njit(cache=True, error_model="numpy")
@@ -53,20 +58,50 @@ def _fill(places, ends, x0, y0, per_metre, columns, rows):
 
 @njit(cache=True, error_model="numpy")
 def hidden(places, a, b, c, x0, y0, per_metre, columns, rows, walls):
-    """Whether a wall keeps c from being joined to a or to b."""
-    ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
-    cx, cy = places[c, 0], places[c, 1]
-    left = cell_of(min(ax, bx, cx), x0, per_metre, columns)
-    right = cell_of(max(ax, bx, cx), x0, per_metre, columns)
-    low = cell_of(min(ay, by, cy), y0, per_metre, rows)
-    high = cell_of(max(ay, by, cy), y0, per_metre, rows)
+    """Whether a wall keeps c from being joined to a or to b; those that hid the last points are tried first."""
+    recent = walls.recent
+    for k in range(recent.size):
+        w = recent[k]
+        if w < 0:
+            break
+        p, q = walls.ends[w, 0], walls.ends[w, 1]
+        if crosses(places, a, c, p, q) or crosses(places, b, c, p, q):
+            return True
+    w = _wall_between(places, a, c, x0, y0, per_metre, columns, rows, walls)
+    if w < 0:
+        w = _wall_between(places, b, c, x0, y0, per_metre, columns, rows, walls)
+    if w < 0:
+        return False
+    for k in range(recent.size - 1, 0, -1):
+        recent[k] = recent[k - 1]
+    recent[0] = w
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def _wall_between(places, a, c, x0, y0, per_metre, columns, rows, walls):
+    """A wall that the segment a c meets, or -1: those in the cells that it passes, row by row, and next to them."""
+    ax, ay, cx, cy = places[a, 0], places[a, 1], places[c, 0], places[c, 1]
+    if ay > cy:
+        ax, ay, cx, cy = cx, cy, ax, ay
+    left, right = min(ax, cx), max(ax, cx)
+    low, high = cell_of(ay, y0, per_metre, rows), cell_of(cy, y0, per_metre, rows)
+    slope = (cx - ax) / (cy - ay) if high > low else 0.0
+    beyond = 1.0 / per_metre  # a cell on every side: far more than rounding
     for i in range(low, high + 1):
-        for k in range(walls.first[i * columns + left], walls.first[i * columns + right + 1]):
+        from_x, to_x = left, right
+        if high > low:
+            # where it enters the row below and leaves the row above
+            enter = ax + slope * (y0 + (i - 1) / per_metre - ay)
+            leave = ax + slope * (y0 + (i + 2) / per_metre - ay)
+            from_x = max(left, min(enter, leave) - beyond)
+            to_x = min(right, max(enter, leave) + beyond)
+        j, j2 = cell_of(from_x, x0, per_metre, columns), cell_of(to_x, x0, per_metre, columns)
+        for k in range(walls.first[i * columns + j], walls.first[i * columns + j2 + 1]):
             w = walls.items[k]
-            p, q = walls.ends[w, 0], walls.ends[w, 1]
-            if crosses(places, a, c, p, q) or crosses(places, b, c, p, q):
-                return True
-    return False
+            if crosses(places, a, c, walls.ends[w, 0], walls.ends[w, 1]):
+                return w
+    return -1
 
 
 @njit(cache=True, error_model="numpy")

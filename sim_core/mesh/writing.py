@@ -1,18 +1,21 @@
 """Readers and writers of the mesh room: outlines from JSON, SVG and DXF in; npz, PLY, OBJ out."""
 
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.dxf import read_dxf
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import signed_area
+from sim_core.mesh.numbers import check_numbers
+from sim_core.mesh.outline import LARGEST, signed_area
 from sim_core.mesh.svg import read_svg
 from sim_core.reading import read_json, shown
 
-__all__ = ["Drawing", "read_outline", "write_mesh"]
+__all__ = ["Drawing", "read_outline", "write_mesh", "write_picture"]
 
 
 class Drawing(NamedTuple):
@@ -43,10 +46,19 @@ def read_outline(path: Path) -> Drawing:
     for name in ("holes", "constraints"):
         if not isinstance(values.get(name, []), list):
             raise FileProblem(f"{path}: {name}: {shown(values[name])} – give a list of lists of [x, y]")
+    check_numbers(path, "outline", values["outline"], "[x, y] in metres")
+    for name, kind in (("holes", "hole"), ("constraints", "constraint")):
+        for k, rows in enumerate(values.get(name, [])):
+            check_numbers(path, f"{kind} {k}", rows, "[x, y] in metres")
     return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
 
 
 def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
+    for points, _ in lines:
+        if not (np.abs(points) <= LARGEST).all():  # false for NaN too
+            raise FileProblem(
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+            )
     closed = [points for points, round_ in lines if round_]
     if not closed:
         raise FileProblem(f"{path}: no closed line in it – close the outline")
@@ -55,18 +67,48 @@ def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
-    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0); raises FileProblem otherwise."""
+    """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0).
+
+    Raises FileProblem for another kind of file, or one that cannot be written.
+    It is written beside `path` and renamed over: an interrupt leaves the old file or the new one.
+    """
     writers = {".npz": _write_npz, ".ply": _write_ply, ".obj": _write_obj}
     if path.suffix.lower() not in writers:
         raise FileProblem(f"{path}: unknown kind of file – end the name with .npz, .ply or .obj")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    writers[path.suffix.lower()](path, mesh)
+    _replaced(path, lambda stream: writers[path.suffix.lower()](stream, mesh))
 
 
-def _write_npz(path: Path, mesh: PanelMesh) -> None:
+def write_picture(path: Path, picture: np.ndarray) -> None:
+    """Write a picture (n, m, 3) uint8 as .png, as `write_mesh` writes; raises FileProblem."""
+    from PIL import Image
+
+    _replaced(path, lambda stream: Image.fromarray(picture).save(stream, format="png"))
+
+
+def _replaced(path: Path, write: Callable[[IO[bytes]], None]) -> None:
+    """Write beside a path and rename over it; raises FileProblem with the path and a remedy."""
+    beside = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with beside.open("wb") as stream:
+                write(stream)
+            beside.replace(path)
+        finally:
+            with suppress(
+                OSError
+            ):  # what could not be made cannot be removed; the first error is the one to tell
+                beside.unlink(missing_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise FileProblem(
+            f"{path}: cannot be written ({reason}) – give a file in a folder that can be"
+        ) from error
+
+
+def _write_npz(stream: IO[bytes], mesh: PanelMesh) -> None:
     np.savez_compressed(
-        path,
-        allow_pickle=False,
+        stream,
         vertices=mesh.vertices,
         faces=mesh.faces,
         boundary=np.concatenate(mesh.boundary),
@@ -85,7 +127,7 @@ def _upright(mesh: PanelMesh) -> np.ndarray:
     return np.column_stack([mesh.vertices[:, 0], -mesh.vertices[:, 1], np.zeros(len(mesh.vertices))])
 
 
-def _write_ply(path: Path, mesh: PanelMesh) -> None:
+def _write_ply(stream: IO[bytes], mesh: PanelMesh) -> None:
     head = (
         "ply\nformat binary_little_endian 1.0\n"
         f"element vertex {len(mesh.vertices)}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -93,10 +135,10 @@ def _write_ply(path: Path, mesh: PanelMesh) -> None:
     )
     faces = np.zeros(len(mesh.faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
     faces["n"], faces["v"] = 3, mesh.faces
-    path.write_bytes(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
+    stream.write(head.encode() + _upright(mesh).astype("<f8").tobytes() + faces.tobytes())
 
 
-def _write_obj(path: Path, mesh: PanelMesh) -> None:
+def _write_obj(stream: IO[bytes], mesh: PanelMesh) -> None:
     lines = [f"v {x:.9g} {y:.9g} 0" for x, y, _ in _upright(mesh)]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces]
-    path.write_text("\n".join(lines) + "\n", "utf-8")
+    stream.write(("\n".join(lines) + "\n").encode())

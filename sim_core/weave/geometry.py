@@ -1,10 +1,10 @@
-"""The values that come out of the weave room: yarn geometry and cloth parameters."""
+"""The values that come out of the weave room: yarn geometry, texture maps, cloth parameters."""
 
 from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-__all__ = ["ClothParameters", "YarnGeometry"]
+__all__ = ["ClothParameters", "TextureMaps", "YarnGeometry"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +31,26 @@ class YarnGeometry:
     def crest_to_trough(self) -> tuple[float, float]:
         """h1 of the warp and h2 of the weft [m]: the largest crest-to-trough distance of any yarn."""
         return float(np.ptp(self.warp_height, axis=0).max()), float(np.ptp(self.weft_height, axis=1).max())
+
+
+@dataclass(frozen=True, eq=False)
+class TextureMaps:
+    """Tileable pictures of a cloth seen from its face.
+
+    albedo, normal: (n, m, 3) uint8; height, opacity: (n, m) uint8. Rows run along the warp (pick 0 first, v down),
+    columns along the weft. normal: tangent space as glTF has it (x right, y up the picture, z out of it).
+    size: (2,) [m] of the tile, across and down.  relief: [m] between height 0 and 255.
+    seam: largest difference, as a fraction of 255 levels, between the tiled maps and the same cloth rendered
+    as one piece across the border.
+    """
+
+    albedo: np.ndarray
+    normal: np.ndarray
+    height: np.ndarray
+    opacity: np.ndarray
+    size: tuple[float, float]
+    relief: float
+    seam: float
 
 
 @dataclass(frozen=True)

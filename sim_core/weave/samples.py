@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from sim_core.weave.lines import smooth_noise
+from sim_core.weave.lines import _smooth_noise
 from sim_core.weave.strands import Strands
 
 __all__ = ["Samples", "Tile", "sample_surface", "tile_of"]
@@ -115,7 +115,7 @@ def tile_of(
 
 
 def _noise(rng, count: int, waves: float, lap: np.ndarray) -> np.ndarray:
-    table = smooth_noise(rng, count, waves)
+    table = _smooth_noise(rng, count, waves)
     where = (lap - np.floor(lap)) * table.shape[1]
     k = np.minimum(where.astype(int), table.shape[1] - 1)
     t = where - k

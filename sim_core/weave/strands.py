@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.errors import WeaveError
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.laid import brocade_heights, leno_paths
 from sim_core.weave.lines import resampled
@@ -54,13 +53,10 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
     """Warp, weft and, where there are any, extra wefts of a relaxed cloth.
 
     geometry: of `solve` for this weave. per: places a crossing where stage A gives heights at crossings only.
-    Raises WeaveError for the geometry of another draft.
     """
     draft, channels = weave.draft, weave.draft.channels
     width, height = weave.size
     main = main_picks(weave)
-    if geometry.force.shape != (len(main), draft.ends):
-        raise WeaveError(f"weave {weave.name}: the yarn geometry belongs to another draft – solve this weave")
     palette_warp, palette_weft = (
         _palette(weave.warp_colours, weave.warp),
         _palette(weave.weft_colours, weave.weft),

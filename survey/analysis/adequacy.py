@@ -18,7 +18,7 @@ from scipy.special import chdtrc
 
 from survey.analysis.checks import finite_scores, require_independent
 from survey.analysis.correlation import correlate
-from survey.analysis.errors import AnalysisError, TooFewRows
+from survey.analysis.errors import CrossCheckFailed, LoneItem, TooFewItems, TooFewRows
 
 __all__ = ["Adequacy", "Bartlett", "adequacy", "adequacy_by_factor_analyzer", "adequacy_of"]
 
@@ -48,11 +48,11 @@ def adequacy_of(r: NDArray[np.float64], n: int, names: Sequence[str]) -> Adequac
     """KMO and Bartlett of a correlation matrix (p, p) of n answers.
 
     KMO = Σ r² / (Σ r² + Σ q²) over i ≠ j, q the anti-image correlation −S_ij / √(S_ii S_jj), S = R⁻¹
-    (Kaiser 1974). Raises TooFewRows when n ≤ p, DependentItems, NotPositiveDefinite, AnalysisError.
+    (Kaiser 1974). Raises TooFewRows when n ≤ p, TooFewItems, LoneItem, DependentItems, NotPositiveDefinite.
     """
     p = len(r)
     if p < 2:
-        raise AnalysisError("one item alone cannot be factored – give at least two", names)
+        raise TooFewItems("one item alone cannot be factored – give at least two", names)
     if n <= p:
         raise TooFewRows(f"{n} answers for {p} items – KMO and Bartlett need more answers than items")
     require_independent(r, names)
@@ -64,9 +64,7 @@ def adequacy_of(r: NDArray[np.float64], n: int, names: Sequence[str]) -> Adequac
     q2 = ((inverse / np.outer(scale, scale) * outside) ** 2).sum(axis=0)
     lone = [name for name, alone in zip(names, r2 < ROUNDING, strict=True) if alone]
     if lone:
-        raise AnalysisError(
-            f"{', '.join(lone)}: correlated with no other item – KMO is undefined, drop it", lone
-        )
+        raise LoneItem(f"{', '.join(lone)}: correlated with no other item – KMO is undefined, drop it", lone)
     log_determinant = 2.0 * float(np.log(np.diag(factor[0])).sum())
     chi2 = -(n - 1 - (2 * p + 5) / 6) * log_determinant
     df = p * (p - 1) // 2
@@ -77,7 +75,7 @@ def adequacy_of(r: NDArray[np.float64], n: int, names: Sequence[str]) -> Adequac
 def adequacy(scores: ArrayLike, items: Sequence[str] | None = None) -> Adequacy:
     """KMO and Bartlett of complete scores (n, p), cross-checked by factor_analyzer.
 
-    Raises what `adequacy_of` and `correlate` raise, and AnalysisError when the two disagree by more than 1e-8 of
+    Raises what `adequacy_of` and `correlate` raise, and CrossCheckFailed when the two disagree by more than 1e-8 of
     the figure.
     """
     table, names = finite_scores(scores, items)
@@ -86,7 +84,7 @@ def adequacy(scores: ArrayLike, items: Sequence[str] | None = None) -> Adequacy:
             f"{len(table)} answers for {table.shape[1]} items – KMO and Bartlett need more answers than items"
         )
     if table.shape[1] < 2:
-        raise AnalysisError("one item alone cannot be factored – give at least two", names)
+        raise TooFewItems("one item alone cannot be factored – give at least two", names)
     ours = adequacy_of(correlate(table, names).r, len(table), names)
     theirs = adequacy_by_factor_analyzer(table)
     for what, one, other in (
@@ -94,7 +92,7 @@ def adequacy(scores: ArrayLike, items: Sequence[str] | None = None) -> Adequacy:
         ("Bartlett's chi-square", ours.bartlett.chi2, theirs.bartlett.chi2),
     ):
         if abs(one - other) > AGREEMENT * max(1.0, abs(one)):
-            raise AnalysisError(
+            raise CrossCheckFailed(
                 f"{what}: factor_analyzer says {other!r}, the formula {one!r} – the items are nearly dependent",
                 names,
             )

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from survey.analysis.errors import (
     AllEqual,
-    AnalysisError,
     ConstantItem,
     DependentItems,
     NotFinite,
     NotPositiveDefinite,
     TooFewRows,
+    WrongShape,
 )
 
 __all__ = [
@@ -34,18 +34,18 @@ def finite_scores(
 ) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """Scores as (n, p) float64 with the items' names.
 
-    Raises NotFinite for a missing or infinite score, TooFewRows below `rows`, AnalysisError for a wrong shape.
+    Raises NotFinite for a missing or infinite score, TooFewRows below `rows`, WrongShape.
     """
     table = np.asarray(scores, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] == 0:
-        raise AnalysisError(
+        raise WrongShape(
             f"scores have the shape {table.shape} – give one row per answer, one column per item"
         )
     names = (
         tuple(items) if items is not None else tuple(f"item_{column + 1}" for column in range(table.shape[1]))
     )
     if len(names) != table.shape[1]:
-        raise AnalysisError(f"{len(names)} names for {table.shape[1]} items – give one each")
+        raise WrongShape(f"{len(names)} names for {table.shape[1]} items – give one each")
     bad = any_row(~np.isfinite(table))
     if bad.any():
         worst = [name for name, flag in zip(names, bad, strict=True) if flag]

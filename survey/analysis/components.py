@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from survey.analysis.errors import AnalysisError
+from survey.analysis.errors import NoComponents, WrongShape
 from survey.analysis.oblimin import oblimin
 from survey.analysis.varimax import varimax
 
@@ -77,18 +77,18 @@ def principal_components(
     """Components of a correlation matrix (p, p).
 
     keep: how many; None keeps those with an eigenvalue above 1 (Kaiser's criterion).
-    Raises AnalysisError for a matrix that is no correlation matrix, or when nothing can be kept, NotConverged.
+    Raises WrongShape for a matrix that is no correlation matrix, NoComponents when nothing can be kept, NotConverged.
     """
     r = np.asarray(correlation, dtype=np.float64)
     if r.ndim != 2 or r.shape[0] != r.shape[1] or not np.isfinite(r).all():
-        raise AnalysisError("a correlation matrix is square and finite")
+        raise WrongShape("a correlation matrix is square and finite")
     if not np.allclose(r, r.T, atol=1e-12) or not np.allclose(np.diag(r), 1.0, atol=1e-12):
-        raise AnalysisError("a correlation matrix is symmetric with ones on its diagonal")
+        raise WrongShape("a correlation matrix is symmetric with ones on its diagonal")
     values, vectors = np.linalg.eigh(r)
     values, vectors = values[::-1].copy(), vectors[:, ::-1]
     count = kaiser_count(values) if keep is None else keep
     if not 1 <= count <= len(r):
-        raise AnalysisError(
+        raise NoComponents(
             f"{count} components of {len(r)} items – no eigenvalue above 1, or a wrong number asked"
         )
     unrotated = vectors[:, :count] * np.sqrt(np.maximum(values[:count], 0.0))

@@ -10,22 +10,52 @@ __all__ = [
     "AllEqual",
     "AnalysisError",
     "ConstantItem",
+    "CrossCheckFailed",
     "DependentItems",
+    "GapsLeft",
+    "LoneItem",
+    "NoComponents",
+    "NotAMean",
     "NotConverged",
     "NotFinite",
     "NotPositiveDefinite",
+    "TooFewItems",
     "TooFewRows",
+    "TooManyScores",
+    "UnknownItem",
+    "WrongShape",
 ]
 
 
 class AnalysisError(SurveyError):
-    """Base of them all. `items`: names of the items concerned, may be empty."""
+    """Base of them all, never raised itself: every kind has a `code` of its own.
 
-    code = "analysis"
+    `items`: names of the items concerned, may be empty.
+    """
+
+    code: str
 
     def __init__(self, message: str, items: Sequence[str] = ()) -> None:
         self.items = tuple(items)
         super().__init__(message)
+
+
+class UnknownItem(AnalysisError):
+    """An item that the table does not have."""
+
+    code = "unknown_item"
+
+
+class WrongShape(AnalysisError):
+    """An array that is not the table or matrix which the function takes."""
+
+    code = "wrong_shape"
+
+
+class TooFewItems(AnalysisError):
+    """Fewer items than the computation needs."""
+
+    code = "too_few_items"
 
 
 class TooFewRows(AnalysisError):
@@ -52,6 +82,12 @@ class AllEqual(AnalysisError):
     code = "all_equal"
 
 
+class LoneItem(AnalysisError):
+    """An item that is correlated with no other: its KMO is 0 / 0."""
+
+    code = "lone_item"
+
+
 class DependentItems(AnalysisError):
     """Items of which one follows exactly from the others: the correlation matrix has no inverse."""
 
@@ -68,3 +104,33 @@ class NotConverged(AnalysisError):
     """An iteration that did not come to rest."""
 
     code = "not_converged"
+
+
+class CrossCheckFailed(AnalysisError):
+    """Our figure and a second library's differ by more than rounding."""
+
+    code = "cross_check_failed"
+
+
+class NoComponents(AnalysisError):
+    """No component is kept, or more are asked for than there are items."""
+
+    code = "no_components"
+
+
+class GapsLeft(AnalysisError):
+    """A computation that needs whole answers met gaps."""
+
+    code = "gaps_left"
+
+
+class TooManyScores(AnalysisError):
+    """An item with more different scores than a scale of answers has."""
+
+    code = "too_many_scores"
+
+
+class NotAMean(AnalysisError):
+    """A text that is no printed mean, or counts that no mean is made of."""
+
+    code = "not_a_mean"

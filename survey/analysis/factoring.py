@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from survey.analysis.adequacy import Adequacy, adequacy, adequacy_of
 from survey.analysis.components import Components, Rotation, eigenvalues, kaiser_count, principal_components
 from survey.analysis.correlation import Correlation, correlate, correlate_pairwise, covariance_pairwise
-from survey.analysis.errors import AnalysisError
+from survey.analysis.errors import AnalysisError, GapsLeft, NoComponents
 from survey.analysis.omega import HEYWOOD, Omega, omega_of
 from survey.analysis.polychoric import polychoric
 from survey.analysis.preparation import Note, Prepared, named
@@ -113,7 +113,7 @@ def _components(
     keep = factors if isinstance(factors, int) else None
     if factors == "parallel":
         if parallel is None or parallel.kept < 1:
-            raise AnalysisError("parallel analysis keeps no component – give a number of factors, or kaiser")
+            raise NoComponents("parallel analysis keeps no component – give a number of factors, or kaiser")
         keep = parallel.kept
     components = principal_components(found.r, keep=keep, rotation=rotation)
     if components.kept < len(names) and (components.communalities >= 1.0 - 1e-9).any():
@@ -152,7 +152,7 @@ def correlation_of(
     """The matrix of the chosen kind, of scores (n, p)."""
     if method == "polychoric":
         if np.isnan(table).any():
-            raise AnalysisError(
+            raise GapsLeft(
                 "polychoric correlations need whole answers – leave out those with gaps (listwise)"
             )
         return polychoric(table, names)

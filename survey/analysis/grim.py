@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from survey.analysis.errors import AnalysisError
+from survey.analysis.errors import NotAMean
 
 __all__ = ["grim", "least_n"]
 
@@ -14,16 +14,16 @@ def grim(mean: str, n: int, *, items: int = 1, half_up: bool = False) -> bool:
     """Whether n answers of `items` whole numbers each can have this mean, printed with its decimals ("4.46").
 
     A half may have been rounded either way, with half_up only upwards.
-    Raises AnalysisError for a text that is no mean, or n or items below 1.
+    Raises NotAMean for a text that is no mean, or n or items below 1.
     """
     if n < 1 or items < 1:
-        raise AnalysisError(f"n = {n}, items = {items} – both are at least 1")
+        raise NotAMean(f"n = {n}, items = {items} – both are at least 1")
     try:
         exact = Fraction(mean)
     except (ValueError, ZeroDivisionError):
-        raise AnalysisError(f"{mean!r} is no mean – write it as printed, such as 4.46") from None
+        raise NotAMean(f"{mean!r} is no mean – write it as printed, such as 4.46") from None
     if "/" in mean or "e" in mean.lower():
-        raise AnalysisError(f"{mean!r} is no mean – write it as printed, such as 4.46")
+        raise NotAMean(f"{mean!r} is no mean – write it as printed, such as 4.46")
     half = Fraction(1, 2 * 10 ** len(mean.partition(".")[2]))
     total = n * items
     least = -((half - exact) * total // 1)  # the smallest whole sum that is rounded up to the mean

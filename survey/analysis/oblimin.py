@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 
-from survey.analysis.errors import AnalysisError, NotConverged
+from survey.analysis.errors import NotConverged, WrongShape
 from survey.analysis.varimax import row_lengths, starts, varimax
 
 __all__ = ["oblimin", "quartimin_criterion"]
@@ -31,7 +31,7 @@ def oblimin(
     """
     start = np.asarray(loadings, dtype=np.float64)
     if start.ndim != 2 or not np.isfinite(start).all():
-        raise AnalysisError("loadings must be a finite table, one row per item, one column per component")
+        raise WrongShape("loadings must be a finite table, one row per item, one column per component")
     if start.shape[1] < 2:
         return varimax(start), np.eye(start.shape[1])
     length = row_lengths(start)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from survey.analysis.checks import require_independent
-from survey.analysis.errors import AnalysisError, NotConverged, TooFewRows
+from survey.analysis.errors import NotConverged, TooFewItems, TooFewRows
 
 __all__ = ["HEYWOOD", "Omega", "omega_of", "one_factor"]
 
@@ -32,11 +32,11 @@ class Omega:
 def omega_of(r: NDArray[np.float64], deviation: NDArray[np.float64], n: int, names: Sequence[str]) -> Omega:
     """ω of items with correlations (p, p) and standard deviations (p,), from n answers.
 
-    Raises AnalysisError below three items, TooFewRows when n ≤ p, DependentItems, NotPositiveDefinite, NotConverged.
+    Raises TooFewItems below three items, TooFewRows when n ≤ p, DependentItems, NotPositiveDefinite, NotConverged.
     """
     p = len(r)
     if p < 3:
-        raise AnalysisError(f"{p} items – ω needs at least three to tell a common factor", names)
+        raise TooFewItems(f"{p} items – ω needs at least three to tell a common factor", names)
     if n <= p:
         raise TooFewRows(f"{n} answers for {p} items – ω needs more answers than items")
     require_independent(r, names)

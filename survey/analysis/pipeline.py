@@ -19,6 +19,7 @@ from survey.analysis.omega import Omega
 from survey.analysis.preparation import Flags, Note, Prepared, flagged, named, prepare
 from survey.analysis.reliability import Reliability
 from survey.analysis.retention import Average, Parallel
+from survey.analysis.scale import off_scale
 
 __all__ = ["Analysis", "Missing", "Settings", "analyse"]
 
@@ -80,18 +81,22 @@ def analyse(
     settings: Settings | None = None,
     drop: Sequence[str] = (),
     seconds: ArrayLike | None = None,
+    points: int | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> Analysis:
     """Run the whole procedure on scores (n, p); NaN is a missing score.
 
     settings: see `Settings`; drop: shorthand for settings.drop. seconds: (n,) spent on each answer, NaN unknown.
+    points: of the scale 1, 2, …; a score beside it becomes a note. None: any number is a score.
     progress: called with the number of resamples just done.
     Raises NotFinite for infinite scores or an item without any, TooFewRows below two usable answers, AllEqual when
-    nothing varies, AnalysisError for an unknown item in `drop`. What stops a single step only (a constant item,
+    nothing varies, UnknownItem in `drop`. What stops a single step only (a constant item,
     dependent items, n ≤ p) becomes a note and leaves that step None.
     """
     chosen = settings or Settings(drop=tuple(drop))
     ready, notes = prepare(scores, items, chosen.drop, pairwise=chosen.missing == "pairwise")
+    if points is not None:
+        notes = off_scale(ready.table, ready.names, points) + notes
     correlation = _all_correlations(ready, chosen, notes)
     part = factor(ready, chosen.method, chosen.factors, chosen.rotation, chosen.draws, chosen.seed, notes)
     resampled = _resampled(ready, part, chosen, notes, progress)

@@ -14,7 +14,7 @@ from scipy.special import ndtr, ndtri
 
 from survey.analysis.checks import finite_scores, require_varying
 from survey.analysis.correlation import Correlation, two_tailed
-from survey.analysis.errors import AnalysisError
+from survey.analysis.errors import TooManyScores
 
 __all__ = ["CATEGORIES", "binormal", "polychoric"]
 
@@ -27,7 +27,7 @@ INFINITY = 40.0  # [standard deviations], beyond the reach of a float64 tail
 def polychoric(scores: ArrayLike, items: Sequence[str] | None = None) -> Correlation:
     """Matrix of complete scores (n, p) of a few categories each; p-values as those of Pearson's r, an approximation.
 
-    The matrix need not be positive definite. Raises AnalysisError for an item with more than ten categories and
+    The matrix need not be positive definite. Raises TooManyScores for an item with more than ten categories and
     what `correlate` raises.
     """
     table, names = finite_scores(scores, items, rows=3)
@@ -36,7 +36,7 @@ def polychoric(scores: ArrayLike, items: Sequence[str] | None = None) -> Correla
     for name, column in zip(names, table.T, strict=True):
         levels, code = np.unique(column, return_inverse=True)
         if len(levels) > CATEGORIES:
-            raise AnalysisError(
+            raise TooManyScores(
                 f"{name}: {len(levels)} different scores – polychoric correlation takes up to {CATEGORIES};"
                 " use Pearson's",
                 (name,),

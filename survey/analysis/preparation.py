@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from survey.analysis.checks import any_row, constant_columns, finite_scores
-from survey.analysis.errors import AllEqual, AnalysisError, NotFinite, TooFewRows
+from survey.analysis.errors import AllEqual, NotFinite, TooFewItems, TooFewRows, UnknownItem
 from survey.analysis.flags import duplicates, hasty, straight_liners
 
 __all__ = ["Flags", "Note", "Prepared", "flagged", "named", "prepare"]
@@ -66,13 +66,13 @@ def prepare(
     """Check a table (n, p), NaN a missing score.
 
     Raises NotFinite for infinite or absurd scores or a kept item without any, TooFewRows below two usable answers,
-    AllEqual when nothing varies, AnalysisError for an unknown item in `drop`.
+    AllEqual when nothing varies, UnknownItem in `drop`, TooFewItems when all are dropped.
     """
     table = np.asarray(scores, dtype=np.float64)
     _, names = finite_scores(np.nan_to_num(table, nan=0.0, posinf=0.0, neginf=0.0), items, rows=0)
     unknown = [name for name in drop if name not in names]
     if unknown:
-        raise AnalysisError(
+        raise UnknownItem(
             f"{', '.join(unknown)}: no such item to drop – the items are {', '.join(names)}", unknown
         )
     infinite = named(names, any_row(np.isinf(table)))
@@ -101,7 +101,7 @@ def _missing(
     table: NDArray[np.float64], names: tuple[str, ...], wanted: NDArray[np.bool_], pairwise: bool
 ) -> list[Note]:
     if not wanted.any():
-        raise AnalysisError("every item is dropped – keep at least two")
+        raise TooFewItems("every item is dropped – keep at least two")
     gaps = np.isnan(table[:, wanted])
     usable = int((~(gaps.all(axis=1) if pairwise else gaps.any(axis=1))).sum())
     if usable < 2:

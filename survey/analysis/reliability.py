@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from survey.analysis.checks import finite_scores
-from survey.analysis.errors import AllEqual, AnalysisError
+from survey.analysis.errors import AllEqual, TooFewItems
 
 __all__ = ["Reliability", "reliability", "reliability_of"]
 
@@ -32,17 +32,17 @@ class Reliability:
 def reliability(scores: ArrayLike, items: Sequence[str] | None = None) -> Reliability:
     """α = p / (p − 1) (1 − Σ var_i / var(Σ x_i)) of complete scores (n, p).
 
-    Raises AllEqual when the sums do not vary, AnalysisError for a single item, NotFinite, TooFewRows.
+    Raises AllEqual when the sums do not vary, TooFewItems for a single one, NotFinite, TooFewRows.
     """
     table, names = finite_scores(scores, items)
     return reliability_of(np.atleast_2d(np.cov(table, rowvar=False)), names)
 
 
 def reliability_of(covariance: NDArray[np.float64], names: Sequence[str]) -> Reliability:
-    """The same from covariances (p, p). Raises AllEqual, AnalysisError."""
+    """The same from covariances (p, p). Raises AllEqual, TooFewItems."""
     p = len(covariance)
     if p < 2:
-        raise AnalysisError("one item alone has no internal consistency – give at least two", names)
+        raise TooFewItems("one item alone has no internal consistency – give at least two", names)
     variances = np.diag(covariance)
     alpha = float(_alpha(np.array([variances.sum()]), np.array([covariance.sum()]), p)[0])
     if np.isnan(alpha):

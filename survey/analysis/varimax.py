@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from survey.analysis.errors import AnalysisError, NotConverged
+from survey.analysis.errors import NotConverged, WrongShape
 
 __all__ = ["ordered", "row_lengths", "starts", "varimax", "varimax_criterion"]
 
@@ -30,7 +30,7 @@ def varimax(loadings: ArrayLike, *, normalise: bool = True, attempts: int = STAR
     """
     start = np.asarray(loadings, dtype=np.float64)
     if start.ndim != 2 or not np.isfinite(start).all():
-        raise AnalysisError("loadings must be a finite table, one row per item, one column per component")
+        raise WrongShape("loadings must be a finite table, one row per item, one column per component")
     if start.shape[1] < 2:
         return ordered(start)
     length = row_lengths(start) if normalise else np.ones((len(start), 1))

@@ -94,7 +94,7 @@ def _add_reading(routes: APIRouter, store: Store, questionnaires: Questionnaires
     @routes.get("/questionnaires/{key}/results", summary="Means, from five answers on")
     def results(key: str) -> dict[str, Any]:
         questionnaire = find_questionnaire(questionnaires, key)
-        return public_results(questionnaire, [row.answer for row in store.rows(questionnaire)])
+        return public_results(questionnaire, store.tally(questionnaire))
 
 
 def _add_submitting(routes: APIRouter, store: Store, questionnaires: Questionnaires, limit: Limit) -> None:

@@ -135,15 +135,18 @@ def _demonstration(args: argparse.Namespace) -> ScoreTable:
     if args.demo not in SAMPLES:
         args.parser.error(f"--demo: {args.demo!r} is none of {', '.join(SAMPLES)}")
     table = read_scores(sample_file(args.demo), find_questionnaire_file(args.content, "garment"))
-    return replace(table, source=args.demo, synthetic=True)
+    return replace(table, source=args.demo)
 
 
 def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
     from survey.analysis import analyse
 
     settings = _settings(args, table)
+    # The synthetic samples have no scale to keep to: exact moments make broken scores.
+    asked = None if table.synthetic else table.questionnaire
+    points = None if asked is None else asked.points
     if settings.bootstrap * table.scores.size < 50_000_000 or not sys.stderr.isatty():
-        return analyse(table.scores, table.items, settings=settings, seconds=table.seconds)
+        return analyse(table.scores, table.items, settings=settings, seconds=table.seconds, points=points)
     from rich.console import Console
     from rich.progress import Progress
 
@@ -154,6 +157,7 @@ def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
             table.items,
             settings=settings,
             seconds=table.seconds,
+            points=points,
             progress=lambda done: bar.advance(task, done),
         )
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+
+from survey.export.cells import safe_cell
 
 __all__ = ["write_r"]
 
@@ -17,7 +19,10 @@ file <- if (length(given) > 0) given[1] else "@FILE@"
 items <- c(@ITEMS@)
 dropped <- c(@DROPPED@)
 answers <- read.csv(file, fileEncoding = "UTF-8-BOM", na.strings = c("", "NA", "."), check.names = FALSE)
-scores <- as.matrix(answers[, items])
+# A name that a spreadsheet would run as a formula stands in our files behind an apostrophe.
+guarded <- c(@GUARDED@)
+scores <- as.matrix(answers[, ifelse(items %in% names(answers), items, guarded)])
+colnames(scores) <- items
 kept <- setdiff(items, dropped)
 usable <- if ("@MISSING@" == "listwise") complete.cases(scores[, kept]) else rowSums(!is.na(scores[, kept])) > 0
 x <- scores[usable, kept]
@@ -86,13 +91,13 @@ def write_r(
     else:
         keep = 'max(1, fa.parallel(r, n.obs = n, fa = "pc", quant = .95, plot = FALSE)$ncomp)'
     filled = {
-        "NAME": name, "FILE": file, "ITEMS": _strings(items), "DROPPED": _strings(dropped), "MISSING": missing,
-        "METHOD": method, "ROTATION": rotation, "KEEP": keep,
+        "NAME": name, "FILE": file, "ITEMS": _strings(items), "GUARDED": _strings(map(safe_cell, items)),
+        "DROPPED": _strings(dropped), "MISSING": missing, "METHOD": method, "ROTATION": rotation, "KEEP": keep,
     }  # fmt: skip
     # All at once: a column's name that looks like one of our marks stays as it is.
     return re.sub(r"@([A-Z]+)@", lambda mark: filled[mark[1]], _SCRIPT)
 
 
-def _strings(texts: Sequence[str]) -> str:
+def _strings(texts: Iterable[str]) -> str:
     # JSON's escapes are R's, for any column name.
     return ", ".join(json.dumps(text, ensure_ascii=False) for text in texts)

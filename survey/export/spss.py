@@ -9,12 +9,11 @@ from typing import Any
 
 from survey.export.codebook import variables
 from survey.export.csv_file import columns, records
-from survey.questionnaire import Questionnaire
+from survey.questionnaire import UNSEEN, Questionnaire
 from survey.store import Stored
 
-__all__ = ["UNSEEN", "write_sav"]
+__all__ = ["write_sav"]
 
-UNSEEN = 9  # above every scale; scales have at most seven points
 LABEL_BYTES, VALUE_BYTES = 250, 118  # SPSS cuts at 256 and 120
 
 

@@ -6,6 +6,7 @@ const settings = JSON.parse(document.getElementById("settings").textContent);
 const words = settings.words;
 const form = byId("form");
 const KEY = `survey:${settings.id}:${settings.exhibit ?? ""}`;
+const SENT = "survey-sent"; // [trace of an id, when it was sent], of all the questionnaires' tabs on this device
 const KEPT_DAYS = 7; // an older draft is somebody else's on a shared device
 const TIMEOUT = 15000; // [ms] until an unanswered request counts as lost
 const WAITS = [2, 4, 8, 15, 30, 60]; // [s] between attempts
@@ -43,13 +44,13 @@ function restored() {
   if (settings.preview) return null;
   try {
     const found = JSON.parse(localStorage.getItem(KEY));
-    if (!found || Date.now() - found.saved > KEPT_DAYS * 86400e3) return null;
+    if (!found || Date.now() - found.saved > KEPT_DAYS * 86400e3 || wasSent(found.id)) return null;
     return { ...fresh(), ...found };
   } catch { return null; }
 }
 
 function keep() {
-  if (settings.preview) return;
+  if (settings.preview || wasSent(draft.id)) return;
   draft.saved = Date.now();
   // Storage may be full or forbidden; the page then works without it.
   try { localStorage.setItem(KEY, JSON.stringify(draft)); } catch { /* nothing to keep it in */ }
@@ -59,6 +60,43 @@ function forget() {
   if (!settings.preview) try { localStorage.removeItem(KEY); } catch { /* there was nothing */ }
   draft = fresh();
 }
+
+// An id is the code that withdraws its answer, so on a shared device only 32 bits of it stay behind.
+function trace(id) {
+  let hash = 0x811c9dc5; // FNV-1a
+  for (const sign of id) hash = Math.imul(hash ^ sign.charCodeAt(0), 0x01000193) >>> 0;
+  return hash;
+}
+
+function sentOnes() {
+  try {
+    return JSON.parse(localStorage.getItem(SENT)).filter(([, at]) => Date.now() - at < KEPT_DAYS * 86400e3);
+  } catch { return []; }
+}
+
+function wasSent(id) {
+  const mine = trace(id);
+  return sentOnes().some(([one]) => one === mine);
+}
+
+function markSent(id) {
+  const all = [...sentOnes().slice(-99), [trace(id), Date.now()]];
+  try { localStorage.setItem(SENT, JSON.stringify(all)); } catch { /* the server tells an id that comes twice */ }
+}
+
+// Two tabs open the same draft. Once one has sent it, the other must not keep it for another go under the same id.
+function dropSent() {
+  if (settings.preview || draft.pending || !wasSent(draft.id)) return false;
+  draft = restored() ?? fresh();
+  fillIn();
+  byId("consent").checked = false;
+  byId("restored").hidden = byId("errors").hidden = true;
+  remark([]);
+  showState(words.sent_elsewhere, []);
+  return true;
+}
+
+addEventListener("storage", (event) => { if (event.key === SENT) dropSent(); });
 
 // ---- the form ------------------------------------------------------------------------------------------------
 
@@ -141,6 +179,7 @@ function goTo(input) {
 }
 
 form.addEventListener("input", () => {
+  if (dropSent()) return;
   readOut();
   keep();
   showProgress();
@@ -152,6 +191,7 @@ form.addEventListener("input", () => {
 
 form.addEventListener("submit", (event) => {
   event.preventDefault();
+  if (dropSent()) return;
   readOut();
   const missing = lacking();
   remark(missing);
@@ -233,6 +273,7 @@ function giveBack(message, reload = false) {
   keep();
   form.removeAttribute("aria-busy");
   form.inert = false;
+  if (dropSent()) return;
   if (message) showState(message, reload ? [[words.reload, () => location.reload()]] : []);
   else byId("state").hidden = true;
 }
@@ -259,6 +300,7 @@ function showState(message, buttons) {
 
 function finish(note) {
   const code = draft.id;
+  markSent(code);
   forget();
   form.hidden = true;
   form.inert = false;

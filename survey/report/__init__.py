@@ -12,6 +12,7 @@ from pathlib import Path
 from survey.analysis import Analysis
 from survey.analysis.summary import descriptives, summary
 from survey.errors import SurveyError
+from survey.export.cells import safe_cell
 from survey.export.r_script import write_r
 from survey.reading import ScoreTable
 from survey.report.page import Part, Report, build
@@ -45,11 +46,11 @@ def write_report(folder: Path, table: ScoreTable, analysis: Analysis, beside: Se
 
 
 def _scores(table: ScoreTable) -> str:
-    """What was analysed, for the R script beside it."""
+    """What was analysed, for the R script beside it, which knows the guarded names; scores are bare figures."""
     out = io.StringIO(newline="")
     out.write("\ufeff")
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(table.items)
+    writer.writerow([safe_cell(item) for item in table.items])
     for row in table.scores.tolist():
         writer.writerow(["" if math.isnan(score) else f"{score:.17g}" for score in row])
     return out.getvalue()

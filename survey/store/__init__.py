@@ -2,6 +2,7 @@
 
 from survey.store.committing import Receipt
 from survey.store.store import Store, Stored
+from survey.store.tally import Count, Tally
 from survey.store.tokens import Tokens
 
-__all__ = ["Receipt", "Store", "Stored", "Tokens"]
+__all__ = ["Count", "Receipt", "Store", "Stored", "Tally", "Tokens"]

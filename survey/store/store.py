@@ -20,6 +20,7 @@ from survey.store import tables
 from survey.store.backup import write_copy
 from survey.store.committing import Entry, Receipt, commit_batch, freeze_version, now
 from survey.store.place import Place
+from survey.store.tally import Tallies, Tally
 from survey.store.tokens import Tokens
 from survey.store.writer import Writer
 
@@ -47,6 +48,7 @@ class Store:
         with explained(self._place.name):
             self._place.open()
         self._writer = Writer(self._commit)
+        self._tallies = Tallies(self._snapshot)
         self.tokens = Tokens(self._write, self._read)
 
     def close(self) -> None:
@@ -155,6 +157,10 @@ class Store:
         query = select(func.count()).select_from(table).where(*_standing(questionnaire, version))
         with self._read() as connection:
             return connection.execute(query).scalar_one()
+
+    def tally(self, questionnaire: Questionnaire) -> Tally:
+        """Counts and sums over the answers that stand; counted anew only after a change."""
+        return self._tallies.of(questionnaire)
 
     def versions(self, questionnaire: str) -> tuple[int, ...]:
         """The versions that were answered, the earliest first."""

@@ -21,7 +21,11 @@ def read(name: str):
 def service() -> list[tuple[str, str, str]]:
     found = read("service")
     load, order, kills, full, rules = (found[key] for key in ("load", "order", "kills", "full", "conformity"))
-    speed = f"**{load['per_second']:,.0f} / s**, p50 {load['p50_ms']:.0f} ms, p99 {load['p99_ms']:.0f} ms"
+    speeds = load["per_second_of_rounds"]
+    speed = (
+        f"**{load['per_second']:,.0f} / s** (median of {len(speeds)} rounds, {speeds[0]:,.0f}–{speeds[-1]:,.0f}), "
+        f"p50 {load['p50_ms']:.0f} ms, p99 {load['p99_ms']:.0f} ms"
+    )
     kept = f"{kills['acknowledged']:,} acknowledged: {kills['lost']} lost, {kills['partial']} partial"
     refused = (
         f"{full['refused']} refused ({', '.join(map(str, full['statuses']))}), {full['taken_after']} taken"

@@ -14,7 +14,7 @@ from sim_core.garment.mannequin import Mannequin
 from sim_core.garment.schedule import Pose, Schedule
 from sim_core.garment.shown import shown_figure
 from sim_core.triangles import winding
-from sim_core.weave import Weave, solve, surface_maps
+from sim_core.weave import Weave, relax, texture_maps
 
 ASSETS = Path(__file__).parents[2] / "assets"
 SHORT = Schedule(
@@ -93,7 +93,7 @@ def test_coat_survives_file_detail_and_model(
     shown = shown_figure(*figure.mesh(Pose(45.0, 12.0)), coat.positions, coat.faces, triangles=900)
     everything = shown_figure(*figure.mesh(Pose(45.0, 12.0)), np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert 0 < len(shown.faces) < 0.5 * len(everything.faces)
-    maps = surface_maps(ling, solve(ling), pixels=64)
+    maps = texture_maps(ling, relax(ling), pixels=64)
     size = write_glb(tmp_path / "coat.glb", coarse, maps, precision="hall", figure=shown)
     assert size < 1_500_000
 

@@ -11,7 +11,7 @@ from sim_core.garment.cutting import Path as Way
 from sim_core.garment.dressing import GAP, SAG, _gap, _holds, _nape, robe_materials
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.sewing import Cloth, cut_cloth
-from sim_core.weave import Weave, parameters_of, solve
+from sim_core.weave import Weave, cloth_parameters, relax
 
 ASSETS = Path(__file__).parents[2] / "assets"
 EDGE = 0.05
@@ -91,7 +91,7 @@ def half() -> tuple[Pattern, Cloth]:
 @pytest.fixture(scope="module")
 def made(half: tuple[Pattern, Cloth]):
     weave = Weave.load(ASSETS / "weaves" / "ling.toml")
-    parameters = parameters_of(weave, solve(weave))
+    parameters = cloth_parameters(weave, relax(weave))
     return parameters, *robe_materials(parameters, *half, EDGE)
 
 

@@ -7,7 +7,8 @@ import pytest
 from exact_delaunay import delaunay_faults
 
 from sim_core.errors import FileProblem, OutlineError, OutlineWarning
-from sim_core.mesh import SizeField, panel_mesh, quality
+from sim_core.mesh import SizeField, panel_mesh, quality, staggered_points
+from sim_core.mesh.graded import lattice_near
 from sim_core.mesh.outline import clean_contours, sharpest_corner
 from sim_core.mesh.sizes import read_size_field
 from sim_core.mesh.verify import mesh_fault
@@ -101,8 +102,10 @@ def test_size_field_has_bounded_gradation():
     [
         ("[]", "points: missing"),
         ('{"points": [[0, 0]]}', "shape"),
-        ('{"points": [[0, 0, "a"]]}', "not a list"),
+        ('{"points": [[0, 0, "a"]]}', "give numbers"),
         ('{"points": [[0, 0, -1]]}', "positive"),
+        ('{"points": [[0, 0, 1e300]]}', "at most 1e"),
+        ('{"points": [[1e300, 0, 0.1]]}', "at most 1e"),
         ('{"points": [[0, 0, 0.1]], "gradation": 2}', "gradation"),
         ('{"points": [[0, 0, 0.1]], "gradation": "x"}', "gradation"),
         ('{"points": [[0, 0, 0.1]], "extra": 2}', "extra"),
@@ -120,6 +123,41 @@ def test_size_fields_beyond_measure_are_refused():
         panel_mesh(RECTANGLE, edge=0.1, sizes=SizeField(np.zeros((1, 2)), np.array([1e-4])))
     with pytest.raises(OutlineError, match="points – give larger"):
         panel_mesh(RECTANGLE, edge=0.02, sizes=SizeField(np.full((1, 2), 0.5), np.array([5e-4]), 1e-4))
+
+
+def test_sizes_above_the_edge_change_nothing_but_are_allowed():
+    field = SizeField(np.full((1, 2), 0.5), np.array([0.4]))
+    for kind in QUALITIES:
+        mesh = panel_mesh(RECTANGLE, edge=0.1, sizes=field, quality=kind)
+        assert_sound(mesh)
+        lengths = np.hypot(*np.diff(mesh.vertices[mesh.faces[:, [0, 1, 2, 0]]], axis=1).reshape(-1, 2).T)
+        assert 0.07 < np.median(lengths) < 0.13
+
+
+def test_one_fine_spot_of_a_long_panel_is_reached_and_costs_no_lattice_over_all_of_it():
+    """A hundred metres of cloth with edges of 4 mm at one place: 28 million candidates were there one lattice."""
+    field = SizeField(np.array([[50.0, 0.0]]), np.array([0.004]), 0.2)
+    strip = np.array([[0, 0], [100, 0], [100, 0.5], [0, 0.5]])
+    mesh = panel_mesh(strip, edge=0.2, sizes=field, quality="fair")
+    assert_sound(mesh)
+    assert mesh.report.min_angle_deg >= 25
+    rim = mesh.vertices[mesh.boundary[0]]
+    steps = np.hypot(*(np.roll(rim, -1, axis=0) - rim).T)
+    assert 0.003 < steps.min() < 0.006
+
+
+def test_only_tiles_that_want_a_lattice_are_made():
+    field = SizeField(np.array([[0.2, 0.2], [3.1, 0.4]]), np.array([0.011, 0.02]), 0.3)
+    low, high, edge = np.zeros(2), np.array([4.0, 1.0]), 0.1
+    for longest in (0.1, 0.05, 0.025, 0.0125):
+        every, some = staggered_points(low, high, longest / 3), lattice_near(low, high, longest, edge, field)
+        kept = []
+        for points in (every, some):
+            wanted = field.at(points, edge)
+            points = points[(wanted <= longest) & (wanted > longest / 2)]
+            kept.append(points[np.lexsort(points.T)])
+        np.testing.assert_array_equal(*kept)
+    assert len(some) < len(every) / 20
 
 
 def test_a_good_size_field_is_read(tmp_path):
@@ -151,6 +189,22 @@ def test_holes_that_touch_are_merged_with_a_warning(name, kind):
     )
     if name == "two holes at a corner":
         assert clean_area(mesh) == pytest.approx(cloth, abs=0.001)
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("name", TOUCHING)
+def test_deviation_of_merged_holes_is_told_from_the_contours_given(name, kind):
+    """The widening by 0.02 of the edge is one, and so is the mouth that a round hole gets where it touches."""
+    mouth = np.sqrt(2 * 0.1 * 0.02 * 0.04) if "circle" in name else 0.0  # half of the chord that is cut off
+    with pytest.warns(OutlineWarning, match="merged"):
+        mesh = panel_mesh(RECTANGLE, edge=0.04, holes=TOUCHING[name][0], quality=kind)
+    assert max(0.9 * mouth, 0.0007) < mesh.report.outline_deviation < max(1.1 * mouth, 0.0045)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-10])
+def test_a_hole_that_leaves_no_cloth_is_named(off):
+    with pytest.raises(OutlineError, match="hole 0: leaves no cloth"):
+        panel_mesh(RECTANGLE, edge=0.05, holes=[RECTANGLE - (0, off) * (RECTANGLE > 0)])
 
 
 def clean_area(mesh) -> float:
@@ -224,3 +278,39 @@ def test_best_keeps_every_angle_above_38_degrees_where_corners_are_wide(block):
 def test_best_beats_fair_in_mean_quality():
     fair, best = (panel_mesh(RECTANGLE, edge=0.02, quality=kind) for kind in ("fair", "best"))
     assert quality(best.vertices, best.faces).shape.mean() > quality(fair.vertices, fair.faces).shape.mean()
+
+
+def arc(radius: float, begin: float, end: float, count: int) -> np.ndarray:
+    t = np.linspace(begin, end, count)
+    return radius * np.column_stack([np.cos(t), np.sin(t)])
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("gap", [1e-4, 1e-5])
+def test_a_line_close_under_bends_far_from_the_origin_is_followed(gap, kind):
+    """Given points and samples fall together but for rounding there."""
+    outer = arc(1, 0, 2 * np.pi, 151)[:-1]
+    hole = (1 - gap) * outer[::-1]
+    mesh = panel_mesh(outer + 1e3, edge=0.1, holes=[hole + 1e3], quality=kind)
+    assert_sound(mesh)
+    line = arc((1 - gap) * np.cos(np.pi / 150), 0.3, 3, 150)
+    assert_sound(panel_mesh(outer + 1e3, edge=0.03, constraints=[line + 1e3], quality=kind))
+
+
+@pytest.mark.parametrize("kind", QUALITIES)
+@pytest.mark.parametrize("gap", [1e-4, 1e-5, 1e-6])
+def test_bends_that_nearly_touch_do_not_cross_once_sampled(gap, kind):
+    """Nearer to each other than sampling may leave them: there the given points are taken."""
+    outer = arc(1, 0, 2 * np.pi, 301)[:-1]
+    moved = (0.1, -0.2)  # so that samples of both do not fall side by side
+    hole = 0.5 * arc(1, 0.1, 2 * np.pi + 0.1, 251)[:-1]
+    hole += (1 - 0.5 - gap - 1e-4, 0)
+    mesh = panel_mesh(outer + moved, edge=0.3, holes=[hole + moved], quality=kind)
+    assert_sound(mesh)
+    assert len(mesh.boundary) == 2
+    line = arc(1 - gap - 2e-4, 0.4, 2.9, 700)
+    mesh = panel_mesh(outer + moved, edge=0.3, constraints=[line + moved], quality=kind)
+    assert_sound(mesh)
+    sleeve = np.vstack([arc(1, 0, 4, 90), arc(1 - 7e-4 - gap, 4, 0, 90)])
+    mesh = panel_mesh(sleeve, edge=0.3, quality=kind)
+    assert_sound(mesh)

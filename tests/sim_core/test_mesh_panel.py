@@ -1,14 +1,18 @@
 """Panels: invariants of finished meshes, quality bounds, and every bad outline with its own message."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from exact_delaunay import delaunay_faults
 
+from sim_core import cli
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh
 from sim_core.mesh.outline import signed_area
 from sim_core.mesh.quality import quality, triangle_areas
 from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh.writing import write_mesh
 
 TURN = np.arange(64) * 2 * np.pi / 64
 ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])
@@ -181,3 +185,46 @@ def test_repeated_closing_point_is_accepted():
     assert_sound(mesh, 0)
     assert triangle_areas(mesh.vertices, mesh.faces).sum() == pytest.approx(0.7, rel=1e-12)
     assert quality(mesh.vertices, mesh.faces).min_angle.min() == pytest.approx(mesh.report.min_angle_deg)
+
+
+@pytest.mark.parametrize("kind", ["fair", "light", "best"])
+@pytest.mark.parametrize("width", [1e-4, 1e-6, 3e-7])
+def test_hair_thin_strips_at_any_angle_are_sound(width, kind):
+    """Cancellation in the areas of slivers is no fault of the mesh."""
+    for degrees in (11, 30, 84):
+        t = np.radians(degrees)
+        strip = np.array([[0, 0], [1, 0], [1, width], [0, 0.6 * width]])
+        strip = strip @ [[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]]
+        mesh = panel_mesh(strip, edge=0.1, quality=kind)
+        assert_sound(mesh, 0)
+        steps = [np.column_stack([loop, np.roll(loop, -1)]) for loop in mesh.boundary]
+        assert delaunay_faults(mesh.vertices, mesh.faces, np.concatenate(steps)) == []
+
+
+@pytest.mark.parametrize("ending", [".npz", ".NPZ", ".ply", ".obj"])
+def test_a_failed_write_leaves_the_old_file_alone(tmp_path, ending):
+    path = tmp_path / f"mesh{ending}"
+    mesh = panel_mesh(RECTANGLE, edge=0.2)
+    write_mesh(path, mesh)
+    before = path.read_bytes()
+    assert len(before) > 500
+    with pytest.raises((TypeError, ValueError, IndexError)):
+        write_mesh(path, replace(mesh, faces="none", boundary=()))
+    assert path.read_bytes() == before
+    assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("option", ["--out", "--picture"])
+def test_an_output_that_cannot_be_written_is_one_line_with_a_remedy(tmp_path, capsys, option):
+    outline = tmp_path / "panel.json"
+    outline.write_text('{"outline": [[0, 0], [1, 0], [1, 1]]}')
+    name = "mesh.ply" if option == "--out" else "mesh.png"
+    for place in (outline / name, tmp_path / name):  # a file where a folder should be; a folder of that name
+        if place.parent == tmp_path:
+            place.mkdir()
+        assert cli.main(["mesh", str(outline), "--edge", "0.3", option, str(place)]) == 1
+        told = capsys.readouterr().err
+        assert f"{place}: cannot be written (" in told
+        assert "– give" in told
+        assert told.count("\n") == 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "panel.json"])

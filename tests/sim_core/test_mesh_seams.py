@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sim_core.errors import OutlineError
-from sim_core.mesh import Seam, SeamSide, sewn_meshes
+from sim_core.errors import OutlineError, OutlineWarning
+from sim_core.mesh import Seam, SeamSide, SizeField, sewn_meshes
 from sim_core.mesh.verify import mesh_fault
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -61,6 +61,17 @@ def test_ease_notches_and_corners_of_a_curved_side():
     assert corner.sum() == 1  # the corner between the straight and the curve is a vertex of the seam
 
 
+def test_deviation_is_told_from_the_outline_that_was_given():
+    bend = np.array([[0, 0], [1, 0], *(0.5 + 0.5 * np.column_stack([np.cos(T), np.sin(T)])), [0.0, 1]])
+    seam = Seam(SeamSide(0, 1, len(bend) - 2), SeamSide(1, 0, 1))
+    for outline in (bend, bend[::-1]):
+        side = seam.a if outline is bend else SeamSide(0, 1, len(bend) - 2)
+        meshes, _ = sewn_meshes([outline, SQUARE], [Seam(side, seam.b)], edge=0.25)
+        sag = 0.5 * (1 - np.cos(np.pi / 4 / 4))  # of four steps over the quarter circle
+        assert 0.5 * sag < meshes[0].report.outline_deviation < 2 * sag
+        assert meshes[1].report.outline_deviation < 1e-12
+
+
 def test_a_panel_sewn_on_two_sides_to_two_others():
     seams = [
         Seam(SeamSide(0, 1, 2), SeamSide(1, 0, 3, backward=True)),
@@ -82,6 +93,125 @@ def test_a_dart_is_sewn_to_itself():
     assert fit.pairs[-1, 0] == fit.pairs[-1, 1]  # the tip
     assert fit.mismatch <= 1e-9
     assert mesh_fault(meshes[0].vertices, meshes[0].faces, meshes[0].boundary) is None
+
+
+HOLE = np.array([[0.4, 0.4], [0.6, 0.4], [0.5, 0.6]])
+PLEAT = [[0.3, 0.0], [0.3, 1.0]]  # from the sewn side to the free one
+STRAIGHT = Seam(SeamSide(0, 0, 1), SeamSide(1, 0, 1))
+
+
+def assert_matched(meshes, fit, seam) -> None:
+    for mesh, side, column in zip(meshes, (seam.a, seam.b), fit.pairs.T, strict=True):
+        assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary, mesh.lines) is None
+        assert_on_outline(mesh, column)
+        ends = SQUARE[[side.first, side.last]]
+        np.testing.assert_array_equal(mesh.vertices[column[[0, -1]]], ends)
+    assert len(np.unique(fit.pairs[:, 0])) == len(np.unique(fit.pairs[:, 1])) == len(fit.pairs)
+    steps = [lengths(mesh, column) for mesh, column in zip(meshes, fit.pairs.T, strict=True)]
+    np.testing.assert_allclose(steps[0], steps[1], atol=1e-9)
+
+
+@pytest.mark.parametrize("quality", ["fair", "light", "best"])
+@pytest.mark.parametrize("other", [SQUARE, SQUARE[::-1]])
+def test_sewn_panels_have_holes_pleats_and_finer_places(quality, other):
+    """A fold that ends on the seam has a vertex there on both sides, and so has every other step."""
+    corner = SizeField(np.array([[1.0, 0.0]]), np.array([0.02]))
+    first = int((other == (0, 0)).all(axis=1).argmax())
+    last = int((other == (1, 0)).all(axis=1).argmax())
+    side = SeamSide(1, first, last, backward=(last - first) % 4 == 3)
+    seam = Seam(SeamSide(0, 0, 1), side)
+    meshes, (fit,) = sewn_meshes(
+        [SQUARE, other],
+        [seam],
+        edge=0.08,
+        holes=[[HOLE], []],
+        constraints=[[PLEAT], []],
+        sizes=[None, corner],
+        quality=quality,
+    )
+    for mesh, column in zip(meshes, fit.pairs.T, strict=True):
+        assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary, mesh.lines) is None
+        assert_on_outline(mesh, column)
+        steps = lengths(mesh, column)
+        assert steps[-1] < 0.03 < 0.06 < steps[0]  # the coarse side follows the fine one
+    a, b = (mesh.vertices[column] for mesh, column in zip(meshes, fit.pairs.T, strict=True))
+    np.testing.assert_allclose(a, b, atol=1e-9)
+    assert np.isclose(a, (0.3, 0), atol=1e-12).all(axis=1).sum() == 1
+    fold = meshes[0].vertices[np.unique(np.concatenate(meshes[0].lines))]
+    assert np.abs(fold[:, 0] - 0.3).max() < 1e-12
+    assert np.ptp(fold[:, 1]) == 1.0
+    assert len(meshes[0].boundary) == 2
+    assert len(meshes[1].boundary) == 1
+
+
+def test_folds_of_both_sides_end_on_the_seam():
+    lines = [[PLEAT, [[0.7, 0], [0.7, 0.5]]], [[[0.5, 0], [0.5, 0.4]]]]
+    meshes, (fit,) = sewn_meshes([SQUARE, SQUARE], [STRAIGHT], edge=0.3, constraints=lines)
+    assert_matched(meshes, fit, STRAIGHT)
+    for at in (0.3, 0.5, 0.7):
+        for mesh, column in zip(meshes, fit.pairs.T, strict=True):
+            assert np.isclose(mesh.vertices[column, 0], at, atol=1e-12).any()
+
+
+def test_free_stretches_are_halved_where_they_must_and_seams_are_not():
+    """A hole 2 mm from both a sewn and a free side: steps of the free one become finer, the seam's stay a pair."""
+    hole = np.array([[0.002, 0.35], [0.35, 0.002], [0.35, 0.35]])
+    meshes, (fit,) = sewn_meshes([SQUARE, SQUARE], [STRAIGHT], edge=0.1, holes=[[hole], []])
+    assert_matched(meshes, fit, STRAIGHT)
+    assert len(fit.pairs) == 11
+    rim = meshes[0].vertices[meshes[0].boundary[0]]
+    free = np.sort(rim[rim[:, 0] == 0, 1])
+    assert np.diff(free).min() < 0.06
+
+
+def test_holes_that_touch_are_merged_unless_they_touch_the_outline():
+    pair = [[[0.3, 0.3], [0.4, 0.3], [0.4, 0.4]], [[0.4, 0.4], [0.5, 0.4], [0.5, 0.5]]]
+    with pytest.warns(OutlineWarning, match="merged"):
+        meshes, (fit,) = sewn_meshes([SQUARE, SQUARE], [STRAIGHT], edge=0.1, holes=[pair, []])
+    assert_matched(meshes, fit, STRAIGHT)
+    assert len(meshes[0].boundary) == 2
+    assert 0.0018 < meshes[0].report.outline_deviation < 0.01
+    on_it = [[[0.3, 0], [0.4, 0], [0.4, 0.1]]]
+    with (
+        pytest.warns(OutlineWarning),
+        pytest.raises(OutlineError, match="panel 0: a hole touches the outline"),
+    ):
+        sewn_meshes([SQUARE, SQUARE], [STRAIGHT], edge=0.1, holes=[on_it, []])
+
+
+@pytest.mark.parametrize("apart", [1e-4, 0.015])
+def test_marks_of_both_sides_that_nearly_meet_are_one_and_told(apart):
+    """A corner at half of one side, one a hair further on the other: one vertex, at the corner of each."""
+    one = np.array([[0, 0], [0.5, -0.3], [1, 0], [1, 1], [0, 1.0]])
+    two = np.array([[0, 0], [0.5 + apart, -0.3], [1, 0], [1, 1], [0, 1.0]])
+    seam = Seam(SeamSide(0, 0, 2), SeamSide(1, 0, 2), notches=(0.5 + apart / 2,))
+    meshes, (fit,) = sewn_meshes([one, two], [seam], edge=0.1)
+    steps = [lengths(mesh, column) for mesh, column in zip(meshes, fit.pairs.T, strict=True)]
+    assert min(step.min() for step in steps) > 0.05
+    middle = int(fit.notches[0])
+    for mesh, outline, column in zip(meshes, (one, two), fit.pairs.T, strict=True):
+        assert tuple(mesh.vertices[column[middle]]) == tuple(outline[1])
+    halves = [np.hypot(*np.diff(outline[:3], axis=0).T) for outline in (one, two)]
+    wanted = abs(halves[0][0] / halves[0].sum() - halves[1][0] / halves[1].sum()) * max(fit.lengths)
+    assert fit.joined == pytest.approx(wanted, rel=0.5)
+    assert fit.joined > 0
+
+
+def test_marks_further_apart_stay_two_and_so_do_corners_of_one_side():
+    step = np.array([[0, 0], [0.5, 0], [0.5, 0.01], [1, 0.01], [1, 1], [0, 1.0]])
+    seam = Seam(SeamSide(0, 0, 3), SeamSide(1, 0, 1), notches=(0.2, 0.25))
+    meshes, (fit,) = sewn_meshes([step, SQUARE], [seam], edge=0.1)
+    assert fit.joined == 0
+    on = {tuple(point) for point in meshes[0].vertices[fit.pairs[:, 0]]}
+    assert {tuple(point) for point in step[:4]} <= on
+    assert np.diff(fit.notches) == 1
+
+
+def test_entries_that_are_not_one_a_panel_are_named():
+    with pytest.raises(OutlineError, match="holes: 1 entries for 2 panels"):
+        sewn_meshes([SQUARE, SQUARE], [], edge=0.1, holes=[[HOLE]])
+    with pytest.raises(OutlineError, match="panel 1: constraint 0: leaves the cloth"):
+        sewn_meshes([SQUARE, SQUARE], [], edge=0.1, constraints=[[], [[[0.5, 0.5], [1.5, 0.5]]]])
 
 
 BAD = {

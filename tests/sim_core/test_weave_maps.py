@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax, surface_maps
+from sim_core.weave import ClothParameters, Weave, cloth_parameters, lit_picture, relax, texture_maps
+from sim_core.weave.maps import repeats_in_tile
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-# leno, compound and brocade: test_weave_surface.py
+# these maps draw yarns on a grid of crossings; leno, compound and extra wefts have surface_maps
 WEAVES = [path for path in sorted(FOLDER.glob("*.toml")) if not Weave.load(path).draft.channels.items()]
 
 
@@ -24,26 +25,32 @@ def load(name: str) -> Weave:
     return Weave.load(next(path for path in WEAVES if path.stem == name))
 
 
-def test_maps_have_the_size_that_is_asked_and_hold_whole_repeats(cloth):
+def test_maps_tile_without_a_seam(cloth):
     weave, geometry = cloth
-    maps = surface_maps(weave, geometry, pixels=128)
-    assert maps.albedo.shape == maps.normal.shape == (128, 128, 3)
-    assert maps.height.shape == maps.opacity.shape == maps.roughness.shape == (128, 128)
-    across, up = maps.repeats
-    assert maps.size == pytest.approx((across * weave.size[0], up * weave.size[1]))
-    assert 0.8 <= maps.size[0] / maps.size[1] <= 1.25 or 1 in (across, up)  # a motif is not cut
+    maps = texture_maps(weave, geometry, pixels=256)
+    assert maps.seam <= 1 / 255
+    assert maps.albedo.shape == maps.normal.shape == (256, 256, 3)
+    assert maps.height.shape == maps.opacity.shape == (256, 256)
+
+
+def test_tile_holds_whole_repeats_and_is_nearly_square(cloth):
+    weave, geometry = cloth
+    maps = texture_maps(weave, geometry, pixels=128)
+    across, down = repeats_in_tile(weave, 128)
+    assert maps.size == pytest.approx((across * weave.size[0], down * weave.size[1]))
+    assert 0.8 <= maps.size[0] / maps.size[1] <= 1.25 or (across, down) == (1, 1)  # a motif is not cut
 
 
 def test_cover_is_one_minus_openness_for_even_yarns(cloth):
     weave, geometry = cloth
     even = replace(weave, warp=replace(weave.warp, unevenness=0.0), weft=replace(weave.weft, unevenness=0.0))
-    maps = surface_maps(even, geometry, pixels=512)
+    maps = texture_maps(even, geometry, pixels=512)
     assert maps.opacity.mean() / 255 == pytest.approx(1 - even.openness, abs=0.02)
 
 
 def test_normals_are_unit_vectors_that_balance_over_the_tile(cloth):
     weave, geometry = cloth
-    normal = surface_maps(weave, geometry, pixels=256).normal / 127.5 - 1
+    normal = texture_maps(weave, geometry, pixels=256).normal / 127.5 - 1
     np.testing.assert_allclose(np.linalg.norm(normal, axis=2), 1, atol=0.02)
     assert normal[..., 2].min() >= 0
     assert np.abs(normal[..., :2].mean(axis=(0, 1))).max() < 0.05
@@ -52,7 +59,7 @@ def test_normals_are_unit_vectors_that_balance_over_the_tile(cloth):
 def test_the_same_seed_gives_the_same_maps_and_another_other_ones():
     weave = load("gauze")
     geometry = relax(weave)
-    first, again, other = (surface_maps(weave, geometry, pixels=128, seed=s) for s in (3, 3, 4))
+    first, again, other = (texture_maps(weave, geometry, pixels=128, seed=s) for s in (3, 3, 4))
     np.testing.assert_array_equal(first.albedo, again.albedo)
     assert (first.opacity != other.opacity).any()
 
@@ -63,7 +70,7 @@ def test_warp_runs_down_the_picture():
     weave = replace(
         weave, warp=replace(weave.warp, colour=(1, 0, 0)), weft=replace(weave.weft, colour=(0, 0, 1))
     )
-    maps = surface_maps(weave, relax(weave), pixels=256)
+    maps = texture_maps(weave, relax(weave), pixels=256)
     assert (maps.albedo[..., 0] > maps.albedo[..., 2]).mean() > 0.7
     height = maps.height.astype(float)
     assert np.abs(np.diff(height, axis=1)).mean() > np.abs(np.diff(height, axis=0)).mean()
@@ -74,9 +81,24 @@ def test_gauze_is_open_and_satin_is_closed():
     assert load("satin").openness < 0.01
 
 
+@pytest.mark.parametrize("pixels", [8, 10_000])
+def test_map_size_out_of_range_is_named(pixels):
+    weave = load("gauze")
+    with pytest.raises(WeaveError, match="pixels"):
+        texture_maps(weave, relax(weave), pixels=pixels)
+
+
 def test_geometry_of_another_draft_is_refused():
     with pytest.raises(WeaveError, match="another draft"):
-        surface_maps(load("satin"), relax(load("gauze")))
+        texture_maps(load("satin"), relax(load("gauze")))
+
+
+def test_lit_picture_repeats_the_tile():
+    weave = load("twill")
+    maps = texture_maps(weave, relax(weave), pixels=64)
+    picture = lit_picture(maps, tiles=2)
+    assert picture.shape == (128, 128, 3)
+    np.testing.assert_array_equal(picture[:64, :64], picture[64:, 64:])
 
 
 def test_parameters_are_positive_bounded_and_explained(cloth):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,13 +13,17 @@ import pytest
 import scipy.stats
 from survey_samples import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS, given, likert_sample, paper_sample
 
+import survey.analysis
 from survey.analysis import (
     AllEqual,
     AnalysisError,
     ConstantItem,
     DependentItems,
+    NoComponents,
     NotFinite,
+    Settings,
     TooFewRows,
+    UnknownItem,
     adequacy,
     adequacy_by_factor_analyzer,
     analyse,
@@ -27,6 +33,7 @@ from survey.analysis import (
     varimax,
 )
 from survey.analysis.summary import KEYS, descriptives, summary
+from survey.report.words import Words
 
 STATIC = ("static_drape", "static_overall")
 
@@ -277,7 +284,7 @@ def test_scores_that_no_scale_has_are_named_before_they_overflow(factor):
 
 def test_items_without_any_correlation_have_no_component():
     table = np.array([[a, b, c] for a in (1, 5) for b in (1, 5) for c in (1, 5)], dtype=float)
-    with pytest.raises(AnalysisError, match="no eigenvalue above 1"):
+    with pytest.raises(NoComponents, match="no eigenvalue above 1"):
         principal_components(correlate(table).r)
     found = as_strict_json(analyse(table))
     assert found["loadings"] is None
@@ -298,5 +305,32 @@ def test_a_single_item_is_described_and_not_factored():
 
 
 def test_an_unknown_item_to_drop_is_an_error():
-    with pytest.raises(AnalysisError, match="nonsense: no such item"):
+    with pytest.raises(UnknownItem, match="nonsense: no such item"):
         analyse(likert_sample(30, 1), drop=("nonsense",))
+
+
+def test_every_kind_of_failure_has_a_code_of_its_own():
+    kinds = AnalysisError.__subclasses__()
+    assert len({kind.code for kind in kinds}) == len(kinds) > 14
+    modules = Path(survey.analysis.__file__).parent.glob("*.py")
+    assert not [path.name for path in modules if "raise AnalysisError" in path.read_text("utf-8")]
+
+
+def test_a_warning_s_code_tells_what_failed():
+    gaps, alone = likert_sample(40, 2), likert_sample(40, 2)[:, :2]
+    gaps[3, 1] = np.nan
+    square = np.array([[a, b, c] for a in (1, 5) for b in (1, 5) for c in (1, 5)], dtype=float)
+    told = {
+        "gaps_left": analyse(gaps, settings=Settings(method="polychoric", missing="pairwise")),
+        "too_many_scores": analyse(
+            np.random.default_rng(1).normal(size=(50, 3)), settings=Settings(method="polychoric")
+        ),
+        "no_components": analyse(alone, settings=Settings(factors=5)),
+        "too_few_items": analyse(alone),
+        "lone_item": analyse(square),
+    }
+    for code, found in told.items():
+        assert code in codes(found)
+        (note,) = [note for note in found.notes if note.code == code]
+        assert "analysis" not in codes(found)
+        assert re.search("[\u4e00-\u9fff]", Words("zh", None).note(note))

@@ -252,6 +252,58 @@ def test_editing_after_a_lost_receipt_does_not_make_a_second_answer(visit, site)
     assert {score for _, score in answer.scores} == {4}
 
 
+@pytest.mark.parametrize("told", [True, False], ids=["the other tab hears of it", "it was asleep"])
+def test_a_draft_that_another_tab_has_sent_is_not_kept_again(visit, site, told):
+    first = visit("/questionnaires/garment?lang=en")
+    answer_all(first)
+    second = first.context.new_page()
+    if not told:
+        second.add_init_script(
+            "addEventListener('storage', (event) => event.stopImmediatePropagation(), true)"
+        )
+    second.goto(first.url)
+    assert second.locator("#restored").is_visible()
+    second.locator("#consent").check()
+    first.locator("#consent").check()
+    first.locator("#send").click()
+    first.wait_for_selector("#thanks:not([hidden])")
+    code = first.locator("#code").text_content()
+    if not told:
+        second.locator(".item").first.locator("label.point").nth(1).click()
+    second.get_by_text("sent from another tab").wait_for()
+    assert second.locator("input:checked").count() == 0
+    left = second.evaluate("JSON.stringify(localStorage)")
+    assert code not in left  # whoever has it can withdraw the answer
+    assert "scores" not in left
+    # What is chosen from now on is an answer of its own, kept as any other.
+    answer_all(second, point=2)
+    second.reload()
+    assert second.locator("#restored").is_visible()
+    second.locator("#consent").check()
+    second.locator("#send").click()
+    second.wait_for_selector("#thanks:not([hidden])")
+    assert len({code, second.locator("#code").text_content()}) == 2
+    assert sorted(min(score for _, score in answer.scores if score) for answer in stored(site)) == [2, 4]
+
+
+def test_two_tabs_that_send_the_same_draft_at_once_make_one_answer(visit, site):
+    first = visit("/questionnaires/garment?lang=en")
+    answer_all(first)
+    first.locator("#consent").check()
+    first.route("**/submissions", lambda route: route.abort("internetdisconnected"))
+    first.locator("#send").click()
+    first.get_by_text("There is no connection.").wait_for()
+    second = first.context.new_page()
+    second.goto(first.url)  # takes up what waits to be sent
+    second.wait_for_selector("#thanks:not([hidden])")
+    first.get_by_text("Back to my answers").click()
+    first.get_by_text("sent from another tab").wait_for()
+    assert first.locator("input:checked").count() == 0
+    first.reload()
+    assert not first.locator("#restored").is_visible()
+    assert len(stored(site)) == 1
+
+
 def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     page = visit("/hall")
     frame = page.frame_locator("iframe")

@@ -18,7 +18,7 @@ from survey.answer import Answer
 from survey.content import read_questionnaire
 from survey.export import FORMATS, csv_columns, exported, safe_cell, write_csv, write_json, write_r
 from survey.export.codebook import variables
-from survey.export.spss import UNSEEN
+from survey.questionnaire import UNSEEN
 from survey.store import Stored
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")

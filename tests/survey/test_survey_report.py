@@ -6,6 +6,8 @@ import csv
 import io
 import json
 import re
+import shutil
+import subprocess
 import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
@@ -189,6 +191,44 @@ def test_a_folder_that_cannot_be_written_is_one_line(tmp_path, capsys):
     assert "cannot be written" in capsys.readouterr().err
 
 
+@pytest.fixture
+def formulas(tmp_path):
+    """A report of foreign columns of which three are formulas to a spreadsheet; yields (folder, names)."""
+    names = ("=1+1", "+A1", "@SUM(A1)", "plain", "it's")
+    scores = np.random.default_rng(2).integers(1, 6, (30, 5)).astype(float)
+    write_report(tmp_path, ScoreTable(scores, names), analyse(scores, names, settings=Settings(draws=0)))
+    return tmp_path, names
+
+
+def test_no_column_s_name_of_the_scores_is_a_formula(formulas):
+    folder, names = formulas
+    for path in (folder / "scores.csv", *folder.glob("tables/*.csv")):
+        for row in csv.reader(path.read_text("utf-8-sig").splitlines()):
+            assert not [cell for cell in row if cell.lstrip().startswith(("=", "+", "@"))]
+    header, first = [*csv.reader((folder / "scores.csv").read_text("utf-8-sig").splitlines())][:2]
+    assert header == ["'=1+1", "'+A1", "'@SUM(A1)", "plain", "it's"]
+    assert set(first) <= set("12345")
+
+
+@pytest.mark.skipif(shutil.which("Rscript") is None, reason="R is not installed")
+@pytest.mark.parametrize("own", [False, True], ids=["our scores.csv", "the foreign file itself"])
+def test_r_finds_the_columns_whose_names_are_guarded(formulas, own):
+    folder, names = formulas
+    if own:
+        lines = (folder / "scores.csv").read_text("utf-8-sig").splitlines()
+        (folder / "scores.csv").write_text("\n".join([",".join(names), *lines[1:]]) + "\n", "utf-8")
+    reading = (folder / "analysis.R").read_text("utf-8").partition("# Means")[0]
+    lines = [line for line in reading.splitlines() if "library(" not in line]
+    script = "\n".join([*lines, r'cat(colnames(scores), sum(scores), sep = "\n")'])
+    (folder / "part.R").write_text(script, "utf-8")
+    done = subprocess.run(["Rscript", "part.R"], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    *found, total = done.stdout.splitlines()
+    assert tuple(found) == names
+    table = [*csv.reader((folder / "scores.csv").read_text("utf-8-sig").splitlines())]
+    assert int(total) == sum(int(cell) for row in table[1:] for cell in row)
+
+
 def test_an_item_without_communality_stays_where_it_is():
     # The guard against dividing by a communality of zero: without it the row, and then all, would be NaN.
     start = np.array([[0.8, 0.3], [0.7, -0.4], [0.0, 0.0], [0.2, 0.9], [0.1, 0.6]])
@@ -226,12 +266,14 @@ def test_the_chinese_report_says_its_notes_in_chinese():
     scores[2] = 5
     scores[7] = scores[9]
     scores[rng.random(scores.shape) < 0.02] = np.nan
+    scores[11, 0], scores[12, 1] = 55, 9
     for settings in (
         Settings(bootstrap=50),
         Settings(bootstrap=50, missing="pairwise"),
         Settings(drop=(GARMENT.item_ids[3],), draws=0),
     ):
-        found = analyse(scores, GARMENT.item_ids, settings=settings)
+        found = analyse(scores, GARMENT.item_ids, settings=settings, points=GARMENT.points)
+        assert [note.form for note in found.notes if note.code == "off_scale"] == ["", "unseen"]
         say = Words("zh", GARMENT)
         for note in found.notes:
             told = say.note(note)

@@ -13,11 +13,13 @@ from survey_samples import given, likert_sample, paper_sample
 
 from survey.analysis import (
     AllEqual,
-    AnalysisError,
     ConstantItem,
+    NotAMean,
     NotPositiveDefinite,
     Settings,
+    TooFewItems,
     TooFewRows,
+    TooManyScores,
     adequacy_of,
     analyse,
     bootstrap,
@@ -292,7 +294,7 @@ def test_polychoric_of_perfect_twins_ends_at_the_edge_and_of_many_values_is_refu
     table = likert_sample(60, 3)[:, :3]
     twins = np.column_stack([table, table[:, 0]])
     assert polychoric(twins).r[0, 3] > 0.999
-    with pytest.raises(AnalysisError, match="item_1: 30 different scores"):
+    with pytest.raises(TooManyScores, match="item_1: 30 different scores"):
         polychoric(rng(1).normal(size=(30, 3)))
 
 
@@ -328,7 +330,7 @@ def test_polychoric_with_gaps_asks_for_whole_answers_and_says_nothing_false():
     (told,) = [
         note for note in found.notes if note.code not in ("missing", "straight_line", "duplicate_answer")
     ]
-    assert told.code == "analysis"
+    assert told.code == "gaps_left"
     assert "listwise" in told.message
     assert found.components is None
     assert (
@@ -342,7 +344,7 @@ def test_a_step_that_fails_with_answers_enough_does_not_tell_of_too_few():
         size=(100, 5)
     )  # a hundred different scores are no scale for polychoric correlations
     found = analyse(table, settings=Settings(method="polychoric"))
-    assert [note.code for note in found.notes] == ["analysis"]
+    assert [note.code for note in found.notes] == ["too_many_scores"]
 
 
 def test_pairs_without_common_answers_or_variation_are_named():
@@ -427,7 +429,7 @@ def test_gaps_in_a_dropped_item_cost_no_answer():
 
 
 def test_dropping_everything_is_an_error():
-    with pytest.raises(AnalysisError, match="every item is dropped"):
+    with pytest.raises(TooFewItems, match="every item is dropped"):
         analyse(likert_sample(40, 3)[:, :2], drop=("item_1", "item_2"))
 
 
@@ -458,7 +460,7 @@ def test_grim_counts_the_items_of_a_mean_and_refuses_what_is_none():
     assert not grim("4.46", 20)
     assert grim("4.46", 20, items=24)
     for wrong in ("x", "1/3", "1e0", ""):
-        with pytest.raises(AnalysisError, match="is no mean"):
+        with pytest.raises(NotAMean, match="is no mean"):
             grim(wrong, 20)
-    with pytest.raises(AnalysisError):
+    with pytest.raises(NotAMean):
         grim("4.46", 0)

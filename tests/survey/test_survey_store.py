@@ -331,7 +331,7 @@ def test_a_version_that_reads_differently_takes_no_answer_beside_the_first_ones(
     first = an_answer()
     store.submit(GARMENT, first)
     title = {"zh": GARMENT.title.zh, "en": "Something else"}
-    other = Questionnaire.model_validate(GARMENT.document() | {"title": title})
+    other = Questionnaire.model_validate({**GARMENT.document(), "title": title})
     assert other.digest != GARMENT.digest
     with pytest.raises(AnswerError) as refused:
         store.submit(other, an_answer())
