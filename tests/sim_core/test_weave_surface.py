@@ -246,3 +246,15 @@ def test_tubes_go_on_in_the_next_repeat_without_a_seam(relaxed, name):
         rings = vertices.reshape(len(points), -1, 3)
         np.testing.assert_allclose(rings[-1], rings[0] + [0, warp.length, 0], atol=1e-12)
         assert np.abs(np.diff(points[:, 2])).max() > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "left_out"),
+    [("twill", None), ("zhuanghua", "extra wefts"), ("jin", "do not show"), ("sha", "cross one another")],
+)
+def test_the_summary_says_what_penetration_leaves_out(relaxed, name, left_out):
+    weave, geometry = relaxed(name)
+    said = summary_of(weave, geometry, 0.0, "")["penetration_of"]
+    assert "crossings" in said
+    assert said.count("; not") == (left_out is not None)
+    assert left_out is None or left_out in said
