@@ -79,7 +79,7 @@ class Certified:
         for finer in FINER:
             steps = slow * int(np.ceil(finer * count / (slow * PARTS)))
             x, v, zones = self._in_parts(under, pins, begin, last, steps)
-            if zones >= 0 and engine.healthy(under, begin, (x, v)):
+            if zones >= 0 and engine.health.good(under, begin, (x, v)):
                 tally.zones += zones
                 return x, v, steps * PARTS
             engine.forget()

@@ -11,6 +11,7 @@ from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
+from sim_core.cloth.health import Health
 from sim_core.cloth.holding import Holds, bound, draw_together, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
@@ -73,7 +74,8 @@ class Engine:
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
         self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
-        self._stored = np.zeros((3, 0)), 0.0  # positions whose energy is known
+        touches = len(self.packed.kind) > 0 or self.moving is not None or self.shell.thickness > 0
+        self.health = Health(self.sheet, self.stored, touches=touches)
         self._inverse: dict[tuple[int, ...], np.ndarray] = {(): free}
 
     def inverse_mass(self, pins: Sequence[int]) -> np.ndarray:
@@ -257,6 +259,7 @@ class Engine:
         before, after, self.crossed = untangle(there, speed, inverse, *sheet, step=step, rounds=rounds)
         if before:
             x[:], v[:] = there.T, speed.T
+            self.health.forget()
         return before, after
 
     def forget(self) -> None:
@@ -266,69 +269,22 @@ class Engine:
         if self.single:
             self.single.forget()
 
+    def stored(self, x: np.ndarray, v: np.ndarray) -> float:
+        """Stored and kinetic energy [J] of x, v (3, V)."""
+        free = self.sheet.stencil.inverse_mass
+        if self.single:
+            return self.single.stored(free, x, v)
+        return float(stored_energy(self.bands, free, self.room, x, v))
+
     def stretch(self, x: np.ndarray) -> float:
         """The longest an edge is at x (3, V), as a share of its rest length."""
         return float(np.sqrt(longest2(self.sheet.stencil.edges, self.sheet.stencil.length2, x)))
-
-    def energy(self, x: np.ndarray, v: np.ndarray, gravity: np.ndarray) -> tuple[float, float]:
-        """Stored and kinetic energy, and that of height [J], of x, v (3, V)."""
-        known, stored = self._stored
-        if known is not x:  # a frame begins where the last one ended
-            free = self.sheet.stencil.inverse_mass
-            if self.single:
-                stored = self.single.stored(free, x, v)
-            else:
-                stored = float(stored_energy(self.bands, free, self.room, x, v))
-            self._stored = x, stored
-        # Sums, not products of matrices: those start threads, and add up in an order of their own.
-        along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
-        return stored, -float((self.sheet.mass * along).sum())
-
-    def healthy(
-        self, under: Conditions, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
-    ) -> bool:
-        """Finite, and no more energy than before: by 1 mm of the whole cloth's height, by 20 where contact lifts it.
-
-        Where something does work on the cloth, no edge may become three times its length instead.
-        """
-        if not all(np.isfinite(a).all() for a in after):
-            return False
-        if not under.quiet:
-            return self.whole(before[0], after[0]) and self._likely(under, before[1], after[1])
-        (stored, height), (stored_after, height_after) = (
-            self.energy(*state, under.gravity) for state in (before, after)
-        )
-        weight = float(self.sheet.mass.sum()) * max(float(np.linalg.norm(under.gravity)), 1.0)
-        touches = len(self.packed.kind) > 0 or self.moving is not None or self.shell.thickness > 0
-        allowed = (0.02 if touches else 0.001) * weight
-        return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + allowed
-
-    def whole(self, before: np.ndarray, after: np.ndarray) -> bool:
-        """Finite, and no edge is three times its length, nor three times what it was, if that was longer."""
-        if not np.isfinite(after).all():
-            return False
-        ends, rest2 = self.sheet.stencil.edges, self.sheet.stencil.length2
-        longer = ((after[:, ends[:, 0]] - after[:, ends[:, 1]]) ** 2).sum(0) / rest2
-        earlier = ((before[:, ends[:, 0]] - before[:, ends[:, 1]]) ** 2).sum(0) / rest2
-        return bool((longer < 9.0 * np.maximum(1.0, earlier)).all())
 
     def air(self, air: Air | None, seconds: float) -> tuple[np.ndarray | None, float]:
         """Wind (2, 3) [m/s] at the begin and end of the frame that starts at `seconds`, and its press."""
         if air is None:
             return None, 0.0
         return np.stack([air.at(seconds), air.at(seconds + FRAME)]), air.press
-
-    def _likely(self, under: Conditions, before: np.ndarray, after: np.ndarray) -> bool:
-        """No vertex is ten times as fast as anything that could have made it so."""
-        if len(under.pulls[0]):
-            return True
-
-        def fastest(v: np.ndarray) -> float:
-            return float(np.sqrt((v * v).sum(0).max()))
-
-        wind = 0.0 if under.wind is None else fastest(under.wind.T)
-        fall = float(np.linalg.norm(under.gravity)) * FRAME
-        return fastest(after) <= 10 * (fastest(before) + wind + fall + 1.0)
 
 
 def _lightest(sheet: Sheet) -> float:

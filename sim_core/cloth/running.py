@@ -163,13 +163,13 @@ class Run:
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
                 engine.advance(under, pins, x, v, state.last_step, count, guard)
-                if self.fixed or engine.healthy(under, begin, (x, v)):
+                if self.fixed or engine.health.good(under, begin, (x, v)):
                     state.safety = min(1.0, state.safety * 1.1)
                     return x, v, count
                 engine.forget()
             if self._gives_in(attempt, count):
                 x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
-                if engine.healthy(under, begin, (x, v)):
+                if engine.health.good(under, begin, (x, v)):
                     state.fallbacks += 1
                     return x, v, IMPLICIT_STEPS
                 engine.forget()
