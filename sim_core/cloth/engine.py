@@ -163,7 +163,7 @@ class Engine:
         )
         if self.single:
             touching = ((self.vertices, self.middles), self.holds, self.shell)
-            searched = (self.finder, *self.pairs)
+            searched = (self.finder, self.pairs[0], self.pairs[1])
             inverse = self.inverse_mass(pins)
             self.pairs = self.single.advance(
                 inverse, packed, *touching, around, *searched, x, v, last, dt, count
