@@ -256,7 +256,8 @@ class Engine:
         there, speed = np.ascontiguousarray(x.T), np.ascontiguousarray(v.T)
         s, inverse = self.sheet, self.inverse_mass(pins)
         sheet = (s.edges, s.faces, self.third, self.holds, self.finder, self.crossed)
-        before, after, self.crossed = untangle(there, speed, inverse, *sheet, step=step, rounds=rounds)
+        way = {"step": step, "rounds": rounds, "partly": self.contact.partly}
+        before, after, self.crossed = untangle(there, speed, inverse, *sheet, **way)
         if before:
             x[:], v[:] = there.T, speed.T
             self.health.forget()

@@ -34,7 +34,8 @@ class Contact:
     """How the cloth touches: clearance [m] of vertices and of midpoints and centroids, self-contact shell.
 
     thickness [m] is the distance two layers of cloth keep (0: no self-contact). untangle: in how many steps of a tenth
-    of it, after each frame, the cloth is taken out of itself where it passed through (0: it is left so).
+    of it, after each frame, the cloth is taken out of itself where it passed through (0: it is left so); partly: also
+    where some of it stays, for a start that is tangled.
     """
 
     clearance: float = 0.003
@@ -47,6 +48,7 @@ class Contact:
     cap: float = 0.0005
     speed_limit: float = 1e3
     untangle: int = 0
+    partly: bool = False
 
 
 @dataclass(frozen=True)

@@ -237,9 +237,12 @@ def untangle(
     *,
     step: float,
     rounds: int,
+    partly: bool = False,
 ) -> tuple[int, int, Lists]:
     """Moves x (V, 3) [m] in place until no edge passes through a face, `rounds` times at most by `step` [m].
 
+    Where that does not succeed nothing is moved: what springs back frame by frame would never come to rest. partly:
+    fewer crossings are taken, too.
     v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`; finder, lists: working memory. Returns
     how many crossings there were before, and are now, and the lists, longer ones where they were full.
     """
@@ -263,6 +266,9 @@ def untangle(
         _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step)
         bound(holds, x, v)
         mirror(holds, x, v)
-    x[:] = best
+    if least and not partly:
+        x[:], least = start, first
+    else:
+        x[:] = best
     _stop_going_back(x - start, v)
     return first, least, (pairs, place)

@@ -188,7 +188,12 @@ def _draped(
     """Both runs; frames and substeps of the result are those of both."""
     solid, holds, runs = field.solid(), _holds(half), []
     for run in (0, 1):
-        shell = {"spring": s.spring[run], "self_friction": s.self_friction[run], "every": 2}
+        shell = {
+            "spring": s.spring[run],
+            "self_friction": s.self_friction[run],
+            "every": 2,
+            "partly": run == 0,
+        }
         contact = Contact(
             s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
         )

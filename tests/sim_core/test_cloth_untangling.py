@@ -73,6 +73,27 @@ def test_a_corner_that_dips_through_is_drawn_back() -> None:
     assert going.min() >= -1e-12
 
 
+@pytest.mark.parametrize("partly", [False, True])
+def test_what_cannot_be_undone_is_left_as_it_is_unless_some_of_it_may_be(partly: bool) -> None:
+    _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
+    edges, start = edges_of(faces), x.copy()
+    finder = finder_of(len(x), len(edges), len(faces))
+    args = (
+        np.ones(len(x)),
+        edges,
+        faces,
+        faces_at_edges(edges, faces),
+        Holds.of(len(x)),
+        finder,
+        no_crossings(),
+    )
+    # Steps that are too few to come out.
+    before, after, _ = untangle(x, np.zeros_like(x), *args, step=3e-4, rounds=6, partly=partly)
+    assert 0 < after <= before
+    assert after == metrics.intersections(x, faces)
+    assert (after < before) == partly == bool((x != start).any())
+
+
 def test_what_is_held_is_not_moved() -> None:
     _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
     edges, start, half = edges_of(faces), x.copy(), len(x) // 2

@@ -76,7 +76,7 @@ def test_it_goes_with_a_wearer_given_frame_by_frame(veil: Garment, ball) -> None
     end = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT, cell=0.01, on_frame=heard)
     assert seen == [0] * 25
     top = body[-1][:, 1].max()
-    assert top < end.positions[:, 1].max() < top + 0.015
+    assert top - 0.015 < end.positions[:, 1].max() < top + 0.015  # carried: its edges are 3 cm, the ball 10
     again = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT, cell=0.01)
     assert again.positions.tobytes() == end.positions.tobytes()
 
