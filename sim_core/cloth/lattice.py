@@ -20,11 +20,12 @@ REAL = np.float32
 
 
 class Lanes(NamedTuple):
-    """Bands in single precision, with what does not fit the runs of bending: entries (N,) of vertex, other, weight."""
+    """Bands in single precision, and what does not fit the runs of bending: entries (N,) of odd_vertex (M,)."""
 
     bands: Bands
     edges: int  # slots, ghosts included
     further_runs: np.ndarray  # (R, 15) of `vertex_runs`: seventh and later neighbours
+    odd_rows: np.ndarray  # (M + 1,) where the entries of each such vertex begin
     odd_vertex: np.ndarray
     odd_other: np.ndarray
     odd_weight: np.ndarray
@@ -50,7 +51,7 @@ def _plain(sheet: Sheet, bands: Bands) -> Lanes:
     first = bands._replace(vertex_runs=np.ascontiguousarray(bands.vertex_runs[~further]))
     none = np.zeros(0, np.int64)
     rest = np.ascontiguousarray(bands.vertex_runs[further])
-    return Lanes(_single(first), len(sheet.edges), rest, none, none, np.zeros(0, REAL))
+    return Lanes(_single(first), len(sheet.edges), rest, np.zeros(1, np.int64), none, none, np.zeros(0, REAL))
 
 
 def _bridged(sheet: Sheet, bands: Bands) -> Lanes | None:
@@ -138,7 +139,7 @@ def _vertex_runs(steps: np.ndarray, base: np.ndarray, count: int) -> np.ndarray:
 
 def _bends(
     sheet: Sheet, count: int
-) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Weights (K, V) of the offsets that most vertices have, their runs, and the entries left over."""
     stencil = sheet.stencil
     vertex = np.repeat(np.arange(count), np.diff(stencil.rows))
@@ -158,5 +159,6 @@ def _bends(
         group = np.r_[steps[usual[k : k + GROUP]], np.zeros(max(0, k + GROUP - len(usual)), np.int64)]
         for a, b, inside in _segments(group[:GROUP], count):
             runs.append([a, b - a, k, int(k > 0), *np.where(inside, a + group[:GROUP], a).tolist()])
-    odd = vertex[~fits], other[~fits], weight[~fits].astype(REAL)
+    owner, starts = np.unique(vertex[~fits], return_index=True)
+    odd = np.r_[starts, (~fits).sum()], owner, other[~fits], weight[~fits].astype(REAL)
     return rows, np.array(runs, np.uint64), odd

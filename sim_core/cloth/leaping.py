@@ -46,8 +46,8 @@ def _kicks(lanes, around, room, inverse, x, v, gain, part, last, slow_now, air_n
     if slow_now:
         most = gain * around.slow
         single_bends(b.bend_runs, b.bend, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
-        odd = (lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
-        single_odd_bends(odd[0], odd[1], odd[2], inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
+        odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
+        single_odd_bends(*odd, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
     if around.press > 0.0:
         air, raw, past = room.air, room.air_now, room.air_past
         if air_now:

@@ -123,15 +123,23 @@ def single_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
 
 
 @distinct_contracted
-def single_odd_bends(vertex, other, weight, inverse, gained, x, y, z, u, v, w):
-    """`single_bends` for entries one by one."""
-    gain = x.dtype.type(gained)
+def single_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v, w):
+    """`single_bends` for entries one by one: those of vertex[n] lie from rows[n] to rows[n + 1]."""
+    real = x.dtype.type
+    gain, nothing = real(gained), real(0)
     for n in range(len(vertex)):
-        i, j = vertex[n], other[n]
-        m = gain * inverse[i] * weight[n]
-        u[i] -= m * (x[j] - x[i])
-        v[i] -= m * (y[j] - y[i])
-        w[i] -= m * (z[j] - z[i])
+        i = vertex[n]
+        xi, yi, zi = x[i], y[i], z[i]
+        px = py = pz = nothing
+        for k in range(rows[n], rows[n + 1]):
+            j, s = other[k], weight[k]
+            px += s * (x[j] - xi)
+            py += s * (y[j] - yi)
+            pz += s * (z[j] - zi)
+        m = gain * inverse[i]
+        u[i] -= m * px
+        v[i] -= m * py
+        w[i] -= m * pz
 
 
 @distinct_contracted

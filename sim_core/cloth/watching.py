@@ -51,7 +51,7 @@ def stored_single(lanes, inverse, ones, room, x, v):
     f[:] = 0.0
     p, q = (here[0], here[1], here[2]), (f[0], f[1], f[2])
     single_bends(b.bend_runs, b.bend, ones, 1.0, *p, *q)
-    single_odd_bends(lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
+    single_odd_bends(lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
     bend, kinetic = _works(f, inverse, x, v)
     return 0.25 * (stretch + other) - 0.5 * bend + 0.5 * kinetic
 
@@ -89,7 +89,7 @@ def single_mode(lanes, inverse, room, x, mode, rounds):
     """`stability._grown` for lanes: the largest eigenvalue of M^-1 K [1/s2] at x, mode (3, V), which is renewed."""
     b, out, aside = lanes.bands, room.force, room.air
     c, tension, change = b.coupling, room.tension, room.change
-    odd = (lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
+    odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
     none = np.zeros(3)
     single_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
     single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
@@ -106,7 +106,7 @@ def single_mode(lanes, inverse, room, x, mode, rounds):
             single_further(lanes.further_runs, change, inverse, *y, 1.0, *f)
             single_further(lanes.further_runs, tension, inverse, *p, 1.0, *f)
         single_bends(b.bend_runs, b.bend, inverse, 1.0, *p, *f)
-        single_odd_bends(odd[0], odd[1], odd[2], inverse, 1.0, *p, *f)
+        single_odd_bends(*odd, inverse, 1.0, *p, *f)
         sx = sy = sz = 0.0
         for i in range(len(inverse)):
             sx += out[0, i] * out[0, i]

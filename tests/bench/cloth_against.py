@@ -100,7 +100,7 @@ def run_turns(
     rounds: int,
     until: float,
     peers: Peers,
-    only: dict | None,
+    only: dict | None = None,
 ) -> bool:
     """Turns until every setting has its rounds (a limit or dear one: one); False where the time was up before that.
 

@@ -48,7 +48,8 @@ def tables(results: dict) -> str:
     """A table a scene: each peer's limit, how far it is from ours, and its cheapest setting within 2 mm of it."""
     parts = []
     for scene, figures in results.items():
-        usual, cheap = figures["ours"]["settings"][0], figures["ours"]["cheapest_within_2mm"]
+        usual = figures["ours"].get("settings", figures["ours"]["rows"])[0]
+        cheap = figures["ours"].get("cheapest_within_2mm", {**usual, "name": "default; older run"})
         parts.append(
             f"**{scene}**, {figures['vertices']} vertices, undamped, after {figures['seconds']} s. Ours: "
             f"{usual['cpu_ms']:.1f} ms a frame, {usual['error']['mean']:.1e} mm mean from its own limit by default; "

@@ -22,7 +22,11 @@ COLOURS = {
 
 def curves_of(figures: dict) -> dict[str, list[tuple[float, float]]]:
     """Engine -> (cpu ms a frame, mean mm from its own limit), without limits and runs that exploded."""
-    rows = {"ours": [(r["cpu_ms"], r["error"]["mean"]) for r in figures["ours"]["rows"]]}
+    rows = {
+        "ours": [
+            (r["cpu_ms"], r["error"]["mean"]) for r in figures["ours"]["settings"] + figures["ours"]["rows"]
+        ]
+    }
     for engine, peer in figures["peers"].items():
         rows[engine] = [(r["cpu_ms"], r["own"]["mean"]) for r in peer.get("rows", []) if not r["is_limit"]]
     kept = {

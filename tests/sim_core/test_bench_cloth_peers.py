@@ -132,19 +132,44 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     again, second = against.Kept(tmp_path, asked), Played()
     assert against.run_turns(asked, engines, again, 2, inf, second)
     assert second.asked == []
-    runs = [against.ours(asked, n) for n in (None, 32, 64)]
-    found = figures.summary(again, list(bench["cloth_sweeps"].SWEEPS), runs)
+    runs = [against.ours(asked, n) for n in (32, 64)]
+    own = {name: against.ours(asked, pace=pace) for name, pace in bench["cloth_sweeps"].OURS.items()}
+    found = figures.summary(again, list(bench["cloth_sweeps"].SWEEPS), own, runs)
+    mine = found["ours"]["cheapest_within_2mm"]
+    assert mine["error"]["mean"] <= 2.0
+    assert mine["cpu_ms"] == min(
+        row["cpu_ms"] for row in found["ours"]["settings"] if row["error"]["mean"] <= 2.0
+    )
+    told = found["peers"]["MuJoCo Euler"]["rows"][0]
+    turns = again.turns[again.key("MuJoCo Euler", told["setting"])]
+    assert told["ratio_cheapest"] == pytest.approx(
+        np.median([150 / np.median(turn["ours"][mine["name"]]) for turn in turns])
+    )
     assert found["peers"]["MuJoCo discrete"]["floor"]["mean"] == pytest.approx(1e3 / 32 - 1e3 / 64)
     assert found["peers"]["MuJoCo discrete"]["cheapest_within_2mm"] is None
     assert "No module named 'bpy'" in found["peers"]["Blender"]["error"]
     assert "never within 2 mm; best 15.6" in capsys.readouterr().out
     del again.turns[again.key("MuJoCo discrete", bench["cloth_sweeps"].SWEEPS["MuJoCo discrete"][-1])]
     assert (
-        "64, has not been run"
-        in figures.engine_summary(again, "MuJoCo discrete", runs[-1]["positions"])["error"]
+        "64, has not been run" in figures.engine_summary(again, "MuJoCo discrete", None, "default")["error"]
     )
     bench["cloth_plot"].plot({"hang_edge": found}, tmp_path / "plot.png")
     assert (tmp_path / "plot.png").stat().st_size > 5000
+
+
+def test_settings_that_decide_are_the_cheapest_within_2_mm_and_those_beside_it(bench, tmp_path):
+    against, sweeps = bench["cloth_against"], bench["cloth_sweeps"].SWEEPS
+    asked = bench["cloth_sweeps"].compared("hang_edge", 60)
+    kept, engine = against.Kept(tmp_path, asked), "MuJoCo Euler"
+    for setting in sweeps[engine]:
+        error = {"ms": [1.0], "cpu_ms": [float(setting["substeps"])], "build_seconds": 0.0, "version": "0"}
+        end = asked.scene.positions + 0.001 * (setting["substeps"] < 208) * 3
+        kept.add(kept.key(engine, setting), {**error, "compile_seconds": 0.0}, end)
+    chosen = bench["cloth_figures"].deciding(kept, [engine])[engine]
+    assert [s["substeps"] for s in chosen] == [208, 160, 256]
+    peers = Played()
+    assert against.run_turns(asked, [engine], kept, 2, float("inf"), peers, {engine: chosen})
+    assert sorted(steps for _, steps in peers.asked) == [160, 160, 208, 208, 256, 256]
 
 
 def test_no_run_is_begun_after_the_budget(bench, tmp_path):
@@ -184,6 +209,7 @@ def test_table_says_what_a_peer_cannot_and_what_explodes(bench, monkeypatch):
         "cpu_ms": 50.0,
         "cpu_ms_quartiles": [49.0, 52.0],
         "ratio": 12.5,
+        "ratio_cheapest": 40.5,
         "own": {"mean": None, "p99": None},
     }
     row["setting"] = {"substeps": 8}
@@ -193,7 +219,9 @@ def test_table_says_what_a_peer_cannot_and_what_explodes(bench, monkeypatch):
     told = table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": None, "best": row})
     assert "8 (best; never within 2 mm)" in told
     assert "exploded" in told
-    assert table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": row, "best": row}).endswith("| 12.5 |")
+    assert table.peer_line("MuJoCo", {**peer, "cheapest_within_2mm": row, "best": row}).endswith(
+        "| 12.5 | 40.5 |"
+    )
 
 
 def test_scenes_of_an_earlier_run_stay_in_the_file(bench, tmp_path):
