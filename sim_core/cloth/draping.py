@@ -22,7 +22,7 @@ from sim_core.cloth.sheet import Sheet
 
 __all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
-ENGINE_VERSION = 2  # raise when equal inputs give other bits: old checkpoints are then left alone
+ENGINE_VERSION = 3  # raise when equal inputs give other bits: old checkpoints are then left alone
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]

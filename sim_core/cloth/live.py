@@ -13,7 +13,7 @@ from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.phases import FRAME, Contact, Phase, check_gravity
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 from sim_core.errors import SimCoreError
@@ -61,6 +61,9 @@ class Live:
             self._run.certify(x, None if certify is True else certify)
         self._state = RunState(x, v)
         self._gravity = np.asarray(gravity, float)
+        check_gravity(self._gravity)
+        if damping is not None and not (np.isfinite(damping) and damping >= 0):
+            raise SimCoreError(f"damping: {damping} – must be a finite number, 0 or more")
         self.damping = sheet.material.mass_damping if damping is None else damping
         self._limit = (contact or Contact()).speed_limit
         self.pins, self.air, self.body = tuple(int(i) for i in pins), air, 0.0

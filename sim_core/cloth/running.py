@@ -16,7 +16,7 @@ from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.engine import COURANT, IMPLICIT_STEPS, SLOW, Engine
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Moment, Phase
+from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import first_mode
 from sim_core.errors import SimCoreError
@@ -43,8 +43,9 @@ class Run:
         substeps: int | None,
         integrator: str,
     ) -> None:
-        if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
-            raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
+        check_phases(phases)
+        check_contact(contact or Contact())
+        check_gravity(down)
         if substeps is not None and not substeps > 0:
             raise SimCoreError(f"substeps: {substeps} – a frame needs at least one")
         self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down

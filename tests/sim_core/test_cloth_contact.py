@@ -105,6 +105,7 @@ def slide(mu: float, slope: float, seconds: float) -> float:
 @pytest.mark.parametrize("slope", [0.3, 0.6])
 def test_slips_exactly_when_the_slope_exceeds_friction(slope: float) -> None:
     assert abs(slide(slope * 1.02, slope, 0.4)) < 1e-4
+    assert slide(slope * 0.98, slope, 0.4) > 1e-3
     moved, angle = slide(slope * 0.9, slope, 0.4), math.atan(slope)
     expected = 0.5 * 9.81 * (math.sin(angle) - 0.9 * slope * math.cos(angle)) * 0.4**2
     assert moved == pytest.approx(expected, rel=0.02)
