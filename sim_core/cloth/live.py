@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.certifier import Mesh
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
@@ -17,6 +17,9 @@ from sim_core.cloth.phases import FRAME, Contact, Phase, check_gravity
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 from sim_core.errors import SimCoreError
+
+if TYPE_CHECKING:
+    from sim_core.cloth.certifier import Mesh
 
 
 class Live:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.cloth.air import Air
-from sim_core.cloth.certifier import Mesh
-from sim_core.cloth.certifying import Certified
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
@@ -20,6 +19,10 @@ from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, 
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import first_mode
 from sim_core.errors import SimCoreError
+
+if TYPE_CHECKING:
+    from sim_core.cloth.certifier import Mesh
+    from sim_core.cloth.certifying import Certified
 
 MAX_HALVINGS = 8
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
@@ -61,6 +64,8 @@ class Run:
 
     def certify(self, start: np.ndarray, solid: Mesh | None) -> None:
         """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider."""
+        from sim_core.cloth.certifying import Certified  # what only the certifier needs takes half a second
+
         if self.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
         self.certified = Certified(self.engine, start, solid)
