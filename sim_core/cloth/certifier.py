@@ -8,6 +8,7 @@ small steps; where the straight way from begin to end collides, the frame is don
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ Mesh = tuple[np.ndarray, np.ndarray]
 def need_ipctk() -> Any:
     """The library; raises SimCoreError with the remedy where it is not installed."""
     try:
-        import ipctk
+        ipctk = import_module("ipctk")
     except ImportError as error:
         raise SimCoreError(
             "certify: ipctk is missing – install it: pip install 'handress-hall[certify]'"

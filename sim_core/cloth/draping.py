@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.certifier import Mesh
 from sim_core.cloth.checkpoint import RunState, load_checkpoint, run_key, save_checkpoint
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.holding import Holds
@@ -21,9 +21,12 @@ from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 
+if TYPE_CHECKING:
+    from sim_core.cloth.certifier import Mesh
+
 __all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
-ENGINE_VERSION = 2  # raise when equal inputs give other bits: old checkpoints are then left alone
+ENGINE_VERSION = 3  # raise when equal inputs give other bits: old checkpoints are then left alone
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.certifier import Mesh
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.phases import FRAME, Contact, Phase, check_gravity
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
 from sim_core.errors import SimCoreError
+
+if TYPE_CHECKING:
+    from sim_core.cloth.certifier import Mesh
 
 
 class Live:
@@ -64,6 +67,9 @@ class Live:
             self._run.certify(x, None if certify is True else certify)
         self._state = RunState(x, v)
         self._gravity = np.asarray(gravity, float)
+        check_gravity(self._gravity)
+        if damping is not None and not (np.isfinite(damping) and damping >= 0):
+            raise SimCoreError(f"damping: {damping} – must be a finite number, 0 or more")
         self.damping = sheet.material.mass_damping if damping is None else damping
         self._limit = (contact or Contact()).speed_limit
         self.pins, self.air, self.body = tuple(int(i) for i in pins), air, 0.0

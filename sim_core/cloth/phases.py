@@ -5,7 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-__all__ = ["FRAME", "Contact", "Moment", "Phase", "schedule"]
+import numpy as np
+
+from sim_core.errors import SimCoreError
+
+__all__ = [
+    "FRAME",
+    "Contact",
+    "Moment",
+    "Phase",
+    "check_contact",
+    "check_gravity",
+    "check_phases",
+    "schedule",
+]
 
 FRAME = 1 / 25  # [s]
 
@@ -74,3 +87,38 @@ def schedule(phases: Sequence[Phase]) -> list[Moment]:
             ends = [(a + (b - a) * k / count, a + (b - a) * (k + 1) / count) for a, b in (phase.sewing, path)]
             frames.append(Moment(phase, low + (high - low) * (k + 1) / count, ends[0], ends[1]))
     return frames
+
+
+def check_phases(phases: Sequence[Phase]) -> None:
+    """Raises SimCoreError, naming the phase and the value, for what cannot be run."""
+    if not phases:
+        raise SimCoreError("phases: there is none – a run needs one")
+    for number, phase in enumerate(phases):
+        if not (np.isfinite(phase.seconds) and phase.seconds > 0):
+            raise SimCoreError(f"phases: {number} lasts {phase.seconds} s – a finite duration above 0")
+        if not np.isfinite(phase.gravity).all():
+            raise SimCoreError(f"phases: {number} has gravity {phase.gravity} – two finite numbers [m/s2]")
+        for name in ("damping", "friction", "speed_limit", "rest"):
+            _check(f"phases: {number}: {name}", getattr(phase, name))
+
+
+def check_contact(contact: Contact) -> None:
+    """Raises SimCoreError, naming the value, for a contact that has no meaning."""
+    for name in ("clearance", "sample_clearance", "thickness", "skin", "spring", "self_friction", "cap"):
+        _check(f"contact.{name}", getattr(contact, name))
+    _check("contact.speed_limit", contact.speed_limit)
+    if contact.every < 1:
+        raise SimCoreError(f"contact.every: {contact.every} – substeps between two looks, 1 or more")
+    if contact.thickness > 0 and contact.skin <= 0:
+        raise SimCoreError("contact.skin: 0 – self-contact has to look further than its thickness")
+
+
+def check_gravity(gravity: np.ndarray) -> None:
+    """Raises SimCoreError where gravity, or the way down, is not three finite numbers."""
+    if gravity.shape != (3,) or not np.isfinite(gravity).all():
+        raise SimCoreError(f"gravity: {gravity.tolist()} – expected three finite numbers (x, y, z)")
+
+
+def _check(name: str, value: float | None) -> None:
+    if value is not None and not (np.isfinite(value) and value >= 0):
+        raise SimCoreError(f"{name}: {value} – must be a finite number, 0 or more")

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.cloth.air import Air
-from sim_core.cloth.certifier import Mesh
-from sim_core.cloth.certifying import Certified
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.engine import IMPLICIT_STEPS, Engine
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Moment, Phase
+from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
+
+if TYPE_CHECKING:
+    from sim_core.cloth.certifier import Mesh
+    from sim_core.cloth.certifying import Certified
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
@@ -46,8 +49,9 @@ class Run:
         integrator: str,
         pace: Pace | None = None,
     ) -> None:
-        if not phases or any(not (np.isfinite(p.seconds) and p.seconds > 0) for p in phases):
-            raise SimCoreError("phases: each needs a finite duration above 0 s, and there must be one")
+        check_phases(phases)
+        check_contact(contact or Contact())
+        check_gravity(down)
         if substeps is not None and not substeps > 0:
             raise SimCoreError(f"substeps: {substeps} – a frame needs at least one")
         self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down
@@ -66,6 +70,8 @@ class Run:
 
     def certify(self, start: np.ndarray, solid: Mesh | None) -> None:
         """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider."""
+        from sim_core.cloth.certifying import Certified  # what only the certifier needs takes half a second
+
         if self.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
         self.certified = Certified(self.engine, start, solid)

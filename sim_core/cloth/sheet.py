@@ -54,9 +54,10 @@ class Sheet:
         """Assembles a sheet; rest: (V, 2) float [m], faces: (F, 3) int of either orientation.
 
         Raises SimCoreError on wrong shapes, non-finite coordinates, indices out of range, needles,
-        unused vertices and edges with more than two faces.
+        unused vertices, faces that are there twice and edges with more than two faces.
         """
         rest, faces = _checked_indices(rest, faces)
+        _check_twice(faces)
         corner = rest[faces]
         return Sheet._assembled(rest, corner, faces, (material,), np.zeros(len(faces), np.int32))
 
@@ -143,11 +144,19 @@ def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, n
     if not np.isfinite(rest).all():
         raise SimCoreError(f"rest: vertex {np.flatnonzero(~np.isfinite(rest).all(1))[0]} is not finite")
     if faces.min() < 0 or faces.max() >= len(rest):
-        raise SimCoreError(f"faces: index {faces.max()} – there are vertices 0 to {len(rest) - 1}")
+        wrong = faces.max() if faces.max() >= len(rest) else faces.min()
+        raise SimCoreError(f"faces: index {wrong} – there are vertices 0 to {len(rest) - 1}")
     unused = np.setdiff1d(np.arange(len(rest)), faces)
     if len(unused):
         raise SimCoreError(f"rest: vertex {unused[0]} belongs to no face – remove it")
     return rest, faces.astype(np.int32)
+
+
+def _check_twice(faces: np.ndarray) -> None:
+    _, first, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    if times.max() > 1:
+        twice = first[times > 1].min()
+        raise SimCoreError(f"faces: face {twice} is there again, with the same three vertices – remove one")
 
 
 def _check_needles(corner: np.ndarray) -> None:

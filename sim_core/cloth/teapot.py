@@ -128,7 +128,8 @@ def teapot_solid(scale: float = 0.1, cell: float = 0.005) -> GridSdf:
     reach = int(np.ceil(0.03 / cell))
     low, high = np.maximum(low - reach, 0), np.minimum(high + reach + 1, found.values.shape)
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
-    nodes = found.origin + cell * np.stack(np.mgrid[box], axis=-1)
+    axes = [np.arange(a, b) for a, b in zip(low, high, strict=True)]
+    nodes = found.origin + cell * np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     found.values[box] = np.minimum(found.values[box], KDTree(line).query(nodes)[0] - radius)
     return found.solid()
 

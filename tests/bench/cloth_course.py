@@ -54,7 +54,7 @@ class Setting:
 
     def finer(self, per_frame: int) -> "Setting":
         """The same by so many steps a frame."""
-        return replace(self, substeps=per_frame, watch=False)
+        return replace(self, substeps=per_frame, watch=False, certify=False)
 
 
 @dataclass(frozen=True)

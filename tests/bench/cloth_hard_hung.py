@@ -78,7 +78,10 @@ def gale(stretch: float) -> Outcome:
 
 
 def torn() -> Outcome:
-    """A corner is torn off at 10 m/s for 0.12 s, brought back and held: the cloth comes to rest."""
+    """A corner is torn off at 10 m/s for 0.12 s, brought back and held: the cloth comes to rest.
+
+    Under the certifier: at that speed layers tunnel through a shell of 2 mm.
+    """
     made = scene("hanging", vertices=400, pins="corners")
     home = made.positions[list(made.pins)]
 
@@ -89,7 +92,15 @@ def torn() -> Outcome:
     damping = settling(2.0, 4.0, 40)
     return calm(
         Setting(
-            made.sheet, made.positions, 300, made.pins, contact=LAYERED, damping=damping, drive=drive, free=41
+            made.sheet,
+            made.positions,
+            300,
+            made.pins,
+            contact=LAYERED,
+            damping=damping,
+            drive=drive,
+            free=41,
+            certify=True,
         )
     )
 

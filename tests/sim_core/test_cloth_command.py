@@ -15,7 +15,7 @@ from sim_core.metrics import surface_distance
 from sim_core.triangles import winding
 
 KEYS = {"scene", "vertices", "frames", "seconds", "compile_seconds", "ms_per_frame", "substeps", "integrator"}
-KEYS |= {"fallbacks", "worst_stretch", "penetrations", "seed"}
+KEYS |= {"fallbacks", "worst_stretch", "penetrations", "intersections", "seed"}
 
 
 @pytest.mark.parametrize(
