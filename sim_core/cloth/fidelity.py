@@ -1,16 +1,15 @@
 """The cheapest mesh whose measured error stays within a budget: the scene tried coarsely, the table for the rest.
 
-The scene is first tried with edges of 64, 45 and 32 mm. d, the geometric mean of how far the first two are from the
-third, is measured on that very sheet: size, pins, wind and material are all in it. How errors fall from there on is
-what `fidelity.json` knows, from scenes of the kind run on meshes from 8 to 90 mm:
+The scene is first tried with edges of 64, 45, 32, 23 and 16 mm, for 5 to 15 frames. d, the geometric mean of how far
+two of these runs are from the next finer one, is measured on that very sheet: size, pins, wind and material are all in
+it. How errors go on from there is what `fidelity.json` knows, from scenes of the kind run on meshes from 8 to 90 mm:
 
     error(h) = d exp(a[pins] + p[pins] log(h / h0) + r log(h / h0)^2) * margin(h)
 
-with h0 = 32 mm. If no mesh down to h0 / sqrt 2 keeps the budget, it is tried with 23 mm as well, and 16, each with its
-own law: a try lasts 5 to 15 frames, on meshes coarser than the one that is chosen.
-A flag is chaotic after half a second; its edges are no longer than those at which the statistics of all watched flags
-(mean shape, fluctuation, kinetic energy, frequency of the free corner) agree with those on finer meshes. The margin
-covers what measured scenes are off by when the law is fitted to the others alone. A sheet outside what was
+with h0 the finest edge in d: 32, 23 or 16 mm, one law each. The margin covers what measured scenes are off by when the
+law is fitted to the others alone; each mesh is judged by the law that has the least margin there. A flag is chaotic
+after half a second; its edges are no longer than those at which the statistics of all watched flags (mean shape,
+fluctuation, kinetic energy, frequency of the free corner) agree with those on finer meshes. A sheet outside what was
 measured is refused, not guessed.
 """
 
@@ -26,7 +25,7 @@ from typing import Any
 
 from sim_core.cloth.material import Material
 from sim_core.cloth.phases import FRAME
-from sim_core.cloth.pilot import PILOTS, gap, pilot
+from sim_core.cloth.pilot import PILOTS, apart, gap, pilot
 from sim_core.cloth.scenes import Scene, case_values, material, scene
 from sim_core.errors import WrongArgument
 
@@ -106,18 +105,23 @@ def law_terms(edge: float, pilot: float) -> tuple[float, float]:
     return fine, fine * fine
 
 
-def bounds(asked: Asked, law: dict[str, Any], told: float) -> list[tuple[float, float, float]]:
-    """Edge [m], bound of the error [mm] and cost [ms a frame] of every mesh a law offers, finest first; error monotone.
+def bounds(asked: Asked, told: Sequence[float]) -> list[tuple[float, float, float]]:
+    """Edge [m], bound of the error [mm] and cost [ms a frame] of every mesh on offer, finest first; error monotone.
 
-    told: what the pilots of that law tell [mm], see `gap`.
+    told: what the pilots tell [mm], law by law, see `gap`. Of several laws the one with the least margin counts.
     """
+    part, best = table()[asked.kind], {}
+    for law, distance in zip(part["laws"], told, strict=True):
+        start, slope = law["pins"][asked.pins]
+        for edge_mm, margin in zip(law["edges_mm"], law["margin"], strict=True):
+            fine, square = law_terms(edge_mm, law["pilot_mm"])
+            bound = distance * math.exp(start + slope * fine + law["curve"] * square) * margin
+            best[edge_mm] = min(best.get(edge_mm, (math.inf, 0.0)), (margin, bound))
     found, worst = [], 0.0
-    start, slope = law["pins"][asked.pins]
-    for edge_mm, margin in zip(law["edges_mm"], law["margin"], strict=True):
-        fine, square = law_terms(edge_mm, law["pilot_mm"])
-        worst = max(worst, told * math.exp(start + slope * fine + law["curve"] * square) * margin)
+    for edge_mm in sorted(best):
+        worst = max(worst, best[edge_mm][1])
         terms = asked.cost_terms(edge_mm / 1e3)
-        cost = sum(a * b for a, b in zip(table()[asked.kind]["cost"], terms, strict=True))
+        cost = sum(a * b for a, b in zip(part["cost"], terms, strict=True))
         found.append((edge_mm / 1e3, worst, math.exp(cost)))
     return found
 
@@ -148,22 +152,19 @@ def choose(
     _within(asked)
     part = known[name]
     frames = round(part["seconds"] / FRAME)
-    films, offered = [pilot(asked.on(edge), asked.size, frames) for edge in PILOTS[:2]], []
-    for edge, law in zip(PILOTS[2:], part["laws"], strict=True):
-        films.append(pilot(asked.on(edge), asked.size, frames))
-        told = gap(films[-3:])
-        offered = bounds(asked, law, told)
-        calm = 1e-3 * part.get("calm_mm", math.inf)
-        kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
-        if kept:
-            best = min(kept, key=lambda row: row[2])
-            why = _why(part, law, told, best, [row for row in offered if row[0] > best[0]])
-            return Choice(best[0], vertices(asked.size, best[0]), "auto", best[1], best[2], why)
-    edge, least, _ = offered[0]
-    raise WrongArgument(
-        f"error {error_mm:g} mm – the finest mesh measured, of {1e3 * edge:.0f} mm, keeps {_up(least)} mm for this "
-        f"sheet; ask for that, or give --vertices"
-    )
+    films = [pilot(asked.on(edge), asked.size, frames) for edge in PILOTS]
+    offered = bounds(asked, [gap(films[k : k + 3]) for k in range(len(PILOTS) - 2)])
+    calm = 1e-3 * part.get("calm_mm", math.inf)
+    kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
+    if not kept:
+        edge, least, _ = offered[0]
+        raise WrongArgument(
+            f"error {error_mm:g} mm – the finest mesh measured, of {1e3 * edge:.0f} mm, keeps {_up(least)} mm for this "
+            f"sheet; ask for that, or give --vertices"
+        )
+    best = min(kept, key=lambda row: row[2])
+    why = _why(part, apart(films[0], films[-1]), best, [row for row in offered if row[0] > best[0]])
+    return Choice(best[0], vertices(asked.size, best[0]), "auto", best[1], best[2], why)
 
 
 def _asked(
@@ -196,22 +197,19 @@ def _up(value: float) -> str:
 
 
 def _why(
-    part: dict[str, Any],
-    law: dict[str, Any],
-    told: float,
-    best: tuple[float, ...],
-    coarser: list[tuple[float, ...]],
+    part: dict[str, Any], tried: float, best: tuple[float, ...], coarser: list[tuple[float, ...]]
 ) -> str:
     text = (
-        f"edges of {1e3 * best[0]:.3g} mm, explicit: tried with edges down to {law['pilot_mm']:.3g} mm, this sheet "
-        f"changes by {told:.2g} mm, from which {len(part['scenes'])} measured scenes tell an error of at most "
+        f"edges of {1e3 * best[0]:.3g} mm, explicit: from {1e3 * PILOTS[0]:.0f} to {1e3 * PILOTS[-1]:.0f} mm this "
+        f"sheet changes by {tried:.2g} mm, from which {len(part['scenes'])} measured scenes tell an error of at most "
         f"{best[1]:.2g} mm in the first {part['seconds']:g} s; "
     )
-    if coarser:
-        return (
-            text + f"the next coarser mesh, {1e3 * coarser[0][0]:.3g} mm, may err by {coarser[0][1]:.2g} mm"
-        )
-    return text + "no coarser mesh was measured"
+    if not coarser:
+        return text + "no coarser mesh was measured"
+    edge_mm, worse, _ = 1e3 * coarser[0][0], *coarser[0][1:]
+    if edge_mm > part.get("calm_mm", math.inf):
+        return text + "on a coarser mesh a flag's statistics after 0.5 s would be others"
+    return text + f"the next coarser mesh, {edge_mm:.3g} mm, may err by {worse:.2g} mm"
 
 
 def _within(asked: Asked) -> None:

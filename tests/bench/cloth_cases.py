@@ -176,7 +176,10 @@ def bumped(made: Scene, size: tuple[float, float], seed: int) -> Scene:
 
 
 def training(seed: int = 1) -> list[Case]:
-    """The scenes the table is made from: every set of pins four times, 14 flags, 14 teapots."""
-    rng = np.random.default_rng(seed)
-    hung = [drawn(rng, "hanging", PINS[k % len(PINS)]) for k in range(24)]
-    return hung + [drawn(rng, name) for name in ("flag", "teapot") for _ in range(14)]
+    """The scenes the table is made from: every set of pins six times, 30 flags, 30 teapots."""
+    found: list[Case] = []
+    for first, (hung, others) in enumerate(((24, 14), (12, 16))):
+        rng = np.random.default_rng(seed + 1000 * first)
+        found += [drawn(rng, "hanging", PINS[k % len(PINS)]) for k in range(hung)]
+        found += [drawn(rng, name) for name in ("flag", "teapot") for _ in range(others)]
+    return found

@@ -20,17 +20,16 @@ def of_row(kind: str, row: dict) -> Asked:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_bounds_cover_what_was_measured_and_rise_with_the_edge(kind: str) -> None:
-    part, covered, errors = table()[kind], [], []
-    for row in part["scenes"]:
-        for law, told in zip(part["laws"], row["pilot_mm"], strict=True):
-            offered = bounds(of_row(kind, row), law, told)
-            assert np.all(np.diff([b[1] for b in offered]) >= 0)
-            assert np.all(np.diff([b[2] for b in offered]) < 0)
-            measured = np.array(row["gap_mm"])[-len(offered[::2]) :]
-            covered += (measured <= [b[1] for b in offered[::2]]).tolist()
-            errors += (np.array([b[1] for b in offered[::2]]) / measured).tolist()
+    covered, ratios = [], []
+    for row in table()[kind]["scenes"]:
+        offered = bounds(of_row(kind, row), row["pilot_mm"])
+        assert np.all(np.diff([b[1] for b in offered]) >= 0)
+        assert np.all(np.diff([b[2] for b in offered]) < 0)
+        told = np.array([b[1] for b in offered[::2]])
+        covered += (row["gap_mm"] <= told).tolist()
+        ratios += (told / row["gap_mm"]).tolist()
     assert np.mean(covered) > 0.95
-    assert np.median(errors) < 4  # a bound that is never near the truth is no bound of use
+    assert np.median(ratios) < 4  # a bound that is never near the truth is no bound of use
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -41,12 +40,10 @@ def test_the_implicit_scheme_is_never_the_cheaper_way(kind: str) -> None:
 
 
 def test_a_larger_budget_never_costs_more_and_budgets_lead_to_different_meshes() -> None:
-    found = [
-        choose("flag", error_mm=b, size=(0.8, 0.8), wind=(4.0, 0.0, 1.0)) for b in (4.0, 8.0, 16.0, 40.0)
-    ]
+    found = [choose("flag", error_mm=b, size=(0.8, 0.8), wind=(3.0, 0.0, 1.2)) for b in (3.0, 4.0, 6.0, 40.0)]
     assert all(a.ms >= b.ms and a.edge <= b.edge for a, b in zip(found[:-1], found[1:], strict=True))
     assert len({f.edge for f in found}) >= 3
-    assert all(f.error_mm <= budget for f, budget in zip(found, (4.0, 8.0, 16.0, 40.0), strict=True))
+    assert all(f.error_mm <= budget for f, budget in zip(found, (3.0, 4.0, 6.0, 40.0), strict=True))
     assert f"{found[0].error_mm:.2g} mm" in found[0].why
 
 
@@ -70,10 +67,10 @@ def test_an_unseen_sheet_stays_within_its_budget(kind: str, budget: float, more:
 
 
 def test_size_pins_and_wind_enter_the_choice() -> None:
-    held = {p: choose("hanging", error_mm=20, size=(0.8, 0.8), pins=p).edge for p in ("edge", "thirds")}
+    held = {p: choose("hanging", error_mm=8, size=(0.8, 0.8), pins=p).edge for p in ("edge", "thirds")}
     assert held["edge"] > held["thirds"]
-    blown = {w: choose("flag", error_mm=8, size=(0.8, 0.8), wind=(w, 0.0, 1.0)).error_mm for w in (2.0, 6.0)}
-    assert blown[2.0] != blown[6.0]
+    blown = {w: choose("flag", error_mm=20, size=(0.8, 0.8), wind=(w, 0.0, 1.2)).error_mm for w in (2.0, 4.0)}
+    assert blown[2.0] < blown[4.0]
 
 
 def test_what_cannot_be_kept_or_was_not_measured_is_refused_in_one_line() -> None:
