@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import json
-import os
 import sys
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sim_core.arguments import ending, number, whole
+from sim_core.cloth.outcome import summary_of, tell, write
 from sim_core.errors import WrongArgument
 
 if TYPE_CHECKING:
@@ -158,50 +157,17 @@ def run(args: argparse.Namespace) -> int:
     try:
         result = _simulated(made, settings, heard, args.resume)
     except KeyboardInterrupt:
-        _write(args, made, heard.film, settings)  # what is finished is not lost
+        write(args, made, heard.film, settings)  # what is finished is not lost
         raise
     finally:
         if heard.told:
             sys.stderr.write("\r\x1b[K")
     seconds = time.perf_counter() - begin
-    _write(args, made, heard.film, settings)
-    summary = {
-        "scene": args.scene,
-        "vertices": len(made.positions),
-        "frames": result.frames,
-        "seconds": round(seconds, 3),
-        "compile_seconds": round(compiled, 3),
-        "ms_per_frame": round(1e3 * float(np.median(result.frame_seconds or (np.nan,))), 2),
-        "substeps": round(result.substeps / max(result.frames, 1), 1),
-        "integrator": settings["integrator"],
-        "precision": settings["precision"],
-        "fallbacks": result.fallbacks,
-        "worst_stretch": round(result.worst_stretch, 4),
-        "penetrations": heard.penetrations,
-        "intersections": _crossed(made, result),
-        "seed": args.seed,
-    }
-    if result.certificate is not None:
-        found = result.certificate
-        summary["certified"] = {
-            k: v for k, v in asdict(found).items() if k not in ("intersections", "seconds")
-        }
-        summary["certified"]["ms_per_frame"] = round(
-            1e3 * found.seconds / max(len(result.frame_seconds), 1), 2
-        )
-    if settings.get("why"):
-        summary["why"] = settings["why"]
-    _tell(args, made, result, summary)
+    write(args, made, heard.film, settings)
+    summary = summary_of(args, made, result, settings, heard.penetrations)
+    summary |= {"seconds": round(seconds, 3), "compile_seconds": round(compiled, 3)}
+    tell(args, summary)
     return 0
-
-
-def _crossed(made: Scene, result: Drape) -> int:
-    """(edge, face) pairs that pass through each other at the end."""
-    from sim_core.metrics import intersections
-
-    if result.certificate is not None:
-        return result.certificate.intersections
-    return intersections(result.positions, made.sheet.faces)
 
 
 def _chosen(args: argparse.Namespace) -> dict[str, Any]:
@@ -269,56 +235,3 @@ def _warmed(made: Scene, settings: dict[str, Any]) -> float:
         pace=_pace(settings),
     )
     return time.perf_counter() - begin
-
-
-def _write(args: argparse.Namespace, made: Scene, film: list[np.ndarray], settings: dict[str, Any]) -> None:
-    if args.out and film:
-        told = {
-            k: v for k, v in vars(args).items() if k not in ("run", "out", "video", "resume", "json", "debug")
-        }
-        told |= {"material": asdict(made.sheet.material)} | settings
-        beside = args.out.with_name(args.out.name + ".part")
-        with beside.open("wb") as stream:
-            np.savez(
-                stream,
-                positions=np.stack(film).astype(np.float32),
-                faces=made.sheet.faces,
-                uv=made.sheet.rest,
-                pins=np.array(made.pins, np.int64),
-                dt=np.array(1 / 25),
-                settings=np.array(json.dumps(told)),
-            )
-        os.replace(beside, args.out)
-    if args.video and film:
-        from sim_core.cloth.film import write_film
-        from sim_core.cloth.teapot import teapot_mesh
-
-        solid = teapot_mesh() if made.name == "teapot" else None
-        write_film(
-            args.video,
-            film,
-            made.sheet.faces,
-            around=np.concatenate(film[:: max(1, len(film) // 20)]),
-            solid=solid,
-        )
-
-
-def _tell(args: argparse.Namespace, made: Scene, result: Drape, summary: dict[str, Any]) -> None:
-    if args.scene == "drape":
-        from sim_core.cloth.scenes import drape_coefficient
-
-        width = float(np.ptp(made.sheet.rest[:, 0]))
-        summary["drape_coefficient"] = round(drape_coefficient(result.positions, made.sheet.faces, width), 4)
-    if args.json:
-        sys.stdout.write(json.dumps(summary, indent=2) + "\n")
-        return
-    s = summary
-    line = f"{s['scene']}: {s['vertices']} vertices, {s['frames']} frames in {s['seconds']:.1f} s"
-    line += f", {s['ms_per_frame']:.1f} ms a frame (median), {s['substeps']:.0f} substeps, {s['integrator']}"
-    line += f", stretch at most {s['worst_stretch']:.3f}, {s['penetrations']} penetrations"
-    line += f", {s['intersections']} intersections"
-    sys.stdout.write(line + "\n")
-    if "drape_coefficient" in s:
-        sys.stdout.write(f"drape coefficient {100 * s['drape_coefficient']:.1f} %\n")
-    if "why" in s:
-        sys.stdout.write(s["why"] + "\n")
