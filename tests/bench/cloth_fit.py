@@ -58,13 +58,17 @@ def fitted(kind: str, scenes: list[tuple[Case, dict]]) -> dict:
 
 
 def calm(rows: list[dict]) -> dict:
-    """The coarsest edge [mm] at which, and below which, the statistics of every watched flag agree."""
+    """The longest edge [mm] of a flag: one mesh finer than the coarsest at which all watched ones agree.
+
+    One finer, because eight flags are few: of twelve others two did not agree at the coarsest edge.
+    """
     after = [row["after"] for row in rows if "after" in row]
     if not after:
         return {}
-    bad = [a["edge_mm"] for scene in after for a in scene if not a["agree"]]
-    kept = {a["edge_mm"] for scene in after for a in scene if a["edge_mm"] < min(bad, default=np.inf)}
-    return {"calm_mm": max(kept, default=1e3 * FINE[-1])}
+    bad = min((a["edge_mm"] for scene in after for a in scene if not a["agree"]), default=np.inf)
+    kept = max((a["edge_mm"] for scene in after for a in scene if a["edge_mm"] < bad), default=1e3 * FINE[-1])
+    finer = [1e3 * edge for edge in EDGES if 1e3 * edge < 0.99 * kept]
+    return {"calm_mm": round(max(finer), 2)}
 
 
 def law(pins: list[str], scenes: list[dict], k: int) -> dict:
