@@ -108,7 +108,8 @@ def law_terms(edge: float, pilot: float) -> tuple[float, float]:
 def bounds(asked: Asked, told: Sequence[float]) -> list[tuple[float, float, float]]:
     """Edge [m], bound of the error [mm] and cost [ms a frame] of every mesh on offer, finest first; error monotone.
 
-    told: what the pilots tell [mm], law by law, see `gap`. Of several laws the one with the least margin counts.
+    told: what the pilots tell [mm], law by law, see `gap`. Of several laws the one with the least margin counts. The
+    finest mesh is the one the others were measured against: from the next it is told by the law's slope, at most 1.
     """
     part, best = table()[asked.kind], {}
     for law, distance in zip(part["laws"], told, strict=True):
@@ -117,7 +118,10 @@ def bounds(asked: Asked, told: Sequence[float]) -> list[tuple[float, float, floa
             fine, square = law_terms(edge_mm, law["pilot_mm"])
             bound = distance * math.exp(start + slope * fine + law["curve"] * square) * margin
             best[edge_mm] = min(best.get(edge_mm, (math.inf, 0.0)), (margin, bound))
-    found, worst = [], 0.0
+    found, worst, next_mm = [], 0.0, min(best)
+    slope = min(1.0, part["laws"][-1]["pins"][asked.pins][1])
+    finest = best[next_mm][1] * (part["reference_mm"] / next_mm) ** slope
+    best[part["reference_mm"]] = (math.inf, finest)
     for edge_mm in sorted(best):
         worst = max(worst, best[edge_mm][1])
         terms = asked.cost_terms(edge_mm / 1e3)

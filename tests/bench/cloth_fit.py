@@ -60,7 +60,7 @@ def fitted(kind: str, scenes: list[tuple[Case, dict]]) -> dict:
 def calm(rows: list[dict]) -> dict:
     """The longest edge [mm] of a flag: one mesh finer than the coarsest at which all watched ones agree.
 
-    One finer, because eight flags are few: of twelve others two did not agree at the coarsest edge.
+    One finer, because eight flags are few: of six others three did not agree at the coarsest edge.
     """
     after = [row["after"] for row in rows if "after" in row]
     if not after:
