@@ -25,7 +25,7 @@ OnFrame = Callable[[np.ndarray, "np.ndarray | None"], None]
 Colour = tuple[float, float, float]
 
 LACQUER, LINEN = (0.28, 0.13, 0.10), (0.84, 0.80, 0.73)
-HALL_FIGURE = 1800  # triangles of a figure in the hall
+HALL_FIGURE = 1600  # triangles of a figure in the hall
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,9 @@ from sim_core.cloth.holding import bound, draw_together, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
+SETTLED = (
+    0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
+)
 AIR_EVERY = 2  # substeps between two looks at the air
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 FREE = 1e3  # [m/s] a speed limit from here on is none
@@ -156,7 +159,7 @@ def against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, s
         awake = moving or last
         collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
         if last:
-            settle_samples(packed, inverse, x, v, middles, room.wake_middles, step, r, cap)
+            settle_samples(packed, inverse, x, v, middles, room.wake_middles, step, SETTLED * r, cap)
     wake = room.wake_vertices
     collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
 

@@ -19,19 +19,8 @@ from sim_core.garment.stand import Stand
 from sim_core.garment.thinning import Thinning
 from sim_core.mesh import panel_mesh
 
-SHARES = (
-    0.6,
-    0.45,
-    0.35,
-    0.28,
-    0.22,
-    0.18,
-    0.15,
-    0.12,
-    0.1,
-    0.08,
-    0.065,
-    0.05,
+SHARES = tuple(
+    float(share) for share in np.geomspace(0.6, 0.05, 24).round(3)
 )  # of the triangles, tried in turn
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
 _TRYING = 0.016  # [m] the same while levels are tried; a seventh of the samples
