@@ -1,12 +1,13 @@
 """Draft algebra: threading x tie-up x treadling <-> lift plan <-> drawdown, exact and with the fewest shafts."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from sim_core.errors import WeaveError
 
-__all__ = ["Harness", "drawdown", "harness", "lift_plan", "tie_up"]
+__all__ = ["Harness", "drawdown", "harness", "lift_plan", "smallest_period", "tie_up"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,17 @@ def harness(lift: np.ndarray) -> Harness:
     columns, shaft = _distinct(np.asarray(lift, bool).T)
     tieup, treadling = tie_up(columns.T)
     return Harness(np.eye(len(columns), dtype=bool)[shaft], tieup, treadling)
+
+
+def smallest_period(values: Sequence) -> int:
+    """After how many values the sequence repeats; the last repeat may be cut off."""
+    border = [0] * len(values)  # Knuth, Morris and Pratt: longest proper prefix that ends here
+    for k in range(1, len(values)):
+        length = border[k - 1]
+        while length and values[k] != values[length]:
+            length = border[length - 1]
+        border[k] = length + (values[k] == values[length])
+    return len(values) - border[-1] if values else 0
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

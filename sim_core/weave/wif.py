@@ -106,14 +106,29 @@ def wif_of(cloth: Weave | Draft) -> Wif:
     )
     if weave is None:
         return value
-    sides = weave.warp, weave.weft
-    palette = np.rint(np.array([yarn.colour for yarn in sides]) * 255).astype(int)
+    palette, warp, weft = _thread_colours(weave)
     return replace(
         value,
         palette=palette,
+        warp_colours=warp,
+        weft_colours=weft,
         spacing=(tidy(weave.end_spacing), tidy(weave.pick_spacing)),
         thickness=(tidy(weave.warp.width), tidy(weave.weft.width)),
     )
+
+
+def _thread_colours(weave: Weave) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Palette of 0 to 255, colour of every end and of every pick; of a pick in several colours, the most frequent."""
+    channels, draft = weave.draft.channels, weave.draft
+    sides = weave.warp_colours or (weave.warp.colour,), weave.weft_colours or (weave.weft.colour,)
+    palette = np.rint(np.array([*sides[0], *sides[1]]) * 255).astype(int)
+    ends = channels.end_series if channels.end_series is not None else np.zeros(draft.ends, int)
+    picks = channels.pick_series if channels.pick_series is not None else np.zeros(draft.picks, int)
+    if channels.region is not None:
+        picks = np.array(
+            [np.bincount(row[row >= 0] if (row >= 0).any() else [0]).argmax() for row in channels.region]
+        )
+    return palette, 1 + ends % len(sides[0]), 1 + len(sides[0]) + picks % len(sides[1])
 
 
 def _with_plan(made: Harness) -> Harness:

@@ -4,7 +4,7 @@ Known traps, each of them with a file in the tests: absent colour lines mean the
 Date; blanks round "="; yes/true/on/1; keys and sections in any case; CR, LF and CRLF; comments; thread numbers beyond
 what was announced; sinking sheds; several shafts an end and several treadles a pick; lift plan beside treadling; no
 [CONTENTS]; treadles that nothing is tied to; decimal commas and exponents; lengths a thread in the units of their side;
-notes that go on without a number.
+notes that go on without a number; warps of thousands of ends; colours that are 0 or not in the table.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from sim_core.reading import shown
 from sim_core.weave.algebra import Harness, lift_plan
 from sim_core.weave.draft import MOST
 from sim_core.weave.wif import PRIVATE, Wif, centimetres, tidy
-from sim_core.weave.wif_sections import KNOWN, Section, decoded, sections_of
+from sim_core.weave.wif_sections import KNOWN, Section, decoded, sections_of, whole
+from sim_core.weave.wif_threads import MOST_COLOURS, MOST_THREADS, Lists, Shed, cut_to_repeat, thread_colours
 
 __all__ = ["parse_wif", "read_wif"]
 
@@ -58,9 +59,13 @@ def parse_wif(text: str) -> Wif:
     if not re.fullmatch(r"1(\.\d+)?", version.strip()):
         raise WeaveError(f"[WIF] Version: {shown(version)} – 1.0 and 1.1 can be read")
     remarks: list[str] = []
-    harness, plan = _harness(sections, remarks)
-    picks, ends = harness.treadling.shape[0], harness.threading.shape[0]
-    palette, top = _palette(sections)
+    given, top = _palette(sections)
+    threading, shed = _threading_and_shed(sections)
+    palette, colours = thread_colours(
+        sections, given, _count(sections, "WARP", threading), _picks(sections, shed)
+    )
+    threading, shed, colours = cut_to_repeat(threading, shed, colours, remarks)
+    harness, plan = _harness(sections, threading, shed, (len(colours[0]), len(colours[1])), remarks)
     text_lines = [(key, value) for key, value in sections.get("TEXT", {}).values()]
     wif = Wif(
         title=next((value for key, value in text_lines if key.lower() == "title"), ""),
@@ -68,8 +73,8 @@ def parse_wif(text: str) -> Wif:
         plan=plan,
         palette=palette,
         top=top,
-        warp_colours=_colours(sections, "WARP", ends, len(palette), 1),
-        weft_colours=_colours(sections, "WEFT", picks, len(palette), 2),
+        warp_colours=colours[0],
+        weft_colours=colours[1],
         spacing=(_length(sections, "WARP", "Spacing"), _length(sections, "WEFT", "Spacing")),
         thickness=(_length(sections, "WARP", "Thickness"), _length(sections, "WEFT", "Thickness")),
         text=tuple((key, value) for key, value in text_lines if key.lower() != "title"),
@@ -85,7 +90,8 @@ def parse_wif(text: str) -> Wif:
     return wif
 
 
-def _harness(sections: dict[str, Section], remarks: list[str]) -> tuple[Harness, bool]:
+def _threading_and_shed(sections: dict[str, Section]) -> tuple[Lists, Shed]:
+    """Threading, and tie-up, treadling and lift plan as far as they are there; the plan only where it is used."""
     threading = _lists(sections, "THREADING", "shaft")
     tied, treadled, planned = (
         _lists(sections, name, what) if name in sections else None
@@ -96,8 +102,19 @@ def _harness(sections: dict[str, Section], remarks: list[str]) -> tuple[Harness,
         raise WeaveError(
             "[LIFTPLAN]: missing, and so are [TIEUP] and [TREADLING] together – add one or the other"
         )
-    ends = _count(sections, "WARP", threading)
-    picks = _count(sections, "WEFT", (planned if use_plan else treadled) or {})
+    return threading, (tied, treadled, planned if use_plan else None)
+
+
+def _picks(sections: dict[str, Section], shed: Shed) -> int:
+    _, treadled, planned = shed
+    return _count(sections, "WEFT", (planned if planned is not None else treadled) or {})
+
+
+def _harness(
+    sections: dict[str, Section], threading: Lists, shed: Shed, size: tuple[int, int], remarks: list[str]
+) -> tuple[Harness, bool]:
+    tied, treadled, planned = shed
+    use_plan, (ends, picks) = planned is not None, size
     lists = [threading, planned or {}] + ([tied] if tied else [])
     shafts = max(
         _weaving(sections, "Shafts"),
@@ -133,11 +150,11 @@ def _lists(sections: dict[str, Section], name: str, what: str) -> dict[int, list
         raise WeaveError(f"[{name}]: missing – add it")
     made = {}
     for lower, (key, value) in sections[name].items():
-        number = _whole(lower, name, key, "number the lines from 1")
-        if not 1 <= number <= MOST:
-            raise WeaveError(f"[{name}] {key}: line number – give 1 to {MOST}")
+        number = whole(lower, name, key, "number the lines from 1")
+        if not 1 <= number <= MOST_THREADS:
+            raise WeaveError(f"[{name}] {key}: line number – give 1 to {MOST_THREADS}")
         parts = [part for part in re.split(r"[,\s]+", value) if part]
-        numbers = [_whole(part, name, key, f"give {what} numbers, such as 1,3") for part in parts]
+        numbers = [whole(part, name, key, f"give {what} numbers, such as 1,3") for part in parts]
         if any(not 0 <= n <= MOST for n in numbers):
             raise WeaveError(f"[{name}] {key}: {shown(value, 30)} – {what} numbers lie between 0 and {MOST}")
         made[number] = [n for n in numbers if n]
@@ -152,26 +169,20 @@ def _matrix(lists: dict[int, list[int]], rows: int, columns: int) -> np.ndarray:
     return matrix
 
 
-def _whole(text: str, section: str, key: str, remedy: str) -> int:
-    if not re.fullmatch(r"\s*\d{1,9}\s*", text, re.ASCII):
-        raise WeaveError(f"[{section}] {key}: {shown(text, 30)} is not a whole number – {remedy}")
-    return int(text)
-
-
 def _count(sections: dict[str, Section], side: str, lists: dict[int, list[int]]) -> int:
     """Threads announced, or as many as there are lines; lines beyond the announced number count too."""
     found = max(lists, default=0)
     if "threads" in sections.get(side, {}):
         key, value = sections[side]["threads"]
-        found = max(found, _whole(value, side, key, "give the number of threads"))
-    if not 1 <= found <= MOST:
-        raise WeaveError(f"[{side}] Threads: {found} – a repeat of 1 to {MOST} threads can be read")
+        found = max(found, whole(value, side, key, "give the number of threads"))
+    if not 1 <= found <= MOST_THREADS:
+        raise WeaveError(f"[{side}] Threads: {found} – 1 to {MOST_THREADS} threads can be read")
     return found
 
 
 def _weaving(sections: dict[str, Section], key: str) -> int:
     written, value = sections.get("WEAVING", {}).get(key.lower(), (key, "0"))
-    number = _whole(value, "WEAVING", written, "give a number")
+    number = whole(value, "WEAVING", written, "give a number")
     if number > MOST:
         raise WeaveError(f"[WEAVING] {written}: {number} – at most {MOST}")
     return number
@@ -188,16 +199,16 @@ def _truth(sections: dict[str, Section], section: str, key: str, default: bool) 
 def _palette(sections: dict[str, Section]) -> tuple[np.ndarray, int]:
     head, table = sections.get("COLOR PALETTE", {}), sections.get("COLOR TABLE", {})
     key, value = head.get("range", ("Range", "0,255"))
-    bounds = [_whole(part, "COLOR PALETTE", key, "give 0,255 or 0,999") for part in value.split(",")]
+    bounds = [whole(part, "COLOR PALETTE", key, "give 0,255 or 0,999") for part in value.split(",")]
     if len(bounds) != 2 or not 0 <= bounds[0] < bounds[1] <= 65535:
         raise WeaveError(f"[COLOR PALETTE] {key}: {shown(value, 30)} – give 0,255 or 0,999")
     colours: dict[int, list[int]] = {}
     for lower, (key, value) in table.items():
-        number = _whole(lower, "COLOR TABLE", key, "number the colours from 1")
-        parts = [_whole(part, "COLOR TABLE", key, "give red,green,blue") for part in value.split(",")]
-        if len(parts) != 3 or not 1 <= number <= 4096:
+        number = whole(lower, "COLOR TABLE", key, "number the colours from 1")
+        parts = [whole(part, "COLOR TABLE", key, "give red,green,blue") for part in value.split(",")]
+        if len(parts) != 3 or not 1 <= number <= MOST_COLOURS:
             raise WeaveError(
-                f"[COLOR TABLE] {key}: {shown(value, 30)} – give red,green,blue, colours 1 to 4096"
+                f"[COLOR TABLE] {key}: {shown(value, 30)} – give red,green,blue, colours 1 to {MOST_COLOURS}"
             )
         colours[number] = [min(max(part, bounds[0]), bounds[1]) - bounds[0] for part in parts]
     top = bounds[1] - bounds[0]
@@ -207,24 +218,6 @@ def _palette(sections: dict[str, Section]) -> tuple[np.ndarray, int]:
     if not colours:
         palette[1] = 0
     return palette, top
-
-
-def _colours(sections: dict[str, Section], side: str, count: int, most: int, default: int) -> np.ndarray:
-    """A colour number a thread; a thread without a line has the default of [WARP] or [WEFT]."""
-    key, value = sections.get(side, {}).get("color", ("Color", str(min(default, most))))
-    colours = np.full(count, _colour(value, side, key, most))
-    for lower, (key, value) in sections.get(f"{side} COLORS", {}).items():
-        number = _whole(lower, f"{side} COLORS", key, "number the threads from 1")
-        if 1 <= number <= count:  # colours of threads that are not there are surplus
-            colours[number - 1] = _colour(value, f"{side} COLORS", key, most)
-    return colours
-
-
-def _colour(value: str, section: str, key: str, most: int) -> int:
-    number = _whole(value.split(",")[0], section, key, "give the number of a colour")
-    if not 1 <= number <= most:
-        raise WeaveError(f"[{section}] {key}: colour {number} – [COLOR TABLE] has 1 to {most}")
-    return number
 
 
 def _length(sections: dict[str, Section], side: str, key: str) -> float | None:

@@ -8,7 +8,7 @@ from sim_core.errors import WeaveError
 from sim_core.reading import shown
 from sim_core.weave.wif import PRIVATE
 
-__all__ = ["KNOWN", "Section", "decoded", "escaped", "sections_of", "unescaped"]
+__all__ = ["KNOWN", "Section", "decoded", "escaped", "sections_of", "unescaped", "whole"]
 
 KNOWN = {
     "WIF", "CONTENTS", "COLOR PALETTE", "TEXT", "WEAVING", "WARP", "WEFT", "NOTES", "COLOR TABLE", "THREADING", "TIEUP",
@@ -82,3 +82,10 @@ def sections_of(text: str) -> dict[str, Section]:
             key, value = unescaped(key), unescaped(value)
         current[key.lower()] = (key, value)
     return sections
+
+
+def whole(text: str, section: str, key: str, remedy: str) -> int:
+    """The whole number of at most nine digits that a text is; raises WeaveError that names section and key."""
+    if not re.fullmatch(r"\s*\d{1,9}\s*", text, re.ASCII):
+        raise WeaveError(f"[{section}] {key}: {shown(text, 30)} is not a whole number – {remedy}")
+    return int(text)

@@ -56,6 +56,10 @@ def draft_of_words(words: str) -> Draft:
         word not in ("S", "Z", "weft", "warp") for word in rest
     ):
         raise WeaveError(f"{words[:60]!r}: no such weave – give {WORDS}")
+    if {"S", "Z"} <= set(rest) or {"warp", "weft"} <= set(rest):
+        raise WeaveError(
+            f"{words[:60]!r}: suffixes that contradict each other – give one of :S and :Z, of :weft and :warp"
+        )
     if name == "plain":
         draft = plain()
     else:
@@ -118,10 +122,11 @@ def _from_wif(path: Path) -> tuple[Weave, str]:
         weave = wif.weave
         if weave:
             return weave, path.name
-        made = dressed(wif.draft)
+        from sim_core.weave.wif_cloth import cloth_of
+
+        return cloth_of(wif, dressed(wif.draft), path.name, ASSUMED)
     except WeaveError as error:
         raise WeaveError(f"{path}: {error}") from error
-    return made, ASSUMED
 
 
 def _grey(picture) -> np.ndarray:

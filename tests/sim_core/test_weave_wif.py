@@ -11,11 +11,15 @@ from wif_fuzz import damaged, generated
 from sim_core.errors import SimCoreError, WeaveError
 from sim_core.weave import Draft, Weave, plain, satin
 from sim_core.weave.algebra import Harness
+from sim_core.weave.report import summary_of
+from sim_core.weave.solve import solve
+from sim_core.weave.strands import main_picks, strands
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
 from sim_core.weave.wif import PRIVATE, Wif, wif_of
 from sim_core.weave.wif_read import parse_wif, read_wif
 from sim_core.weave.wif_sections import decoded
 from sim_core.weave.wif_write import wif_text, write_wif
+from sim_core.weave.words import weave_of
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 BASE = """[WIF]
@@ -168,12 +172,12 @@ BAD = {
     r"\[THREADING\]: missing": BASE.replace("[THREADING]", "[THREADS]"),
     r"\[LIFTPLAN\]: missing": BASE.replace("[TIEUP]", "[TIE]"),
     r"\[THREADING\] 3: 'x'": BASE.replace("3=1", "3=x"),
-    r"\[THREADING\] 9999: line number": BASE.replace("3=1", "9999=1"),
+    r"\[THREADING\] 99999: line number": BASE.replace("3=1", "99999=1"),
     r"\[WARP\] Threads: 'many'": BASE.replace("Threads=4", "Threads=many"),
     r"\[WARP\] Threads: 99999999": BASE.replace("Threads=4", "Threads=99999999"),
     r"\[WEAVING\] Rising Shed: 'up'": BASE.replace("Rising Shed=true", "Rising Shed=up"),
     r"\[COLOR TABLE\] 1: '1,2'": BASE.replace("1=255,0,0", "1=1,2"),
-    r"\[WARP\] Color: colour 7": BASE.replace("Color=1", "Color=7"),
+    r"\[WARP\] Color: colour 9999 – give 1 to 4096": BASE.replace("Color=1\n", "Color=9999\n"),
     r"\[WEFT\] Spacing: 'wide'": BASE.replace("[WEFT]\n", "[WEFT]\nSpacing=wide\n"),
     r"\[WEFT\] Units: 'furlongs'": BASE.replace("[WEFT]\n", "[WEFT]\nUnits=furlongs\nSpacing=1\n"),
     r"\[PRIVATE HALL WEAVE\] 1: damaged": BASE + f'[{PRIVATE}]\n1="{{"\n',
@@ -274,3 +278,92 @@ def test_wif_values_that_do_not_fit_are_named():
         Wif("x", harness, warp_colours=np.array([1]))
     with pytest.raises(WeaveError, match="outside the palette"):
         Wif("x", harness, warp_colours=np.array([1, 9]))
+
+
+def wide(ends: int, extra: str = "") -> str:
+    head, rest = BASE.replace("Threads=4", f"Threads={ends}").split("[THREADING]\n")
+    threading = "".join(f"{k + 1}={k % 2 + 1}\n" for k in range(ends))
+    return head + "[THREADING]\n" + threading + "[TIEUP]" + rest.split("[TIEUP]")[1] + extra
+
+
+def test_a_warp_of_thousands_is_cut_to_its_repeat():
+    wif = parse_wif(wide(3001, "[WARP COLORS]\n" + "".join(f"{k}=2\n" for k in range(1, 3002, 3))))
+    np.testing.assert_array_equal(wif.draft.lift, np.tile(TABBY, 2)[:, :6])  # structure 2, colours 3
+    assert wif.warp_colours.tolist() == [2, 1, 1] * 2
+    assert "3001 threads were cut to their repeat of 6" in wif.remarks[0]
+    lone = parse_wif(
+        wide(2000, "[WARP COLORS]\n7=2\n")
+    )  # a colour that does not repeat leaves the weave readable
+    assert lone.draft.lift.shape == (2, 2)
+    assert "without its colours" in lone.remarks[0]
+
+
+def test_a_warp_of_thousands_without_a_repeat_is_named():
+    text = wide(2000).replace("\n1999=1\n", "\n1999=2\n")
+    with pytest.raises(WeaveError, match=r"\[WARP\] Threads: 2000 that repeat after 2000"):
+        parse_wif(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "warp"),
+    [
+        (BASE.replace("Color=1", "Color=0"), [1, 1, 1, 1]),
+        (BASE + "[WARP COLORS]\n2=0\n3=2\n", [1, 1, 2, 1]),
+        (BASE.replace("[COLOR TABLE]\n1=255,0,0\n2=0,0,255\n", "") + "[WARP COLORS]\n1=5\n", [5, 1, 1, 1]),
+        (BASE + "[WARP COLORS]\n4=9\n", [1, 1, 1, 9]),
+    ],
+)
+def test_colours_that_no_table_has_do_not_hide_the_draft(text, warp):
+    wif = parse_wif(text)
+    assert wif.warp_colours.tolist() == warp
+    assert len(wif.palette) >= max(warp)
+    np.testing.assert_array_equal(wif.draft.lift, TABBY)
+    assert parse_wif(wif_text(wif)) == wif
+
+
+def cloth_in(text, folder):
+    (folder / "given.wif").write_text(text)
+    return weave_of(str(folder / "given.wif"))
+
+
+def test_a_wif_is_woven_in_its_colours_sett_and_sizes(tmp_path):
+    text = BASE.replace("[WARP]\n", "[WARP]\nSpacing=.05\nThickness=.02\n")
+    text = text.replace("[WEFT]\n", "[WEFT]\nSpacing=.04\nThickness=.015\n") + "[WARP COLORS]\n2=2\n4=2\n"
+    weave, origin = cloth_in(text, tmp_path)
+    assert (weave.end_spacing, weave.pick_spacing) == pytest.approx((5e-4, 4e-4))
+    assert (weave.warp.diameter, weave.weft.diameter) == pytest.approx((2e-4, 1.5e-4))
+    assert weave.warp.tex == pytest.approx(weave.weft.tex * (2 / 1.5) ** 2)
+    assert weave.warp_colours == ((1, 0, 0), (0, 0, 1))
+    assert weave.weft.colour == (0, 0, 1)
+    assert origin.startswith("sett and thickness and colours of given.wif")
+    ends = strands(weave, solve(weave))[0]
+    assert [tuple(ends.palette[c]) for c in ends.colour[:, 0]] == [(1, 0, 0), (0, 0, 1)] * 2
+    assert summary_of(weave, solve(weave), 0.0, origin)["repeat"] == {"ends": 2, "picks": 2}
+
+
+def test_sizes_of_the_screen_keep_the_spacing(tmp_path):
+    same = BASE.replace("[WARP]\n", "[WARP]\nSpacing=.2\nThickness=.2\n")
+    weave, origin = cloth_in(same.replace("[WEFT]\n", "[WEFT]\nSpacing=.2\nThickness=.2\n"), tmp_path)
+    assert weave.end_spacing == weave.pick_spacing == pytest.approx(2e-3)
+    assert "its thickness does not fit its sett" in origin
+    far = BASE.replace("[WARP]\n", "[WARP]\nSpacing=90000\n")
+    assert "of no cloth" in cloth_in(far, tmp_path)[1]
+
+
+@pytest.mark.parametrize("name", ["jin", "weijin", "kesi", "zhuanghua"])
+def test_colours_of_every_thread_are_written(name):
+    weave = Weave.load(FOLDER / f"{name}.toml")
+    wif = parse_wif(wif_text(wif_of(weave)))
+    warp, weft = strands(weave, solve(weave))[:2]
+    for colours, system, numbers in (
+        (wif.warp_colours, warp, range(weave.draft.ends)),
+        (wif.weft_colours, weft, main_picks(weave)),
+    ):
+        for k, number in enumerate(numbers):
+            shown = system.colour[k][system.colour[k] >= 0]
+            if weave.draft.channels.region is not None and system is weft:
+                row = weave.draft.channels.region[number]
+                shown = row[row >= 0]
+            usual = system.palette[np.bincount(shown).argmax()]
+            assert np.abs(wif.palette[colours[number] - 1] / 255 - usual).max() <= 0.5 / 255 + 1e-9
+    assert len(np.unique(np.append(wif.warp_colours, wif.weft_colours))) > 2

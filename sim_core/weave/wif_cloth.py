@@ -1,0 +1,68 @@
+"""The cloth of another program's WIF: its colours, sett and yarn sizes, on assumed silk where it says nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim_core.errors import WeaveError
+from sim_core.weave.draft import Channels, Draft
+from sim_core.weave.jam import check_jam
+from sim_core.weave.model import Weave
+from sim_core.weave.wif import Wif
+from sim_core.weave.yarn import Yarn
+
+__all__ = ["cloth_of"]
+
+
+def cloth_of(wif: Wif, assumed: Weave, name: str, origin: str) -> tuple[Weave, str]:
+    """The weave of a WIF without our private section, and where its yarns and sett come from.
+
+    assumed: the same draft in yarns and sett of which `origin` tells.  Spacing is the distance of threads, thickness
+    the diameter of the yarn before flattening. Where only one is given the other follows in the proportion of the
+    assumed cloth; sizes that jam, as programs write them for the screen, keep the spacing and lose the thickness.
+    """
+    weave = _coloured(wif, assumed)
+    told = [text for text, given in (("sett", wif.spacing), ("thickness", wif.thickness)) if any(given)]
+    if not told:
+        return weave, f"{origin}; colours of {name}"
+    for thickness, note in ((wif.thickness, ""), ((None, None), "; its thickness does not fit its sett")):
+        try:
+            sized = _sized(weave, wif.spacing, thickness)
+            check_jam(sized)
+        except WeaveError:
+            continue
+        kept = " and ".join(t for t in told if t != "thickness" or any(thickness))
+        if kept:
+            return sized, f"{kept} and colours of {name}{note}; else {origin}"
+    return weave, f"{origin}; colours of {name}; its sett and thickness are of no cloth"
+
+
+def _sized(weave: Weave, spacing, thickness) -> Weave:
+    room = weave.end_spacing / weave.warp.diameter  # of the assumed cloth, alike in warp and weft
+    yarns, setts = [], []
+    for yarn, apart, thick in zip((weave.warp, weave.weft), spacing, thickness, strict=True):
+        diameter = thick or (apart / room if apart else yarn.diameter)
+        grown = diameter / yarn.diameter
+        # stiffness 0: derived again from the fibre
+        yarns.append(replace(yarn, diameter=diameter, tex=yarn.tex * grown * grown, stiffness=0.0))
+        setts.append(1 / (apart or room * diameter))
+    return replace(weave, warp=yarns[0], weft=yarns[1], ends_per_m=setts[0], picks_per_m=setts[1])
+
+
+def _coloured(wif: Wif, weave: Weave) -> Weave:
+    """The weave in the file's colours: one on the yarn, several as series of ends or picks."""
+    channels, sides = {}, {}
+    for side, channel, colours in (
+        ("warp", "end_series", wif.warp_colours),
+        ("weft", "pick_series", wif.weft_colours),
+    ):
+        used, series = np.unique(colours, return_inverse=True)
+        rgb = tuple(tuple(float(c) / wif.top for c in wif.palette[k - 1]) for k in used)
+        yarn: Yarn = getattr(weave, side)
+        sides[side] = replace(yarn, colour=rgb[int(np.bincount(series.ravel()).argmax())])
+        if len(used) > 1:
+            channels[channel], sides[f"{side}_colours"] = series.ravel(), rgb
+    draft = Draft(weave.draft.name, weave.draft.lift, Channels(**channels))
+    return replace(weave, draft=draft, **sides)
