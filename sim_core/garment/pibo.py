@@ -45,7 +45,7 @@ RESTING = (
     Phase(1.80, (9.81, 9.81), 7.0, 2.0, "coming to rest"),
     Phase(0.80, (9.81, 9.81), 12.0, 2.0, "coming to rest"),
     Phase(0.40, (9.81, 9.81), 30.0, 2.0, "coming to rest"),
-    Phase(1.20, (9.81, 9.81), 80.0, 2.0, "at rest", rest=5e-6),
+    Phase(2.40, (9.81, 9.81), 80.0, 2.0, "at rest", rest=5e-6),
 )
 
 
