@@ -19,7 +19,7 @@ BOWL = 0.6
 SKIN = 1.06  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def yarn_forces(u, z, length, stiffness, tension, fu, fz):
     """Add bending and tension of the yarns u, z (yarns, particles) to the forces fu, fz. Returns the energy.
 
@@ -69,7 +69,7 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
     return energy
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
     """Contact of a point with the curve of a crossing yarn.
 
@@ -151,7 +151,7 @@ def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz
     return 0.5 * press * (1.0 - norm)
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y,
                    reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
@@ -225,7 +225,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
     return energy, deepest, largest
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def side_forces(u, z, spacing, wide, high, stiff, gu, gz, weigh, hu, hz):
     """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap)."""
     yarns, count = u.shape

@@ -107,7 +107,7 @@ def resolve(samples: Samples, colours: np.ndarray, low: float, high: float, size
     )
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _resolve(height, yarn, dx, dy, run, colour, across, colours, streak, low, high, gap, to_srgb, number, albedo,
              normal, level, rough, direction, opacity):  # fmt: skip
     rows, columns = number.shape
