@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -196,16 +196,7 @@ def _pace(settings: dict[str, Any]) -> Pace:
 
 
 def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Path | None) -> Drape:
-    from sim_core.cloth.draping import drape
-
-    return drape(
-        made.sheet,
-        made.positions,
-        made.phases,
-        collider=made.collider,
-        contact=made.contact,
-        pins=made.pins,
-        air=made.air,
+    return made.drape(
         substeps=settings["substeps"],
         integrator=settings["integrator"],
         pace=_pace(settings),
@@ -218,20 +209,10 @@ def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Pat
 
 def _warmed(made: Scene, settings: dict[str, Any]) -> float:
     """Seconds until the compiled code is there: one frame of a small scene with the same terms."""
-    from sim_core.cloth.draping import drape
     from sim_core.cloth.scenes import scene
 
     begin = time.perf_counter()
     small = scene(made.name, frames=1, vertices=60)
-    drape(
-        small.sheet,
-        small.positions,
-        small.phases,
-        collider=made.collider,
-        contact=made.contact,
-        pins=small.pins,
-        air=made.air,
-        integrator=settings["integrator"],
-        pace=_pace(settings),
-    )
+    like = replace(small, collider=made.collider, contact=made.contact, air=made.air)
+    like.drape(integrator=settings["integrator"], pace=_pace(settings))
     return time.perf_counter() - begin

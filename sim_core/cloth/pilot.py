@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.cloth.draping import drape
 from sim_core.cloth.scenes import Scene
 from sim_core.cloth.sheet import Sheet
 
@@ -46,14 +45,5 @@ def gap(films: Sequence[np.ndarray]) -> float:
 def pilot(made: Scene, size: Sequence[float], frames: int) -> np.ndarray:
     """Film (T, P, 3) float32 [m] of the grid's points in the first frames of a scene on a coarse mesh."""
     film: list[np.ndarray] = []
-    drape(
-        made.sheet,
-        made.positions,
-        made.lasting(frames).phases,
-        collider=made.collider,
-        contact=made.contact,
-        pins=made.pins,
-        air=made.air,
-        on_frame=lambda _, x: film.append(x),
-    )
+    made.lasting(frames).drape(on_frame=lambda _, x: film.append(x))
     return grid_film(made.sheet, size, np.stack(film))

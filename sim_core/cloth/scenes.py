@@ -13,6 +13,7 @@ import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
+from sim_core.cloth.draping import Drape, drape
 from sim_core.cloth.material import Material
 from sim_core.cloth.phases import FRAME, Contact, Phase
 from sim_core.cloth.precision import COURANT
@@ -48,6 +49,19 @@ class Scene:
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
         return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME),))
+
+    def drape(self, **settings: Any) -> Drape:
+        """Simulates the scene; settings: those of `draping.drape`."""
+        return drape(
+            self.sheet,
+            self.positions,
+            self.phases,
+            collider=self.collider,
+            contact=self.contact,
+            pins=self.pins,
+            air=self.air,
+            **settings,
+        )
 
 
 @lru_cache(maxsize=1)

@@ -28,7 +28,6 @@ from cloth_figures import deciding, summary
 from cloth_sweeps import OURS, SWEEPS, Compared, compared, given, told
 from peers import Peers, peer_python
 
-from sim_core.cloth import drape
 from sim_core.cloth.precision import Pace
 
 ROOT = Path(__file__).parents[2]
@@ -42,16 +41,7 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_TH
 def ours(asked: Compared, substeps: int | None = None, pace: Pace | None = None) -> dict:
     """One run of our engine: processor and wall milliseconds of every frame, and the end (V, 3) [m]."""
     clock, scene = [time.process_time()], asked.scene
-    end = drape(
-        scene.sheet,
-        scene.positions,
-        scene.phases,
-        pins=scene.pins,
-        air=scene.air,
-        substeps=substeps,
-        pace=pace,
-        on_frame=lambda *_: clock.append(time.process_time()),
-    )
+    end = scene.drape(substeps=substeps, pace=pace, on_frame=lambda *_: clock.append(time.process_time()))
     return {
         "ms": [1e3 * s for s in end.frame_seconds],
         "cpu_ms": list(1e3 * np.diff(clock)),

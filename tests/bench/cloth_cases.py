@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 
-from sim_core.cloth import drape
 from sim_core.cloth.draping import ENGINE_VERSION
 from sim_core.cloth.material import Material
 from sim_core.cloth.pilot import GRID, grid_film
@@ -128,18 +127,7 @@ def filmed(
         film.append(x)
         spent.append(time.process_time())
 
-    end = drape(
-        made.sheet,
-        made.positions,
-        made.lasting(frames).phases,
-        collider=made.collider,
-        contact=made.contact,
-        pins=made.pins,
-        air=made.air,
-        integrator=integrator,
-        substeps=substeps,
-        on_frame=heard,
-    )
+    end = made.lasting(frames).drape(integrator=integrator, substeps=substeps, on_frame=heard)
     return np.stack(film), 1e3 * float(np.median(np.diff(spent))), end.substeps / frames
 
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import statistics
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_core.cloth import drape
 from sim_core.cloth.phases import FRAME
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import Scene
@@ -38,24 +37,11 @@ def simulate(
 ) -> Timed:
     """Runs `scene` for so many simulated seconds; undamped: without mass damping, as peers are compared."""
     frames = max(1, round(seconds / FRAME))
-    phases = scene.lasting(frames).phases
+    made = scene.lasting(frames)
     if undamped:
-        from dataclasses import replace
-
-        phases = tuple(replace(p, damping=0.0) for p in phases)
+        made = replace(made, phases=tuple(replace(p, damping=0.0) for p in made.phases))
     begin = time.process_time()
-    end = drape(
-        scene.sheet,
-        scene.positions,
-        phases,
-        collider=scene.collider,
-        contact=scene.contact,
-        pins=scene.pins,
-        air=scene.air,
-        substeps=substeps,
-        integrator=integrator,
-        pace=pace or Pace(courant=scene.courant),
-    )
+    end = made.drape(substeps=substeps, integrator=integrator, pace=pace or Pace(courant=scene.courant))
     cpu = (time.process_time() - begin) / frames
     ms = 1e3 * statistics.median(end.frame_seconds)
     best = 1e3 * min(end.frame_seconds)
