@@ -17,13 +17,13 @@ from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.pairs import finder_of, pairs_of
 from sim_core.cloth.phases import FRAME, Contact
-from sim_core.cloth.precision import COURANT, Pace, Single
+from sim_core.cloth.precision import COURANT, Laned, Pace, lanes_for
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import bending_frequency2, highest_frequency2, stable_step
 from sim_core.cloth.stepping import AIR_EVERY, FREE, Surroundings, advance, room_of
 from sim_core.cloth.untangling import faces_at_edges, no_crossings, untangle
-from sim_core.cloth.watching import longest2, stored_energy
+from sim_core.cloth.watching import longest2, scattered, stored_energy
 from sim_core.errors import SimCoreError
 
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
@@ -69,7 +69,8 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
-        self.single = Single(self.sheet, longest, samples) if self.pace.precision == "single" else None
+        lanes = lanes_for(self.sheet, self.pace.precision)
+        self.laned = Laned(self.sheet, lanes, longest, samples) if lanes else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
@@ -97,15 +98,17 @@ class Engine:
 
     def outward(self, array: np.ndarray) -> np.ndarray:
         """(3, V) in band order as (V, 3) in the caller's order."""
-        return np.ascontiguousarray(array.T[self.number])
+        out = np.zeros((len(self.number), 3))
+        scattered(array, self.number, out)
+        return out
 
     def step(self, pins: Sequence[int], x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
         """Largest stable step [s] at x (3, V); mode (3, V) is kept from frame to frame. Raises if there is none."""
         inverse = self.inverse_mass(pins)
         if not inverse.any():
             return FRAME
-        if self.single:
-            omega2 = self.single.frequency2(inverse, x, mode, first=first)
+        if self.laned:
+            omega2 = self.laned.frequency2(inverse, x, mode, first=first)
         else:
             omega2 = highest_frequency2(self.bands, inverse, self.room, x, mode, first=first)
         step = stable_step(omega2, self.sheet.material.stiffness_damping)
@@ -161,11 +164,11 @@ class Engine:
             np.ascontiguousarray(under.pulls[1], float),
             self.slow(dt) if count % self.pace.slow == 0 else 1,
         )
-        if self.single:
+        if self.laned:
             touching = ((self.vertices, self.middles), self.holds, self.shell)
             searched = (self.finder, self.pairs[0], self.pairs[1])
             inverse = self.inverse_mass(pins)
-            self.pairs = self.single.advance(
+            self.pairs = self.laned.advance(
                 inverse, packed, *touching, around, *searched, x, v, last, dt, count
             )
             return
@@ -267,14 +270,14 @@ class Engine:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
-        if self.single:
-            self.single.forget()
+        if self.laned:
+            self.laned.forget()
 
     def stored(self, x: np.ndarray, v: np.ndarray) -> float:
         """Stored and kinetic energy [J] of x, v (3, V)."""
         free = self.sheet.stencil.inverse_mass
-        if self.single:
-            return self.single.stored(free, x, v)
+        if self.laned:
+            return self.laned.stored(free, x, v)
         return float(stored_energy(self.bands, free, self.room, x, v))
 
     def stretch(self, x: np.ndarray) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.phases import FRAME
 from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.watching import height_energy
 
 
 class Health:
@@ -19,6 +20,7 @@ class Health:
     ) -> None:
         """stored(x, v) [J] of arrays (3, V); touches: something may lift the cloth."""
         self.sheet, self._stored, self.touches = sheet, stored, touches
+        self.mass = float(sheet.mass.sum())
         self.forget()
 
     def forget(self) -> None:
@@ -31,9 +33,7 @@ class Health:
         if known is not x:  # a frame begins where the last one ended
             stored = self._stored(x, v)
             self._known = x, stored
-        # Sums, not products of matrices: those start threads, and add up in an order of their own.
-        along = gravity[0] * x[0] + gravity[1] * x[1] + gravity[2] * x[2]
-        return stored, -float((self.sheet.mass * along).sum())
+        return stored, float(height_energy(self.sheet.mass, gravity, x))
 
     def good(
         self, under: Conditions, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]
@@ -42,16 +42,17 @@ class Health:
 
         Where something does work on the cloth, no edge may become three times its length instead.
         """
-        if not all(np.isfinite(a).all() for a in after):
-            return False
         if not under.quiet:
+            if not all(np.isfinite(a).all() for a in after):
+                return False
             return self.whole(before[0], after[0]) and self._likely(under, before[1], after[1])
         (stored, height), (stored_after, height_after) = (
             self.energy(*state, under.gravity) for state in (before, after)
         )
-        weight = float(self.sheet.mass.sum()) * max(float(np.linalg.norm(under.gravity)), 1.0)
+        weight = self.mass * max(float(np.linalg.norm(under.gravity)), 1.0)
         allowed = (0.02 if self.touches else 0.001) * weight
-        return stored_after <= 1.5 * stored + max(height - height_after, 0.0) + allowed
+        finite = np.isfinite(stored_after + height_after)  # sums over everything: what is not finite shows
+        return bool(finite and stored_after <= 1.5 * stored + max(height - height_after, 0.0) + allowed)
 
     def whole(self, before: np.ndarray, after: np.ndarray) -> bool:
         """Finite, and no edge is three times its length, nor three times what it was, if that was longer."""

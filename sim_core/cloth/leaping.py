@@ -1,4 +1,4 @@
-"""The time loop in single precision: as `stepping.advance`, but a step is one pass from one array into another."""
+"""The time loop over lanes: as `stepping.advance`, but a step is one pass from one array into another."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.banded import band_ahead, band_air, band_limit
-from sim_core.cloth.repulsion import candidate_pairs, repel
-from sim_core.cloth.single import (
-    single_bends,
-    single_damped_strains,
-    single_drift,
-    single_further,
-    single_kick,
-    single_leap,
-    single_odd_bends,
-    single_strain_before,
-    single_strains,
-    single_tensions,
+from sim_core.cloth.laned import (
+    lane_bends,
+    lane_damped_strains,
+    lane_drift,
+    lane_further,
+    lane_kick,
+    lane_leap,
+    lane_odd_bends,
+    lane_strain_before,
+    lane_strains,
+    lane_tensions,
 )
+from sim_core.cloth.repulsion import candidate_pairs, repel
 from sim_core.cloth.stepping import AIR_EVERY, FREE, held, patience, travel
 
 LEAST_KEPT = 1e-3  # share of its speed that heavy damping leaves in one step
@@ -31,23 +31,19 @@ def _tensions(lanes, around, room, x, last):
     c, t = b.coupling, room.tension
     if around.beta > 0.0:
         rate = around.beta / last if last > 0.0 else 0.0
-        single_damped_strains(b.edge_runs, b.length2, x[0], x[1], x[2], rate, room.before, room.strain)
+        lane_damped_strains(b.edge_runs, b.length2, x[0], x[1], x[2], rate, room.before, room.strain)
     else:
-        single_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
-    single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, t)
+        lane_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
+    lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, t)
 
 
 @njit(cache=True, error_model="numpy")
 def _kicks(lanes, around, room, inverse, x, v, gain, part, last, slow_now, air_now):
-    """What pulls beside the membrane's first six neighbours changes v (3, V); gain [s]."""
+    """What pulls beside the membrane's first six neighbours changes v (3, V); gain [s].
+
+    Air comes first: it asks for the velocities of half a step ago, without any of this step's impulses.
+    """
     b = lanes.bands
-    if len(lanes.further_runs) > 0:
-        single_further(lanes.further_runs, room.tension, inverse, x[0], x[1], x[2], gain, v[0], v[1], v[2])
-    if slow_now:
-        most = gain * around.slow
-        single_bends(b.bend_runs, b.bend, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
-        odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
-        single_odd_bends(*odd, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
     if around.press > 0.0:
         air, raw, past = room.air, room.air_now, room.air_past
         if air_now:
@@ -62,7 +58,14 @@ def _kicks(lanes, around, room, inverse, x, v, gain, part, last, slow_now, air_n
             ahead = 0.5 if part > 0.0 else 0.0
             for k in range(3):
                 band_ahead(raw[k], past[k], ahead, air[k])
-        single_kick(inverse, gain, air[0], air[1], air[2], v[0], v[1], v[2])
+        lane_kick(inverse, gain, air[0], air[1], air[2], v[0], v[1], v[2])
+    if len(lanes.further_runs) > 0:
+        lane_further(lanes.further_runs, room.tension, inverse, x[0], x[1], x[2], gain, v[0], v[1], v[2])
+    if slow_now:
+        most = gain * around.slow
+        lane_bends(b.bend_runs, b.bend, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
+        odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
+        lane_odd_bends(*odd, inverse, most, x[0], x[1], x[2], v[0], v[1], v[2])
     for k in range(len(around.pulled)):
         for axis in range(3):
             i = around.pulled[k]
@@ -70,7 +73,7 @@ def _kicks(lanes, around, room, inverse, x, v, gain, part, last, slow_now, air_n
 
 
 @njit(cache=True, error_model="numpy")
-def advance_single(
+def advance_lanes(
     lanes,
     inverse,
     edges,
@@ -94,7 +97,7 @@ def advance_single(
     dt,
     substeps,
 ):
-    """`stepping.advance` for xs, vs, spare (3, V) float32; xs and vs change in place, spare is room."""
+    """`stepping.advance` for xs, vs, spare (3, V) of the lanes' numbers; xs and vs change in place, spare is room."""
     here, there, mark = xs, spare, room.mark.T
     layers, push = shell.thickness > 0.0, around.cap if len(packed.kind) > 0 else 0.0
     halved = layers or around.speed_limit < FREE  # something comes between the kick and the drift
@@ -103,7 +106,7 @@ def advance_single(
     look_layer, counts = -1, (0, 0)
     b = lanes.bands
     if around.beta > 0.0:
-        single_strain_before(
+        lane_strain_before(
             b.edge_runs, b.length2, xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], last, room.before
         )
     for step in range(substeps):
@@ -116,7 +119,7 @@ def advance_single(
         ends = (there[0], there[1], there[2])
         begin, speed = (here[0], here[1], here[2]), (vs[0], vs[1], vs[2])
         way = 0.0 if halved else dt
-        single_leap(
+        lane_leap(
             b.vertex_runs, room.tension, inverse, *begin, around.gravity, keep, gain, way, *speed, *ends
         )
         last = dt
@@ -136,7 +139,7 @@ def advance_single(
         if halved:
             if around.speed_limit < FREE:
                 band_limit(vs[0], vs[1], vs[2], around.speed_limit)
-            single_drift(here[0], here[1], here[2], vs[0], vs[1], vs[2], dt)
+            lane_drift(here[0], here[1], here[2], vs[0], vs[1], vs[2], dt)
         held(holds, packed, inverse, vertices, middles, around, room, x, v, dt, step, substeps)
     if substeps % 2 == 1:
         xs[:] = spare

@@ -1,4 +1,4 @@
-"""How a run is paced, and the state of one that runs in single precision."""
+"""How a run is paced, and the state of one that runs over lanes."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 from sim_core.cloth.collider import Packed
 from sim_core.cloth.holding import Holds
-from sim_core.cloth.lattice import lanes_of
-from sim_core.cloth.leaping import advance_single
+from sim_core.cloth.lattice import Lanes, lattice_lanes, plain_lanes
+from sim_core.cloth.leaping import advance_lanes
 from sim_core.cloth.pairs import Finder
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import FIRST_ROUNDS, first_mode
 from sim_core.cloth.stepping import Surroundings, room_of
-from sim_core.cloth.watching import single_mode, stored_single
+from sim_core.cloth.watching import lane_mode, stored_lanes
 from sim_core.errors import SimCoreError
 
 PRECISIONS = ("double", "single")
@@ -67,22 +67,29 @@ class Pace:
         return GUARD * bend_omega2 * (0.5 * step) ** 3 if self.guarded else 0.0
 
 
-class Single:
-    """A sheet in band order ready to be moved in single precision."""
+def lanes_for(sheet: Sheet, precision: str) -> Lanes | None:
+    """The lanes of a sheet in band order; None in double precision where it is no lattice: bands serve it better."""
+    if precision == "single":
+        return lattice_lanes(sheet, np.float32) or plain_lanes(sheet, np.float32)
+    return lattice_lanes(sheet)
 
-    def __init__(self, sheet: Sheet, longest: int, samples: tuple[int, int]) -> None:
-        count = len(sheet.mass)
-        self.sheet, self.lanes = sheet, lanes_of(sheet)
-        self.room = room_of(self.lanes.edges, count, longest, samples, np.float32)
-        self._state = [np.zeros((3, count), np.float32) for _ in range(3)]
-        self._ones = np.ones(count, np.float32)
+
+class Laned:
+    """A sheet in band order ready to be moved over its lanes, in their precision."""
+
+    def __init__(self, sheet: Sheet, lanes: Lanes, longest: int, samples: tuple[int, int]) -> None:
+        count, real = len(sheet.mass), lanes.bands.own.dtype.type
+        self.sheet, self.lanes, self.real = sheet, lanes, real
+        self.room = room_of(lanes.edges, count, longest, samples, real)
+        self._state = [np.zeros((3, count), real) for _ in range(3)]
+        self._ones = np.ones(count, real)
         self._start = 0.2 * first_mode(count)
         self._inverse: dict[int, tuple[np.ndarray, np.ndarray]] = {}
 
-    def _light(self, inverse: np.ndarray) -> np.ndarray:
-        """inverse (V,) [1/kg] in single precision, made once; the original is kept so that its id stays its own."""
+    def _cast(self, inverse: np.ndarray) -> np.ndarray:
+        """inverse (V,) [1/kg] as the lanes' numbers, made once; the original is kept so that its id stays its own."""
         if id(inverse) not in self._inverse:
-            self._inverse[id(inverse)] = inverse, inverse.astype(np.float32)
+            self._inverse[id(inverse)] = inverse, inverse.astype(self.real)
         return self._inverse[id(inverse)][1]
 
     def advance(
@@ -102,16 +109,18 @@ class Single:
         dt: float,
         count: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """`stepping.advance`: x, v (3, V) float64 change in place. What touches nothing is counted from its middle."""
+        """`stepping.advance`: x, v (3, V) float64 change in place; single counts free cloth from its middle."""
         here, there, speed = self._state
-        absolute = len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
+        absolute = (
+            self.real is np.float64 or len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
+        )
         middle = np.zeros((3, 1)) if absolute else x.mean(axis=1, keepdims=True)
         here[:] = x - middle
         speed[:] = v
         s = self.sheet
-        fixed = (self.lanes, self._light(inverse), s.edges, s.faces, s.rest, s.stencil.length2, packed)
+        fixed = (self.lanes, self._cast(inverse), s.edges, s.faces, s.rest, s.stencil.length2, packed)
         touch = (*samples, holds, shell, around, self.room, finder, points, crossings)
-        pairs = advance_single(*fixed, *touch, here, speed, there, last, dt, count)
+        pairs = advance_lanes(*fixed, *touch, here, speed, there, last, dt, count)
         v[:] = speed
         still = inverse == 0.0
         kept = x[:, still] + v[:, still] * (dt * count)
@@ -125,13 +134,13 @@ class Single:
         here[:] = x - x.mean(axis=1, keepdims=True)
         there[:] = mode if first else mode + self._start
         rounds = FIRST_ROUNDS if first else ROUNDS
-        value = single_mode(self.lanes, self._light(inverse), self.room, here, there, rounds)
+        value = lane_mode(self.lanes, self._cast(inverse), self.room, here, there, rounds)
         mode[:] = there
         return float(value)
 
     def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
         """`watching.stored_energy` [J]."""
-        return float(stored_single(self.lanes, inverse, self._ones, self.room, x, v))
+        return float(stored_lanes(self.lanes, inverse, self._ones, self.room, x, v))
 
     def forget(self) -> None:
         """Clears what a frame that blew up has left."""

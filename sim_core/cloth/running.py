@@ -19,6 +19,7 @@ from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, 
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import first_mode, stable_with
+from sim_core.cloth.watching import ways
 from sim_core.errors import SimCoreError
 
 if TYPE_CHECKING:
@@ -117,7 +118,8 @@ class Run:
             last = state.last_step
             x, v, count = self.certified.frame(state.tally, under, pins, begin, (x, v), last, count)
         state.seconds.append(time.perf_counter() - start)
-        way = np.sqrt(((x - begin[0]) ** 2).sum(0))
+        way = np.zeros(x.shape[1])
+        ways(begin[0], x, way)
         state.trace.append((float(np.percentile(way, 99)), float(way.max())))
         state.stretch = max(state.stretch, engine.stretch(x))
         state.positions, state.velocities = engine.outward(x), engine.outward(v)

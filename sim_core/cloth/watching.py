@@ -1,4 +1,4 @@
-"""What a frame is watched by, in passes as cheap as the loop's: energies, stretch, the stiffest mode in single."""
+"""What a frame is watched by, in passes as cheap as the loop's: energies, stretch, the stiffest mode over lanes."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.banded import band_bends, band_strains, band_tensions
-from sim_core.cloth.single import (
-    single_bends,
-    single_further,
-    single_leap,
-    single_odd_bends,
-    single_strain_changes,
-    single_strains,
-    single_tensions,
+from sim_core.cloth.laned import (
+    lane_bends,
+    lane_further,
+    lane_leap,
+    lane_odd_bends,
+    lane_strain_changes,
+    lane_strains,
+    lane_tensions,
 )
 
 
@@ -34,15 +34,15 @@ def _works(f, inverse, x, v):
 
 
 @njit(cache=True, error_model="numpy")
-def stored_single(lanes, inverse, ones, room, x, v):
-    """`stored_energy` of x, v (3, V) in double precision, its terms taken from x in single; ones (V,)."""
+def stored_lanes(lanes, inverse, ones, room, x, v):
+    """`stored_energy` of x, v (3, V) float64 over lanes, its terms taken from x in their precision; ones (V,)."""
     b, here, f = lanes.bands, room.air_now, room.force
     c = b.coupling
     for k in range(3):
         for i in range(len(inverse)):
             here[k, i] = x[k, i] - x[k, 0]
-    single_strains(b.edge_runs, b.length2, here[0], here[1], here[2], room.strain)
-    single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    lane_strains(b.edge_runs, b.length2, here[0], here[1], here[2], room.strain)
+    lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
     half = len(room.strain) // 2
     stretch, other = 0.0, room.tension[2 * half] * room.strain[-1] if len(room.strain) > 2 * half else 0.0
     for e in range(half):
@@ -50,8 +50,8 @@ def stored_single(lanes, inverse, ones, room, x, v):
         other += room.tension[half + e] * room.strain[half + e]
     f[:] = 0.0
     p, q = (here[0], here[1], here[2]), (f[0], f[1], f[2])
-    single_bends(b.bend_runs, b.bend, ones, 1.0, *p, *q)
-    single_odd_bends(lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
+    lane_bends(b.bend_runs, b.bend, ones, 1.0, *p, *q)
+    lane_odd_bends(lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
     bend, kinetic = _works(f, inverse, x, v)
     return 0.25 * (stretch + other) - 0.5 * bend + 0.5 * kinetic
 
@@ -72,6 +72,31 @@ def stored_energy(bands, inverse, room, x, v):
 
 
 @njit(cache=True, error_model="numpy")
+def height_energy(mass, gravity, x):
+    """Energy of height [J] of x (3, V) under gravity (3,) [m/s2]."""
+    along = 0.0
+    for i in range(len(mass)):
+        along += mass[i] * (gravity[0] * x[0, i] + gravity[1] * x[1, i] + gravity[2] * x[2, i])
+    return -along
+
+
+@njit(cache=True, error_model="numpy")
+def ways(before, after, out):
+    """How far each vertex has come, out (V,) [m], from before to after (3, V)."""
+    for i in range(len(out)):
+        a, b, c = after[0, i] - before[0, i], after[1, i] - before[1, i], after[2, i] - before[2, i]
+        out[i] = np.sqrt(a * a + b * b + c * c)
+
+
+@njit(cache=True, error_model="numpy")
+def scattered(array, place, out):
+    """out (V, 3): array (3, V) in another order, vertex i of out being place[i] of array."""
+    for i in range(len(place)):
+        n = place[i]
+        out[i, 0], out[i, 1], out[i, 2] = array[0, n], array[1, n], array[2, n]
+
+
+@njit(cache=True, error_model="numpy")
 def longest2(edges, length2, x):
     """The largest |d|^2 / L^2 of any edge at x (3, V)."""
     most = 0.0
@@ -85,35 +110,35 @@ def longest2(edges, length2, x):
 
 
 @njit(cache=True, error_model="numpy")
-def single_mode(lanes, inverse, room, x, mode, rounds):
+def lane_mode(lanes, inverse, room, x, mode, rounds):
     """`stability._grown` for lanes: the largest eigenvalue of M^-1 K [1/s2] at x, mode (3, V), which is renewed."""
     b, out, aside = lanes.bands, room.force, room.air
     c, tension, change = b.coupling, room.tension, room.change
     odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
     none = np.zeros(3)
-    single_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
-    single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
+    lane_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
+    lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
     value = 0.0
     out[:] = 0.0
     for _ in range(rounds):
-        single_strain_changes(b.edge_runs, x[0], x[1], x[2], mode[0], mode[1], mode[2], room.strain)
-        single_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, change)
+        lane_strain_changes(b.edge_runs, x[0], x[1], x[2], mode[0], mode[1], mode[2], room.strain)
+        lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, change)
         f, h = (out[0], out[1], out[2]), (aside[0], aside[1], aside[2])
         p, y = (mode[0], mode[1], mode[2]), (x[0], x[1], x[2])
-        single_leap(b.vertex_runs, change, inverse, *y, none, 0.0, 1.0, 0.0, *f, *h)
-        single_leap(b.vertex_runs, tension, inverse, *p, none, 1.0, 1.0, 0.0, *f, *h)
+        lane_leap(b.vertex_runs, change, inverse, *y, none, 0.0, 1.0, 0.0, *f, *h)
+        lane_leap(b.vertex_runs, tension, inverse, *p, none, 1.0, 1.0, 0.0, *f, *h)
         if len(lanes.further_runs) > 0:
-            single_further(lanes.further_runs, change, inverse, *y, 1.0, *f)
-            single_further(lanes.further_runs, tension, inverse, *p, 1.0, *f)
-        single_bends(b.bend_runs, b.bend, inverse, 1.0, *p, *f)
-        single_odd_bends(*odd, inverse, 1.0, *p, *f)
+            lane_further(lanes.further_runs, change, inverse, *y, 1.0, *f)
+            lane_further(lanes.further_runs, tension, inverse, *p, 1.0, *f)
+        lane_bends(b.bend_runs, b.bend, inverse, 1.0, *p, *f)
+        lane_odd_bends(*odd, inverse, 1.0, *p, *f)
         sx = sy = sz = 0.0
         for i in range(len(inverse)):
             sx += out[0, i] * out[0, i]
             sy += out[1, i] * out[1, i]
             sz += out[2, i] * out[2, i]
         value = np.sqrt(sx + sy + sz)
-        scale = np.float32(-1.0 / value if value > 0.0 else 0.0)
+        scale = mode.dtype.type(-1.0 / value if value > 0.0 else 0.0)
         for k in range(3):
             for i in range(len(inverse)):
                 mode[k, i] = scale * out[k, i]

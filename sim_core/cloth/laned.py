@@ -1,8 +1,8 @@
-"""The loops of `banded.py` in single precision, with force, kick and drift in one pass from one array into another.
+"""The loops of `banded.py` over lanes (`lattice.py`), in either precision: force, kick and drift are one pass.
 
-Half the bytes and twice the vector width. A product and a sum may be one instruction here (contracted), so the last
-bits depend on whether the processor has it; on one machine equal input gives equal bits. Literals are avoided: they
-are double, and one of them makes a loop double.
+A run names where its coefficients begin, its last column: those of a lattice repeat and lie in short tables. A product
+and a sum may be one instruction here (contracted), so the last bits depend on whether the processor has it; on one
+machine equal input gives equal bits. Literals are avoided: they are double, and one of them makes a loop double.
 """
 
 from __future__ import annotations
@@ -11,43 +11,43 @@ from sim_core.cloth.compiled import distinct_contracted
 
 
 @distinct_contracted
-def single_strains(runs, length2, x, y, z, strain):
+def lane_strains(runs, length2, x, y, z, strain):
     """eps = |d|^2 - L^2 [m2] of every edge."""
     for r in range(len(runs)):
-        e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
+        e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
         for t in range(count):
             a, b, c = x[i0 + t] - x[j0 + t], y[i0 + t] - y[j0 + t], z[i0 + t] - z[j0 + t]
-            strain[e0 + t] = a * a + b * b + c * c - length2[e0 + t]
+            strain[e0 + t] = a * a + b * b + c * c - length2[c0 + t]
 
 
 @distinct_contracted
-def single_damped_strains(runs, length2, x, y, z, given_rate, before, strain):
+def lane_damped_strains(runs, length2, x, y, z, given_rate, before, strain):
     """eps of every edge plus `given_rate` times its change since `before`, which is renewed."""
     rate = x.dtype.type(given_rate)
     for r in range(len(runs)):
-        e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
+        e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
         for t in range(count):
             a, b, c = x[i0 + t] - x[j0 + t], y[i0 + t] - y[j0 + t], z[i0 + t] - z[j0 + t]
-            now = a * a + b * b + c * c - length2[e0 + t]
+            now = a * a + b * b + c * c - length2[c0 + t]
             strain[e0 + t] = now + rate * (now - before[e0 + t])
             before[e0 + t] = now
 
 
 @distinct_contracted
-def single_tensions(runs, own, c0, c1, c2, c3, strain, tension):
+def lane_tensions(runs, own, c0, c1, c2, c3, strain, tension):
     """T = 2 sum K eps [N/m] of every edge, from its own strain and those of the four around it."""
     for r in range(len(runs)):
-        e0, count = runs[r, 0], runs[r, 1]
+        e0, count, k0 = runs[r, 0], runs[r, 1], runs[r, 6]
         a0, a1, a2, a3 = runs[r, 2], runs[r, 3], runs[r, 4], runs[r, 5]
         for t in range(count):
-            e = e0 + t
-            near = c0[e] * strain[a0 + t] + c1[e] * strain[a1 + t]
-            far = c2[e] * strain[a2 + t] + c3[e] * strain[a3 + t]
-            tension[e] = own[e] * strain[e] + near + far
+            e, k = e0 + t, k0 + t
+            near = c0[k] * strain[a0 + t] + c1[k] * strain[a1 + t]
+            far = c2[k] * strain[a2 + t] + c3[k] * strain[a3 + t]
+            tension[e] = own[k] * strain[e] + near + far
 
 
 @distinct_contracted
-def single_leap(runs, weight, inverse, x, y, z, g, kept, gained, step, u, v, w, nx, ny, nz):
+def lane_leap(runs, weight, inverse, x, y, z, g, kept, gained, step, u, v, w, nx, ny, nz):
     """One step: v = kept v + gained (pulls / m + g), (nx, ny, nz) = x + step v; what is pinned keeps its velocity.
 
     The pulls are sum of weight_e (x_j - x_i) over the first six neighbours; g (3,) [m/s2].
@@ -80,7 +80,7 @@ def single_leap(runs, weight, inverse, x, y, z, g, kept, gained, step, u, v, w, 
 
 
 @distinct_contracted
-def single_further(runs, weight, inverse, x, y, z, gained, u, v, w):
+def lane_further(runs, weight, inverse, x, y, z, gained, u, v, w):
     """v += gained / m times the pulls of a seventh and later neighbour."""
     gain = x.dtype.type(gained)
     for r in range(len(runs)):
@@ -100,17 +100,18 @@ def single_further(runs, weight, inverse, x, y, z, gained, u, v, w):
 
 
 @distinct_contracted
-def single_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
+def lane_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
     """v += gained / m times the bending force -Q x."""
     gain = x.dtype.type(gained)
     for r in range(len(runs)):
-        i0, count, k = runs[r, 0], runs[r, 1], runs[r, 2]
+        i0, count, k, k0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 10]
         a, b, c, d, e, f = runs[r, 4], runs[r, 5], runs[r, 6], runs[r, 7], runs[r, 8], runs[r, 9]
         ka, kb, kc, kd, ke, kf = bend[k], bend[k + 1], bend[k + 2], bend[k + 3], bend[k + 4], bend[k + 5]
         for t in range(count):
             i = i0 + t
             xi, yi, zi, m = x[i], y[i], z[i], gain * inverse[i]
-            wa, wb, wc, wd, we, wf = ka[i], kb[i], kc[i], kd[i], ke[i], kf[i]
+            n = k0 + t
+            wa, wb, wc, wd, we, wf = ka[n], kb[n], kc[n], kd[n], ke[n], kf[n]
             px = wa * (x[a + t] - xi) + wb * (x[b + t] - xi) + wc * (x[c + t] - xi)
             py = wa * (y[a + t] - yi) + wb * (y[b + t] - yi) + wc * (y[c + t] - yi)
             pz = wa * (z[a + t] - zi) + wb * (z[b + t] - zi) + wc * (z[c + t] - zi)
@@ -123,8 +124,8 @@ def single_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
 
 
 @distinct_contracted
-def single_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v, w):
-    """`single_bends` for entries one by one: those of vertex[n] lie from rows[n] to rows[n + 1]."""
+def lane_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v, w):
+    """`lane_bends` for entries one by one: those of vertex[n] lie from rows[n] to rows[n + 1]."""
     real = x.dtype.type
     gain, nothing = real(gained), real(0)
     for n in range(len(vertex)):
@@ -143,7 +144,7 @@ def single_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v
 
 
 @distinct_contracted
-def single_kick(inverse, gained, fx, fy, fz, u, v, w):
+def lane_kick(inverse, gained, fx, fy, fz, u, v, w):
     """v += gained f / m, each (V,)."""
     gain = u.dtype.type(gained)
     for i in range(len(u)):
@@ -154,7 +155,7 @@ def single_kick(inverse, gained, fx, fy, fz, u, v, w):
 
 
 @distinct_contracted
-def single_drift(x, y, z, u, v, w, step):
+def lane_drift(x, y, z, u, v, w, step):
     """x += step v."""
     dt = x.dtype.type(step)
     for i in range(len(x)):
@@ -164,21 +165,21 @@ def single_drift(x, y, z, u, v, w, step):
 
 
 @distinct_contracted
-def single_strain_before(runs, length2, x, y, z, u, v, w, step, before):
+def lane_strain_before(runs, length2, x, y, z, u, v, w, step, before):
     """eps of the positions a step [s] ago."""
     dt = x.dtype.type(step)
     for r in range(len(runs)):
-        e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
+        e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
         for t in range(count):
             i, j = i0 + t, j0 + t
             a = x[i] - x[j] - dt * (u[i] - u[j])
             b = y[i] - y[j] - dt * (v[i] - v[j])
             c = z[i] - z[j] - dt * (w[i] - w[j])
-            before[e0 + t] = a * a + b * b + c * c - length2[e0 + t]
+            before[e0 + t] = a * a + b * b + c * c - length2[c0 + t]
 
 
 @distinct_contracted
-def single_strain_changes(runs, x, y, z, p, q, s, change):
+def lane_strain_changes(runs, x, y, z, p, q, s, change):
     """2 d.(p_i - p_j) of every edge: the derivative of eps along (p, q, s)."""
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]

@@ -1,4 +1,4 @@
-"""The time loop in single precision, its lanes, and the pace of a run."""
+"""The time loop over lanes in both precisions, the lanes, and the pace of a run."""
 
 from dataclasses import replace
 
@@ -8,12 +8,19 @@ import pytest
 from sim_core.cloth import Live, Phase, drape
 from sim_core.cloth.bands import ordered
 from sim_core.cloth.engine import Engine
-from sim_core.cloth.lattice import lanes_of
+from sim_core.cloth.laned import (
+    lane_bends,
+    lane_further,
+    lane_leap,
+    lane_odd_bends,
+    lane_strains,
+    lane_tensions,
+)
+from sim_core.cloth.lattice import SAME, lattice_lanes, plain_lanes
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.rows import disc
 from sim_core.cloth.scenes import GF_CM, bar, hang_edge, scene
 from sim_core.cloth.sheet import Sheet
-from sim_core.cloth.single import single_bends, single_leap, single_odd_bends, single_strains, single_tensions
 from sim_core.errors import SimCoreError
 
 SINGLE, LONG = Pace("single"), Pace("single", 0.95)
@@ -29,17 +36,20 @@ def apart(a, b):
     return 1e3 * float(np.linalg.norm(a.positions - b.positions, axis=1).mean())
 
 
-def accelerations(sheet, x):
-    """M^-1 f of membrane and bending by lanes: (3, V) for x (3, V), and by the engine in double."""
-    lanes, inverse = lanes_of(sheet), sheet.stencil.inverse_mass.astype(np.float32)
-    b, c, here = lanes.bands, lanes.bands.coupling, x.astype(np.float32)
-    strain, tension = (np.zeros(lanes.edges + len(sheet.mass), np.float32) for _ in range(2))
+def accelerations(sheet, lanes, x):
+    """M^-1 f of membrane and bending by lanes: (3, V) for x (3, V)."""
+    real = lanes.bands.own.dtype
+    inverse, b = sheet.stencil.inverse_mass.astype(real), lanes.bands
+    c, here = b.coupling, x.astype(real)
+    strain, tension = (np.zeros(lanes.edges + len(sheet.mass), real) for _ in range(2))
     out, aside = np.zeros_like(here), np.zeros_like(here)
-    single_strains(b.edge_runs, b.length2, *here, strain)
-    single_tensions(b.tension_runs, b.own, *c, strain, tension)
-    single_leap(b.vertex_runs, tension, inverse, *here, np.zeros(3), 0.0, 1.0, 0.0, *out, *aside)
-    single_bends(b.bend_runs, b.bend, inverse, 1.0, *here, *out)
-    single_odd_bends(
+    lane_strains(b.edge_runs, b.length2, *here, strain)
+    lane_tensions(b.tension_runs, b.own, *c, strain, tension)
+    lane_leap(b.vertex_runs, tension, inverse, *here, np.zeros(3), 0.0, 1.0, 0.0, *out, *aside)
+    if len(lanes.further_runs):
+        lane_further(lanes.further_runs, tension, inverse, *here, 1.0, *out)
+    lane_bends(b.bend_runs, b.bend, inverse, 1.0, *here, *out)
+    lane_odd_bends(
         lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, inverse, 1.0, *here, *out
     )
     return out
@@ -55,24 +65,57 @@ def expected(sheet, x):
     return (force * s.inverse_mass[:, None]).T
 
 
-def test_lanes_of_a_lattice_have_the_forces_of_the_book():
-    sheet, _ = ordered(hang_edge(0.06).sheet)
-    rng = np.random.default_rng(1)
+def crumpled(sheet, seed=1):
+    rng = np.random.default_rng(seed)
     flat = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))]).T
-    x = flat * 1.02 + 1e-3 * rng.standard_normal(flat.shape)
+    return flat * 1.02 + 1e-3 * rng.standard_normal(flat.shape)
+
+
+@pytest.mark.parametrize("edge", [0.11, 0.06, 0.021])
+@pytest.mark.parametrize(("real", "off"), [(np.float32, 2e-4), (np.float64, 1e-9)])
+def test_lanes_of_a_lattice_have_the_forces_of_the_book(edge, real, off):
+    sheet, _ = ordered(hang_edge(edge).sheet)
+    lanes, x = lattice_lanes(sheet, real), crumpled(sheet)
     there = expected(sheet, x)
-    assert np.abs(accelerations(sheet, x) - there).max() < 2e-4 * np.abs(there).max()
+    assert np.abs(accelerations(sheet, lanes, x) - there).max() < off * np.abs(there).max()
 
 
-def test_a_lattice_is_one_run_an_offset_and_a_disc_stays_in_bands():
-    sheet, _ = ordered(hang_edge(0.03).sheet)
-    lanes = lanes_of(sheet)
-    assert len(lanes.bands.edge_runs) == len(lanes.bands.tension_runs) == 3
+def test_lanes_of_any_mesh_have_the_forces_of_the_book():
+    sheet, _ = ordered(Sheet.of(*disc(0.3, 0.02), GF_CM))
+    x = crumpled(sheet)
+    there = expected(sheet, x)
+    found = accelerations(sheet, plain_lanes(sheet), x)
+    assert np.abs(found - there).max() < 2e-4 * np.abs(there).max()
+
+
+def test_coefficients_of_a_lattice_repeat_in_a_short_table_and_a_disc_is_none():
+    sheet, _ = ordered(hang_edge(0.0134).sheet)
+    lanes = lattice_lanes(sheet)
+    assert lanes.bands.own.size < 0.2 * len(sheet.edges)
+    assert lanes.bands.bend.shape[1] < 0.3 * len(sheet.mass)
     assert lanes.bands.vertex_runs[:, 1].sum() == len(sheet.mass)
     assert lanes.edges < 1.1 * len(sheet.edges)
-    rest, faces = disc(0.3, 0.02)
-    round_, _ = ordered(Sheet.of(rest, faces, GF_CM))
-    assert lanes_of(round_).edges == len(round_.edges)
+    assert lattice_lanes(ordered(Sheet.of(*disc(0.3, 0.02), GF_CM))[0]) is None
+
+
+def test_a_row_unlike_the_others_keeps_its_own_coefficients():
+    sheet, _ = ordered(hang_edge(0.03).sheet)
+    stiff = sheet.stencil.own.copy()
+    stiff[len(stiff) // 2] *= 1 + 100 * SAME
+    other = replace(sheet, stencil=sheet.stencil._replace(own=stiff))
+    x = crumpled(sheet)
+    change = accelerations(other, lattice_lanes(other), x) - accelerations(sheet, lattice_lanes(sheet), x)
+    assert 1 <= (np.abs(change).max(axis=0) > 0).sum() <= 2
+
+
+def test_a_lattice_in_double_falls_over_lanes_as_over_bands():
+    made = scene("flag", frames=6, vertices=500)
+    lanes = Engine(made.sheet).laned
+    assert lanes is not None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sim_core.cloth.engine.lanes_for", lambda *_: None)
+        bands = run(made)
+    assert apart(run(made), bands) < 1e-5
 
 
 def test_a_disc_in_single_falls_as_in_double():
