@@ -104,7 +104,7 @@ class Sheet:
             mass += share * material.density
             stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
         own, around, coupling = _membrane(stiffness, face_edges, len(edges))
-        bend = np.array([material.bend for material in materials])[kind]
+        bend = np.array([material.bending() for material in materials])[kind]
         bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
         length2 = _edge_lengths2(corner, face_edges, len(edges))
