@@ -18,7 +18,7 @@ from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
-from sim_core.cloth.stability import first_mode, stable_with
+from sim_core.cloth.stability import first_mode, passing_step, stable_with
 from sim_core.errors import SimCoreError
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
+LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 INTEGRATORS = ("auto", "explicit", "implicit")
 
@@ -160,7 +161,8 @@ class Run:
             guard = pace.guard(step, engine.bend_omega2)
             if guard > self.sheet.material.stiffness_damping:
                 step = stable_with(step, guard)
-            step = min(step, engine.air_step(under, begin[1]) / pace.courant)
+            layers = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
+            step = min(step, layers / pace.courant)
             state.mode = mode
         for attempt in range(MAX_HALVINGS):
             count = self.fixed or pace.slow * int(
@@ -169,9 +171,16 @@ class Run:
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
                 engine.advance(under, pins, x, v, state.last_step, count, guard)
-                if self.fixed or engine.health.good(under, begin, (x, v)):
-                    state.safety = min(1.0, state.safety * 1.1)
+                if self.fixed:
                     return x, v, count
+                if engine.health.good(under, begin, (x, v)):
+                    late = passing_step(engine.shell.thickness, v)
+                    if FRAME / count <= LATE * late:
+                        state.safety = min(1.0, state.safety * 1.1)
+                        return x, v, count
+                    step = min(step, late / pace.courant)  # it became faster than layers can bear on the way
+                    engine.forget()
+                    continue
                 engine.forget()
             if self._gives_in(attempt, count):
                 x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
@@ -181,6 +190,13 @@ class Run:
                 engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
+
+    def _layer_step(self, under: Conditions, begin: tuple[np.ndarray, np.ndarray]) -> float:
+        """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
+        v = begin[1].copy()
+        index = self.engine.number[under.led[0]]
+        v[:, index] = (under.led[1].T - begin[0][:, index]) / FRAME
+        return passing_step(self.engine.shell.thickness, v)
 
     def _conditions(self, now: Moment, frame: int) -> Conditions:
         material, phase = self.sheet.material, now.phase
