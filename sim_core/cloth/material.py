@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from sim_core.cloth.given import finite
 from sim_core.errors import SimCoreError
 
 
@@ -55,14 +56,12 @@ class Material:
 
     def __post_init__(self) -> None:
         for name in ("density", "stretch", "stretch_warp", "shear"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise SimCoreError(f"material.{name}: {value} – must be a finite number above 0")
+            if name in ("density", "stretch") or getattr(self, name) is not None:
+                finite(f"material.{name}", getattr(self, name), above=0)
         for name in ("bend", "bend_warp", "friction", "mass_damping", "stiffness_damping"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value >= 0):
-                raise SimCoreError(f"material.{name}: {value} – must be a finite number, 0 or more")
-        if not -1.0 < self.poisson < 1.0:
+            if name != "bend_warp" or self.bend_warp is not None:
+                finite(f"material.{name}", getattr(self, name), least=0)
+        if not -1.0 < finite("material.poisson", self.poisson) < 1.0:
             raise SimCoreError(f"material.poisson: {self.poisson} – must lie between -1 and 1 (plane stress)")
 
     @staticmethod

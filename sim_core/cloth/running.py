@@ -13,6 +13,7 @@ from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.engine import IMPLICIT_STEPS, Engine
+from sim_core.cloth.given import coordinates, vertex_numbers, whole
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
@@ -53,13 +54,17 @@ class Run:
         check_phases(phases)
         check_contact(contact or Contact())
         check_gravity(down)
-        if substeps is not None and not substeps > 0:
-            raise SimCoreError(f"substeps: {substeps} – a frame needs at least one")
+        if substeps is not None:
+            whole("substeps", substeps, 1, "a frame needs at least one")
+        if not isinstance(collider, Solid | MovingGrid | None):
+            raise SimCoreError(
+                f"collider: a {type(collider).__name__} – give a Solid, or moving_mesh() of a closed mesh"
+            )
         self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down
         if integrator not in INTEGRATORS:
             raise SimCoreError(f"integrator: {integrator!r} – there are {', '.join(INTEGRATORS)}")
         self.integrator = integrator
-        self.pins = tuple(int(i) for i in pins)
+        self.pins = vertex_numbers("pins", pins)
         self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
         self.pace = self.engine.pace
         self.certified: Certified | None = None
@@ -219,12 +224,5 @@ def checked_state(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
     shape = (len(sheet.rest), 3)
-    x = np.array(positions, float, order="C")
-    v = np.zeros(shape) if velocities is None else np.array(velocities, float, order="C")
-    for name, array in (("positions", x), ("velocities", v)):
-        if array.shape != shape:
-            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
-        if not np.isfinite(array).all():
-            wrong = np.flatnonzero(~np.isfinite(array).all(1))[0]
-            raise SimCoreError(f"{name}: vertex {wrong} is not finite")
-    return x, v
+    x = coordinates("positions", positions, shape)
+    return x, np.zeros(shape) if velocities is None else coordinates("velocities", velocities, shape)

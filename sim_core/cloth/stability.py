@@ -104,6 +104,8 @@ def bending_frequency2(bands: Bands, inverse: np.ndarray, room: Room) -> float:
 
 def stable_step(omega2: float, beta: float) -> float:
     """Largest stable leapfrog step [s] at omega2 [1/s2], lagged stiffness damping beta [s] included."""
+    if not (np.isfinite(omega2) and omega2 > 0.0):
+        return np.nan
     return float(np.sqrt(beta * beta + 4.0 / omega2) - beta)
 
 
