@@ -29,7 +29,7 @@ class Air:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if len(self.wind) != 3 or not np.isfinite(self.wind).all():
+        if np.shape(self.wind) != (3,) or not np.isfinite(self.wind).all():
             raise SimCoreError(f"air.wind: {self.wind} – expected three finite speeds (x, y, z) in m/s")
         for name in ("density", "drag", "gusts"):
             value = getattr(self, name)
@@ -45,7 +45,7 @@ class Air:
 
     def blowing(self, wind: Sequence[float]) -> Air:
         """The same air with another wind (x, y, z) [m/s]."""
-        return replace(self, wind=(float(wind[0]), float(wind[1]), float(wind[2])))
+        return replace(self, wind=tuple(float(speed) for speed in wind))
 
     def at(self, seconds: float) -> np.ndarray:
         """The wind (3,) [m/s] at a time [s]."""

@@ -2,8 +2,9 @@
 
 The six points of a triangle and its three neighbours, laid out flat, fix a quadratic: the heights h of the three outer
 ones over the triangle's plane are h = A kappa, so its curvature is kappa = A^-1 h and its energy
-area/2 kappa.D.kappa, D = B diag(1, 1, 2) in (xx, yy, xy): a plate without Poisson's effect. A triangle at a border,
-or one whose six points lie near a conic, takes the mean curvature of its neighbours. On equilateral rows this is
+area/2 kappa.D.kappa, D = diag(Bx, By, 2 sqrt(Bx By)) in (xx, yy, xy), x the weft's way and y the warp's: a plate
+without Poisson's effect. A triangle at a border, or one whose six points lie near a conic, takes the mean curvature
+of its neighbours, turned from their panels into its own. On equilateral rows this is
 what the hinges of Bergou et al. (2006) give at a third of their stiffness, but for nu = 0 instead of -1/3.
 """
 
@@ -13,20 +14,23 @@ import numpy as np
 from scipy import sparse
 
 LEAST_RATIO = 0.12  # of the singular values of A; below, the six points say too little of the curvature
-TWIST = np.sqrt(np.array([1.0, 1.0, 2.0]))  # square roots of D / B
+TWIST = np.sqrt(np.array([1.0, 1.0, 2.0]))  # xy counts twice
 
 
 def bending_matrix(
     corner: np.ndarray, faces: np.ndarray, face_edges: np.ndarray, edges: int, bend: np.ndarray, count: int
 ) -> sparse.csr_array:
-    """Q (V, V) [N/m] from the corners of each face in its panel (F, 3, 2) [m]; bend (F,) [N m], edges: how many."""
+    """Q (V, V) [N/m] from the corners of each face in its panel (F, 3, 2) [m]; edges: how many.
+
+    bend (F, 3) [N m]: against curvature xx, yy and (twice) xy.
+    """
     twin = _twins(face_edges, edges)
     curved, known = _curvatures(corner, faces, twin, count)
-    operator = _lent(curved, known, twin)
+    operator = _lent(curved, known, twin, _turns(corner, faces, twin))
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    weight = np.sqrt(area * bend)
-    scaled = sparse.diags_array((weight[:, None] * TWIST).ravel()) @ operator
+    weight = np.sqrt(area[:, None] * bend)
+    scaled = sparse.diags_array((weight * TWIST).ravel()) @ operator
     matrix = sparse.csr_array(scaled.T @ scaled)
     # What rounding leaves of entries that cancel would cost the loops as much as any other.
     matrix.data[np.abs(matrix.data) < 1e-12 * np.abs(matrix.data).max(initial=0.0)] = 0.0
@@ -103,7 +107,34 @@ def _barycentric(corner: np.ndarray, point: np.ndarray) -> np.ndarray:
     return np.column_stack([1 - s - t, s, t])
 
 
-def _lent(curved: sparse.csr_array, known: np.ndarray, twin: np.ndarray) -> sparse.csr_array:
+def _turns(corner: np.ndarray, faces: np.ndarray, twin: np.ndarray) -> np.ndarray:
+    """What makes (xx, yy, xy) of the face across each side one's own: (F, 3, 3, 3), 1 where the panel is the same."""
+    out = np.zeros((*twin.shape, 3, 3))
+    for c in range(3):
+        other = np.maximum(twin[:, c], 0)
+        face, place = other // 3, other % 3
+        one, two = (place + 1) % 3, (place + 2) % 3
+        flip = faces[face, one] != faces[:, (c + 1) % 3]
+        first, last = np.where(flip, two, one), np.where(flip, one, two)
+        mine = _axes(corner[:, (c + 1) % 3], corner[:, (c + 2) % 3], corner[:, c])
+        there = _axes(corner[face, first], corner[face, last], corner[face, place]) * [[[1.0], [-1.0]]]
+        a, b, d, e = np.einsum("fki,fkj->ijf", mine, there).reshape(4, -1)
+        rows = [[a * a, b * b, 2 * a * b], [d * d, e * e, 2 * d * e], [a * d, b * e, a * e + b * d]]
+        out[:, c] = np.moveaxis(np.array(rows), 2, 0)
+        out[np.abs(out[:, c] - np.eye(3)).max((1, 2)) < 1e-9, c] = np.eye(3)
+    return out
+
+
+def _axes(p: np.ndarray, q: np.ndarray, tip: np.ndarray) -> np.ndarray:
+    """Unit vectors (F, 2, 2) along the side from p to q and across it, towards the tip, (F, 2) each."""
+    along = (q - p) / np.linalg.norm(q - p, axis=1)[:, None]
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    return np.stack([along, across * np.sign(((tip - p) * across).sum(1))[:, None]], axis=1)
+
+
+def _lent(
+    curved: sparse.csr_array, known: np.ndarray, twin: np.ndarray, turns: np.ndarray
+) -> sparse.csr_array:
     """Faces without a curvature of their own take the mean of their neighbours', ring by ring."""
     found = len(known)
     known = known.copy()
@@ -119,15 +150,11 @@ def _lent(curved: sparse.csr_array, known: np.ndarray, twin: np.ndarray) -> spar
         keep = np.flatnonzero(known)
         index = np.concatenate([keep, row])
         source = np.concatenate([keep, neighbour[row, slot]])
-        weight = np.concatenate([np.ones(len(keep)), share])
-        three = np.arange(3)
-        mix = sparse.coo_array(
-            (
-                np.repeat(weight, 3),
-                ((3 * index[:, None] + three).ravel(), (3 * source[:, None] + three).ravel()),
-            ),
-            (3 * found, 3 * found),
-        ).tocsr()
+        same = np.broadcast_to(np.eye(3), (len(keep), 3, 3))
+        block = np.concatenate([same, share[:, None, None] * turns[row, slot]])
+        at, of, entry = np.nonzero(block)
+        place = (3 * index[at] + of, 3 * source[at] + entry)
+        mix = sparse.coo_array((block[at, of, entry], place), (3 * found, 3 * found)).tocsr()
         operator = sparse.csr_array(mix @ operator)
         known |= give
     return operator

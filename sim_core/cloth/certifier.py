@@ -114,7 +114,10 @@ class Certifier:
 def _checked(solid: Mesh | None) -> Mesh:
     if solid is None:
         return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
-    vertices, faces = np.asarray(solid[0], float), np.asarray(solid[1])
+    try:
+        vertices, faces = np.asarray(solid[0], float), np.asarray(solid[1])
+    except (TypeError, ValueError, IndexError):
+        raise SimCoreError("certify: give True, or the vertices (S, 3) and faces (F, 3) of a solid") from None
     if vertices.ndim != 2 or vertices.shape[1:] != (3,) or faces.ndim != 2 or faces.shape[1:] != (3,):
         raise SimCoreError(f"certify: solid {vertices.shape}, {faces.shape} – expected (S, 3) and (F, 3)")
     if not np.isfinite(vertices).all() or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):

@@ -117,7 +117,7 @@ class Box(Solid):
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         centre, half = _vector("box.centre", self.centre), _vector("box.size", self.size) / 2
-        if half.min() <= 0 or not 0 <= self.rounding <= half.min():
+        if half.min() <= 0 or not 0 <= self.rounding <= half.min() or not np.isfinite(self.yaw):
             raise SimCoreError(
                 f"box: size {self.size}, rounding {self.rounding} – sizes above 0, rounding at most half"
             )
@@ -177,6 +177,9 @@ class Union(Solid):
 
     def packed(self) -> Packed:
         """The parts' arrays, one below the other."""
+        for part in self.parts:
+            if not isinstance(part, Solid):
+                raise SimCoreError(f"union: a {type(part).__name__} – its parts are solids")
         packs = [part.packed() for part in self.parts]
         if not packs:
             raise SimCoreError("union: no parts – name at least one solid")

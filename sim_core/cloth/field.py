@@ -10,6 +10,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from sim_core.cloth.collider import GridSdf
 from sim_core.cloth.field_loops import crossings, interpolate, splat, spread, sweep
+from sim_core.cloth.given import triangles
 from sim_core.errors import SimCoreError
 
 __all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
@@ -149,7 +150,8 @@ def _grid(
 def _checked(
     vertices: np.ndarray, faces: np.ndarray, cell: float, band: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    vertices, faces = np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces, np.int32)
+    vertices, faces = np.ascontiguousarray(vertices, float), triangles("field: faces", faces)
+    faces = np.ascontiguousarray(faces, np.int32)
     if not (np.isfinite(cell) and np.isfinite(band) and 0 < cell and 2 * cell <= band):
         raise SimCoreError(
             f"field: cell {cell}, band {band} – lengths in metres, the band at least two cells"
@@ -173,4 +175,7 @@ def _checked(
             f"field: the mesh is open or ill-wound at {len(torn)} edges, the first between vertices {a} and {b} at "
             f"({x:.3f}, {y:.3f}, {z:.3f}) m – close it first"
         )
+    a, b, c = (vertices[faces[:, k]] - vertices.mean(0) for k in range(3))
+    if (np.cross(a, b) * c).sum() < 0.0:
+        raise SimCoreError("field: the mesh is inside out – turn its faces counter-clockwise from outside")
     return vertices, faces

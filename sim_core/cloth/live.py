@@ -12,6 +12,7 @@ from sim_core.cloth.certificate import Certificate
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
+from sim_core.cloth.given import finite, vertex_numbers
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Phase, check_gravity
 from sim_core.cloth.precision import Pace
@@ -68,11 +69,10 @@ class Live:
         self._state = RunState(x, v)
         self._gravity = np.asarray(gravity, float)
         check_gravity(self._gravity)
-        if damping is not None and not (np.isfinite(damping) and damping >= 0):
-            raise SimCoreError(f"damping: {damping} – must be a finite number, 0 or more")
         self.damping = sheet.material.mass_damping if damping is None else damping
+        finite("damping", self.damping, least=0)
         self._limit = (contact or Contact()).speed_limit
-        self.pins, self.air, self.body = tuple(int(i) for i in pins), air, 0.0
+        self.pins, self.air, self.body = self._run.pins, air, 0.0
 
     @property
     def positions(self) -> np.ndarray:
@@ -121,7 +121,7 @@ class Live:
         (P, 3) [N] of this frame; body: the key a moving collider reaches at the end of the frame.
         """
         if pins is not None:
-            self.pins = tuple(int(i) for i in pins)
+            self.pins = vertex_numbers("pins", pins)
         before = None if self.air is None else self.air.at(self._state.frame * FRAME)
         if wind is not None:
             self.air = (self.air or Air()).blowing(wind)
@@ -130,10 +130,10 @@ class Live:
             after = self.air.at((self._state.frame + 1) * FRAME)
             blown, press = np.stack([np.zeros(3) if before is None else before, after]), self.air.press
         early = self.body
-        self.body = early if body is None else float(body)
+        self.body = early if body is None else finite("body", body, least=0)
         under = Conditions(
             gravity=self._gravity,
-            damping=self.damping,
+            damping=finite("damping", self.damping, least=0),
             friction=self._run.sheet.material.friction,
             speed_limit=self._limit,
             body=(early, self.body),

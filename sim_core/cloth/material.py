@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from sim_core.cloth.given import finite
 from sim_core.errors import SimCoreError
 
 
@@ -25,7 +26,9 @@ class ParametersLike(Protocol):
     @property
     def poisson(self) -> float: ...
     @property
-    def bend(self) -> float: ...
+    def bend_warp(self) -> float: ...
+    @property
+    def bend_weft(self) -> float: ...
     @property
     def friction(self) -> float: ...
 
@@ -35,8 +38,9 @@ class Material:
     """A thin elastic sheet; the warp runs along pattern y, the weft along pattern x.
 
     density [kg/m2], stretch [N/m] along the weft (and along the warp unless `stretch_warp` is given),
-    shear [N/m] (None: isotropic, stretch / (2 (1 + poisson))), bend [N m], friction: Coulomb's mu,
-    mass_damping [1/s], stiffness_damping [s]. Raises SimCoreError on a value that has no meaning.
+    shear [N/m] (None: isotropic, stretch / (2 (1 + poisson))), bend [N m] against bending the weft's yarns, and
+    the warp's unless `bend_warp` is given, friction: Coulomb's mu, mass_damping [1/s], stiffness_damping [s].
+    Raises SimCoreError on a value that has no meaning.
     """
 
     density: float
@@ -48,17 +52,16 @@ class Material:
     stiffness_damping: float = 2e-5
     stretch_warp: float | None = None
     shear: float | None = None
+    bend_warp: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("density", "stretch", "stretch_warp", "shear"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise SimCoreError(f"material.{name}: {value} – must be a finite number above 0")
-        for name in ("bend", "friction", "mass_damping", "stiffness_damping"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0):
-                raise SimCoreError(f"material.{name}: {value} – must be a finite number, 0 or more")
-        if not -1.0 < self.poisson < 1.0:
+            if name in ("density", "stretch") or getattr(self, name) is not None:
+                finite(f"material.{name}", getattr(self, name), above=0)
+        for name in ("bend", "bend_warp", "friction", "mass_damping", "stiffness_damping"):
+            if name != "bend_warp" or self.bend_warp is not None:
+                finite(f"material.{name}", getattr(self, name), least=0)
+        if not -1.0 < finite("material.poisson", self.poisson) < 1.0:
             raise SimCoreError(f"material.poisson: {self.poisson} – must lie between -1 and 1 (plane stress)")
 
     @staticmethod
@@ -72,7 +75,8 @@ class Material:
             stretch_warp=float(parameters.stretch_warp),
             shear=float(parameters.shear),
             poisson=float(parameters.poisson),
-            bend=float(parameters.bend),
+            bend=float(parameters.bend_weft),
+            bend_warp=float(parameters.bend_warp),
             friction=float(parameters.friction),
             mass_damping=mass_damping,
             stiffness_damping=stiffness_damping,
@@ -85,3 +89,12 @@ class Material:
         scale = 1 / (1 - self.poisson**2)
         cross = self.poisson * math.sqrt(weft * warp) * scale
         return np.array([[weft * scale, cross, 0.0], [cross, warp * scale, 0.0], [0.0, 0.0, 4 * shear]])
+
+    def bending(self) -> np.ndarray:
+        """B (3,) [N m] of W = (B0 xx^2 + B1 yy^2 + 2 B2 xy^2) / 2 per area, of curvatures along weft, warp and both.
+
+        A cylinder whose rulings are at any angle then stores k^2/2 (sqrt(B0) cos^2 + sqrt(B1) sin^2)^2: what stiffens
+        against twist is not measured for weaves, and taken as Huber (1923) has it, the mean of both.
+        """
+        weft, warp = self.bend, self.bend if self.bend_warp is None else self.bend_warp
+        return np.array([weft, warp, weft if weft == warp else math.sqrt(weft * warp)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
+from sim_core.cloth.given import coordinates, triangles
 from sim_core.errors import SimCoreError
 
 
@@ -16,7 +17,9 @@ def mended(
     Vertices closer than `near` [m] become one; faces that lose a corner or have no area (height below `near`), and
     those that are there twice, go; vertices no face names get the number -1. Raises SimCoreError if nothing is left.
     """
-    rest, faces = np.asarray(rest, float), np.asarray(faces)
+    rest, faces = coordinates("rest", rest), triangles("faces", faces)
+    if faces.min() < 0 or faces.max() >= len(rest):
+        raise SimCoreError(f"faces: {faces.min()} to {faces.max()} – there are vertices 0 to {len(rest) - 1}")
     number = np.arange(len(rest))
     for a, b in sorted(KDTree(rest).query_pairs(near)):
         number[number == number[b]] = number[a]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sim_core.cloth.collider import GRID, MOVING, Packed
+from sim_core.cloth.given import triangles
 from sim_core.errors import SimCoreError
 
 _WIDTH = 20
@@ -69,7 +70,11 @@ def moving_mesh(
     """
     from sim_core.cloth.field import field_of
 
-    frames = np.array(positions, float, order="C")
+    faces = triangles("moving mesh: faces", faces)
+    try:
+        frames = np.array(positions, float, order="C")
+    except (TypeError, ValueError):
+        raise SimCoreError("moving mesh: positions are no array of numbers – expected (T, V, 3)") from None
     if frames.ndim != 3 or frames.shape[2] != 3 or not len(frames):
         raise SimCoreError(f"moving mesh: positions {frames.shape} – expected (T, V, 3), T at least 1")
     wrong = np.flatnonzero(~np.isfinite(frames).all((1, 2)))

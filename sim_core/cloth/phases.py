@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
+from sim_core.cloth.given import FURTHEST, finite, vertex_numbers, whole
 from sim_core.errors import SimCoreError
 
 __all__ = [
@@ -94,31 +96,35 @@ def check_phases(phases: Sequence[Phase]) -> None:
     if not phases:
         raise SimCoreError("phases: there is none – a run needs one")
     for number, phase in enumerate(phases):
-        if not (np.isfinite(phase.seconds) and phase.seconds > 0):
+        if not isinstance(phase, Phase):
+            raise SimCoreError(f"phases: {number} is a {type(phase).__name__} – a Phase is meant")
+        if not (isinstance(phase.seconds, Real) and np.isfinite(phase.seconds) and phase.seconds > 0):
             raise SimCoreError(f"phases: {number} lasts {phase.seconds} s – a finite duration above 0")
-        if not np.isfinite(phase.gravity).all():
+        if not (np.isfinite(phase.gravity) & (np.abs(phase.gravity) <= FURTHEST)).all():
             raise SimCoreError(f"phases: {number} has gravity {phase.gravity} – two finite numbers [m/s2]")
         for name in ("damping", "friction", "speed_limit", "rest"):
-            _check(f"phases: {number}: {name}", getattr(phase, name))
+            if getattr(phase, name) is not None:
+                finite(f"phases: {number}: {name}", getattr(phase, name), least=0)
+        for name in ("sewing", "body"):
+            for value in getattr(phase, name) or ():
+                finite(f"phases: {number}: {name}", value, least=0)
+        vertex_numbers(f"phases: {number}: pins", phase.pins)
 
 
 def check_contact(contact: Contact) -> None:
     """Raises SimCoreError, naming the value, for a contact that has no meaning."""
+    if not isinstance(contact, Contact):
+        raise SimCoreError(f"contact: a {type(contact).__name__} – a Contact is meant")
     for name in ("clearance", "sample_clearance", "thickness", "skin", "spring", "self_friction", "cap"):
-        _check(f"contact.{name}", getattr(contact, name))
-    _check("contact.speed_limit", contact.speed_limit)
-    if contact.every < 1:
-        raise SimCoreError(f"contact.every: {contact.every} – substeps between two looks, 1 or more")
+        finite(f"contact.{name}", getattr(contact, name), least=0)
+    finite("contact.speed_limit", contact.speed_limit, least=0)
+    whole("contact.every", contact.every, 1, "substeps between two looks, 1 or more")
+    whole("contact.untangle", contact.untangle, 0, "steps after each frame, 0 or more")
     if contact.thickness > 0 and contact.skin <= 0:
         raise SimCoreError("contact.skin: 0 – self-contact has to look further than its thickness")
 
 
 def check_gravity(gravity: np.ndarray) -> None:
     """Raises SimCoreError where gravity, or the way down, is not three finite numbers."""
-    if gravity.shape != (3,) or not np.isfinite(gravity).all():
+    if gravity.shape != (3,) or not (np.isfinite(gravity) & (np.abs(gravity) <= FURTHEST)).all():
         raise SimCoreError(f"gravity: {gravity.tolist()} – expected three finite numbers (x, y, z)")
-
-
-def _check(name: str, value: float | None) -> None:
-    if value is not None and not (np.isfinite(value) and value >= 0):
-        raise SimCoreError(f"{name}: {value} – must be a finite number, 0 or more")

@@ -95,7 +95,8 @@ def candidate_pairs(x, rest, faces, edges, length2, same, shell, finder, points,
     side = 0.0
     for e in range(len(edges)):
         side += math.sqrt(length2[e])
-    near = 3.5 * side / len(edges)
+    # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
+    near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
     points, first = vertex_face_pairs(x, rest, faces, same, reach, near, finder, points)
     crossings, second = edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, crossings)
     return points, crossings, (first, second)

@@ -13,12 +13,13 @@ from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.engine import IMPLICIT_STEPS, Engine
+from sim_core.cloth.given import coordinates, vertex_numbers, whole
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
-from sim_core.cloth.stability import first_mode, stable_with
+from sim_core.cloth.stability import first_mode, passing_step, stable_with
 from sim_core.cloth.watching import ways
 from sim_core.errors import SimCoreError
 
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
+LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 INTEGRATORS = ("auto", "explicit", "implicit")
 
@@ -53,13 +55,17 @@ class Run:
         check_phases(phases)
         check_contact(contact or Contact())
         check_gravity(down)
-        if substeps is not None and not substeps > 0:
-            raise SimCoreError(f"substeps: {substeps} – a frame needs at least one")
+        if substeps is not None:
+            whole("substeps", substeps, 1, "a frame needs at least one")
+        if not isinstance(collider, Solid | MovingGrid | None):
+            raise SimCoreError(
+                f"collider: a {type(collider).__name__} – give a Solid, or moving_mesh() of a closed mesh"
+            )
         self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down
         if integrator not in INTEGRATORS:
             raise SimCoreError(f"integrator: {integrator!r} – there are {', '.join(INTEGRATORS)}")
         self.integrator = integrator
-        self.pins = tuple(int(i) for i in pins)
+        self.pins = vertex_numbers("pins", pins)
         self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
         self.pace = self.engine.pace
         self.certified: Certified | None = None
@@ -162,7 +168,8 @@ class Run:
             guard = pace.guard(step, engine.bend_omega2)
             if guard > self.sheet.material.stiffness_damping:
                 step = stable_with(step, guard)
-            step = min(step, engine.air_step(under, begin[1]) / pace.courant)
+            layers = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
+            step = min(step, layers / pace.courant)
             state.mode = mode
         for attempt in range(MAX_HALVINGS):
             count = self.fixed or pace.slow * int(
@@ -171,9 +178,16 @@ class Run:
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
                 engine.advance(under, pins, x, v, state.last_step, count, guard)
-                if self.fixed or engine.health.good(under, begin, (x, v)):
-                    state.safety = min(1.0, state.safety * 1.1)
+                if self.fixed:
                     return x, v, count
+                if engine.health.good(under, begin, (x, v)):
+                    late = passing_step(engine.shell.thickness, v)
+                    if FRAME / count <= LATE * late:
+                        state.safety = min(1.0, state.safety * 1.1)
+                        return x, v, count
+                    step = min(step, late / pace.courant)  # it became faster than layers can bear on the way
+                    engine.forget()
+                    continue
                 engine.forget()
             if self._gives_in(attempt, count):
                 x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
@@ -183,6 +197,13 @@ class Run:
                 engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
+
+    def _layer_step(self, under: Conditions, begin: tuple[np.ndarray, np.ndarray]) -> float:
+        """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
+        v = begin[1].copy()
+        index = self.engine.number[under.led[0]]
+        v[:, index] = (under.led[1].T - begin[0][:, index]) / FRAME
+        return passing_step(self.engine.shell.thickness, v)
 
     def _conditions(self, now: Moment, frame: int) -> Conditions:
         material, phase = self.sheet.material, now.phase
@@ -205,12 +226,5 @@ def checked_state(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
     shape = (len(sheet.rest), 3)
-    x = np.array(positions, float, order="C")
-    v = np.zeros(shape) if velocities is None else np.array(velocities, float, order="C")
-    for name, array in (("positions", x), ("velocities", v)):
-        if array.shape != shape:
-            raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
-        if not np.isfinite(array).all():
-            wrong = np.flatnonzero(~np.isfinite(array).all(1))[0]
-            raise SimCoreError(f"{name}: vertex {wrong} is not finite")
-    return x, v
+    x = coordinates("positions", positions, shape)
+    return x, np.zeros(shape) if velocities is None else coordinates("velocities", velocities, shape)

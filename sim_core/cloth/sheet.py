@@ -14,8 +14,11 @@ import numpy as np
 from scipy import sparse
 
 from sim_core.cloth.bending import bending_matrix
+from sim_core.cloth.given import coordinates, triangles
 from sim_core.cloth.material import Material
 from sim_core.errors import SimCoreError
+
+SHORTEST = 1e-7  # [m], of a face's longest side
 
 
 class Stencil(NamedTuple):
@@ -72,12 +75,17 @@ class Sheet:
         be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
         coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
         """
-        corner, faces = np.ascontiguousarray(corner, float), np.ascontiguousarray(faces)
+        faces, kind = triangles("faces", faces), np.asarray(kind)
+        corner = coordinates("corner", corner)
         if corner.shape != (*faces.shape, 2) or len(kind) != len(faces) or not materials:
             raise SimCoreError(
                 f"corner: {corner.shape}, faces: {faces.shape} – expected (F, 3, 2) and (F, 3), kind (F,)"
             )
-        count = int(faces.max()) + 1 if faces.size else 0
+        if not np.issubdtype(kind.dtype, np.integer) or kind.min() < 0 or kind.max() >= len(materials):
+            raise SimCoreError(
+                f"kind: {kind.min()} to {kind.max()} – there are materials 0 to {len(materials) - 1}"
+            )
+        count = int(faces.max()) + 1
         rest = np.full((count, 2), np.nan)
         rest[faces.ravel()[::-1]] = corner.reshape(-1, 2)[::-1]
         used = ~np.isnan(rest[:, 0])
@@ -94,6 +102,9 @@ class Sheet:
         materials: tuple[Material, ...],
         kind: np.ndarray,
     ) -> Sheet:
+        for material in materials:
+            if not isinstance(material, Material):
+                raise SimCoreError(f"material: a {type(material).__name__} – a Material is meant")
         _check_needles(corner)
         edges, face_edges = face_edge_table(faces)
         area = _areas(corner)
@@ -104,7 +115,7 @@ class Sheet:
             mass += share * material.density
             stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
         own, around, coupling = _membrane(stiffness, face_edges, len(edges))
-        bend = np.array([material.bend for material in materials])[kind]
+        bend = np.array([material.bending() for material in materials])[kind]
         bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
         length2 = _edge_lengths2(corner, face_edges, len(edges))
@@ -130,19 +141,12 @@ def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    rest = np.ascontiguousarray(rest, float)
-    faces = np.ascontiguousarray(faces)
+    if not isinstance(rest, np.ndarray) or not np.issubdtype(rest.dtype, np.number):
+        rest = coordinates("rest", rest)
+    rest, faces = np.ascontiguousarray(rest, float), triangles("faces", faces)
     if rest.ndim != 2 or rest.shape[1] != 2:
         raise SimCoreError(f"rest: shape {rest.shape} – expected (V, 2), metres in the pattern plane")
-    if (
-        faces.ndim != 2
-        or faces.shape[1:] != (3,)
-        or not np.issubdtype(faces.dtype, np.integer)
-        or len(faces) == 0
-    ):
-        raise SimCoreError(f"faces: shape {faces.shape}, {faces.dtype} – expected (F, 3) integers, F > 0")
-    if not np.isfinite(rest).all():
-        raise SimCoreError(f"rest: vertex {np.flatnonzero(~np.isfinite(rest).all(1))[0]} is not finite")
+    rest = coordinates("rest", rest)
     if faces.min() < 0 or faces.max() >= len(rest):
         wrong = faces.max() if faces.max() >= len(rest) else faces.min()
         raise SimCoreError(f"faces: index {wrong} – there are vertices 0 to {len(rest) - 1}")
@@ -162,6 +166,9 @@ def _check_twice(faces: np.ndarray) -> None:
 def _check_needles(corner: np.ndarray) -> None:
     sides = corner - np.roll(corner, 1, axis=1)
     longest = (sides**2).sum(2).max(1)
+    small = np.flatnonzero(longest < SHORTEST**2)
+    if len(small):
+        raise SimCoreError(f"faces: face {small[0]} is smaller than {SHORTEST:g} m – lengths are metres")
     thin = np.flatnonzero(_areas(corner) < 1e-3 * longest)
     if len(thin):
         raise SimCoreError(f"faces: face {thin[0]} is a needle or has no area – re-mesh the panel")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -178,15 +177,16 @@ def robe_materials(
     length = float(np.abs(cloth.vertices[:, 1]).max())
     enough = density * GRAVITY * length / SAG
     stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
-    low = [parameters.bounds.get(name, (parameters.bend,) * 2)[0] for name in ("bend_warp", "bend_weft")]
-    free, resolved = math.sqrt(float(low[0]) * float(low[1])), density * GRAVITY * (FOLD * edge) ** 3
+    free = [float(parameters.bounds[name][0]) for name in ("bend_warp", "bend_weft")]
+    resolved = density * GRAVITY * (FOLD * edge) ** 3
     single = Material(
         density=density,
         stretch=stretch[0],
         stretch_warp=stretch[1],
         shear=min(float(parameters.shear), min(stretch) / 2.6),
         poisson=min(float(parameters.poisson), 0.3),
-        bend=max(free, resolved),
+        bend=max(free[1], resolved),
+        bend_warp=max(free[0], resolved),
         friction=float(parameters.friction),
         mass_damping=2.0,
         stiffness_damping=2e-5,
@@ -198,11 +198,13 @@ def robe_materials(
         stretch_warp=2 * stretch[1],
         shear=2 * (single.shear or 0.0),
         bend=6 * single.bend,
+        bend_warp=6 * max(free[0], resolved),
     )
     doubled = np.array([panel.doubled for panel in pattern.panels])
     choices = {
         "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: {SAG:.1%} strain by its weight",
-        "bend": f"lower bound {free:.2e} N m (fibres free), at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
+        "bend": f"lower bounds, warp {free[0]:.2e} and weft {free[1]:.2e} N m (fibres free), at least {resolved:.2e} "
+        f"for a {edge * 1e3:.0f} mm mesh",
         "doubled": "bands: twice the mass and stretch, six times the bending",
     }
     return [single, twice], doubled[cloth.panel].astype(np.int32), choices

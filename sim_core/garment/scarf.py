@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -118,25 +117,24 @@ def scarf_material(
     density = float(parameters.density)
     enough = density * GRAVITY * hanging / SAG
     stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
-    low = [
-        parameters.bounds.get(name, (parameters.bend, parameters.bend))[0]
-        for name in ("bend_warp", "bend_weft")
-    ]
-    free, resolved = math.sqrt(float(low[0]) * float(low[1])), density * GRAVITY * (1.15 * edge) ** 3
+    free = [float(parameters.bounds[name][0]) for name in ("bend_warp", "bend_weft")]
+    resolved = density * GRAVITY * (1.15 * edge) ** 3
     material = Material(
         density=density,
         stretch=stretch[0],
         stretch_warp=stretch[1],
         shear=min(float(parameters.shear), min(stretch) / 2.6),
         poisson=min(float(parameters.poisson), 0.3),
-        bend=max(free, resolved),
+        bend=max(free[1], resolved),
+        bend_warp=max(free[0], resolved),
         friction=float(parameters.friction),
         mass_damping=2.0,
         stiffness_damping=2e-5,
     )
     choices = {
         "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: {SAG:.1%} strain at the bar",
-        "bend": f"lower bound {free:.2e} N m (fibres free), at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
+        "bend": f"lower bounds, warp {free[0]:.2e} and weft {free[1]:.2e} N m (fibres free), at least {resolved:.2e} "
+        f"for a {edge * 1e3:.0f} mm mesh",
         "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",
     }
     return material, choices

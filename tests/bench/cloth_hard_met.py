@@ -38,7 +38,9 @@ def through_a_ring(speed: float) -> Outcome:
     sheet = Sheet.of(rest, faces, replace(GF_CM, friction=0.2))
     start = np.column_stack([rest[:, 0] - 0.15, np.full(len(rest), 0.02), rest[:, 1] - 0.15])
     middle = np.argsort(((rest - 0.15) ** 2).sum(1))[:7].tolist()
-    contact = Contact(clearance=0.003, thickness=0.002, cap=0.003, speed_limit=max(3.0, 1.5 * speed))
+    contact = Contact(
+        clearance=0.003, thickness=0.002, skin=0.003, cap=0.003, speed_limit=max(3.0, 1.5 * speed)
+    )
     home, drawn = start[middle], int(np.ceil(0.48 / speed * 25))
 
     def drive(frame: int) -> np.ndarray:

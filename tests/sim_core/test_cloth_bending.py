@@ -119,3 +119,49 @@ def test_a_welded_seam_bends_like_the_whole() -> None:
     x = np.column_stack([rest, height])
     v = np.zeros_like(x)
     assert energies(welded.stencil, x, v)[1] == pytest.approx(energies(whole.stencil, x, v)[1], rel=0.02)
+
+
+WOVEN = Material(0.05, 1e-9, 0.0, BEND, bend_warp=9 * BEND)
+CYLINDERS = {
+    "about the warp": (1, 0, 1.0),
+    "about the weft": (0, 1, 9.0),
+    "at 45 degrees": (0.5**0.5, 0.5**0.5, 4.0),
+}
+
+
+@EACH
+@pytest.mark.parametrize("way", CYLINDERS)
+def test_a_woven_cloth_bends_as_its_yarns_do(name: str, way: str) -> None:
+    """Cylinders of a plate nine times as stiff along the warp: k^2/2 (sqrt(B) cos^2 + sqrt(9 B) sin^2)^2 per area."""
+    sheet = Sheet.of(*MESHES[name](), WOVEN)
+    a, b, times = CYLINDERS[way]
+    middle = sheet.rest - sheet.rest.mean(0)
+    height = 0.25 * (middle @ [a, b]) ** 2
+    first, second = (sheet.rest[sheet.faces[:, k]] - sheet.rest[sheet.faces[:, 0]] for k in (1, 2))
+    area = 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]).sum()
+    assert stored(sheet, height) == pytest.approx(BEND / 2 * times * 0.25 * area, rel=1e-6)
+
+
+def test_a_panel_keeps_its_own_warp_when_it_is_laid_another_way() -> None:
+    """A strip of two welded panels, the second cut across: one bends its weft where the other bends its warp."""
+    rest, faces = equilateral_sheet(0.3, 0.2, 0.05)
+    corner = rest[faces].copy()
+    away = corner[:, :, 0].mean(1) > 0.15
+    corner[away] = corner[away] @ np.array([[0.0, -1.0], [1.0, 0.0]]) + [1.0, -2.0]
+    kinds = np.zeros(len(faces), int)
+    welded = Sheet.of_corners(corner, faces, [WOVEN], kinds)
+    height = 0.1 * (rest[:, 0] - 0.15) ** 2
+    x = np.column_stack([rest, height])
+    a, b = rest[faces[:, 1]] - rest[faces[:, 0]], rest[faces[:, 2]] - rest[faces[:, 0]]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    wanted = 0.5 * 0.04 * (BEND * area[~away].sum() + 9 * BEND * area[away].sum())
+    assert energies(welded.stencil, x, np.zeros_like(x))[1] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_equal_bends_are_the_isotropic_cloth_to_the_bit() -> None:
+    for name in ("rows", "scattered"):
+        one, two = (
+            Sheet.of(*MESHES[name](), Material(0.05, 50.0, 0.3, BEND, bend_warp=warp))
+            for warp in (None, BEND)
+        )
+        assert np.array_equal(one.stencil.bend, two.stencil.bend)

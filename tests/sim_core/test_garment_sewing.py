@@ -115,7 +115,7 @@ def test_materials_bear_the_robe_and_fold_as_the_mesh_can(half: tuple[Pattern, C
     assert twice.density == 2 * single.density
     assert (twice.stretch, twice.shear) == (2 * single.stretch, 2 * single.shear)
     assert twice.stretch_warp == 2 * single.stretch_warp
-    assert twice.bend == 6 * single.bend
+    assert (twice.bend, twice.bend_warp) == (6 * single.bend, 6 * (single.bend_warp or 0.0))
     doubled = {n for n, panel in enumerate(pattern.panels) if panel.doubled}
     assert 0 < len(doubled) < len(pattern.panels)
     assert set(cloth.panel[kind == 1]) == doubled
