@@ -22,7 +22,7 @@ from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.records import Clock, versions
 from sim_core.garment.scarf import scarf_material
-from sim_core.garment.schedule import UNTANGLE, Pose
+from sim_core.garment.schedule import LIMIT, UNTANGLE, Pose
 from sim_core.garment.sewing import Cloth
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
@@ -67,8 +67,8 @@ class PiboSettings:
     reach: float = 0.075
     low: float = 0.02
     back: float = 0.22
-    gap: float = 0.15
-    arm: float = 0.15
+    gap: float = 0.07
+    arm: float = 0.18
     end: float = 0.24
     waves: float = 5.0
     clearance: float = 0.004
@@ -277,7 +277,7 @@ def _holds(half: Half) -> Holds:
     count = len(half.sheet.rest)
     low, high = np.full(count, -np.inf), np.full(count, np.inf)
     low[half.middle] = high[half.middle] = 0.0
-    return Holds.of(count, low=low, high=high, slaves=half.slaves)
+    return Holds.of(count, low=low, high=high, slaves=half.slaves, limit=LIMIT)
 
 
 def _garment(
