@@ -10,6 +10,7 @@ import numpy as np
 from sim_core.errors import SimCoreError
 
 CAPSULE, CYLINDER, BOX, HALFSPACE, GRID, MOVING = range(6)
+FASTEST = 4  # column of a moving grid: the most that its distance changes anywhere between the two keys [m]
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
 _NO_GRID = np.zeros((2, 2, 2), np.float32)
 _AT_REST = np.zeros(2)

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.collider import FASTEST, MOVING
 from sim_core.cloth.distance import signed_distance
 
 LONGEST_SLEEP = 40  # substeps
@@ -55,29 +56,31 @@ def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, 
 
 
 @njit(cache=True, error_model="numpy")
-def collide_due_vertices(
-    packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, friction, cap
-):
-    """As `collide_vertices`, for those whose wake (S,) is due: a vertex sleeps for as long as it cannot arrive.
-
-    awake: nobody sleeps.
-    """
+def collide_due_vertices(packed, inverse_mass, x, v, samples, wake, step, clearance, dt, friction, cap):
+    """As `collide_vertices`, for those whose wake (S,) is due: a vertex sleeps for as long as it cannot arrive."""
+    drift = drift_of(packed)
     for s in range(len(samples)):
-        if wake[s] > step and not awake:
+        if wake[s] > step:
             continue
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
         room = _meet(packed, x, v, i, clearance, dt, friction, cap)
-        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, dt)
+        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, dt)
 
 
 @njit(cache=True, error_model="numpy")
-def _sleep(room, speed2, dt):
-    """Substeps that `room` [m] lasts at twice the speed and a little more."""
+def _sleep(room, speed2, drift, dt):
+    """Substeps that `room` [m] lasts at twice the speed, that of the body's surface and a little more."""
     if room <= 0.0:
         return 0
-    return int(min(LONGEST_SLEEP, room / (dt * (2.0 * math.sqrt(speed2) + SLEEP_SPEED))))
+    return int(min(LONGEST_SLEEP, room / (dt * (2.0 * math.sqrt(speed2) + SLEEP_SPEED + drift))))
+
+
+@njit(cache=True, error_model="numpy")
+def drift_of(packed):
+    """The most that the distance at a place loses in a second [m/s] as the body moves."""
+    return abs(packed.blend[1]) * packed.data[0, FASTEST] if packed.kind[0] == MOVING else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -155,6 +158,7 @@ def settle_samples(packed, inverse_mass, x, v, samples, wake, step, clearance, c
 @njit(cache=True, error_model="numpy")
 def collide_due_samples(packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, cap):
     """As `collide_samples`, for those whose wake (S,) is due."""
+    drift = drift_of(packed)
     for s in range(len(samples)):
         if wake[s] > step and not awake:
             continue
@@ -163,7 +167,7 @@ def collide_due_samples(packed, inverse_mass, x, v, samples, wake, step, awake, 
         for a in range(3):
             u = samples[s, a]
             fast = max(fast, v[u, 0] ** 2 + v[u, 1] ** 2 + v[u, 2] ** 2)
-        wake[s] = step + 1 + _sleep(room, fast, dt)
+        wake[s] = step + 1 + _sleep(room, fast, drift, dt)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.health import Health
-from sim_core.cloth.holding import Holds, bound, draw_together, mirror
+from sim_core.cloth.holding import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.pairs import finder_of, pairs_of
@@ -54,6 +54,8 @@ class Engine:
         self.moving = collider if isinstance(collider, MovingGrid) else None
         self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
         self.holds = (holds or Holds.of(count)).renumbered(self.number, self.order)
+        if self.holds.limit and self.pace.precision == "single":
+            raise SimCoreError("holds.limit: lengths are kept in double precision only – take Pace()")
         self.contact = c = contact or Contact()
         self.shell = Shell(
             float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every)
@@ -69,7 +71,7 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
-        lanes = lanes_for(self.sheet, self.pace.precision)
+        lanes = None if self.holds.limit else lanes_for(self.sheet, self.pace.precision)
         self.laned = Laned(self.sheet, lanes, longest, samples) if lanes else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
@@ -236,7 +238,11 @@ class Engine:
     def _held(
         self, under: Conditions, inverse: np.ndarray, x: np.ndarray, v: np.ndarray, part: float, h: float
     ) -> None:
-        """Seams, solids, bounds and images after an implicit step."""
+        """Lengths, seams, solids, bounds and images after an implicit step."""
+        if self.holds.limit:
+            ends, length2 = self.sheet.edges, self.sheet.stencil.length2
+            strain = ((x[ends[:, 0]] - x[ends[:, 1]]) ** 2).sum(1) - length2
+            keep_lengths(self.holds.limit, inverse, ends, length2, strain, x, v)
         if len(self.holds.pairs):
             early, late = under.sewing
             draw_together(self.holds, inverse, x, v, early + (late - early) * part, (early - late) / FRAME)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim_core.cloth.collider import GRID, MOVING, Packed
+from sim_core.cloth.collider import FASTEST, GRID, MOVING, Packed
 from sim_core.cloth.given import triangles
 from sim_core.errors import SimCoreError
 
@@ -29,6 +29,7 @@ class MovingGrid:
     key: Callable[[int], np.ndarray] = field(repr=False)
     name: str = ""
     _kept: dict[int, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
+    _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
 
     def packed(self, early: float, late: float) -> tuple[Packed, tuple[float, float]]:
         """The arrays for a frame in which the body goes from `early` to `late` (in keys), and both within its keys.
@@ -55,7 +56,16 @@ class MovingGrid:
                 self._kept[k] = np.ascontiguousarray(self.key(k), np.float32)
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
+        if kind == MOVING:
+            data[0, FASTEST] = self._motion(first, second)
         return Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))
+
+    def _motion(self, first: int, second: int) -> float:
+        """The most that the distance changes anywhere between two kept keys [m]."""
+        if (first, second) not in self._most:
+            change = self._kept[second] - self._kept[first]
+            self._most[first, second] = float(max(change.max(), -change.min()))
+        return self._most[first, second]
 
 
 def moving_mesh(

@@ -27,11 +27,10 @@ from sim_core.cloth.contact import (
     collide_due_vertices,
     settle_samples,
 )
-from sim_core.cloth.holding import bound, draw_together, mirror
+from sim_core.cloth.holding import bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
-MOVING_EVERY = 4  # the same where the body moves: none of them may sleep then
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
@@ -155,14 +154,12 @@ def _forces(bands, around, room, x, v, part, slow_now, air_now, last):
 def against_solids(packed, inverse, around, room, vertices, middles, x, v, dt, step, last):
     """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
     r, c, cap = around.sample_clearance, around.clearance, around.cap
-    moving = packed.kind[0] == MOVING  # comes nearer on its own: nobody sleeps
-    if step % (MOVING_EVERY if moving else SAMPLES_EVERY) == 0 or last:
-        awake = moving or last
-        collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, awake, r, dt, cap)
+    if step % SAMPLES_EVERY == 0 or last:
+        collide_due_samples(packed, inverse, x, v, middles, room.wake_middles, step, last, r, dt, cap)
         if last:
             settle_samples(packed, inverse, x, v, middles, room.wake_middles, step, SETTLED * r, cap)
     wake = room.wake_vertices
-    collide_due_vertices(packed, inverse, x, v, vertices, wake, step, moving, c, dt, around.friction, cap)
+    collide_due_vertices(packed, inverse, x, v, vertices, wake, step, c, dt, around.friction, cap)
 
 
 @njit(cache=True, error_model="numpy")
@@ -244,5 +241,8 @@ def advance(
         if around.speed_limit < FREE:
             band_limit(vs[0], vs[1], vs[2], around.speed_limit)
         band_drift(xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], dt)
+        if holds.limit > 0.0:
+            strain = room.before if around.beta > 0.0 else room.strain
+            keep_lengths(holds.limit, inverse, edges, bands.length2, strain, x, v)
         held(holds, packed, inverse, vertices, middles, around, room, x, v, dt, step, substeps)
     return points, crossings

@@ -18,6 +18,8 @@ import math
 
 import numpy as np
 from numba import njit
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
 
 from sim_core.cloth.holding import Holds, bound, mirror
 from sim_core.cloth.pairs import Finder, hash_points
@@ -224,6 +226,19 @@ def _stop_going_back(way: np.ndarray, v: np.ndarray) -> None:
     v[moved] -= np.minimum((along * v[moved]).sum(1), 0.0)[:, None] * along
 
 
+def _together_with(left: np.ndarray, pairs: np.ndarray, edges: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """Which vertices (V,) hang together with those of crossings that are left (L, 5).
+
+    What hangs together are moved vertices (V,) at one edge (E, 2) and the five of each crossing (K, 5), then and now.
+    """
+    both = edges[moved[edges].all(1)]
+    first = np.concatenate([both[:, 0], np.repeat(pairs[:, 0], 4)])
+    second = np.concatenate([both[:, 1], pairs[:, 1:].ravel()])
+    graph = sparse.coo_array((np.ones(len(first)), (first, second)), (len(moved), len(moved)))
+    tangle = connected_components(graph, directed=False)[1]
+    return np.isin(tangle, tangle[left.ravel()])
+
+
 def untangle(
     x: np.ndarray,
     v: np.ndarray,
@@ -241,8 +256,8 @@ def untangle(
 ) -> tuple[int, int, Lists]:
     """Moves x (V, 3) [m] in place until no edge passes through a face, `rounds` times at most by `step` [m].
 
-    Where that does not succeed nothing is moved: what springs back frame by frame would never come to rest. partly:
-    fewer crossings are taken, too.
+    Tangles stand for themselves: one that does not come free is not moved, for what springs back frame by frame would
+    never come to rest. partly: fewer crossings are taken, too.
     v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`; finder, lists: working memory. Returns
     how many crossings there were before, and are now, and the lists, longer ones where they were full.
     """
@@ -252,6 +267,7 @@ def untangle(
         return 0, 0, (pairs, place)
     start, best, late = x.copy(), x.copy(), 0
     reach = NEAR * float(np.sqrt(((x[edges[:, 0]] - x[edges[:, 1]]) ** 2).sum(1).max()))
+    whole, tangled = (edges, faces), pairs[:count].copy()
     near_edges, near_faces = (
         near_crossings(x, shape, edges[pairs[:count, 0]], reach) for shape in (edges, faces)
     )
@@ -266,9 +282,15 @@ def untangle(
         _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step)
         bound(holds, x, v)
         mirror(holds, x, v)
+    x[:] = best
     if least and not partly:
-        x[:], least = start, first
-    else:
-        x[:] = best
+        pairs, place, count = crossings_of(best, edges, faces, holds.same, finder, pairs, place)
+        left = np.concatenate([edges[pairs[:count, 0]], faces[pairs[:count, 1]]], axis=1)
+        first_pairs = np.concatenate([whole[0][tangled[:, 0]], whole[1][tangled[:, 1]]], axis=1)
+        back = _together_with(left, np.concatenate([first_pairs, left]), edges, (x != start).any(1))
+        x[back] = start[back]
+        pairs, place, least = crossings_of(x, *whole, holds.same, finder, pairs, place)
+        if least >= first:
+            x[:], least = start, first
     _stop_going_back(x - start, v)
     return first, least, (pairs, place)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.cloth import Material, Sheet
+from sim_core.cloth.evening import evened
 from sim_core.garment.sewing import Cloth
 
 __all__ = ["Half", "half_sheet"]
@@ -62,6 +63,8 @@ def half_sheet(
     image[masters] = len(on) + np.arange(len(masters))
     whole = np.concatenate([faces, image[faces[ring]][:, [0, 2, 1]]])
     corners = np.concatenate([corner, (corner[ring] * [-1.0, 1.0])[:, [0, 2, 1]]])
-    sheet = Sheet.of_corners(corners, whole, materials, np.r_[kind, kind[ring]])
+    kinds = np.r_[kind, kind[ring]]
+    density = np.array([material.density for material in materials])[kinds]
+    sheet = evened(Sheet.of_corners(corners, whole, materials, kinds), density, own=len(on))
     slaves = np.column_stack([image[masters], masters]).astype(np.int32)
     return Half(sheet, number, middle, slaves, len(on))

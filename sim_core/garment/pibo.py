@@ -22,7 +22,7 @@ from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.records import Clock, versions
 from sim_core.garment.scarf import scarf_material
-from sim_core.garment.schedule import UNTANGLE, Pose
+from sim_core.garment.schedule import LIMIT, UNTANGLE, Pose
 from sim_core.garment.sewing import Cloth
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
@@ -41,12 +41,17 @@ FALLING = (
     Phase(0.80, (9.81, 9.81), 12.0, 0.8, "settling"),
 )
 # Then with a softer shell: stacked folds that push each other hard tremble for ever.
-RESTING = (
+SETTLING = (
     Phase(1.80, (9.81, 9.81), 7.0, 2.0, "coming to rest"),
     Phase(0.80, (9.81, 9.81), 12.0, 2.0, "coming to rest"),
+)
+# What is still tangled is left alone at last: taken apart in part, it would spring back frame by frame.
+RESTING = (
     Phase(0.40, (9.81, 9.81), 30.0, 2.0, "coming to rest"),
     Phase(2.40, (9.81, 9.81), 80.0, 2.0, "at rest", rest=5e-6),
 )
+
+Phases = tuple[tuple[Phase, ...], ...]  # of each run; with the last alone nothing is taken apart in part
 
 
 @dataclass(frozen=True)
@@ -62,8 +67,8 @@ class PiboSettings:
     reach: float = 0.075
     low: float = 0.02
     back: float = 0.22
-    gap: float = 0.15
-    arm: float = 0.15
+    gap: float = 0.07
+    arm: float = 0.18
     end: float = 0.24
     waves: float = 5.0
     clearance: float = 0.004
@@ -82,7 +87,7 @@ def pibo_on_figure(
     edge: float | None = None,
     seed: int = 0,
     settings: PiboSettings | None = None,
-    phases: tuple[tuple[Phase, ...], tuple[Phase, ...]] = (FALLING, RESTING),
+    phases: Phases = (FALLING, SETTLING, RESTING),
     progress: Callable[[float, str], None] | None = None,
     on_frame: Callable[[int, np.ndarray], None] | None = None,
     checkpoint: Path | None = None,
@@ -139,12 +144,11 @@ def pibo_on_figure(
 
 
 Solid = tuple[np.ndarray, np.ndarray]
-Phases = tuple[tuple[Phase, ...], tuple[Phase, ...]]
 
 
 @dataclass(frozen=True)
 class _Hooks:
-    """Who hears of the two runs as if they were one, and where they are kept."""
+    """Who hears of the runs as if they were one, and where they are kept."""
 
     half: Half
     phases: Phases
@@ -173,50 +177,50 @@ class _Hooks:
             "progress": told if self.progress else None,
             "on_frame": heard if self.on_frame else None,
             "checkpoint": path.with_name(f"{path.name}.{run}") if path else None,
-            "keep": run == 0 and path is not None,
+            "keep": run < len(self.phases) - 1 and path is not None,
         }
 
     def finished(self) -> None:
-        """The first run's checkpoint is needed no longer."""
-        if self.checkpoint:
-            self.checkpoint.with_name(f"{self.checkpoint.name}.0").unlink(missing_ok=True)
+        """The checkpoints of all runs but the last are needed no longer."""
+        for run in range(len(self.phases) - 1 if self.checkpoint else 0):
+            assert self.checkpoint is not None
+            self.checkpoint.with_name(f"{self.checkpoint.name}.{run}").unlink(missing_ok=True)
 
 
 def _draped(
     half: Half, start: np.ndarray, field: DistanceField, s: PiboSettings, phases: Phases, hooks: _Hooks
 ) -> Drape:
-    """Both runs; frames and substeps of the result are those of both."""
+    """All runs; frames and substeps of the result are those of all."""
     solid, holds, runs = field.solid(), _holds(half), []
-    for run in (0, 1):
+    for run, course in enumerate(phases):
+        soft = min(run, 1)
         shell = {
-            "spring": s.spring[run],
-            "self_friction": s.self_friction[run],
+            "spring": s.spring[soft],
+            "self_friction": s.self_friction[soft],
             "every": 2,
-            "partly": run == 0,
+            "partly": run < len(phases) - 1,
         }
         contact = Contact(
             s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
         )
-        first = runs[0].frames if runs else 0
         runs.append(
             drape(
                 half.sheet,
-                runs[0].positions if runs else start,
-                phases[run],
-                velocities=runs[0].velocities if runs else None,
+                runs[-1].positions if runs else start,
+                course,
+                velocities=runs[-1].velocities if runs else None,
                 collider=solid,
                 contact=contact,
                 holds=holds,
-                **hooks.of(run, first),
+                **hooks.of(run, sum(done.frames for done in runs)),
             )
         )
     hooks.finished()
-    fall, rest = runs
     return replace(
-        rest,
-        frames=fall.frames + rest.frames,
-        substeps=fall.substeps + rest.substeps,
-        rollbacks=fall.rollbacks + rest.rollbacks,
+        runs[-1],
+        frames=sum(run.frames for run in runs),
+        substeps=sum(run.substeps for run in runs),
+        rollbacks=sum(run.rollbacks for run in runs),
     )
 
 
@@ -273,7 +277,7 @@ def _holds(half: Half) -> Holds:
     count = len(half.sheet.rest)
     low, high = np.full(count, -np.inf), np.full(count, np.inf)
     low[half.middle] = high[half.middle] = 0.0
-    return Holds.of(count, low=low, high=high, slaves=half.slaves)
+    return Holds.of(count, low=low, high=high, slaves=half.slaves, limit=LIMIT)
 
 
 def _garment(

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from sim_core import metrics
-from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape
+from sim_core.cloth import Contact, Drape, Holds, Material, Phase, Sheet, drape
 from sim_core.cloth.draping import ENGINE_VERSION
 from sim_core.errors import SimCoreError
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.placing import Gathering, gathered_strip
 from sim_core.garment.records import Clock, versions
-from sim_core.garment.schedule import GRAVITY, UNTANGLE
+from sim_core.garment.schedule import GRAVITY, LIMIT, UNTANGLE
 from sim_core.garment.stand import Stand
 from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
@@ -66,7 +66,8 @@ def scarf_on_stand(
     start = gathered_strip(panel.vertices, stand.height, gathering, np.random.default_rng(seed))
     solid, contact = stand.collider(), scarf_contact(step, stand.bar_radius)
     hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
-    result = drape(sheet, start, phases, collider=solid, contact=contact, **hooks)
+    holds = Holds.of(len(start), limit=LIMIT)
+    result = drape(sheet, start, phases, collider=solid, contact=contact, holds=holds, **hooks)
     clock.lap("drape")
     errors = _measured(sheet, result, stand)
     clock.lap("check")

@@ -13,6 +13,7 @@ from sim_core.cloth.draping import FRAME
 __all__ = ["Pose", "Schedule"]
 
 GRAVITY = 9.81  # [m/s2]
+LIMIT = 0.04  # strain at which the threads of a softened cloth have no more to give: edges are held there
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 from scipy.interpolate import CubicSpline
+from scipy.optimize import least_squares
 
 from sim_core.cloth.field import DistanceField
 from sim_core.errors import SimCoreError
@@ -13,6 +15,7 @@ from sim_core.errors import SimCoreError
 __all__ = ["Accordion", "arranged_path", "swept"]
 
 STEP = 0.005  # [m] between stations of the path
+TWIST = 0.5  # strain by twist counts that much of one by a bend over the edge: it is second order
 
 
 @dataclass(frozen=True)
@@ -85,8 +88,8 @@ def swept(
     width = float(np.ptp(rest[:, 1]))
     across = rest[:, 1] - rest[:, 1].min()
     along = rest[:, 0]
-    _, lateral, outward = _frames(path, arm, int(np.argmax(path[:, 1])))
     s = STEP * np.arange(len(path))
+    _, lateral, outward = _frames(path, arm, int(np.argmax(path[:, 1])), accordion.extent(s))
     phase, lean = rng.uniform(0, 2 * np.pi), rng.uniform(0, 2 * np.pi)
     sections = [_section(float(e), width, accordion, phase, lean) for e in accordion.extent(s)]
     place = np.clip(along / STEP, 0, len(path) - 1.001)
@@ -104,17 +107,54 @@ def swept(
     return out
 
 
-def _frames(path: np.ndarray, arm: np.ndarray, top: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Tangent, lateral and outward unit vectors (N, 3): the width upright at the middle, along -`arm` from `top` on."""
+def _frames(
+    path: np.ndarray, arm: np.ndarray, top: int, extent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Tangent, lateral and outward unit vectors (N, 3): the width upright at the middle, along -`arm` from `top` on.
+
+    Between them the width, extent (N,) [m], turns so that the strip bends over its flat side wherever it can: bent
+    over its edge, or turned on the spot, its borders would be stretched and its folds pushed through each other.
+    """
     tangent = np.gradient(path, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     tangent[0] = [1.0, 0.0, 0.0]
-    share = np.clip(np.arange(len(path)) / top, 0, 1)
-    turn = (share * share * (3 - 2 * share))[:, None]
-    lateral = (1 - turn) * [0.0, 1.0, 0.0] - turn * arm / np.linalg.norm(arm)
-    lateral = lateral - (lateral * tangent).sum(1, keepdims=True) * tangent
-    lateral /= np.linalg.norm(lateral, axis=1, keepdims=True)
+    first = _carried(tangent, np.array([0.0, 1.0, 0.0]))
+    second = np.cross(tangent, first)
+    bend = np.gradient(tangent, STEP, axis=0)
+    toward = -arm / np.linalg.norm(arm)
+    goal = np.unwrap(np.arctan2(second @ toward, first @ toward))
+    half = 0.5 * extent
+
+    def strains(turn: np.ndarray) -> np.ndarray:
+        """What the borders are strained by, station by station, and how far the width is from where it shall be."""
+        angle = np.r_[0.0, turn]
+        lateral = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
+        over_edge = half * (bend * lateral).sum(1)
+        twist = 0.5 * (half[1:] + half[:-1]) * np.diff(angle) / STEP
+        return np.r_[over_edge, TWIST * twist, 10.0 * (angle - goal)[top:]]
+
+    t = np.clip(np.arange(len(path)) / top, 0, 1)
+    guess = goal[top] * t * t * (3 - 2 * t)
+    turn = np.r_[0.0, least_squares(strains, guess[1:], jac_sparsity=_sparsity(len(path), top)).x]
+    lateral = np.cos(turn)[:, None] * first + np.sin(turn)[:, None] * second
     return tangent, lateral, np.cross(tangent, lateral)
+
+
+def _sparsity(count: int, top: int) -> sparse.csr_array:
+    """Which residuals (R, N - 1) of `_frames` know which turns."""
+    own = sparse.eye_array(count, format="csr")
+    both = own[1:] + own[:-1]
+    return sparse.vstack([own, both, own[top:]], format="csr")[:, 1:]
+
+
+def _carried(tangent: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """A unit vector (N, 3) across tangents (N, 3) that turns about them nowhere, beginning with `first`."""
+    out = np.zeros_like(tangent)
+    for k in range(len(tangent)):
+        first = first - (first @ tangent[k]) * tangent[k]
+        first = first / np.linalg.norm(first)
+        out[k] = first
+    return out
 
 
 def _section(

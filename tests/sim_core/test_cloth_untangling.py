@@ -114,3 +114,24 @@ def test_a_run_ends_untangled_where_repulsion_alone_keeps_it_tangled() -> None:
         left[rounds] = metrics.intersections(end.positions, faces)
         assert end.worst_stretch < 1.2
     assert left[20] == 0 < left[0]
+
+
+def test_a_tangle_comes_free_though_another_does_not() -> None:
+    """Two corners dip through; the cloth at the second is held on both sides, and stays to the bit."""
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.02)
+    _, faces, x = two_layers(rest, faces)
+    second = np.clip(1 - np.linalg.norm(rest - rest.max(0) * 0.2, axis=1) / 0.04, 0, 1)
+    x[len(rest) :, 1] -= 0.005 * second
+    near = np.tile(second > 0, 2) | np.r_[np.linalg.norm(rest - rest.max(0) * 0.2, axis=1) < 0.06, second > 0]
+    inverse = np.where(near, 0.0, 1.0)
+    edges, start = edges_of(faces), x.copy()
+    finder = finder_of(len(x), len(edges), len(faces))
+    lists = faces_at_edges(edges, faces), Holds.of(len(x)), finder, no_crossings()
+    before, after, _ = untangle(x, np.zeros_like(x), inverse, edges, faces, *lists, step=3e-4, rounds=40)
+    assert before == metrics.intersections(start, faces)
+    assert 0 < after == metrics.intersections(x, faces) < before
+    moved = np.linalg.norm(x - start, axis=1) > 0
+    assert moved.any()
+    assert not moved[near].any()
+    far = np.tile(np.linalg.norm(rest - rest.max(0) * 0.2, axis=1) < 0.08, 2)
+    assert not moved[far].any()
