@@ -200,6 +200,8 @@ class Run:
 
     def _layer_step(self, under: Conditions, begin: tuple[np.ndarray, np.ndarray]) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
+        if self.engine.shell.thickness == 0.0:
+            return np.inf
         v = begin[1].copy()
         index = self.engine.number[under.led[0]]
         v[:, index] = (under.led[1].T - begin[0][:, index]) / FRAME
