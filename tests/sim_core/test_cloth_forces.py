@@ -71,7 +71,7 @@ def test_affine_stretch_leaves_inner_vertices_in_balance() -> None:
     x = flat(sheet) @ np.array([[1.1, 0.05, 0.2], [-0.08, 0.93, 0.1], [0, 0, 1]])
     inner = np.setdiff1d(np.arange(len(x)), np.concatenate(panel.boundary))
     assert len(inner) > 5
-    assert np.abs(forces(sheet, x)[inner]).max() < 1e-11
+    assert np.abs(forces(sheet, x)[inner]).max() < 1e-12 * ORTHOTROPIC.stretch * 0.04  # 1e-12 k h
     assert np.abs(forces(sheet, x)).max() > 1e-3
 
 
