@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
-ENGINE_VERSION = 3  # raise when equal inputs give other bits: old checkpoints are then left alone
+ENGINE_VERSION = 4  # raise when equal inputs give other bits: old checkpoints are then left alone
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]
