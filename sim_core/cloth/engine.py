@@ -54,7 +54,7 @@ class Engine:
         self.moving = collider if isinstance(collider, MovingGrid) else None
         self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
         self.holds = (holds or Holds.of(count)).renumbered(self.number, self.order)
-        if self.holds.limit and self.pace.precision == "single":
+        if min(self.holds.limit) < 1.0 and self.pace.precision == "single":
             raise SimCoreError("holds.limit: lengths are kept in double precision only – take Pace()")
         self.contact = c = contact or Contact()
         self.shell = Shell(
@@ -239,7 +239,7 @@ class Engine:
         self, under: Conditions, inverse: np.ndarray, x: np.ndarray, v: np.ndarray, part: float, h: float
     ) -> None:
         """Lengths, seams, solids, bounds and images after an implicit step."""
-        if self.holds.limit:
+        if min(self.holds.limit) < 1.0:
             ends, length2 = self.sheet.edges, self.sheet.stencil.length2
             strain = ((x[ends[:, 0]] - x[ends[:, 1]]) ** 2).sum(1) - length2
             keep_lengths(self.holds.limit, inverse, ends, length2, strain, x, v)

@@ -24,7 +24,7 @@ class Holds(NamedTuple):
 
     pairs (K, 2) int32 are drawn together from their spans (K,) [m]; same (V,) int32 gives both ends of a pair one
     number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it mirrors in x = 0.
-    limit: the share of its length at rest by which an edge may be longer or shorter before it is held; 0: any.
+    limit: the shares of its length at rest by which an edge may be shorter, and longer, before it is held; 1: any.
     """
 
     pairs: np.ndarray
@@ -33,7 +33,7 @@ class Holds(NamedTuple):
     low: np.ndarray
     high: np.ndarray
     slaves: np.ndarray
-    limit: float
+    limit: tuple[float, float]
 
     @staticmethod
     def of(
@@ -44,15 +44,15 @@ class Holds(NamedTuple):
         low: np.ndarray | None = None,
         high: np.ndarray | None = None,
         slaves: np.ndarray | None = None,
-        limit: float = 0.0,
+        limit: tuple[float, float] = (1.0, 1.0),
     ) -> Holds:
         """Holds of a sheet of `count` vertices; spans of the pairs are taken from positions (V, 3) [m].
 
         Raises SimCoreError for indices out of range, bounds that leave no room and a limit that is no share.
         """
-        if not 0.0 <= limit < 1.0:
+        if not all(0.0 < share <= 1.0 for share in limit):
             raise SimCoreError(
-                f"holds.limit: {limit} – the share of an edge's length, at least 0 and below 1"
+                f"holds.limit: {limit} – two shares of an edge's length, above 0 and at most 1"
             )
         none = np.zeros((0, 2), np.int32)
         pairs = none if pairs is None else np.ascontiguousarray(pairs, np.int32).reshape(-1, 2)
@@ -77,7 +77,7 @@ class Holds(NamedTuple):
         same = np.arange(count, dtype=np.int32)
         for a, b in pairs:  # chains of pairs count as one point, too
             same[same == same[b]] = same[a]
-        return Holds(pairs, spans, same, low, high, slaves, float(limit))
+        return Holds(pairs, spans, same, low, high, slaves, (float(limit[0]), float(limit[1])))
 
     def renumbered(self, number: np.ndarray, order: np.ndarray) -> Holds:
         """The same holds for vertices of which i is now called number[i]; order (V,) is the way back."""
@@ -117,12 +117,15 @@ def draw_together(holds, inverse_mass, x, v, share, rate):
 
 @njit(cache=True, error_model="numpy")
 def keep_lengths(limit, inverse_mass, edges, length2, strain, x, v):
-    """Brings edges (E, 2) back that are longer or shorter than their length at rest by more than `limit` of it.
+    """Brings edges (E, 2) back that are shorter or longer than their length at rest by more than `limit` of it.
 
     length2 (E,) [m2]: squared, at rest; strain (E,) [m2]: what the square was longer by a step ago. Ends share the
     way by their masses; the speed that leads on is taken away.
     """
-    over, under = (1.0 + limit) ** 2 - 1.0, (1.0 - limit) ** 2 - 1.0
+    shorter, longer = limit
+    over, under = (1.0 + longer) ** 2 - 1.0, (1.0 - shorter) ** 2 - 1.0
+    if longer >= 1.0:
+        over = np.inf
     for e in range(len(edges)):
         if under * length2[e] <= strain[e] <= over * length2[e]:
             continue
@@ -130,7 +133,7 @@ def keep_lengths(limit, inverse_mass, edges, length2, strain, x, v):
         total = inverse_mass[i] + inverse_mass[j]
         dx, dy, dz = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], x[i, 2] - x[j, 2]
         size, rest = math.sqrt(dx * dx + dy * dy + dz * dz), math.sqrt(length2[e])
-        excess = size - min(max(size, (1.0 - limit) * rest), (1.0 + limit) * rest)
+        excess = size - min(max(size, (1.0 - shorter) * rest), (1.0 + longer) * rest)
         if excess == 0.0 or total == 0.0 or size == 0.0:
             continue
         nx, ny, nz = dx / size, dy / size, dz / size
@@ -145,6 +148,12 @@ def keep_lengths(limit, inverse_mass, edges, length2, strain, x, v):
             x[j, c] += b * way * n
             v[i, c] -= a * apart * n
             v[j, c] += b * apart * n
+
+
+@njit(cache=True, error_model="numpy")
+def limits(holds):
+    """Whether any length is kept."""
+    return min(holds.limit) < 1.0
 
 
 @njit(cache=True, error_model="numpy")

@@ -27,7 +27,7 @@ from sim_core.cloth.contact import (
     collide_due_vertices,
     settle_samples,
 )
-from sim_core.cloth.holding import bound, draw_together, keep_lengths, mirror
+from sim_core.cloth.holding import bound, draw_together, keep_lengths, limits, mirror
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
@@ -241,7 +241,7 @@ def advance(
         if around.speed_limit < FREE:
             band_limit(vs[0], vs[1], vs[2], around.speed_limit)
         band_drift(xs[0], xs[1], xs[2], vs[0], vs[1], vs[2], dt)
-        if holds.limit > 0.0:
+        if limits(holds):
             strain = room.before if around.beta > 0.0 else room.strain
             keep_lengths(holds.limit, inverse, edges, bands.length2, strain, x, v)
         held(holds, packed, inverse, vertices, middles, around, room, x, v, dt, step, substeps)

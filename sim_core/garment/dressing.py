@@ -82,7 +82,7 @@ def dress(
     contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5, untangle=UNTANGLE)
     stages = _Stages(cloth, timing, progress, on_frame)
 
-    open_ = half_sheet(cloth, cloth.joined, materials, kind, apart)
+    open_ = half_sheet(cloth, cloth.joined, materials, kind, apart, even=True)
     x = open_.gathered(start)
     holds = _holds(pattern, cloth, open_, stitch, x)
     sewn = drape(
@@ -98,7 +98,7 @@ def dress(
     )
     gap = _gap(cloth, open_, sewn.positions)
 
-    shut = half_sheet(cloth, cloth.closed, materials, kind, apart)
+    shut = half_sheet(cloth, cloth.closed, materials, kind, apart, even=True)
     x = shut.gathered(sewn.positions[open_.number])
     v = shut.gathered(sewn.velocities[open_.number])
     v[shut.middle, 0] = 0.0
@@ -229,7 +229,9 @@ def _holds(
     low[half.middle] = high[half.middle] = 0.0
     pairs = np.unique(np.sort(half.number[_sewn_twins(pattern, cloth)], axis=1), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
-    return Holds.of(count, pairs=pairs, positions=x, low=low, high=high, slaves=half.slaves, limit=LIMIT)
+    return Holds.of(
+        count, pairs=pairs, positions=x, low=low, high=high, slaves=half.slaves, limit=(LIMIT, LIMIT)
+    )
 
 
 def _sewn_twins(pattern: Pattern, cloth: Cloth) -> np.ndarray:

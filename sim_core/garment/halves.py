@@ -46,9 +46,18 @@ class Half:
 
 
 def half_sheet(
-    cloth: Cloth, number: np.ndarray, materials: Sequence[Material], kind: np.ndarray, apart: np.ndarray
+    cloth: Cloth,
+    number: np.ndarray,
+    materials: Sequence[Material],
+    kind: np.ndarray,
+    apart: np.ndarray,
+    *,
+    even: bool = False,
 ) -> Half:
-    """The half as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it."""
+    """The half as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it.
+
+    even: with its mass shared out so that time steps are longer (`cloth.evening`).
+    """
     faces = number[cloth.faces]
     corner = cloth.vertices[cloth.faces] + APART * apart[:, None, None] * np.array([1.0, 0.0])
     middle = np.unique(number[cloth.middle])
@@ -64,7 +73,9 @@ def half_sheet(
     whole = np.concatenate([faces, image[faces[ring]][:, [0, 2, 1]]])
     corners = np.concatenate([corner, (corner[ring] * [-1.0, 1.0])[:, [0, 2, 1]]])
     kinds = np.r_[kind, kind[ring]]
-    density = np.array([material.density for material in materials])[kinds]
-    sheet = evened(Sheet.of_corners(corners, whole, materials, kinds), density, own=len(on))
+    sheet = Sheet.of_corners(corners, whole, materials, kinds)
+    if even:
+        density = np.array([material.density for material in materials])
+        sheet = evened(sheet, density[kinds], own=len(on))
     slaves = np.column_stack([image[masters], masters]).astype(np.int32)
     return Half(sheet, number, middle, slaves, len(on))

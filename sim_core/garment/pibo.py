@@ -28,7 +28,7 @@ from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
 from sim_core.weave import Weave, parameters_of, solve
 
-__all__ = ["HELD", "PiboSettings", "field_under", "pibo_on_figure", "solids_under"]
+__all__ = ["HELD", "PiboSettings", "field_under", "laid_along", "pibo_on_figure", "solids_under"]
 
 HELD = Pose(58.0, 78.0)  # forearms forward, so that a scarf stays on them
 
@@ -40,10 +40,10 @@ FALLING = (
     Phase(0.80, (9.81, 9.81), 6.0, 0.8, "settling"),
     Phase(0.80, (9.81, 9.81), 12.0, 0.8, "settling"),
 )
-# Then with a softer shell: stacked folds that push each other hard tremble for ever.
+# Then with softer shells: stacked folds that push each other hard tremble for ever, all at once they would collapse.
 SETTLING = (
-    Phase(1.80, (9.81, 9.81), 7.0, 2.0, "coming to rest"),
-    Phase(0.80, (9.81, 9.81), 12.0, 2.0, "coming to rest"),
+    Phase(1.80, (9.81, 9.81), 7.0, 1.4, "coming to rest"),
+    Phase(0.80, (9.81, 9.81), 12.0, 1.4, "coming to rest"),
 )
 # What is still tangled is left alone at last: taken apart in part, it would spring back frame by frame.
 RESTING = (
@@ -73,8 +73,8 @@ class PiboSettings:
     waves: float = 5.0
     clearance: float = 0.004
     shell: float = 0.003
-    spring: tuple[float, float] = (0.03, 0.005)  # of the shell, falling and resting
-    self_friction: tuple[float, float] = (0.5, 1.0)
+    spring: tuple[float, ...] = (0.03, 0.015, 0.005)  # of the shell: falling, settling, resting
+    self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)
 
 
 def pibo_on_figure(
@@ -105,10 +105,10 @@ def pibo_on_figure(
     solids = solids_under(figure, pose, beneath)
     field = field_under(solids, s)
     clock.lap("field")
-    path, forearm, accordion = _laying(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
+    path, forearm, accordion = laid_along(figure, pose, field, float(np.ptp(cloth.vertices[:, 0])), s)
     parameters = parameters_of(weave, solve(weave, particles=True))
     material, choices = scarf_material(parameters, float(np.ptp(cloth.vertices[:, 0])) / 2, step)
-    half = half_sheet(cloth, cloth.closed, [material], *np.zeros((2, len(cloth.faces)), np.int32))
+    half = half_sheet(cloth, cloth.closed, [material], *np.zeros((2, len(cloth.faces)), np.int32), even=True)
     start = half.gathered(swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed)))
     clock.lap("laying")
 
@@ -193,7 +193,7 @@ def _draped(
     """All runs; frames and substeps of the result are those of all."""
     solid, holds, runs = field.solid(), _holds(half), []
     for run, course in enumerate(phases):
-        soft = min(run, 1)
+        soft = min(run, len(s.spring) - 1)
         shell = {
             "spring": s.spring[soft],
             "self_friction": s.self_friction[soft],
@@ -246,7 +246,7 @@ def field_under(solids: dict[str, Solid], s: PiboSettings, *, whole: bool = Fals
     return field
 
 
-def _laying(
+def laid_along(
     figure: Mannequin, pose: Pose, field: DistanceField, length: float, s: PiboSettings
 ) -> tuple[np.ndarray, np.ndarray, Accordion]:
     """The path of the left half, the forearm and the section along the path, from the figure's landmarks."""
@@ -277,7 +277,7 @@ def _holds(half: Half) -> Holds:
     count = len(half.sheet.rest)
     low, high = np.full(count, -np.inf), np.full(count, np.inf)
     low[half.middle] = high[half.middle] = 0.0
-    return Holds.of(count, low=low, high=high, slaves=half.slaves, limit=LIMIT)
+    return Holds.of(count, low=low, high=high, slaves=half.slaves, limit=(1.0, LIMIT))
 
 
 def _garment(

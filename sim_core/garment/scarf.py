@@ -66,7 +66,7 @@ def scarf_on_stand(
     start = gathered_strip(panel.vertices, stand.height, gathering, np.random.default_rng(seed))
     solid, contact = stand.collider(), scarf_contact(step, stand.bar_radius)
     hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
-    holds = Holds.of(len(start), limit=LIMIT)
+    holds = Holds.of(len(start), limit=(1.0, LIMIT))
     result = drape(sheet, start, phases, collider=solid, contact=contact, holds=holds, **hooks)
     clock.lap("drape")
     errors = _measured(sheet, result, stand)

@@ -37,8 +37,9 @@ def test_light_vertices_become_heavier_and_the_whole_stays() -> None:
     assert even.stencil.inverse_mass == pytest.approx(1 / even.mass, rel=1e-12)
     last = sheet.rest[:, 1] > sheet.rest[:, 1].max() - 1e-9
     assert (even.mass[last] > 1.2 * sheet.mass[last]).all()
-    inner = sheet.rest[:, 1] < sheet.rest[:, 1].max() - 0.05
-    assert np.ptp(even.mass[inner] / sheet.mass[inner]) < 0.02 * (even.mass / sheet.mass).max()
+    rest = sheet.rest
+    inner = (rest > 0.025).all(1) & (rest < rest.max(0) - [0.025, 0.06]).all(1)
+    assert np.ptp(even.mass[inner] / sheet.mass[inner]) < 1e-9  # all of these give alike
     assert step_of(even) > 1.15 * step_of(sheet)
 
 

@@ -13,7 +13,15 @@ from sim_core.cloth.field import field_of
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern
 from sim_core.garment.mannequin import Mannequin
-from sim_core.garment.pibo import FALLING, PiboSettings, pibo_on_figure
+from sim_core.garment.pibo import (
+    FALLING,
+    HELD,
+    PiboSettings,
+    field_under,
+    laid_along,
+    pibo_on_figure,
+    solids_under,
+)
 from sim_core.garment.solids import solid_mesh
 from sim_core.garment.sweeping import Accordion, arranged_path, swept
 from sim_core.garment.worn_solid import capped
@@ -74,6 +82,42 @@ def test_a_robe_capped_at_its_openings_has_an_inside() -> None:
     assert inside == pytest.approx([1.0, 0.0], abs=1e-6)
     again = capped(*closed)
     assert len(again[0]) == len(closed[0])  # nothing is open any more
+
+
+def test_a_strip_along_a_bent_line_bends_over_its_flat_side() -> None:
+    """Along a quarter circle that lies level, the width stands upright: no border is longer than the other."""
+    t = np.linspace(0, np.pi / 2, 64)
+    path = 0.2 * np.column_stack([np.sin(t), np.zeros(64), 1 - np.cos(t)])
+    path = np.concatenate([path, path[-1] + np.arange(1, 60)[:, None] * [0.0, 0.0, 0.005]])
+    path[63:, 1] += 1e-6 * np.sin(np.linspace(0, np.pi, 60))  # highest on the straight part
+    along, across = np.meshgrid(np.linspace(0, 0.55, 56), np.linspace(0, 0.2, 21), indexing="ij")
+    rest = np.column_stack([along.ravel(), across.ravel()])
+    x = swept(
+        rest,
+        path,
+        np.array([0.0, 1.0, 0.0]),
+        Accordion((0.0, 1.0), (0.19, 0.19), 1.0),
+        np.random.default_rng(0),
+    )
+    borders = x.reshape(56, 21, 3)[:, [0, -1]]
+    length = np.linalg.norm(np.diff(borders, axis=0), axis=2).sum(0)
+    assert length == pytest.approx([0.55, 0.55], rel=0.15)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_the_laid_scarf_is_not_tangled_nor_inside_the_figure(woman: Mannequin, seed: int) -> None:
+    """What a start is tangled by stays: cloth passes through cloth in the first frame, or never."""
+    pattern, s = Pattern.load(ASSETS / "patterns/pibo-long.toml"), PiboSettings()
+    cloth = pattern.cloth(0.014)
+    field = field_under(solids_under(woman, HELD, None), s)
+    path, forearm, accordion = laid_along(woman, HELD, field, float(np.ptp(cloth.vertices[:, 0])), s)
+    x = swept(cloth.vertices, path, forearm, accordion, np.random.default_rng(seed))
+    assert metrics.intersections(x, cloth.faces) == 0
+    assert field.at(x).min() > -0.003  # a little inside is pushed out, 10 mm never come free
+    ends = np.sort(cloth.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    length, rest = (np.linalg.norm(a[ends[:, 0]] - a[ends[:, 1]], axis=1) for a in (x, cloth.vertices))
+    assert (length / rest).max() < 1.8
+    assert (length / rest).min() > 0.3
 
 
 @pytest.mark.slow
