@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import WeaveError
+from sim_core.weave.closest_pairs import curve_overlap, pin_forces
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
 from sim_core.weave.lines import resampled
@@ -23,14 +24,18 @@ from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_for
 __all__ = ["ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
-OVERLAP = 4e-4  # of D; what is promised is 5e-4
-MOST_STEPS = 20_000
+OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
+PROMISED = 5e-4
+ROUNDS = 30  # of rest and pins
+ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
+SOFT = 400.0  # first stiffness of the contact, x largest crossing force
+MOST_STEPS = 40_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
-LONGEST_STEP = 1.0  # x 1 / fastest frequency
-SHORTER, PATIENCE = 0.7, 400  # of that, after so many steps without gain
-WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
+LONGEST_STEP = 1.4  # x 1 / fastest frequency
+SHORTER, PATIENCE, SHORTEST = 0.7, 800, 0.7  # of that, after so many steps without gain, down to so many
+WEIGH, FADE = 20, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
 
@@ -40,9 +45,9 @@ class ParticleCell:
 
     warp_side, warp_height: (ends, picks * per) [m], sideways from the end's place and above the middle plane.
     weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
-    warp_crimp: (ends,), weft_crimp: (picks,), from arc lengths.  residual: largest net force on a particle / largest
-    crossing force.  penetration: deepest overlap of a particle with a curve in units of D, the mean height of warp and
-    weft; between the particles two curves may come closer, see the README.
+    warp_crimp: (ends,), weft_crimp: (picks,), of the curves.  residual: largest net force on a particle / largest
+    crossing force.  penetration: deepest overlap of two yarns that cross, anywhere on their curves, or of particles
+    of neighbours, in units of D, the mean height of warp and weft.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 
@@ -72,7 +77,7 @@ class ParticleCell:
 
 
 @njit(cache=True)
-def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, overlap, most):
+def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
     """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
     friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
@@ -107,6 +112,12 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
+        if len(pins):
+            more, deep, most_pressed = pin_forces(
+                pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, stiff, weigh,
+                hwu, hwz, hfu, hfz,
+            )  # fmt: skip
+            energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
         if weigh:
             for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
                 for y in range(m.shape[0]):
@@ -127,12 +138,12 @@ def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, over
         elif (
             step - since > PATIENCE
         ):  # some particles flutter between touching and not: smaller steps calm them
-            longest, best, since = max(SHORTER * longest, 0.3), residual, step
+            longest, best, since = max(SHORTER * longest, SHORTEST), residual, step
         if weigh and residual < tolerance:
             if deepest <= overlap:
                 break
             if step >= checked:  # at rest, but the contact is too soft
-                stiff *= min(max(1.3 * deepest / overlap, 1.3), 20.0)
+                stiff *= min(max(1.1 * deepest / overlap, 1.1), 20.0)
                 checked = step + 20
                 continue
         if power > 0:
@@ -186,17 +197,25 @@ def relax_particles(
     )
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
     pressing = first.force / scale.force
-    stiff = 1250.0 * max(float(pressing.max()), 1e-12)
+    stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
-    residual, deepest, energy, steps, _ = _settle(
-        wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, OVERLAP, most
-    )
-    if residual > tolerance or deepest > 1.25 * OVERLAP:
+    l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
+    steps, pins = 0, np.zeros((0, 5))
+    for rough in (*ROUGH, *(1.0,) * ROUNDS):
+        residual, deepest, energy, more, stiff = _settle(
+            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, most - steps
+        )  # fmt: skip
+        steps += more
+        between, new = curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins)
+        deepest = max(deepest, between)
+        if steps >= most or residual <= tolerance and deepest <= PROMISED:
+            break
+        pins = np.vstack([pins, new])
+    if residual > tolerance or deepest > PROMISED:
         raise WeaveError(
             f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
             f"after {steps} steps) – lower the sett, or allow a larger residual"
         )
-    l1, l2 = numbers[0], numbers[1]
     return ParticleCell(
         per, wu * scale.length, wz * scale.length, fu * scale.length, fz * scale.length, pressing * scale.force,
         _crimp(wu, wz, l1), _crimp(fu, fz, l2), float(residual), float(deepest),
@@ -244,10 +263,18 @@ class _Scale:
 
 
 def _crimp(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
-    """Excess arc length of each yarn; every piece counts as an arc of the angles at its ends."""
-    du, dz = np.roll(u, -1, axis=1) - u, np.roll(z, -1, axis=1) - z
-    chord = np.sqrt(piece**2 + du**2 + dz**2)
-    cosine = piece**2 + du * np.roll(du, 1, axis=1) + dz * np.roll(dz, 1, axis=1)
-    turn = 2 * (1 - np.clip(cosine / (chord * np.roll(chord, 1, axis=1)), -1, 1))
-    arc = chord * (1 + (turn + np.roll(turn, -1, axis=1)) / 48)
-    return arc.mean(axis=1) / piece - 1
+    """Excess arc length of each yarn: of the Catmull-Rom curves that are in contact, by Gauss's rule in each piece."""
+    speed = np.zeros_like(u)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    for f, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
+        square = np.full_like(u, piece**2)
+        for p in (u, z):
+            before, after, next_ = np.roll(p, 1, axis=1), np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
+            rise = (
+                6 * f * (1 - f) * (after - p)
+                + (1 - f) * (1 - 3 * f) * (after - before) / 2
+                + f * (3 * f - 2) * (next_ - p) / 2
+            )
+            square += rise**2
+        speed += weight * np.sqrt(square)
+    return speed.mean(axis=1) / piece - 1
