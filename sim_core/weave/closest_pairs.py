@@ -15,6 +15,8 @@ from math import floor, sqrt
 import numpy as np
 from numba import njit
 
+from sim_core.weave.particle_forces import touch
+
 __all__ = ["curve_overlap", "pin_forces"]
 
 PINNED = 4.2e-4  # overlap [D] from which a pair is pinned
@@ -97,7 +99,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
     for k in range(len(pins)):
         i, j = int(pins[k, 0]), int(pins[k, 1])
         before[k], chain[i, j] = chain[i, j], k
-    new = [(0.0, 0.0, 0.0, 0.0, 0.0) for _ in range(0)]
+    new = [(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     best = 81.0
     for i in range(picks):
         for j in range(ends):
@@ -143,17 +145,17 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                     known = False
                     k = chain[i, j]
                     while k >= 0:
-                        if pins[k, 2] == norm and abs(pins[k, 3] - s) + abs(pins[k, 4] - t) < APART:
+                        if pins[k, 2] == norm and abs(pins[k, 3] - (s if norm else t)) < APART:
                             known = True
                         k = before[k]
                     for k in range(fresh, len(new)):
-                        if abs(new[k][3] - s) + abs(new[k][4] - t) < APART:
+                        if abs(new[k][3] - (s if norm else t)) < APART:
                             known = True
                     if not known:
-                        new.append((float(i), float(j), float(norm), s, t))
-    made = np.zeros((len(new), 5))
+                        new.append((float(i), float(j), float(norm), s if norm else t))
+    made = np.zeros((len(new), 4))
     for k in range(len(new)):
-        for m in range(5):
+        for m in range(4):
             made[k, m] = new[k][m]
     return 1.0 - sqrt(best), made
 
@@ -172,49 +174,47 @@ def _weights(base, s, count):
 
 
 @njit(cache=True, fastmath=True)
-def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, stiff, weigh,
-               hwu, hwz, hfu, hfz):  # fmt: skip
-    """Add the contact of the pinned pairs. Returns (energy, deepest overlap, largest pressing force).
+def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
+               stiff, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
+    """Add the contact of the pinned places. Returns (energy, deepest overlap, largest pressing force).
 
-    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 5) as of curve_overlap.
+    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 4) as of curve_overlap.
     """
     energy, deepest, largest = 0.0, 0.0, 0.0
+    out = np.zeros(7)
     for k in range(len(pins)):
         i, j = int(pins[k, 0]), int(pins[k, 1])
         sign = 1.0 if lift[i, j] else -1.0
-        over_x = 1.0 / wide_x**2 if pins[k, 2] == 0.0 else 1.0
-        over_y = 1.0 / wide_y**2 if pins[k, 2] == 1.0 else 1.0
-        on_warp, on_weft = (
-            _weights(i * per, pins[k, 3], wu.shape[1]),
-            _weights(j * per, pins[k, 4], fu.shape[1]),
-        )
-        x, d, high = -pins[k, 4] * l2, pins[k, 3] * l1, 0.0
-        for n, w in on_warp:
-            x += w * wu[j, n]
-            high += w * wz[j, n]
-        for n, w in on_weft:
-            d -= w * fu[i, n]
-            high -= w * fz[i, n]
-        high = max(sign * high, LOW)
-        norm = sqrt(x * x * over_x + d * d * over_y + high * high)
-        if norm >= 1.0:
+        if pins[k, 2] == 1.0:
+            more = _pinned(pins[k, 3], wu, wz, gwu, gwz, hwu, hwz, j, i * per, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
+                           l2, reach2, wide_y, sign, stiff, weigh, out)  # fmt: skip
+        else:
+            more = _pinned(pins[k, 3], fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, j, i * per,
+                           l1, reach1, wide_x, -sign, stiff, weigh, out)  # fmt: skip
+        if more == 0.0:
             continue
-        press = stiff * (1.0 - norm)
-        energy += 0.5 * press * (1.0 - norm)
-        deepest = max(deepest, 1.0 - norm)
-        pressing[i, j] += press * high / norm
+        energy += more
+        deepest = max(deepest, out[2])
+        pressing[i, j] += out[3]
         largest = max(largest, pressing[i, j])
-        to_x, to_y, to_z = x * over_x / norm, d * over_y / norm, sign * high / norm
-        for n, w in on_warp:
-            gwu[j, n] += w * press * to_x
-            gwz[j, n] += w * press * to_z
-            if weigh:
-                hwu[j, n] += abs(w) * stiff * to_x * to_x
-                hwz[j, n] += abs(w) * stiff * to_z * to_z
-        for n, w in on_weft:
-            gfu[i, n] -= w * press * to_y
-            gfz[i, n] -= w * press * to_z
-            if weigh:
-                hfu[i, n] += abs(w) * stiff * to_y * to_y
-                hfz[i, n] += abs(w) * stiff * to_z * to_z
     return energy, deepest, largest
+
+
+@njit(cache=True, fastmath=True)
+def _pinned(s, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach, wide, sign,
+            stiff, weigh, out):  # fmt: skip
+    """Contact of the place s of one yarn with the curve of the other. Returns the energy; out as of touch."""
+    around = _weights(base, s, u.shape[1])
+    c, high = 0.0, 0.0
+    for n, w in around:
+        c += w * u[yarn, n]
+        high += w * z[yarn, n]
+    more = touch(c, s * l1, high, u2, z2, yarn2, base2, l2, reach, wide, sign, stiff, gu2, gz2, weigh, hu2, hz2, out)
+    if more > 0.0:
+        for n, w in around:
+            gu[yarn, n] += w * out[0]
+            gz[yarn, n] += w * out[1]
+            if weigh:
+                hu[yarn, n] += abs(w) * out[4]
+                hz[yarn, n] += abs(w) * out[5]
+    return more

@@ -10,7 +10,7 @@ from math import floor, sqrt
 import numpy as np
 from numba import njit
 
-__all__ = ["contact_forces", "side_forces", "yarn_forces"]
+__all__ = ["contact_forces", "side_forces", "touch", "yarn_forces"]
 
 NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of the energy where yarns are steep and flat
 # A point in the bowl of a curve that bends round it has two nearest points, and would jump between them. From this
@@ -70,7 +70,7 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 
 @njit(cache=True, error_model="numpy")
-def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
+def touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
@@ -179,7 +179,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
-                more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
+                more = touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
                               gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
@@ -198,7 +198,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
-                more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
+                more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
                               gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN

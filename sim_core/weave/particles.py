@@ -114,8 +114,8 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
         deepest = max(deepest, side)
         if len(pins):
             more, deep, most_pressed = pin_forces(
-                pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, stiff, weigh,
-                hwu, hwz, hfu, hfz,
+                pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
+                stiff, weigh, hwu, hwz, hfu, hfz,
             )  # fmt: skip
             energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
         if weigh:
@@ -200,7 +200,7 @@ def relax_particles(
     stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
     l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
-    steps, pins = 0, np.zeros((0, 5))
+    steps, pins = 0, np.zeros((0, 4))
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
         residual, deepest, energy, more, stiff = _settle(
             wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, most - steps
