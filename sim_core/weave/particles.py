@@ -26,7 +26,8 @@ __all__ = ["ParticleCell", "relax_particles"]
 RESIDUAL = 1e-3
 OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
 PROMISED = 5e-4
-ROUNDS = 30  # of rest and pins
+LOOK = 300  # steps after which pins are sought again though the yarns still move
+ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 400.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 40_000
@@ -76,6 +77,45 @@ class ParticleCell:
         return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
 
 
+@njit(cache=True, fastmath=True)
+def _power(vu, vz, gu, gz, mu, mz, way):
+    """Power, 2 x kinetic energy and squared push of each yarn into way[:, :3]. Returns the largest force."""
+    worst = 0.0
+    for y in range(vu.shape[0]):
+        power, speed, push = 0.0, 0.0, 0.0
+        for v, g, m in ((vu[y], gu[y], mu[y]), (vz[y], gz[y], mz[y])):
+            for k in range(len(v)):
+                force = g[k]
+                worst = max(worst, abs(force))
+                power += force * v[k]
+                push += force * force / m[k]
+                speed += v[k] * v[k] * m[k]
+        way[y, 0], way[y, 1], way[y, 2] = power, speed, push
+    return worst
+
+
+@njit(cache=True, fastmath=True)
+def _advance(u, z, vu, vz, gu, gz, mu, mz, way, longest):
+    """One step of FIRE for each yarn by itself: one that has to turn back does not stop the others.
+
+    way: (yarns, 6) power, speed, push, time step, share of the force's direction, steps downhill.
+    """
+    for y in range(u.shape[0]):
+        if way[y, 0] > 0:
+            way[y, 5] += 1
+            if way[y, 5] > 8:
+                way[y, 3], way[y, 4] = min(way[y, 3] * GROW, longest), way[y, 4] * 0.99
+            keep, blend = 1.0 - way[y, 4], way[y, 4] * sqrt(way[y, 1] / max(way[y, 2], 1e-300))
+        else:
+            way[y, 3], way[y, 4], way[y, 5] = max(way[y, 3] * CUT, 0.05), MIX, 0
+            keep, blend = 0.0, 0.0
+        dt = way[y, 3]
+        for x, v, g, m in ((u[y], vu[y], gu[y], mu[y]), (z[y], vz[y], gz[y], mz[y])):
+            for k in range(len(x)):
+                v[k] = keep * v[k] + (blend + dt) * g[k] / m[k]
+                x[k] += min(max(dt * v[k], -0.05), 0.05)
+
+
 @njit(cache=True)
 def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
     """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
@@ -88,7 +128,8 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
     base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
-    dt, mix, downhill = START, MIX, 0
+    way1, way2 = np.zeros((len(wu), 6)), np.zeros((len(fu), 6))
+    way1[:, 3], way1[:, 4], way2[:, 3], way2[:, 4] = START, MIX, START, MIX
     residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
@@ -123,15 +164,9 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
                 for y in range(m.shape[0]):
                     for k in range(m.shape[1]):
                         m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
-        power, speed, push, worst = 0.0, 0.0, 0.0, 0.0
-        for v, g, m in ((vwu, gwu, mwu), (vwz, gwz, mwz), (vfu, gfu, mfu), (vfz, gfz, mfz)):
-            for y in range(v.shape[0]):
-                for k in range(v.shape[1]):
-                    force = g[y, k]
-                    worst = max(worst, abs(force))
-                    power += force * v[y, k]
-                    push += force * force / m[y, k]
-                    speed += v[y, k] * v[y, k] * m[y, k]
+        worst = max(
+            _power(vwu, vwz, gwu, gwz, mwu, mwz, way1), _power(vfu, vfz, gfu, gfz, mfu, mfz, way2)
+        )
         residual = worst / max(largest, 1e-300)
         if residual < 0.7 * best:
             best, since = residual, step
@@ -146,25 +181,8 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
                 stiff *= min(max(1.1 * deepest / overlap, 1.1), 20.0)
                 checked = step + 20
                 continue
-        if power > 0:
-            downhill += 1
-            if downhill > 8:
-                dt, mix = min(dt * GROW, longest), mix * 0.99
-            blend = mix * sqrt(speed / max(push, 1e-300))
-        else:
-            downhill, mix, blend = 0, MIX, 0.0
-            dt = max(dt * CUT, 0.05)
-        keep = 1.0 - mix if power > 0 else 0.0
-        for x, v, g, m in (
-            (wu, vwu, gwu, mwu),
-            (wz, vwz, gwz, mwz),
-            (fu, vfu, gfu, mfu),
-            (fz, vfz, gfz, mfz),
-        ):
-            for y in range(v.shape[0]):
-                for k in range(v.shape[1]):
-                    v[y, k] = keep * v[y, k] + (blend + dt) * g[y, k] / m[y, k]
-                    x[y, k] += min(max(dt * v[y, k], -0.05), 0.05)
+        _advance(wu, wz, vwu, vwz, gwu, gwz, mwu, mwz, way1, longest)
+        _advance(fu, fz, vfu, vfz, gfu, gfz, mfu, mfz, way2, longest)
     return residual, deepest, energy, steps, stiff
 
 
@@ -203,7 +221,7 @@ def relax_particles(
     steps, pins = 0, np.zeros((0, 4))
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
         residual, deepest, energy, more, stiff = _settle(
-            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, most - steps
+            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, min(most - steps, LOOK)
         )  # fmt: skip
         steps += more
         between, new = curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins)
