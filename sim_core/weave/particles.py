@@ -34,8 +34,8 @@ MOST_STEPS = 40_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
-LONGEST_STEP = 1.4  # x 1 / fastest frequency
-SHORTER, PATIENCE, SHORTEST = 0.7, 800, 0.7  # of that, after so many steps without gain, down to so many
+LONGEST_STEP = 0.7  # x 1 / fastest frequency
+SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
 WEIGH, FADE = 20, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
@@ -95,25 +95,21 @@ def _power(vu, vz, gu, gz, mu, mz, way):
 
 
 @njit(cache=True, fastmath=True)
-def _advance(u, z, vu, vz, gu, gz, mu, mz, way, longest):
-    """One step of FIRE for each yarn by itself: one that has to turn back does not stop the others.
+def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
+    """One step of Nesterov's method for each yarn by itself: one that turns back does not stop the others.
 
-    way: (yarns, 6) power, speed, push, time step, share of the force's direction, steps downhill.
+    Its look ahead calms stiff contacts at once and leaves slow slides their momentum.
+    way: (yarns, 4) power, speed, push, steps since the yarn turned back.
     """
     for y in range(u.shape[0]):
-        if way[y, 0] > 0:
-            way[y, 5] += 1
-            if way[y, 5] > 8:
-                way[y, 3], way[y, 4] = min(way[y, 3] * GROW, longest), way[y, 4] * 0.99
-            keep, blend = 1.0 - way[y, 4], way[y, 4] * sqrt(way[y, 1] / max(way[y, 2], 1e-300))
-        else:
-            way[y, 3], way[y, 4], way[y, 5] = max(way[y, 3] * CUT, 0.05), MIX, 0
-            keep, blend = 0.0, 0.0
-        dt = way[y, 3]
+        way[y, 3] = way[y, 3] + 1 if way[y, 0] > 0 else 0
+        keep = way[y, 3] / (way[y, 3] + 3.0)
+        ahead = (way[y, 3] + 1) / (way[y, 3] + 4.0)
         for x, v, g, m in ((u[y], vu[y], gu[y], mu[y]), (z[y], vz[y], gz[y], mz[y])):
             for k in range(len(x)):
-                v[k] = keep * v[k] + (blend + dt) * g[k] / m[k]
-                x[k] += min(max(dt * v[k], -0.05), 0.05)
+                push = length * g[k] / m[k]
+                v[k] = keep * v[k] + push
+                x[k] += min(max(push + ahead * v[k], -0.05), 0.05)
 
 
 @njit(cache=True)
@@ -128,8 +124,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
     base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
-    way1, way2 = np.zeros((len(wu), 6)), np.zeros((len(fu), 6))
-    way1[:, 3], way1[:, 4], way2[:, 3], way2[:, 4] = START, MIX, START, MIX
+    way1, way2 = np.zeros((len(wu), 4)), np.zeros((len(fu), 4))
     residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
@@ -221,7 +216,7 @@ def relax_particles(
     steps, pins = 0, np.zeros((0, 4))
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
         residual, deepest, energy, more, stiff = _settle(
-            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, min(most - steps, LOOK)
+            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, min(most - steps, max(LOOK, steps // 3))
         )  # fmt: skip
         steps += more
         between, new = curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins)
