@@ -2,9 +2,10 @@
 
 Both yarns of a crossing are Catmull-Rom curves through their particles. Contact at particles alone lets slanting yarns
 meet between them. So once the yarns are at rest, every local minimum of the distance over both curves that overlaps is
-pinned: these two places, one on each curve, may not come closer either, and hand their force to the four particles
-round them. Pins stay where they are while the yarns move, which is a smooth contact: a pair that is followed jumps
-where yarns wrap each other, for there the distance hardly changes along them. Then the yarns rest again, and so on.
+pinned: this place of one yarn may not come closer to the curve of the other either, and hands its force to the four
+particles round it. The place stays and only its partner slides along, since yarns that slide sideways would leave a
+pair of fixed places; a pair of which both are followed jumps where yarns wrap each other, for there the distance hardly
+changes along them. In the bowl of the other yarn the partner is held to the flank where it was found.
 
 Places s along the warp and t along the weft count in pieces between particles, from the crossing. Sections are flat:
 the norm is (dx / wide_x)^2 + dy^2 + dz^2 round the warp, and dx^2 + (dy / wide_y)^2 + dz^2 round the weft.
@@ -87,7 +88,8 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
     """Deepest overlap [D] of the curves of crossing yarns, whatever the particles touch, and the pins it asks for.
 
     wu, wz: (ends, picks * per), fu, fz: (picks, ends * per).  pins: (n, 5) pick, end, norm (0 round the warp, 1 round
-    the weft), s, t, those that there are.  Returns (overlap, (m, 5) new pins), the overlap negative where no yarns
+    the weft), place t along the weft or s along the warp, and how many pieces beside it the partner lies; those that
+    there are.  Returns (overlap, (m, 5) new pins), the overlap negative where no yarns
     touch. Minima are sought on a grid of half pieces, and polished.
     """
     picks, ends = lift.shape
@@ -99,7 +101,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
     for k in range(len(pins)):
         i, j = int(pins[k, 0]), int(pins[k, 1])
         before[k], chain[i, j] = chain[i, j], k
-    new = [(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
+    new = [(0.0, 0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     best = 81.0
     for i in range(picks):
         for j in range(ends):
@@ -142,20 +144,24 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                         best = min(best, here)
                     if here >= (1.0 - PINNED) ** 2:
                         continue
+                    if norm:
+                        place, aside = s, t - _place(wu, wz, j, i * per, s)[0] / l2
+                    else:
+                        place, aside = t, s - _place(fu, fz, i, j * per, t)[0] / l1
                     known = False
                     k = chain[i, j]
                     while k >= 0:
-                        if pins[k, 2] == norm and abs(pins[k, 3] - (s if norm else t)) < APART:
+                        if pins[k, 2] == norm and abs(pins[k, 3] - place) + abs(pins[k, 4] - aside) < APART:
                             known = True
                         k = before[k]
                     for k in range(fresh, len(new)):
-                        if abs(new[k][3] - (s if norm else t)) < APART:
+                        if abs(new[k][3] - place) + abs(new[k][4] - aside) < APART:
                             known = True
                     if not known:
-                        new.append((float(i), float(j), float(norm), s if norm else t))
-    made = np.zeros((len(new), 4))
+                        new.append((float(i), float(j), float(norm), place, aside))
+    made = np.zeros((len(new), 5))
     for k in range(len(new)):
-        for m in range(4):
+        for m in range(5):
             made[k, m] = new[k][m]
     return 1.0 - sqrt(best), made
 
@@ -178,7 +184,7 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
                stiff, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add the contact of the pinned places. Returns (energy, deepest overlap, largest pressing force).
 
-    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 4) as of curve_overlap.
+    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 5) as of curve_overlap.
     """
     energy, deepest, largest = 0.0, 0.0, 0.0
     out = np.zeros(7)
@@ -186,10 +192,12 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
         i, j = int(pins[k, 0]), int(pins[k, 1])
         sign = 1.0 if lift[i, j] else -1.0
         if pins[k, 2] == 1.0:
-            more = _pinned(pins[k, 3], wu, wz, gwu, gwz, hwu, hwz, j, i * per, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
+            more = _pinned(pins[k, 3], pins[k, 4],
+                           wu, wz, gwu, gwz, hwu, hwz, j, i * per, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
                            l2, reach2, wide_y, sign, stiff, weigh, out)  # fmt: skip
         else:
-            more = _pinned(pins[k, 3], fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, j, i * per,
+            more = _pinned(pins[k, 3], pins[k, 4],
+                           fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, j, i * per,
                            l1, reach1, wide_x, -sign, stiff, weigh, out)  # fmt: skip
         if more == 0.0:
             continue
@@ -201,15 +209,35 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
 
 
 @njit(cache=True, fastmath=True)
-def _pinned(s, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach, wide, sign,
-            stiff, weigh, out):  # fmt: skip
+def _pinned(s, aside, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach, wide,
+            sign, stiff, weigh, out):  # fmt: skip
     """Contact of the place s of one yarn with the curve of the other. Returns the energy; out as of touch."""
     around = _weights(base, s, u.shape[1])
     c, high = 0.0, 0.0
     for n, w in around:
         c += w * u[yarn, n]
         high += w * z[yarn, n]
-    more = touch(c, s * l1, high, u2, z2, yarn2, base2, l2, reach, wide, sign, stiff, gu2, gz2, weigh, hu2, hz2, out)
+    more = touch(
+        c,
+        s * l1,
+        high,
+        u2,
+        z2,
+        yarn2,
+        base2,
+        l2,
+        reach,
+        wide,
+        sign,
+        stiff,
+        gu2,
+        gz2,
+        weigh,
+        hu2,
+        hz2,
+        aside,
+        out,
+    )
     if more > 0.0:
         for n, w in around:
             gu[yarn, n] += w * out[0]

@@ -70,18 +70,20 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 
 @njit(cache=True, error_model="numpy")
-def touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
+def touch(
+    c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, aside, out
+):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
     The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
     dc^2 + (dd / wide_d)^2 + dz^2 is found by Newton: a flat section lies on the yarn that it crosses and turns with its
-    slope. sign: +1 where the point belongs above.
+    slope. sign: +1 where the point belongs above.  aside: pieces from the place below the point to where Newton starts.
     Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, the contact's
     stiffness along c and z, and the norm to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
     count = u2.shape[1]
-    s = min(max(c / l2, -reach), reach)
+    s = min(max(c / l2 + aside, -reach), reach)
     n1 = base + int(floor(s + 0.5))
     n1 = n1 + count if n1 < 0 else n1 - count if n1 >= count else n1
     dd, dz = (d - u2[yarn2, n1]) / wide_d, z - z2[yarn2, n1]
@@ -180,7 +182,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
                 more = touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
-                              gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
+                              gfu, gfz, weigh, hfu, hfz, 0.0, out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
                 if more == 0.0:
@@ -199,7 +201,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
                 more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
-                              gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
+                              gwu, gwz, weigh, hwu, hwz, 0.0, out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN
                 if more == 0.0:

@@ -2,7 +2,7 @@
 
 Energy: bending, tension times length, contact of flattened sections (also of neighbours), and friction at the
 crossings as work against slip from the place as woven (the pressing force held fixed while it is evaluated, then
-renewed). Minimised by FIRE with a mass for each particle that makes all fast modes equally fast.
+renewed). Minimised by Nesterov's method, each yarn turning back by itself, with a mass for each particle that makes all fast modes equally fast.
 """
 
 from __future__ import annotations
@@ -33,7 +33,6 @@ SOFT = 400.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 40_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
-START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
 LONGEST_STEP = 0.7  # x 1 / fastest frequency
 SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
 WEIGH, FADE = 20, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
@@ -114,7 +113,7 @@ def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
 
 @njit(cache=True)
 def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
-    """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
+    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
     friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
     reach1, reach2 = int(r1), int(r2)
@@ -159,9 +158,7 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
                 for y in range(m.shape[0]):
                     for k in range(m.shape[1]):
                         m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
-        worst = max(
-            _power(vwu, vwz, gwu, gwz, mwu, mwz, way1), _power(vfu, vfz, gfu, gfz, mfu, mfz, way2)
-        )
+        worst = max(_power(vwu, vwz, gwu, gwz, mwu, mwz, way1), _power(vfu, vfz, gfu, gfz, mfu, mfz, way2))
         residual = worst / max(largest, 1e-300)
         if residual < 0.7 * best:
             best, since = residual, step
@@ -213,10 +210,11 @@ def relax_particles(
     stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
     l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
-    steps, pins = 0, np.zeros((0, 4))
+    steps, pins = 0, np.zeros((0, 5))
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
+        turn = min(most - steps, max(LOOK, steps // 3))
         residual, deepest, energy, more, stiff = _settle(
-            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, min(most - steps, max(LOOK, steps // 3))
+            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, turn
         )  # fmt: skip
         steps += more
         between, new = curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins)

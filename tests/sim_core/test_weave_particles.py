@@ -340,7 +340,7 @@ def test_penetration_is_measured_between_the_particles():
     least = 2 * (0.45 + 0.2 * (9 / 8 * 0.125 - 1 / 8 * 0.375))
     assert found == pytest.approx(1 - least, abs=1e-9)
     assert len(pins) == 32  # one a crossing and norm
-    np.testing.assert_allclose(pins[:, 3:], 3.5, atol=1e-6)
+    np.testing.assert_allclose(pins[:, 3], 3.5, atol=1e-6)
     again, more = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, pins)
     assert again == found
     assert len(more) == 0  # it is pinned
@@ -360,7 +360,7 @@ def test_pins_act_equally_on_both_yarns_and_as_the_slope_of_their_energy():
     def forces(values):
         g, h = ([np.zeros((2, 16)) for _ in range(4)] for _ in range(2))
         pressing = np.zeros((2, 2))
-        given: list = [pins, *values, *g, lift, pressing, 8, 0.3, 0.3, *flat, 100.0, True, *h]
+        given: list = [pins, *values, *g, lift, pressing, 8, 0.3, 0.3, *flat, 7, 7, 100.0, True, *h]
         energy, deepest, largest = pin_forces(*given)
         assert deepest > 0.01
         assert largest == pressing.max() > 0
