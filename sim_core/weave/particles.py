@@ -2,7 +2,8 @@
 
 Energy: bending, tension times length, contact of flattened sections (also of neighbours), and friction at the
 crossings as work against slip from the place as woven (the pressing force held fixed while it is evaluated, then
-renewed). Minimised by Nesterov's method, each yarn turning back by itself, with a mass for each particle that makes all fast modes equally fast.
+renewed). Minimised by Nesterov's method, each yarn turning back by itself, with a mass for each particle that makes all
+fast modes equally fast.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ LOOK = 300  # steps after which pins are sought again though the yarns still mov
 ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 400.0  # first stiffness of the contact, x largest crossing force
-MOST_STEPS = 40_000
+MOST_STEPS = 80_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 LONGEST_STEP = 0.7  # x 1 / fastest frequency
@@ -113,8 +114,8 @@ def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
 
 @njit(cache=True)
 def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
-    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
-    friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
+    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
+    high1, side2, high2, friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
     reach1, reach2 = int(r1), int(r2)
     gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
