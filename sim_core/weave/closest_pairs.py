@@ -28,7 +28,7 @@ NEAR = 1.2  # norm on the grid up to which a minimum is polished
 LOW = 0.05  # least height in the norm: yarns on the wrong side are still pushed apart
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _place(u, z, yarn, base, s):
     """(side, height) of the curve at s pieces from particle `base`, their first and their second derivatives by s."""
     count = u.shape[1]
@@ -51,7 +51,7 @@ def _place(u, z, yarn, base, s):
     )  # fmt: skip
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, over_y, sign):
     """Newton from (s, t) to the nearest local minimum of the norm. Returns (s, t, squared norm).
 
@@ -83,7 +83,7 @@ def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, ove
     return s, t, square
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, pins):
     """Deepest overlap [D] of the curves of crossing yarns, whatever the particles touch, and the pins it asks for.
 
@@ -166,7 +166,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
     return 1.0 - sqrt(best), made
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _weights(base, s, count):
     """The four particles round a place, and their share in it."""
     k = int(floor(s))
@@ -179,7 +179,7 @@ def _weights(base, s, count):
     )  # fmt: skip
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
                stiff, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add the contact of the pinned places. Returns (energy, deepest overlap, largest pressing force).
@@ -208,7 +208,7 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
     return energy, deepest, largest
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _pinned(s, aside, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach, wide,
             sign, stiff, weigh, out):  # fmt: skip
     """Contact of the place s of one yarn with the curve of the other. Returns the energy; out as of touch."""

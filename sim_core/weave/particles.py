@@ -77,7 +77,7 @@ class ParticleCell:
         return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _power(vu, vz, gu, gz, mu, mz, way):
     """Power, 2 x kinetic energy and squared push of each yarn into way[:, :3]. Returns the largest force."""
     worst = 0.0
@@ -94,7 +94,7 @@ def _power(vu, vz, gu, gz, mu, mz, way):
     return worst
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy")
 def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
     """One step of Nesterov's method for each yarn by itself: one that turns back does not stop the others.
 
@@ -112,7 +112,7 @@ def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
                 x[k] += min(max(push + ahead * v[k], -0.05), 0.05)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
     """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
     high1, side2, high2, friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
