@@ -16,11 +16,10 @@ from math import floor, sqrt
 import numpy as np
 from numba import njit
 
-from sim_core.weave.particle_forces import touch
+from sim_core.weave.particle_forces import set_out, touch
 
 __all__ = ["curve_overlap", "pin_forces"]
 
-PINNED = 4.2e-4  # overlap [D] from which a pair is pinned
 APART = 0.02  # of a piece: pins of one crossing and norm that are nearer are one
 POLISH = 12  # steps of Newton
 BOWL = 0.02  # determinant relative to straight yarns that cross, above which Newton's step is taken
@@ -84,12 +83,13 @@ def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, ove
 
 
 @njit(cache=True, error_model="numpy")
-def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, pins):
+def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, pins, least_deep):
     """Deepest overlap [D] of the curves of crossing yarns, whatever the particles touch, and the pins it asks for.
 
-    wu, wz: (ends, picks * per), fu, fz: (picks, ends * per).  pins: (n, 5) pick, end, norm (0 round the warp, 1 round
-    the weft), place t along the weft or s along the warp, and how many pieces beside it the partner lies; those that
-    there are.  Returns (overlap, (m, 5) new pins), the overlap negative where no yarns
+    wu, wz: (ends, picks * per), fu, fz: (picks, ends * per).  pins: (n, 6) pick, end, norm (0 round the warp, 1 round
+    the weft), place t along the weft or s along the warp, how many pieces beside it the partner lies, and by how much
+    the contact is set out [D]; those that there are.  least_deep: overlap [D] from which
+    a place is pinned.  Returns (overlap, (m, 6) new pins), the overlap negative where no yarns
     touch. Minima are sought on a grid of half pieces, and polished.
     """
     picks, ends = lift.shape
@@ -142,7 +142,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                     if square < here and abs(s1) <= reach1 + 1 and abs(t1) <= reach2 + 1:
                         here, s, t = square, s1, t1
                         best = min(best, here)
-                    if here >= (1.0 - PINNED) ** 2:
+                    if here >= (1.0 - least_deep) ** 2:
                         continue
                     if norm:
                         place, aside = s, t - _place(wu, wz, j, i * per, s)[0] / l2
@@ -159,7 +159,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                             known = True
                     if not known:
                         new.append((float(i), float(j), float(norm), place, aside))
-    made = np.zeros((len(new), 5))
+    made = np.zeros((len(new), 6))
     for k in range(len(new)):
         for m in range(5):
             made[k, m] = new[k][m]
@@ -181,10 +181,10 @@ def _weights(base, s, count):
 
 @njit(cache=True, error_model="numpy")
 def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-               stiff, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
+               stiff, renew, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add the contact of the pinned places. Returns (energy, deepest overlap, largest pressing force).
 
-    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 5) as of curve_overlap.
+    Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 6) as of curve_overlap.
     """
     energy, deepest, largest = 0.0, 0.0, 0.0
     out = np.zeros(7)
@@ -192,13 +192,15 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
         i, j = int(pins[k, 0]), int(pins[k, 1])
         sign = 1.0 if lift[i, j] else -1.0
         if pins[k, 2] == 1.0:
-            more = _pinned(pins[k, 3], pins[k, 4],
+            more = _pinned(pins[k, 3], pins[k, 4], pins[k, 5],
                            wu, wz, gwu, gwz, hwu, hwz, j, i * per, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
                            l2, reach2, wide_y, sign, stiff, weigh, out)  # fmt: skip
         else:
-            more = _pinned(pins[k, 3], pins[k, 4],
+            more = _pinned(pins[k, 3], pins[k, 4], pins[k, 5],
                            fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, j, i * per,
                            l1, reach1, wide_x, -sign, stiff, weigh, out)  # fmt: skip
+        if renew:
+            pins[k, 5] = set_out(pins[k, 5], out[6])
         if more == 0.0:
             continue
         energy += more
@@ -209,8 +211,8 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
 
 
 @njit(cache=True, error_model="numpy")
-def _pinned(s, aside, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach, wide,
-            sign, stiff, weigh, out):  # fmt: skip
+def _pinned(s, aside, held, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu2, hz2, yarn2, base2, l2, reach,
+            wide, sign, stiff, weigh, out):  # fmt: skip
     """Contact of the place s of one yarn with the curve of the other. Returns the energy; out as of touch."""
     around = _weights(base, s, u.shape[1])
     c, high = 0.0, 0.0
@@ -236,6 +238,7 @@ def _pinned(s, aside, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, gz2, hu
         hu2,
         hz2,
         aside,
+        held,
         out,
     )
     if more > 0.0:

@@ -2,8 +2,8 @@
 
 Energy: bending, tension times length, contact of flattened sections (also of neighbours), and friction at the
 crossings as work against slip from the place as woven (the pressing force held fixed while it is evaluated, then
-renewed). Minimised by Nesterov's method, each yarn turning back by itself, with a mass for each particle that makes all
-fast modes equally fast.
+renewed). Minimised by Nesterov's method, each yarn turning back by itself, in steps divided by its own stiffness. The
+contact is an augmented Lagrangian: it stays soft, and is set out by what it overlaps.
 """
 
 from __future__ import annotations
@@ -21,22 +21,26 @@ from sim_core.weave.jam import check_jam
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
+from sim_core.weave.yarn_steps import advance, factored, power
 
 __all__ = ["ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
+DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
 OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
-PROMISED = 5e-4
+PINNED, PROMISED = 4.2e-4, 5e-4
 LOOK = 300  # steps after which pins are sought again though the yarns still move
 ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
-SOFT = 400.0  # first stiffness of the contact, x largest crossing force
+SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 LONGEST_STEP = 0.7  # x 1 / fastest frequency
 SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
-WEIGH, FADE = 20, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
+STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
+SLACK = 1.0  # EI/l^3 on the diagonal: contacts that come between two weighings must not throw a yarn
+WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
 
@@ -78,88 +82,72 @@ class ParticleCell:
 
 
 @njit(cache=True, error_model="numpy")
-def _power(vu, vz, gu, gz, mu, mz, way):
-    """Power, 2 x kinetic energy and squared push of each yarn into way[:, :3]. Returns the largest force."""
-    worst = 0.0
-    for y in range(vu.shape[0]):
-        power, speed, push = 0.0, 0.0, 0.0
-        for v, g, m in ((vu[y], gu[y], mu[y]), (vz[y], gz[y], mz[y])):
-            for k in range(len(v)):
-                force = g[k]
-                worst = max(worst, abs(force))
-                power += force * v[k]
-                push += force * force / m[k]
-                speed += v[k] * v[k] * m[k]
-        way[y, 0], way[y, 1], way[y, 2] = power, speed, push
-    return worst
-
-
-@njit(cache=True, error_model="numpy")
-def _advance(u, z, vu, vz, gu, gz, mu, mz, way, length):
-    """One step of Nesterov's method for each yarn by itself: one that turns back does not stop the others.
-
-    Its look ahead calms stiff contacts at once and leaves slow slides their momentum.
-    way: (yarns, 4) power, speed, push, steps since the yarn turned back.
-    """
-    for y in range(u.shape[0]):
-        way[y, 3] = way[y, 3] + 1 if way[y, 0] > 0 else 0
-        keep = way[y, 3] / (way[y, 3] + 3.0)
-        ahead = (way[y, 3] + 1) / (way[y, 3] + 4.0)
-        for x, v, g, m in ((u[y], vu[y], gu[y], mu[y]), (z[y], vz[y], gz[y], mz[y])):
-            for k in range(len(x)):
-                push = length * g[k] / m[k]
-                v[k] = keep * v[k] + push
-                x[k] += min(max(push + ahead * v[k], -0.05), 0.05)
-
-
-@njit(cache=True, error_model="numpy")
-def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance, overlap, most):
+def _settle(
+    places, lift, pressing, offsets, motion, pins, per, numbers, stiff, tolerance, overlap, most, overlapping
+):
     """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
-    high1, side2, high2, friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
+    high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
+    motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
+    overlapping: contacts are to be set out at once. Returns (residual, overlap, energy, steps, stiffness)."""
+    wu, wz, fu, fz = places
+    held, held1, held2 = offsets
+    speed1, speed2, way1, way2 = motion
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
     reach1, reach2 = int(r1), int(r2)
     gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    vwu, vwz, vfu, vfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    (vwu, vwz), (vfu, vfz) = speed1, speed2
     hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
-    base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
-    way1, way2 = np.zeros((len(wu), 4)), np.zeros((len(fu), 4))
-    residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
+    made1, made2 = np.zeros((2, *wu.shape, 5)), np.zeros((2, *fu.shape, 5))
+    bend1, bend2, pull1, pull2 = e1 / l1**3, e2 / l2**3, t1 / l1, t2 / l2
+    residual, deepest, before, energy, steps = np.inf, np.inf, np.inf, 0.0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
         steps = step + 1
-        weigh = step % WEIGH == 0
+        renew = overlapping
+        weigh = renew or step % WEIGH == 0
+        overlapping = False
         gwu[:], gwz[:], gfu[:], gfz[:] = 0.0, 0.0, 0.0, 0.0
         if weigh:
             hwu[:], hwz[:], hfu[:], hfz[:] = 0.0, 0.0, 0.0, 0.0
         energy = yarn_forces(wu, wz, l1, e1, t1, gwu, gwz) + yarn_forces(fu, fz, l2, e2, t2, gfu, gfz)
         side = 0.0
         if s1 > 0:
-            more, side = side_forces(wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, weigh, hwu, hwz)
+            more, side = side_forces(
+                wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, held1, renew, weigh, hwu, hwz
+            )
             energy += more
         if s2 > 0:
-            more, other = side_forces(fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, weigh, hfu, hfz)
+            more, other = side_forces(
+                fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, held2, renew, weigh, hfu, hfz
+            )
             energy += more
             side = max(side, other)
         more, deepest, largest = contact_forces(
-            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y, reach1, reach2,
-            stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
+            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
+            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
         if len(pins):
             more, deep, most_pressed = pin_forces(
                 pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-                stiff, weigh, hwu, hwz, hfu, hfz,
+                stiff, renew, weigh, hwu, hwz, hfu, hfz,
             )  # fmt: skip
             energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
         if weigh:
-            for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
+            for m, h, bend, pull, made in (
+                (mwu, hwu, bend1, pull1, made1[0]),
+                (mwz, hwz, bend1, pull1, made1[1]),
+                (mfu, hfu, bend2, pull2, made2[0]),
+                (mfz, hfz, bend2, pull2, made2[1]),
+            ):
                 for y in range(m.shape[0]):
                     for k in range(m.shape[1]):
-                        m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
-        worst = max(_power(vwu, vwz, gwu, gwz, mwu, mwz, way1), _power(vfu, vfz, gfu, gfz, mfu, mfz, way2))
+                        m[y, k] = max(SLACK * bend + 3.0 * h[y, k], FADE * m[y, k])
+                factored(m, bend, pull, made)
+        worst = max(power(vwu, vwz, gwu, gwz, way1), power(vfu, vfz, gfu, gfz, way2))
         residual = worst / max(largest, 1e-300)
         if residual < 0.7 * best:
             best, since = residual, step
@@ -170,12 +158,19 @@ def _settle(wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, tolerance
         if weigh and residual < tolerance:
             if deepest <= overlap:
                 break
-            if step >= checked:  # at rest, but the contact is too soft
-                stiff *= min(max(1.1 * deepest / overlap, 1.1), 20.0)
-                checked = step + 20
+            if not renew:
+                # at rest, but the yarns overlap: contacts are set out by as much, and stiffened where that helps little
+                if deepest > max(DEEP, HELPED * before):
+                    factor = min(max(deepest / DEEP, 2.0), 20.0)
+                    stiff *= factor
+                    held /= factor
+                    held1 /= factor
+                    held2 /= factor
+                    pins[:, 5] /= factor
+                overlapping, before = True, deepest
                 continue
-        _advance(wu, wz, vwu, vwz, gwu, gwz, mwu, mwz, way1, longest)
-        _advance(fu, fz, vfu, vfz, gfu, gfz, mfu, mfz, way2, longest)
+        advance(wu, wz, vwu, vwz, gwu, gwz, made1[0], made1[1], way1, longest)
+        advance(fu, fz, vfu, vfz, gfu, gfz, made2[0], made2[1], way2, longest)
     return residual, deepest, energy, steps, stiff
 
 
@@ -211,17 +206,30 @@ def relax_particles(
     stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
     l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
-    steps, pins = 0, np.zeros((0, 5))
+    deep, steps, pins = 0.0, 0, np.zeros((0, 6))
+    offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
+    for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
+        offsets[0][:, :, middle] = pressing / (2 * stiff)
+    places = wu, wz, fu, fz
+    ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
+    motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
-        turn = min(most - steps, max(LOOK, steps // 3))
+        turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
         residual, deepest, energy, more, stiff = _settle(
-            wu, wz, fu, fz, lift, pressing, pins, per, numbers, stiff, rough * tolerance, OVERLAP, turn
+            places, lift, pressing, offsets, motion, pins, per, numbers, stiff, rough * tolerance, OVERLAP, turn,
+            deep > OVERLAP,
         )  # fmt: skip
         steps += more
-        between, new = curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins)
-        deepest = max(deepest, between)
+        between, new = curve_overlap(
+            wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins, max(PINNED, deepest)
+        )
+        deep, deepest = deepest, max(deepest, between)
         if steps >= most or residual <= tolerance and deepest <= PROMISED:
             break
+        if deep > OVERLAP:  # not at rest: stiffer contact leaves less to set out
+            stiff *= STIFFER
+            for array in (*offsets, pins[:, 5]):
+                array /= STIFFER
         pins = np.vstack([pins, new])
     if residual > tolerance or deepest > PROMISED:
         raise WeaveError(

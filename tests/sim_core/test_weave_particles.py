@@ -18,6 +18,7 @@ from sim_core.weave.relaxation import beam_stiffness
 from sim_core.weave.solve import ground_of, solve
 from sim_core.weave.strands import strands
 from sim_core.weave.structures import gauze
+from sim_core.weave.yarn_steps import advance, factored
 
 D = 1e-4
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
@@ -35,7 +36,7 @@ def cloth(
 def test_plain_crimp_within_one_and_a_half_per_cent_of_the_elastica(spacing, per):
     cell = relax_particles(cloth(plain(), spacing), per=per)
     assert cell.warp_crimp == pytest.approx(elastica_crimp(spacing), rel=0.015)
-    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-6)
+    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-4)  # at rest to 1e-3
     assert cell.penetration <= 5e-4
     assert cell.residual <= 1e-3
     if spacing > 2:  # round yarns that touch in one point
@@ -163,11 +164,14 @@ def test_forces_are_the_slope_of_the_energy():
     check(bend, g)
     h = [np.zeros_like(u) for _ in range(4)]
     g = np.zeros_like(u), np.zeros_like(u)
+    out = 0.02 * rng.random(u.shape)
 
     def side(a, b):
-        return side_forces(a, b, 0.6, 0.9, 0.8, 5.0, np.zeros_like(a), np.zeros_like(a), False, *h[:2])[0]
+        return side_forces(
+            a, b, 0.6, 0.9, 0.8, 5.0, np.zeros_like(a), np.zeros_like(a), out, False, False, *h[:2]
+        )[0]
 
-    assert side_forces(u, z, 0.6, 0.9, 0.8, 5.0, *g, True, *h[:2])[1] > 0.05
+    assert side_forces(u, z, 0.6, 0.9, 0.8, 5.0, *g, out, False, True, *h[:2])[1] > 0.05
     check(side, g)
 
 
@@ -186,6 +190,8 @@ def test_contact_acts_equally_on_both_yarns():
         lift,
         np.zeros((2, 2)),
         everywhere,
+        0.01 * everywhere,
+        False,
         8,
         0.3,
         0.3,
@@ -202,6 +208,33 @@ def test_contact_acts_equally_on_both_yarns():
     assert deepest > 0.05
     assert largest > 0
     assert g[1].sum() == pytest.approx(-g[3].sum(), rel=1e-9)
+
+
+@pytest.mark.parametrize("count", [8, 9, 30])
+def test_a_step_is_solved_with_the_whole_yarn(count):
+    """The first step is length (1 + 1/4) K^-1 g with the dense cyclic stiffness K of bending, tension and contact."""
+    rng = np.random.default_rng(6)
+    weight, force = rng.uniform(0.5, 4.0, (2, 3, count)), 0.01 * rng.standard_normal((2, 3, count))
+    made = np.zeros((2, 3, count, 5))
+    bent = 2 * np.eye(count) - np.roll(np.eye(count), 1, 0) - np.roll(np.eye(count), -1, 0)
+    for which in (0, 1):
+        factored(weight[which], 1.3, 0.2, made[which])
+    places, speeds = np.zeros((2, 3, count)), np.zeros((2, 3, count))
+    given: list = [*places, *speeds, *force, *made]
+    advance(*given, np.zeros((3, 2)), 0.7)
+    for which in (0, 1):
+        for yarn in range(3):
+            stiffness = 1.3 * bent @ bent + 0.2 * bent + np.diag(weight[which, yarn])
+            wanted = 0.7 * np.linalg.solve(stiffness, force[which, yarn])
+            np.testing.assert_allclose(speeds[which, yarn], wanted, rtol=1e-10, atol=1e-14)
+            np.testing.assert_allclose(places[which, yarn], 1.25 * wanted, rtol=1e-10, atol=1e-14)
+
+
+def test_contacts_set_out_press_as_before_and_do_not_overlap():
+    """Soft contact would let the yarns of this weave overlap by 2e-2 D, and lower the crest by as much."""
+    cell = relax_particles(cloth(plain(), 4), per=16)
+    assert cell.penetration <= 5e-4
+    assert sum(cell.crest_to_trough()) == pytest.approx(2 * D, rel=1e-3)
 
 
 def test_the_same_weave_gives_the_same_bits():
@@ -324,7 +357,7 @@ def test_curves_do_not_meet_between_their_particles(draft, spacing, flattening, 
     assert cell.penetration >= deepest - 1e-6
 
 
-NO_PINS = np.zeros((0, 5))
+NO_PINS = np.zeros((0, 6))
 
 
 def test_penetration_is_measured_between_the_particles():
@@ -335,16 +368,16 @@ def test_penetration_is_measured_between_the_particles():
     shift = 3.5 * step  # brings these places over one another
     wu, fu = np.full((4, n), shift), np.full((4, n), shift)
     above = np.ones((4, 4), bool)
-    found, pins = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS)
+    found, pins = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4)
     # Catmull-Rom at the middle of a piece: 9/16 of each neighbour, -1/16 of the next
     least = 2 * (0.45 + 0.2 * (9 / 8 * 0.125 - 1 / 8 * 0.375))
     assert found == pytest.approx(1 - least, abs=1e-9)
     assert len(pins) == 32  # one a crossing and norm
     np.testing.assert_allclose(pins[:, 3], 3.5, atol=1e-6)
-    again, more = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, pins)
+    again, more = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, pins, 4e-4)
     assert again == found
     assert len(more) == 0  # it is pinned
-    apart, none = curve_overlap(wu, wz + 1, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS)
+    apart, none = curve_overlap(wu, wz + 1, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4)
     assert apart < 0
     assert len(none) == 0
 
@@ -356,12 +389,12 @@ def test_pins_act_equally_on_both_yarns_and_as_the_slope_of_their_energy():
     state[1] += 0.4
     state[3] -= 0.4
     lift, flat = np.ones((2, 2), bool), (1.3, 1.4)
-    pins = np.array([[0, 1, 0, 0.3, -0.1], [1, 0, 1, -1.6, 0.2], [1, 1, 0, 0.0, 0.1]])
+    pins = np.array([[0, 1, 0, 0.3, -0.1, 0.0], [1, 0, 1, -1.6, 0.2, 0.01], [1, 1, 0, 0.0, 0.1, 0.02]])
 
     def forces(values):
         g, h = ([np.zeros((2, 16)) for _ in range(4)] for _ in range(2))
         pressing = np.zeros((2, 2))
-        given: list = [pins, *values, *g, lift, pressing, 8, 0.3, 0.3, *flat, 7, 7, 100.0, True, *h]
+        given: list = [pins, *values, *g, lift, pressing, 8, 0.3, 0.3, *flat, 7, 7, 100.0, False, True, *h]
         energy, deepest, largest = pin_forces(*given)
         assert deepest > 0.01
         assert largest == pressing.max() > 0
