@@ -220,8 +220,8 @@ def test_a_step_is_solved_with_the_whole_yarn(count):
     for which in (0, 1):
         factored(weight[which], 1.3, 0.2, made[which])
     places, speeds = np.zeros((2, 3, count)), np.zeros((2, 3, count))
-    given: list = [*places, *speeds, *force, *made]
-    advance(*given, np.zeros((3, 2)), 0.7)
+    given: list = [*places, *speeds, *force, *made, np.zeros((3, 2)), 0.7]
+    advance(*given)
     for which in (0, 1):
         for yarn in range(3):
             stiffness = 1.3 * bent @ bent + 0.2 * bent + np.diag(weight[which, yarn])
