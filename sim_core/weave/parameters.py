@@ -6,7 +6,7 @@ import numpy as np
 
 from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
-from sim_core.weave.relaxation import relax
+from sim_core.weave.relaxation import MANY, relax
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["areal_density", "cloth_parameters", "tensile_compliance"]
@@ -14,6 +14,7 @@ __all__ = ["areal_density", "cloth_parameters", "tensile_compliance"]
 SHEAR_ANGLE = radians(8)  # the angle to which the cell is sheared for the secant modulus
 YARN_FRICTION = 0.25  # between crossing silk yarns, assumption
 PROBE = 1e-3  # tension of the probe: strains stay near this
+PROBE_MANY = 2e-3  # where heights are known to 1e-6 only
 
 
 def cloth_parameters(weave: Weave, geometry: YarnGeometry) -> ClothParameters:
@@ -22,7 +23,7 @@ def cloth_parameters(weave: Weave, geometry: YarnGeometry) -> ClothParameters:
     Yarn level values, so the tensile stiffness is that of yarns whose crimp straightens: a cloth solver may have to
     soften it for its time step, and should say so.
     """
-    compliance = tensile_compliance(weave)
+    compliance = tensile_compliance(weave, geometry)
     shear, shear_bounds = _shear(weave, geometry)
     warp_bounds, weft_bounds = _bending_bounds(weave, geometry)
     bend_warp = weave.warp.stiffness * weave.ends_per_m / (1 + float(geometry.warp_crimp.mean()))
@@ -66,31 +67,40 @@ def _thickness(weave: Weave, geometry: YarnGeometry) -> float:
     return float(top - bottom)
 
 
-def tensile_compliance(weave: Weave) -> np.ndarray:
+def tensile_compliance(weave: Weave, rest: YarnGeometry | None = None) -> np.ndarray:
     """Strains per tension [m/N], (2, 2) symmetric, [0, 0] warp, [1, 1] weft, [0, 1] crimp interchange (negative).
 
     A small tension is put on one yarn system, the heights are relaxed again, and the change of crimp is the strain
-    (the yarn keeps its length); the axial stretch of the straight yarn is added.
+    (the yarn keeps its length); the axial stretch of the straight yarn is added. Above 10,000 crossings the tension
+    is only pulled, not pushed (the long waves of a large repeat would buckle), from stage A at rest, `rest`.
     """
     # tension per yarn at which straightening yields strains of about PROBE
-    warp_probe = PROBE * weave.warp.stiffness / weave.pick_spacing**2
-    weft_probe = PROBE * weave.weft.stiffness / weave.end_spacing**2
+    many = weave.draft.lift.size > MANY
+    size = PROBE_MANY if many else PROBE
+    warp_probe = size * weave.warp.stiffness / weave.pick_spacing**2
+    weft_probe = size * weave.weft.stiffness / weave.end_spacing**2
     probes = (warp_probe, 0.0), (0.0, weft_probe)
     yarns = weave.ends_per_m, weave.picks_per_m
     axial = weave.warp.axial, weave.weft.axial
     columns = []
+    if many and rest is None:
+        rest = relax(weave)
     for k in range(2):
-        pulled = _mean_crimp(weave, probes[k])
-        slack = _mean_crimp(weave, (-probes[k][0], -probes[k][1]))
-        strain = -(pulled - slack) / (2 * probes[k][k] * yarns[k])
+        if many and rest is not None:
+            pulled = _crimps(relax(weave, tension=probes[k], start=rest))
+            slack, span = _crimps(rest), probes[k][k]
+        else:
+            pulled = _crimps(relax(weave, tension=probes[k], tolerance=1e-11))
+            slack = _crimps(relax(weave, tension=(-probes[k][0], -probes[k][1]), tolerance=1e-11))
+            span = 2 * probes[k][k]
+        strain = -(pulled - slack) / (span * yarns[k])
         strain[k] += 1 / (axial[k] * yarns[k])
         columns.append(strain)
     matrix = np.column_stack(columns)
     return (matrix + matrix.T) / 2
 
 
-def _mean_crimp(weave: Weave, tension: tuple[float, float]) -> np.ndarray:
-    geometry = relax(weave, tension=tension, tolerance=1e-11)
+def _crimps(geometry: YarnGeometry) -> np.ndarray:
     return np.array([geometry.warp_crimp.mean(), geometry.weft_crimp.mean()])
 
 

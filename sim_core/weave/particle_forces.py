@@ -10,13 +10,14 @@ from math import floor, sqrt
 import numpy as np
 from numba import njit
 
-__all__ = ["contact_forces", "side_forces", "yarn_forces"]
+__all__ = ["contact_forces", "set_out", "side_forces", "touch", "yarn_forces"]
 
 NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of the energy where yarns are steep and flat
 # A point in the bowl of a curve that bends round it has two nearest points, and would jump between them. From this
 # share of the focal distance on it is held to the place below it; the curve's own particles touch on both flanks.
 BOWL = 0.6
-SKIN = 1.06  # norm below which a particle may come to touch before the crossing is looked at as a whole again
+FARTHEST = 0.05  # a contact is set out
+SKIN = 1.08  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
 @njit(cache=True, error_model="numpy")
@@ -70,23 +71,32 @@ def yarn_forces(u, z, length, stiffness, tension, fu, fz):
 
 
 @njit(cache=True, error_model="numpy")
-def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, out):
+def set_out(held, norm):
+    """By how much a contact at `norm` is to be set out: then it presses as before, and does not overlap."""
+    return min(max(held + 1.0 - norm, 0.0), FARTHEST)
+
+
+@njit(cache=True, error_model="numpy")
+def touch(
+    c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, aside, held, out
+):
     """Contact of a point with the curve of a crossing yarn.
 
     c: place of the point along the crossing yarn, from its particle `base`; d: sideways to it; z: height.
     The curve runs through its particles (Catmull-Rom); the nearest point in the anisotropic norm
     dc^2 + (dd / wide_d)^2 + dz^2 is found by Newton: a flat section lies on the yarn that it crosses and turns with its
-    slope. sign: +1 where the point belongs above.
+    slope. sign: +1 where the point belongs above.  aside: pieces from the place below the point to where Newton starts.
+    held: by how much the contact is set out, in D; where that is too much, it presses across a gap, told as overlap.
     Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, the contact's
     stiffness along c and z, and the norm to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
     count = u2.shape[1]
-    s = min(max(c / l2, -reach), reach)
+    s = min(max(c / l2 + aside, -reach), reach)
     n1 = base + int(floor(s + 0.5))
     n1 = n1 + count if n1 < 0 else n1 - count if n1 >= count else n1
     dd, dz = (d - u2[yarn2, n1]) / wide_d, z - z2[yarn2, n1]
     out[6] = 2.0
-    if dd * dd >= 1.0 or (dz * sign > 0.0 and dd * dd + dz * dz > 2.2):
+    if dd * dd >= SKIN * SKIN or (dz * sign > 0.0 and dd * dd + dz * dz > 2.2):
         return 0.0
     n0, n2, n3 = 0, 0, 0
     w0, w1, w2, w3 = 0.0, 0.0, 0.0, 0.0
@@ -127,9 +137,9 @@ def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz
         high = 0.05
     norm = sqrt(dc * dc + dd * dd / (wide_d * wide_d) + high * high)
     out[6] = norm
-    if norm >= 1.0:
+    if norm >= 1.0 + held:
         return 0.0
-    press = stiff * (1.0 - norm)
+    press = stiff * (1.0 + held - norm)
     along_c, along_d, along_z = (
         press * dc / norm, press * dd / (wide_d * wide_d * norm), press * sign * high / norm
     )  # fmt: skip
@@ -147,12 +157,12 @@ def _touch(c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz
             hu2[yarn2, n] += w * stiff_d
             hz2[yarn2, n] += w * stiff_z
         out[4], out[5] = stiff * (dc / norm) ** 2, stiff_z
-    out[0], out[1], out[2], out[3] = along_c, along_z, 1.0 - norm, press * high / norm
-    return 0.5 * press * (1.0 - norm)
+    out[0], out[1], out[2], out[3] = along_c, along_z, abs(1.0 - norm), press * high / norm
+    return 0.5 * press * (1.0 + held - norm)
 
 
 @njit(cache=True, error_model="numpy")
-def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y,
+def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
                    reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
@@ -160,6 +170,8 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
     pressing: (picks, ends), read as the friction's normal force of the last evaluation, then written.
     near: (picks, ends, 2 (reach1 + reach2 + 1)) uint8, particles that touch or nearly do: written where `weigh` is
     set; else only those are looked at.
+    held: of the shape of near, float64, by how much each contact is set out [D].  renew: set them out by what they
+    overlap now, after their forces are taken (only where `weigh` is set).
     wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
     sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
     place as woven.
@@ -179,10 +191,12 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
-                more = _touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
-                              gfu, gfz, weigh, hfu, hfz, out)  # fmt: skip
+                more = touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
+                              gfu, gfz, weigh, hfu, hfz, 0.0, held[i, j, reach1 + a], out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
+                if renew:
+                    held[i, j, reach1 + a] = set_out(held[i, j, reach1 + a], out[6])
                 if more == 0.0:
                     continue
                 energy += more
@@ -198,10 +212,12 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
                     continue
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
-                more = _touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
-                              gwu, gwz, weigh, hwu, hwz, out)  # fmt: skip
+                more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
+                              gwu, gwz, weigh, hwu, hwz, 0.0, held[i, j, second + b], out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN
+                if renew:
+                    held[i, j, second + b] = set_out(held[i, j, second + b], out[6])
                 if more == 0.0:
                     continue
                 energy += more
@@ -226,8 +242,11 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per
 
 
 @njit(cache=True, error_model="numpy")
-def side_forces(u, z, spacing, wide, high, stiff, gu, gz, weigh, hu, hz):
-    """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap)."""
+def side_forces(u, z, spacing, wide, high, stiff, gu, gz, held, renew, weigh, hu, hz):
+    """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap).
+
+    held: (yarns, particles) by how much the contact with the next yarn is set out, and renew as of contact_forces.
+    """
     yarns, count = u.shape
     energy, deepest = 0.0, 0.0
     for yarn in range(yarns):
@@ -236,12 +255,17 @@ def side_forces(u, z, spacing, wide, high, stiff, gu, gz, weigh, hu, hz):
             du = (spacing + u[other, k] - u[yarn, k]) / wide
             dz = (z[other, k] - z[yarn, k]) / high
             square = du * du + dz * dz
-            if square >= 1.0 or square < 1e-12:
+            gap = 1.0 + held[yarn, k]
+            if square >= gap * gap or square < 1e-12:
+                if renew:
+                    held[yarn, k] = set_out(held[yarn, k], sqrt(square))
                 continue
             norm = sqrt(square)
-            press = stiff * (1.0 - norm)
-            energy += 0.5 * press * (1.0 - norm)
-            deepest = max(deepest, 1.0 - norm)
+            if renew:
+                held[yarn, k] = set_out(held[yarn, k], norm)
+            press = stiff * (gap - norm)
+            energy += 0.5 * press * (gap - norm)
+            deepest = max(deepest, abs(1.0 - norm))
             if weigh:
                 for y in (yarn, other):
                     hu[y, k] += stiff * (du / (norm * wide)) ** 2

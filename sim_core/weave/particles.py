@@ -2,7 +2,8 @@
 
 Energy: bending, tension times length, contact of flattened sections (also of neighbours), and friction at the
 crossings as work against slip from the place as woven (the pressing force held fixed while it is evaluated, then
-renewed). Minimised by FIRE with a mass for each particle that makes all fast modes equally fast.
+renewed). Minimised by Nesterov's method, each yarn turning back by itself, in steps divided by its own stiffness. The
+contact is an augmented Lagrangian: it stays soft, and is set out by what it overlaps.
 """
 
 from __future__ import annotations
@@ -14,22 +15,31 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import WeaveError
+from sim_core.weave.closest_pairs import curve_overlap, pin_forces
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
+from sim_core.weave.yarn_steps import advance, factored, power
 
 __all__ = ["ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
-OVERLAP = 4e-4  # of D; what is promised is 5e-4
-MOST_STEPS = 20_000
+DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
+OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
+PINNED, PROMISED = 4.2e-4, 5e-4
+LOOK = 300  # steps after which pins are sought again though the yarns still move
+ROUNDS = 400  # of rest and pins
+ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
+SOFT = 40.0  # first stiffness of the contact, x largest crossing force
+MOST_STEPS = 80_000
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
-START, GROW, CUT, MIX = 0.25, 1.1, 0.5, 0.1
-LONGEST_STEP = 1.0  # x 1 / fastest frequency
-SHORTER, PATIENCE = 0.7, 400  # of that, after so many steps without gain
+LONGEST_STEP = 0.7  # x 1 / fastest frequency
+SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
+STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
+SLACK = 1.0  # EI/l^3 on the diagonal: contacts that come between two weighings must not throw a yarn
 WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
@@ -40,9 +50,9 @@ class ParticleCell:
 
     warp_side, warp_height: (ends, picks * per) [m], sideways from the end's place and above the middle plane.
     weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
-    warp_crimp: (ends,), weft_crimp: (picks,), from arc lengths.  residual: largest net force on a particle / largest
-    crossing force.  penetration: deepest overlap of a particle with a curve in units of D, the mean height of warp and
-    weft; between the particles two curves may come closer, see the README.
+    warp_crimp: (ends,), weft_crimp: (picks,), of the curves.  residual: largest net force on a particle / largest
+    crossing force.  penetration: deepest overlap of two yarns that cross, anywhere on their curves, or of particles
+    of neighbours, in units of D, the mean height of warp and weft.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 
@@ -71,89 +81,96 @@ class ParticleCell:
         return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
 
 
-@njit(cache=True)
-def _settle(wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, overlap, most):
-    """FIRE. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1, high1, side2, high2,
-    friction, slip. Returns (residual, overlap, energy, steps, stiffness)."""
+@njit(cache=True, error_model="numpy")
+def _settle(
+    places, lift, pressing, offsets, motion, pins, per, numbers, stiff, tolerance, overlap, most, overlapping
+):
+    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
+    high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
+    motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
+    overlapping: contacts are to be set out at once. Returns (residual, overlap, energy, steps, stiffness)."""
+    wu, wz, fu, fz = places
+    held, held1, held2 = offsets
+    speed1, speed2, way1, way2 = motion
     l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
     reach1, reach2 = int(r1), int(r2)
     gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    vwu, vwz, vfu, vfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
+    (vwu, vwz), (vfu, vfz) = speed1, speed2
     hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
-    base1, base2 = 16.0 * e1 / l1**3 + 4.0 * t1 / l1, 16.0 * e2 / l2**3 + 4.0 * t2 / l2
-    dt, mix, downhill = START, MIX, 0
-    residual, deepest, energy, steps, checked = np.inf, np.inf, 0.0, 0, 0
+    made1, made2 = np.zeros((2, *wu.shape, 5)), np.zeros((2, *fu.shape, 5))
+    bend1, bend2, pull1, pull2 = e1 / l1**3, e2 / l2**3, t1 / l1, t2 / l2
+    residual, deepest, before, energy, steps = np.inf, np.inf, np.inf, 0.0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
         steps = step + 1
-        weigh = step % WEIGH == 0
+        renew = overlapping
+        weigh = renew or step % WEIGH == 0
+        overlapping = False
         gwu[:], gwz[:], gfu[:], gfz[:] = 0.0, 0.0, 0.0, 0.0
         if weigh:
             hwu[:], hwz[:], hfu[:], hfz[:] = 0.0, 0.0, 0.0, 0.0
         energy = yarn_forces(wu, wz, l1, e1, t1, gwu, gwz) + yarn_forces(fu, fz, l2, e2, t2, gfu, gfz)
         side = 0.0
         if s1 > 0:
-            more, side = side_forces(wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, weigh, hwu, hwz)
+            more, side = side_forces(
+                wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, held1, renew, weigh, hwu, hwz
+            )
             energy += more
         if s2 > 0:
-            more, other = side_forces(fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, weigh, hfu, hfz)
+            more, other = side_forces(
+                fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, held2, renew, weigh, hfu, hfz
+            )
             energy += more
             side = max(side, other)
         more, deepest, largest = contact_forces(
-            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, per, l1, l2, wide_x, wide_y, reach1, reach2,
-            stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
+            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
+            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
+        if len(pins):
+            more, deep, most_pressed = pin_forces(
+                pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
+                stiff, renew, weigh, hwu, hwz, hfu, hfz,
+            )  # fmt: skip
+            energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
         if weigh:
-            for m, h, base in ((mwu, hwu, base1), (mwz, hwz, base1), (mfu, hfu, base2), (mfz, hfz, base2)):
+            for m, h, bend, pull, made in (
+                (mwu, hwu, bend1, pull1, made1[0]),
+                (mwz, hwz, bend1, pull1, made1[1]),
+                (mfu, hfu, bend2, pull2, made2[0]),
+                (mfz, hfz, bend2, pull2, made2[1]),
+            ):
                 for y in range(m.shape[0]):
                     for k in range(m.shape[1]):
-                        m[y, k] = max(base + 3.0 * h[y, k], FADE * m[y, k])
-        power, speed, push, worst = 0.0, 0.0, 0.0, 0.0
-        for v, g, m in ((vwu, gwu, mwu), (vwz, gwz, mwz), (vfu, gfu, mfu), (vfz, gfz, mfz)):
-            for y in range(v.shape[0]):
-                for k in range(v.shape[1]):
-                    force = g[y, k]
-                    worst = max(worst, abs(force))
-                    power += force * v[y, k]
-                    push += force * force / m[y, k]
-                    speed += v[y, k] * v[y, k] * m[y, k]
+                        m[y, k] = max(SLACK * bend + 3.0 * h[y, k], FADE * m[y, k])
+                factored(m, bend, pull, made)
+        worst = max(power(vwu, vwz, gwu, gwz, way1), power(vfu, vfz, gfu, gfz, way2))
         residual = worst / max(largest, 1e-300)
         if residual < 0.7 * best:
             best, since = residual, step
         elif (
             step - since > PATIENCE
         ):  # some particles flutter between touching and not: smaller steps calm them
-            longest, best, since = max(SHORTER * longest, 0.3), residual, step
+            longest, best, since = max(SHORTER * longest, SHORTEST), residual, step
         if weigh and residual < tolerance:
             if deepest <= overlap:
                 break
-            if step >= checked:  # at rest, but the contact is too soft
-                stiff *= min(max(1.3 * deepest / overlap, 1.3), 20.0)
-                checked = step + 20
+            if not renew:
+                # at rest, but the yarns overlap: contacts are set out by as much, and stiffened where that helps little
+                if deepest > max(DEEP, HELPED * before):
+                    factor = min(max(deepest / DEEP, 2.0), 20.0)
+                    stiff *= factor
+                    held /= factor
+                    held1 /= factor
+                    held2 /= factor
+                    pins[:, 5] /= factor
+                overlapping, before = True, deepest
                 continue
-        if power > 0:
-            downhill += 1
-            if downhill > 8:
-                dt, mix = min(dt * GROW, longest), mix * 0.99
-            blend = mix * sqrt(speed / max(push, 1e-300))
-        else:
-            downhill, mix, blend = 0, MIX, 0.0
-            dt = max(dt * CUT, 0.05)
-        keep = 1.0 - mix if power > 0 else 0.0
-        for x, v, g, m in (
-            (wu, vwu, gwu, mwu),
-            (wz, vwz, gwz, mwz),
-            (fu, vfu, gfu, mfu),
-            (fz, vfz, gfz, mfz),
-        ):
-            for y in range(v.shape[0]):
-                for k in range(v.shape[1]):
-                    v[y, k] = keep * v[y, k] + (blend + dt) * g[y, k] / m[y, k]
-                    x[y, k] += min(max(dt * v[y, k], -0.05), 0.05)
+        advance(wu, wz, vwu, vwz, gwu, gwz, made1[0], made1[1], way1, longest)
+        advance(fu, fz, vfu, vfz, gfu, gfz, made2[0], made2[1], way2, longest)
     return residual, deepest, energy, steps, stiff
 
 
@@ -186,17 +203,39 @@ def relax_particles(
     )
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
     pressing = first.force / scale.force
-    stiff = 1250.0 * max(float(pressing.max()), 1e-12)
+    stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
-    residual, deepest, energy, steps, _ = _settle(
-        wu, wz, fu, fz, lift, pressing, per, numbers, stiff, tolerance, OVERLAP, most
-    )
-    if residual > tolerance or deepest > 1.25 * OVERLAP:
+    l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
+    deep, steps, pins = 0.0, 0, np.zeros((0, 6))
+    offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
+    for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
+        offsets[0][:, :, middle] = pressing / (2 * stiff)
+    places = wu, wz, fu, fz
+    ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
+    motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
+    for rough in (*ROUGH, *(1.0,) * ROUNDS):
+        turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
+        residual, deepest, energy, more, stiff = _settle(
+            places, lift, pressing, offsets, motion, pins, per, numbers, stiff, rough * tolerance, OVERLAP, turn,
+            deep > OVERLAP,
+        )  # fmt: skip
+        steps += more
+        between, new = curve_overlap(
+            wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins, max(PINNED, deepest)
+        )
+        deep, deepest = deepest, max(deepest, between)
+        if steps >= most or residual <= tolerance and deepest <= PROMISED:
+            break
+        if deep > OVERLAP:  # not at rest: stiffer contact leaves less to set out
+            stiff *= STIFFER
+            for array in (*offsets, pins[:, 5]):
+                array /= STIFFER
+        pins = np.vstack([pins, new])
+    if residual > tolerance or deepest > PROMISED:
         raise WeaveError(
             f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
             f"after {steps} steps) – lower the sett, or allow a larger residual"
         )
-    l1, l2 = numbers[0], numbers[1]
     return ParticleCell(
         per, wu * scale.length, wz * scale.length, fu * scale.length, fz * scale.length, pressing * scale.force,
         _crimp(wu, wz, l1), _crimp(fu, fz, l2), float(residual), float(deepest),
@@ -244,10 +283,18 @@ class _Scale:
 
 
 def _crimp(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
-    """Excess arc length of each yarn; every piece counts as an arc of the angles at its ends."""
-    du, dz = np.roll(u, -1, axis=1) - u, np.roll(z, -1, axis=1) - z
-    chord = np.sqrt(piece**2 + du**2 + dz**2)
-    cosine = piece**2 + du * np.roll(du, 1, axis=1) + dz * np.roll(dz, 1, axis=1)
-    turn = 2 * (1 - np.clip(cosine / (chord * np.roll(chord, 1, axis=1)), -1, 1))
-    arc = chord * (1 + (turn + np.roll(turn, -1, axis=1)) / 48)
-    return arc.mean(axis=1) / piece - 1
+    """Excess arc length of each yarn: of the Catmull-Rom curves that are in contact, by Gauss's rule in each piece."""
+    speed = np.zeros_like(u)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    for f, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
+        square = np.full_like(u, piece**2)
+        for p in (u, z):
+            before, after, next_ = np.roll(p, 1, axis=1), np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
+            rise = (
+                6 * f * (1 - f) * (after - p)
+                + (1 - f) * (1 - 3 * f) * (after - before) / 2
+                + f * (3 * f - 2) * (next_ - p) / 2
+            )
+            square += rise**2
+        speed += weight * np.sqrt(square)
+    return speed.mean(axis=1) / piece - 1

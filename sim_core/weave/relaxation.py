@@ -18,10 +18,13 @@ from sim_core.errors import WeaveError
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
 from sim_core.weave.model import Weave
+from sim_core.weave.shifted import draft_shift, shifted_forces
 
 __all__ = ["beam_stiffness", "relax"]
 
 TOLERANCE = 1e-9
+MANY = 10_000  # crossings, beyond which maps and parameters are content with less, and satins are solved by a pick
+TOLERANCE_MANY = 1e-6
 ITERATIONS = 20_000
 OVER_RELAXATION = 1.7
 
@@ -49,26 +52,42 @@ def relax(
     weave: Weave,
     *,
     tension: tuple[float, float] = (0.0, 0.0),
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
     share: int = 1,
+    start: YarnGeometry | None = None,
 ) -> YarnGeometry:
     """Yarn geometry of one repeat in force balance (stage A), periodic and free of penetration.
 
     tension: (T of each warp end, T of each pick) [N], added to that of the yarns.  tolerance: on gap and force,
-    relative to D and to the largest crossing force.  share: yarns of a compound weave that share one place.
+    relative to D and to the largest crossing force, 1e-9 unless there are more than 10,000 crossings, then 1e-6.
+    share: yarns of a compound weave that share one place.  start: of a weave that differs little, to begin from.
     Slopes are taken as small: expect crimp up to a few per cent to be exact, near jam it is not.
     Raises WeaveError for a jammed sett, or where the iteration does not reach the tolerance.
     """
     if share == 1:
         check_jam(weave)
     picks, ends = weave.draft.lift.shape
+    if tolerance is None:
+        tolerance = TOLERANCE if picks * ends <= MANY else TOLERANCE_MANY
     pulls = weave.warp.tension + tension[0], weave.weft.tension + tension[1]
     warp = beam_stiffness(picks, weave.pick_spacing, weave.warp.stiffness, pulls[0])[:, None]
     weft = beam_stiffness(ends, weave.end_spacing, weave.weft.stiffness, pulls[1])[None, :]
     distance = (weave.warp.height + weave.weft.height) / 2
     unit = float(np.sqrt(warp.max() * weft.max()))
     problem = _Problem(warp / unit, weft / unit, np.where(weave.draft.lift, 1.0, -1.0))
-    force, gap, iterations, error = _contact_forces(problem, tolerance)
+    first = None
+    if start is not None:
+        first = (
+            (start.warp_height - start.weft_height) / distance,
+            problem.sign * start.force / (unit * distance),
+        )
+    shift = draft_shift(weave.draft.lift) if picks * ends > MANY else None
+    exact = (
+        None if shift is None else shifted_forces(problem.warp[:, 0], problem.weft[0], problem.sign, shift)
+    )
+    if exact is not None:
+        return _geometry(weave, problem, *exact[:2], distance, unit, exact[2])
+    force, gap, iterations, error = _contact_forces(problem, tolerance, first)
     if error > 1e3 * tolerance:
         raise WeaveError(
             f"weave {weave.name}: yarn heights do not settle (error {error:.1e} after {iterations} steps) – "
@@ -77,8 +96,13 @@ def relax(
     return _geometry(weave, problem, force, gap, distance, unit, iterations)
 
 
-def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """ADMM on the gap g = zw - zf with a penalty that is balanced as it goes. Returns force on the warp, gap, ..."""
+def _contact_forces(
+    problem: _Problem, tolerance: float, start=None
+) -> tuple[np.ndarray, np.ndarray, int, float]:
+    """ADMM on the gap g = zw - zf with a penalty that is balanced as it goes. Returns force on the warp, gap, ...
+
+    start: gap and force to begin from.
+    """
     together = np.maximum(problem.warp + problem.weft, 1e-300)
     resist = problem.warp * problem.weft / together  # 1 / H, zero where a yarn may move as a whole
     resist = resist[:, : problem.sign.shape[1] // 2 + 1]  # of a real pattern half the spectrum is enough
@@ -86,6 +110,8 @@ def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np
     rho = float(np.sqrt(stiff.min() * stiff.max()))
     gap = problem.sign.copy()
     dual = np.zeros_like(gap)
+    if start is not None:
+        gap, dual = start[0], -start[1] / rho
     error = np.inf
     for iteration in range(1, ITERATIONS + 1):
         free = np.asarray(irfft2(rho / (rho + resist) * np.asarray(rfft2(gap - dual)), s=gap.shape))
@@ -106,15 +132,9 @@ def _contact_forces(problem: _Problem, tolerance: float) -> tuple[np.ndarray, np
 
 
 def _geometry(weave, problem, force, wanted, distance, unit, iterations) -> YarnGeometry:
-    """Heights that exactly answer the forces, and everything measured on them. wanted: (picks, ends) gap / D."""
+    """Heights of both yarns, and everything measured on them. wanted: (picks, ends) gap / D."""
     force = np.where(problem.sign * force > 0, force, 0.0)
-    spectrum = np.fft.fft2(force)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        warp = np.where(problem.warp > 0, spectrum / problem.warp, 0.0)
-        weft = np.where(problem.weft > 0, -spectrum / problem.weft, 0.0)
-    warp, weft = np.fft.ifft2(warp).real, np.fft.ifft2(weft).real
-    warp_mean, weft_mean = _means(wanted)
-    warp, weft = warp + warp_mean, weft + weft_mean
+    warp, weft = _shared(problem, wanted) if force.size > MANY else _bent(problem, force, wanted)
     gap = problem.sign * (warp - weft) - 1
     pressure = problem.sign * force
     peak = max(float(pressure.max()), 1e-300)
@@ -130,6 +150,26 @@ def _geometry(weave, problem, force, wanted, distance, unit, iterations) -> Yarn
         complementarity=float(np.abs(pressure * gap).max()) / peak,
         iterations=iterations,
     )
+
+
+def _bent(problem: _Problem, force: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights that exactly answer the forces."""
+    spectrum = np.fft.fft2(force)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        warp = np.where(problem.warp > 0, spectrum / problem.warp, 0.0)
+        weft = np.where(problem.weft > 0, -spectrum / problem.weft, 0.0)
+    warp_mean, weft_mean = _means(wanted)
+    return np.fft.ifft2(warp).real + warp_mean, np.fft.ifft2(weft).real + weft_mean
+
+
+def _shared(problem: _Problem, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights that exactly make the gap, shared by the yarns' stiffness: long waves of a large repeat are so soft that
+    the least error of a force would bend them through each other."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = problem.weft / (problem.warp + problem.weft)
+    share[0, 0] = 0.5
+    warp = np.fft.ifft2(np.fft.fft2(gap) * share).real
+    return warp, warp - gap
 
 
 def _means(gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from sim_core.weave.analysis import summary
+from sim_core.weave.draft import Draft
 from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
 from sim_core.weave.parameters import cloth_parameters
@@ -39,7 +40,7 @@ TAKE_UP = (
 
 def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
     """All keys of the command's JSON. seconds: that the relaxation took.  origin: of yarns and sett."""
-    facts = summary(weave.draft)
+    facts = summary(_structure(weave.draft))
     size = measured(weave, geometry)
     parameters = parameters_of(weave, geometry)
     deep = geometry.penetration
@@ -59,9 +60,33 @@ def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: flo
         "areal_density": size["areal_density"],
         "residual": geometry.residual,
         "penetration": deep,
+        "penetration_of": _covered(weave, geometry),
         "seconds": seconds,
         "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
     }
+
+
+def _structure(draft: Draft) -> Draft:
+    """A draft without series that only colour its yarns: stripes are no larger repeat of the weave."""
+    channels = draft.channels
+    if channels.order is not None or channels.layer is not None:
+        return draft
+    return replace(draft, channels=replace(channels, end_series=None, pick_series=None))
+
+
+def _covered(weave: Weave, geometry: YarnGeometry | ParticleCell) -> str:
+    """Which overlaps `penetration` measures, and which yarns it leaves out."""
+    if isinstance(geometry, ParticleCell):
+        text = "curves of warp and weft at all crossings, and particles of neighbouring yarns"
+    else:
+        text = "warp and weft at the crossings"
+    if weave.extra is not None:
+        text += "; not extra wefts, which are laid on the relaxed ground"
+    if weave.draft.channels.layer is not None:
+        text += "; not yarns of a compound weave that do not show, which are placed beneath"
+    if weave.draft.channels.order is not None and weave.draft.channels.layer is None:
+        text += "; not ends where they cross one another"
+    return text
 
 
 def _take_up(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict:
@@ -125,9 +150,12 @@ def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothP
     plain = replace(ground_of(weave), extra=None)
     if channels.order is not None or channels.layer is not None:
         plain = _stand_in(weave)
-    from sim_core.weave.relaxation import relax
+    from sim_core.weave.relaxation import MANY, relax
 
-    base = relax(plain, share=64 if plain is not weave and channels.layer is not None else 1)
+    if plain.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and plain.draft is weave.draft:
+        base = geometry
+    else:
+        base = relax(plain, share=64 if plain is not weave and channels.layer is not None else 1)
     made = cloth_parameters(plain, base)
     size = measured(weave, geometry)
     note = dict(made.provenance)

@@ -147,7 +147,7 @@ def sample_surface(tiles: list[Tile], shape: tuple[int, int], size: tuple[float,
     return Samples(height, yarn, dx, dy, run, colour, across)
 
 
-@njit(cache=True, fastmath={"nsz", "arcp", "contract", "reassoc"})
+@njit(cache=True, error_model="numpy")
 def _draw_warp(centre, axis, slope, lean, half, tall, tint, first, top, fall, step, height, yarn, dx, dy, run, colour,
                across):  # fmt: skip
     rows, columns = height.shape
@@ -179,7 +179,7 @@ def _draw_warp(centre, axis, slope, lean, half, tall, tint, first, top, fall, st
                     across[row, column] = o
 
 
-@njit(cache=True, fastmath={"nsz", "arcp", "contract", "reassoc"})
+@njit(cache=True, error_model="numpy")
 def _draw_weft(centre, axis, slope, lean, half, tall, tint, first, top, fall, step, height, yarn, dx, dy, run, colour,
                across):  # fmt: skip
     rows, columns = height.shape

@@ -14,13 +14,17 @@ __all__ = ["tube_mesh", "write_yarns"]
 ROUND = 12  # vertices round a yarn
 
 
-def tube_mesh(points: np.ndarray, half_width: float, half_height: float, sides: int = ROUND):
+def tube_mesh(points: np.ndarray, half_width: float, half_height: float, sides: int = ROUND, *, around=None):
     """Open tube round an axis with an elliptic section. points: (n, 3) [m], z up; returns vertices and faces.
 
-    The section stands across the axis, its width in the plane of the cloth: vertices (n * sides, 3), faces
+    around: the point before the first and the one after the last, so that a tube that goes on there fits without a
+    seam.  The section stands across the axis, its width in the plane of the cloth: vertices (n * sides, 3), faces
     (2 (n - 1) sides, 3) int, counter-clockwise from outside.
     """
-    tangent = np.gradient(points, axis=0)
+    if around is None:
+        tangent = np.gradient(points, axis=0)
+    else:
+        tangent = np.gradient(np.vstack([around[0], points, around[1]]), axis=0)[1:-1]
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     across = np.cross(np.broadcast_to([0.0, 0.0, 1.0], tangent.shape), tangent)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
@@ -54,19 +58,23 @@ def write_yarns(systems: tuple[Strands, ...], path: str | Path) -> None:
 
 
 def _pieces(system: Strands):
-    """(points, colour index) of each stretch of yarn that is there and of one colour; whole yarns close."""
+    """(points, colour index, points before and after) of each stretch of yarn that is there and of one colour.
+
+    Whole yarns close: their last point is the first of the next repeat.
+    """
     for number, colour in enumerate(system.colour):
         points = system.points(number)
         step = np.zeros(3)
         step[1 if system.along == "warp" else 0] = system.length
-        points, colour = np.vstack([points, points[:1] + step]), np.append(colour, colour[0])
+        around = np.vstack([points[-1:] - step, points, points[:2] + step])
+        points, colour = around[1:-1], np.append(colour, colour[0])
         cuts = np.flatnonzero(np.diff(colour)) + 1
         for part in np.split(np.arange(len(colour)), cuts):
             if colour[part[0]] >= 0:
                 if part[-1] + 1 < len(colour) and colour[part[-1] + 1] >= 0:
                     part = np.append(part, part[-1] + 1)
                 if len(part) > 1:
-                    yield points[part], int(colour[part[0]])
+                    yield points[part], int(colour[part[0]]), (around[part[0]], around[part[-1] + 2])
 
 
 def _glb(systems: tuple[Strands, ...]) -> bytes:
@@ -77,8 +85,8 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
     scene = trimesh.Scene()
     for system in systems:
         made: dict[int, tuple[list, list, int]] = {}
-        for points, colour in _pieces(system):
-            vertices, faces = tube_mesh(points, system.yarn.width / 2, system.yarn.height / 2)
+        for points, colour, around in _pieces(system):
+            vertices, faces = tube_mesh(points, system.yarn.width / 2, system.yarn.height / 2, around=around)
             vs, fs, count = made.get(colour, ([], [], 0))
             made[colour] = ([*vs, vertices], [*fs, faces + count], count + len(vertices))
         for colour, (vertices, faces, _) in made.items():
@@ -93,7 +101,7 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
 def _ply(systems: tuple[Strands, ...]) -> bytes:
     points, tints, edges, count = [], [], [], 0
     for system in systems:
-        for part, colour in _pieces(system):
+        for part, colour, _ in _pieces(system):
             points.append(part)
             tints.append(np.tile(np.rint(system.palette[colour] * 255).astype(int), (len(part), 1)))
             edges.append(count + np.column_stack([np.arange(len(part) - 1), np.arange(1, len(part))]))

@@ -29,7 +29,7 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     rest = max(r["residual"] for r in found["plain"])
     made.append(
         (
-            "stage B: deepest penetration (at particles), largest residual",
+            "stage B: deepest penetration (of curves), largest residual",
             "5e-4 D, 1e-3",
             f"{deepest:.1e} D, {rest:.1e}",
         )

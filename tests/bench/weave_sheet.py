@@ -16,6 +16,9 @@ from sim_core.weave.words import weave_of
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 SIDE, COLUMNS, FOOT = 330, 5, 34
 WINDOW = 2.6  # [mm] shown of a weave without a figure; of a figured one, its whole repeat
+# A figure in one colour is told from its ground by the gleam of its floats alone: two repeats each way, and a lamp that
+# stands across the warp.
+ACROSS_WARP = {"light": (-0.75, 0.0, 0.65), "gloss": 0.75}
 
 
 def draw(path: Path) -> None:
@@ -51,12 +54,18 @@ def swatch(weave: Weave, geometry) -> tuple[Image.Image, float]:
     """A square piece of the lit cloth, as wide as high on the loom, and how many millimetres that is."""
     side = SIDE - 8
     figured = max(weave.draft.lift.shape) > 16
-    window = max(weave.size) * 1e3 if figured else WINDOW
+    one_colour = (
+        figured and weave.warp.colour == weave.weft.colour and not (weave.warp_colours or weave.extra)
+    )
+    many = 2 if one_colour else 1
+    window = many * max(weave.size) * 1e3 if figured else WINDOW
     across, up = (1 if figured else max(1, round(WINDOW / 1e3 / size)) for size in weave.size)
     maps = surface_maps(weave, geometry, pixels=1024, repeats=(across, up))
     scale = side / window / 1e-3  # pixels a metre
     high, wide = (max(1, round(size * scale)) for size in maps.size[::-1])
-    tile = Image.fromarray(lit_cloth(maps)).resize((wide, high), Image.Resampling.BOX)
+    tile = Image.fromarray(lit_cloth(maps, **ACROSS_WARP) if one_colour else lit_cloth(maps)).resize(
+        (wide, high), Image.Resampling.BOX
+    )
     picture = Image.new("RGB", (side, side))
     for x in range(0, side, wide):
         for y in range(side - high, -high, -high):

@@ -85,7 +85,7 @@ def test_conventions_of_the_words():
 
 BAD_WORDS = (
     "", "knit", "twill", "twill:2", "twill:a/b", "satin:8/2", "satin:8/3:Q", "plain:weft", "twill:1/3:weft",
-    "twill:9999/1", "satin:5/1",
+    "twill:9999/1", "satin:5/1", "twill:2/1:S:Z", "satin:8/3:warp:weft",
 )  # fmt: skip
 
 

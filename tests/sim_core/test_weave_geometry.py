@@ -5,8 +5,10 @@ import pytest
 
 from sim_core.errors import WeaveError
 from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
+from sim_core.weave.generators import damask
 from sim_core.weave.parameters import tensile_compliance
 from sim_core.weave.relaxation import beam_stiffness
+from sim_core.weave.shifted import draft_shift
 
 D = 1e-4
 
@@ -156,3 +158,56 @@ def test_crimp_straightening_of_plain_weave_has_a_closed_form():
     matrix = tensile_compliance(cloth)
     assert matrix[0, 0] == pytest.approx(wanted, rel=1e-4)
     assert matrix[0, 1] == pytest.approx(-per_yarn / cloth.ends_per_m, rel=1e-4)
+
+
+def long_hand(cloth: Weave, tolerance: float, monkeypatch, many: int):
+    monkeypatch.setattr("sim_core.weave.relaxation.MANY", many)
+    return relax(cloth, tolerance=tolerance)
+
+
+@pytest.mark.parametrize("draft", [plain(), twill(2, 2), twill(5, 3), satin(8, 3), satin(31, 7)])
+@pytest.mark.parametrize(("ends", "picks", "ratio"), [(4.0, 4.0, 1.0), (5.0, 3.5, 3.0)])
+def test_a_draft_that_shifts_is_solved_by_one_pick(draft, ends, picks, ratio, monkeypatch):
+    cloth = weave(draft, ends=ends, picks=picks, ratio=ratio)
+    wanted = long_hand(cloth, 1e-11, monkeypatch, 10**9)
+    made = long_hand(cloth, 1e-11, monkeypatch, 0)
+    for name in ("warp_height", "weft_height", "force", "warp_crimp", "weft_crimp"):
+        one, other = getattr(wanted, name), getattr(made, name)
+        np.testing.assert_allclose(other, one, atol=1e-8 * np.abs(one).max())
+
+
+def test_only_drafts_that_shift_have_a_shift():
+    assert draft_shift(plain().lift) == 1
+    assert draft_shift(twill(2, 1).lift) == 1
+    lift = satin(8, 3).lift
+    assert np.array_equal(lift[3], np.roll(lift[0], 3 * (draft_shift(lift) or 0)))
+    broken = lift.copy()
+    broken[4, 2] ^= True
+    assert draft_shift(broken) is None
+    assert draft_shift(np.tile(lift, (1, 2))[:4]) is None  # half a repeat does not close
+
+
+def test_the_longest_satin_is_in_balance():
+    draft = satin(1024, 341)
+    geometry = relax(weave(draft))
+    assert geometry.penetration <= 1e-6 * D
+    assert geometry.complementarity <= 1e-6
+    assert geometry.residual <= 1e-9
+    assert (geometry.force > 0).sum() >= 3 * 1024  # each end is held from both sides
+
+
+def test_large_figures_keep_their_yarns_apart(monkeypatch):
+    """Long waves are so soft that heights are taken from the gap there, not from the forces."""
+    rng = np.random.default_rng(1)
+    noise = np.fft.ifft2(np.fft.fft2(rng.normal(size=(48, 48))) * np.exp(-((np.fft.fftfreq(48) * 24) ** 2)))
+    cloth = weave(damask(noise.real > 0, satin(8, 3), longest=8), flattening=2.0)
+    wanted = long_hand(cloth, 1e-10, monkeypatch, 10**9)
+    made = long_hand(cloth, 1e-6, monkeypatch, 100)
+    assert made.penetration <= 1e-12 * D
+    for name in ("warp_height", "weft_height", "force", "warp_crimp", "weft_crimp"):
+        one, other = getattr(wanted, name), getattr(made, name)
+        np.testing.assert_allclose(other, one, atol=1e-4 * np.abs(one).max())
+    monkeypatch.setattr("sim_core.weave.parameters.MANY", 10**9)
+    exact = tensile_compliance(cloth)
+    monkeypatch.setattr("sim_core.weave.parameters.MANY", 100)
+    np.testing.assert_allclose(tensile_compliance(cloth, made), exact, rtol=0.05)

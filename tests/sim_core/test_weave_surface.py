@@ -232,3 +232,29 @@ def test_density_counts_extra_wefts_only_where_they_are(relaxed):
     share = (systems[2].colour >= 0).mean(axis=1).sum() / weave.size[1]
     more = measured(heavy, geometry)["areal_density"] - with_figure
     assert more == pytest.approx(share * weave.extra.tex, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["twill", "kesi"])
+def test_tubes_go_on_in_the_next_repeat_without_a_seam(relaxed, name):
+    """The last ring of a yarn is its first, a repeat further; so are rings where the colour changes."""
+    from sim_core.weave.tubes import _pieces
+
+    weave, geometry = relaxed(name)
+    warp = strands(weave, geometry)[0]
+    for points, _, around in _pieces(warp):
+        vertices, _ = tube_mesh(points, 1e-4, 5e-5, around=around)
+        rings = vertices.reshape(len(points), -1, 3)
+        np.testing.assert_allclose(rings[-1], rings[0] + [0, warp.length, 0], atol=1e-12)
+        assert np.abs(np.diff(points[:, 2])).max() > 0
+
+
+@pytest.mark.parametrize(
+    ("name", "left_out"),
+    [("twill", None), ("zhuanghua", "extra wefts"), ("jin", "do not show"), ("sha", "cross one another")],
+)
+def test_the_summary_says_what_penetration_leaves_out(relaxed, name, left_out):
+    weave, geometry = relaxed(name)
+    said = summary_of(weave, geometry, 0.0, "")["penetration_of"]
+    assert "crossings" in said
+    assert said.count("; not") == (left_out is not None)
+    assert left_out is None or left_out in said
