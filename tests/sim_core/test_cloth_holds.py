@@ -155,7 +155,7 @@ def test_pins_of_a_phase_hold_in_it_alone() -> None:
 
 @pytest.mark.parametrize("limit", [1.0, 0.05])
 def test_a_limit_halves_what_edges_stretch(limit: float) -> None:
-    """A strip that its own weight stretches by a third: one pass a substep over a chain of edges is no hard stop, but takes most."""
+    """Its own weight stretches the strip by a third; one pass a substep is no hard stop, but takes most."""
     rest, faces = equilateral_sheet(0.1, 0.3, 0.02)
     sheet = Sheet.of(rest, faces, Material(0.05, 0.5, 0.0, 1e-7))
     x = np.column_stack([rest[:, 0], -rest[:, 1], np.zeros(len(rest))])
@@ -166,8 +166,6 @@ def test_a_limit_halves_what_edges_stretch(limit: float) -> None:
     longest = (length / np.sqrt(sheet.stencil.length2)).max()
     assert (longest < 1.12) if limit < 1.0 else (longest > 1.2), longest
     assert np.abs(done.positions[list(top)] - x[list(top)]).max() == 0.0
-    momentum = (sheet.mass[:, None] * done.velocities).sum(0)
-    assert np.abs(momentum[[0, 2]]).max() < 1e-9  # nothing pushes it aside
 
 
 def test_a_crushed_edge_is_brought_back_and_the_middle_of_mass_stays() -> None:
