@@ -40,7 +40,7 @@ FALLING = (
     Phase(0.80, (9.81, 9.81), 6.0, 0.8, "settling"),
     Phase(0.80, (9.81, 9.81), 12.0, 0.8, "settling"),
 )
-# Then with softer shells: stacked folds that push each other hard tremble for ever, all at once they would collapse.
+# Then with more friction, on what lies beneath and of cloth on cloth.
 SETTLING = (
     Phase(1.80, (9.81, 9.81), 7.0, 1.4, "coming to rest"),
     Phase(0.80, (9.81, 9.81), 12.0, 1.4, "coming to rest"),
@@ -73,8 +73,8 @@ class PiboSettings:
     waves: float = 5.0
     clearance: float = 0.004
     shell: float = 0.003
-    spring: tuple[float, ...] = (0.03, 0.015, 0.005)  # of the shell: falling, settling, resting
-    self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)
+    spring: float = 0.03  # of the shell; softened later, stacked folds would sink through each other
+    self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)  # falling, settling, resting
 
 
 def pibo_on_figure(
@@ -193,10 +193,9 @@ def _draped(
     """All runs; frames and substeps of the result are those of all."""
     solid, holds, runs = field.solid(), _holds(half), []
     for run, course in enumerate(phases):
-        soft = min(run, len(s.spring) - 1)
         shell = {
-            "spring": s.spring[soft],
-            "self_friction": s.self_friction[soft],
+            "spring": s.spring,
+            "self_friction": s.self_friction[min(run, len(s.self_friction) - 1)],
             "every": 2,
             "partly": run < len(phases) - 1,
         }

@@ -142,9 +142,8 @@ def _frames(
 
 def _sparsity(count: int, top: int) -> sparse.csr_array:
     """Which residuals (R, N - 1) of `_frames` know which turns."""
-    own = sparse.eye_array(count, format="csr")
-    both = own[1:] + own[:-1]
-    return sparse.vstack([own, both, own[top:]], format="csr")[:, 1:]
+    own = np.eye(count)
+    return sparse.csr_array(np.concatenate([own, own[1:] + own[:-1], own[top:]])[:, 1:])
 
 
 def _carried(tangent: np.ndarray, first: np.ndarray) -> np.ndarray:

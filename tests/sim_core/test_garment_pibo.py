@@ -95,7 +95,7 @@ def test_a_strip_along_a_bent_line_bends_over_its_flat_side() -> None:
     x = swept(
         rest,
         path,
-        np.array([0.0, 1.0, 0.0]),
+        np.array([0.0, -1.0, 0.0]),
         Accordion((0.0, 1.0), (0.19, 0.19), 1.0),
         np.random.default_rng(0),
     )
