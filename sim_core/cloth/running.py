@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
+SHELL_VERSION = 2  # the same for layers that touch
 LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 INTEGRATORS = ("auto", "explicit", "implicit")
@@ -90,6 +91,7 @@ class Run:
         settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
         settings += () if self.air is None else (AIR_VERSION,)
         settings += () if self.pace == Pace() else (self.pace,)
+        settings += () if self.engine.shell.thickness == 0.0 else (SHELL_VERSION,)
         looked = () if self.certified is None else self.certified.certifier.solid
         return (*settings, *self.engine.packed, *holds, self.certified is not None, *looked)
 
