@@ -8,6 +8,7 @@ import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from zipfile import is_zipfile
 
 import numpy as np
 
@@ -133,6 +134,8 @@ def run(args: argparse.Namespace) -> int:
     for path in (args.out, args.video, args.resume):
         if path is not None and not path.parent.is_dir():
             raise WrongArgument(f"{path}: there is no folder {path.parent} – make it first")
+    if args.resume is not None and args.resume.exists() and not is_zipfile(args.resume):
+        raise WrongArgument(f"{args.resume}: this is no state of a run – name another file, or remove it")
     settings = _chosen(args)
     if args.certify:
         from sim_core.cloth.certifier import need_ipctk

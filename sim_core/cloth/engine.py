@@ -128,7 +128,7 @@ class Engine:
 
     def slow(self, dt: float) -> int:
         """Substeps of dt [s] that bending may be left alone for: fewer, or 1, where it is what limits the step."""
-        most = 2 * COURANT / (dt * np.sqrt(self.bend_omega2))
+        most = 2 * COURANT / (dt * np.sqrt(max(self.bend_omega2, 1e-12)))  # three faces cannot bend
         return next((n for n in (self.pace.slow, self.pace.slow // 2) if n <= most), 1)
 
     def advance(

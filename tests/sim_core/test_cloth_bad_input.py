@@ -187,3 +187,11 @@ def test_the_command_says_it_in_one_line(words: list[str], capsys) -> None:
     assert "Traceback" not in said.err
     told = [line for line in said.err.splitlines() if not line.startswith((" ", "usage"))]
     assert len(told) == 1
+
+
+def test_a_file_that_holds_something_else_is_not_written_over(tmp_path, capsys) -> None:
+    notes = tmp_path / "notes.txt"
+    notes.write_text("keep me", "utf-8")
+    assert cli.main(["cloth", "flag", "--vertices", "60", "--frames", "1", "--resume", str(notes)]) == 2
+    assert "no state of a run" in capsys.readouterr().err
+    assert notes.read_text("utf-8") == "keep me"

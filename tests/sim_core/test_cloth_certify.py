@@ -32,12 +32,26 @@ def thrown(speed: float) -> tuple[Sheet, np.ndarray, np.ndarray, list[int], int]
     return both, x, v, pins, count
 
 
+def test_a_shell_alone_stops_a_sheet_thrown_at_20_m_s() -> None:
+    """Steps become so short that it meets the shell of 3 mm: 64 crossings where they did not."""
+    sheet, x, v, pins, count = thrown(20.0)
+    crossed: list[int] = []
+    done = drape(
+        sheet,
+        x,
+        [Phase(0.08, damping=1.0)],
+        velocities=v,
+        pins=pins,
+        contact=Contact(thickness=0.003),
+        on_frame=lambda _, now: crossed.append(metrics.intersections(now.astype(float), sheet.faces)),
+    )
+    assert max(crossed) == 0
+    assert done.positions[count:, 1].mean() > done.positions[:count, 1].mean()
+
+
 @needs_ipctk
-@pytest.mark.parametrize(("speed", "thickness"), [(5.0, 0.0), (20.0, 0.003)])
-def test_a_sheet_thrown_at_another_goes_through_only_without_the_certifier(
-    speed: float, thickness: float
-) -> None:
-    sheet, x, v, pins, count = thrown(speed)
+def test_a_sheet_thrown_at_another_goes_through_only_without_the_certifier() -> None:
+    sheet, x, v, pins, count = thrown(5.0)
 
     def ends(certify: bool) -> tuple[int, np.ndarray]:
         crossed: list[int] = []
@@ -51,7 +65,7 @@ def test_a_sheet_thrown_at_another_goes_through_only_without_the_certifier(
             [Phase(0.08, damping=1.0)],
             velocities=v,
             pins=pins,
-            contact=Contact(thickness=thickness),
+            contact=Contact(),
             certify=certify,
             on_frame=heard,
         )

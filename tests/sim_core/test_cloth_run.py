@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
-from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge
+from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge, scene
 from sim_core.errors import SimCoreError
 
 
@@ -154,3 +154,17 @@ def test_bad_input_is_named() -> None:
         drape(sheet, x, [Phase(float("nan"))])
     with pytest.raises(SimCoreError, match="halfspace.normal"):
         drape(sheet, x, phases, collider=HalfSpace((0, 0, 0), (0, 0, 0)))
+
+
+def test_a_hurricane_stretches_and_does_not_break() -> None:
+    """140 m/s: edges of three times their length and more, which half the step confirms, and not a frame refused."""
+    made = scene("flag", vertices=60, frames=5, wind=(100.0, 0.0, 100.0))
+    end = drape(made.sheet, made.positions, made.phases, pins=made.pins, air=made.air)
+    assert np.isfinite(end.positions).all()
+    assert 3.0 < end.worst_stretch < 8.0
+
+
+def test_a_cloth_of_four_faces_falls_without_a_warning() -> None:
+    made = scene("hanging", vertices=12, size=(1.0, 1.0), frames=5)
+    end = drape(made.sheet, made.positions, made.phases, pins=made.pins)
+    assert 1.0 < end.worst_stretch < 1.5
