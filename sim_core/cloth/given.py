@@ -15,12 +15,13 @@ FURTHEST = 1e6  # [m], [m/s], [m/s2]: beyond, squares and steps lose their meani
 
 def finite(name: str, value: object, *, least: float | None = None, above: float | None = None) -> float:
     """The value as a float; raises SimCoreError, naming it, where it is no finite number in its bounds."""
-    real = isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(value)
-    if not real or (least is not None and float(value) < least) or (above is not None and value <= above):
+    real = float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    low, high = (-math.inf if bound is None else bound for bound in (least, above))
+    if not (math.isfinite(real) and real >= low and real > high):
         bound = f", {least:g} or more" if least is not None else ""
         bound = f" above {above:g}" if above is not None else bound
         raise SimCoreError(f"{name}: {value} – must be a finite number{bound}")
-    return float(value)
+    return real
 
 
 def coordinates(name: str, value: object, shape: tuple[int, ...] | None = None) -> np.ndarray:
