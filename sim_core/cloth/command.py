@@ -71,6 +71,13 @@ def add_parser(subparsers: Any) -> None:
     add("--pins", metavar="KIND", help="hanging: edge, corners, corner, middle, four or thirds")
     add("--size", type=_two, metavar="W,H", help="width and height in metres")
     add("--wind", type=_three, metavar="X,Y,Z", help="flag: wind in m/s; write --wind=-4,0,1 for a negative")
+    add(
+        "--layers",
+        type=number(0, 20, " mm"),
+        default=0.0,
+        metavar="MM",
+        help="self-contact: the distance layers keep, e.g. 3 (default: 0, none)",
+    )
     add("--gusts", type=number(0, 2), default=0.0, metavar="SHARE", help="flag: rms of gusts, of the wind")
     add("--vertices", type=whole(12, 400_000), metavar="N", help="about so many vertices")
     way = parser.add_mutually_exclusive_group()
@@ -150,6 +157,7 @@ def run(args: argparse.Namespace) -> int:
         wind=args.wind,
         pins=args.pins,
         gusts=args.gusts,
+        layers=1e-3 * args.layers,
         seed=args.seed,
     )
     total = round(made.phases[0].seconds * 25)

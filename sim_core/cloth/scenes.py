@@ -24,6 +24,7 @@ from sim_core.errors import WrongArgument
 
 FILE = Path(__file__).with_name("scenes.toml")
 NAMES = ("flag", "teapot", "hanging", "drape")
+LAYERS_EVERY = 4  # substeps between two impulses of self-contact
 PINS = ("edge", "corners", "corner", "middle", "four", "thirds")
 
 GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` of the published scenes
@@ -103,11 +104,13 @@ def scene(
     gusts: float = 0.0,
     seed: int = 0,
     cloth: Material | None = None,
+    layers: float = 0.0,
 ) -> Scene:
     """A scene of `scenes.toml`: its case (from 1), changed by what is given.
 
     size: width and height [m]; wind [m/s] (flag); gusts: share of the wind, rms, seeded; pins: one of PINS (hanging);
-    cloth: another material. Raises WrongArgument for what the scene does not have.
+    cloth: another material; layers [m]: the distance that layers of the cloth keep (0: they do not feel each other).
+    Raises WrongArgument for what the scene does not have.
     """
     values = case_values(name, case)
     data = _data()[name]
@@ -124,6 +127,9 @@ def scene(
     if made.air is not None:
         made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
+    if layers:
+        contact = replace(made.contact or Contact(), thickness=layers, every=LAYERS_EVERY)
+        made = replace(made, contact=contact)
     return made.lasting(frames or data["frames"])
 
 

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from cloth_cases import EDGES, Case
 from cloth_flags import FINE
+from scipy.stats import nct, norm
 
 from sim_core.cloth.fidelity import Asked, law_terms
 from sim_core.cloth.pilot import PILOTS
 
 ORDERS = np.arange(1.0, 2.51, 0.05)
 RIDGE = (1e-4, 1e-3, 0.05, 0.3, 0.1)  # mean start and slope, those of the pins beside it, curve: few scenes
-SURE = 2.2  # standard deviations of what left-out scenes are off by that the margin covers at least
-SHARE = 0.975  # of left-out scenes it covers
+CONTENT, CONFIDENCE = 0.99, 0.9  # share of scenes that the margin covers, and how surely, after so few
+
+
+def tolerance(count: int) -> float:
+    """Standard deviations that surely hold CONTENT of a normal population of which there are `count` samples."""
+    root = np.sqrt(count)
+    return float(nct.ppf(CONFIDENCE, count - 1, norm.ppf(CONTENT) * root) / root)
 
 
 def own_error(edges: np.ndarray, gaps: np.ndarray) -> tuple[float, float]:
@@ -36,7 +44,7 @@ def limit_known(case: Case) -> bool:
 
 
 def errors(case: Case, row: dict) -> np.ndarray:
-    """Errors [mm] of a measured scene on EDGES[1:], never falling with the edge; with the reference's own if known."""
+    """Errors [mm] of a scene on all meshes but the reference, never falling; with the reference's own if known."""
     own = row["own_mm"] if limit_known(case) else 0.0
     return np.maximum.accumulate(np.array(row["gap_mm"]) + own)
 
@@ -44,12 +52,17 @@ def errors(case: Case, row: dict) -> np.ndarray:
 def fitted(kind: str, scenes: list[tuple[Case, dict]]) -> dict:
     """Laws, cost and range of the measured scenes of a kind."""
     sheets = [asked(case) for case, _ in scenes]
-    costs = np.array([s.cost_terms(e) for s in sheets for e in EDGES])
+    costs = np.array([s.cost_terms(e) for s in sheets for e in EDGES[kind]])
     spent = np.log([ms for _, row in scenes for ms in row["ms"]])
     seen = [s.traits for s in sheets]
     return calm([row for _, row in scenes]) | {
         "laws": [
-            law([s.pins for s in sheets], [row | {"error_mm": errors(case, row)} for case, row in scenes], k)
+            law(
+                EDGES[kind],
+                [s.pins for s in sheets],
+                [row | {"error_mm": errors(case, row)} for case, row in scenes],
+                k,
+            )
             for k in range(len(PILOTS) - 2)
         ],
         "cost": np.round(np.linalg.lstsq(costs, spent, rcond=None)[0], 4).tolist(),
@@ -67,22 +80,22 @@ def calm(rows: list[dict]) -> dict:
         return {}
     bad = min((a["edge_mm"] for scene in after for a in scene if not a["agree"]), default=np.inf)
     kept = max((a["edge_mm"] for scene in after for a in scene if a["edge_mm"] < bad), default=1e3 * FINE[-1])
-    finer = [1e3 * edge for edge in EDGES if 1e3 * edge < 0.99 * kept]
+    finer = [1e3 * edge for edge in EDGES["flag"] if 1e3 * edge < 0.99 * kept]
     return {"calm_mm": round(max(finer), 2)}
 
 
-def law(pins: list[str], scenes: list[dict], k: int) -> dict:
+def law(edges: Sequence[float], pins: list[str], scenes: list[dict], k: int) -> dict:
     """The law of the k-th three pilots: how errors fall from there, and the margin, mesh by mesh.
 
-    Left-out scenes are off by a factor whose logarithm has a mean of about 0 and some spread; the margin covers SURE
-    times that, and SHARE of them. Edges from 1 / sqrt 2 of the finest pilot's on.
+    Left-out scenes are off by a factor whose logarithm has a mean of about 0 and some spread; the margin covers the
+    tolerance limit of such a spread, and all of them. Edges from half the finest pilot's on, as far as measured.
     """
     pilot, kinds = PILOTS[k + 2], sorted(set(pins))
-    first = EDGES.index(pilot) - 1
+    first = max(1, edges.index(pilot) - 2)
     rows, wanted, whose = [], [], []
     for i, (own, row) in enumerate(zip(pins, scenes, strict=True)):
         held = np.array([float(own == p) for p in kinds])
-        for edge, error in list(zip(EDGES[1:], row["error_mm"], strict=True))[first - 1 :]:
+        for edge, error in list(zip(edges[1:], row["error_mm"], strict=True))[first - 1 :]:
             fine, square = law_terms(edge, pilot)
             rows.append([1.0, fine, *held, *(fine * held), square])
             wanted.append(np.log(error / row["pilot_mm"][k]))
@@ -96,13 +109,13 @@ def law(pins: list[str], scenes: list[dict], k: int) -> dict:
 
     off = np.stack([(b - a @ solved(who != i))[who == i] for i in range(len(scenes))])
     found, spread = solved(who >= 0), np.sqrt((off**2).mean(0))
-    measured = np.array(EDGES[first:])
-    edges = np.sort(np.concatenate([measured, np.round(np.sqrt(measured[1:] * measured[:-1]), 5)]))
-    worst = np.maximum(SURE * spread, np.quantile(off, SHARE, axis=0))
-    margin = np.exp(np.interp(np.log(edges), np.log(measured), worst))
+    measured = np.array(edges[first:])
+    offered = np.sort(np.concatenate([measured, np.round(np.sqrt(measured[1:] * measured[:-1]), 5)]))
+    worst = np.maximum(tolerance(len(scenes)) * spread, off.max(0))
+    margin = np.exp(np.interp(np.log(offered), np.log(measured), worst))
     return {
         "pilot_mm": 1e3 * pilot,
-        "edges_mm": np.round(1e3 * edges, 2).tolist(),
+        "edges_mm": np.round(1e3 * offered, 2).tolist(),
         "pins": {
             p: np.round(found[:2] + found[[2 + j, 2 + many + j]], 4).tolist() for j, p in enumerate(kinds)
         },

@@ -41,10 +41,11 @@ BUDGETS = (3.0, 5.0, 8.0, 12.0, 20.0, 30.0)
 
 def measured(case: Case) -> dict:
     """Errors [mm] of a case on all meshes but the finest, own error of that, and costs [ms]."""
-    runs = [ran(case, edge, FRAMES[case.name]) for edge in EDGES]
+    edges = EDGES[case.name]
+    runs = [ran(case, edge, FRAMES[case.name]) for edge in edges]
     gaps = [apart(run.film, runs[0].film) for run in runs[1:]]
-    own, order = own_error(np.array(EDGES), np.array(gaps))
-    pilots = [runs[EDGES.index(edge)].film for edge in PILOTS]
+    own, order = own_error(np.array(edges), np.array(gaps))
+    pilots = [runs[edges.index(edge)].film for edge in PILOTS]
     return {
         "case": asdict(case),
         "told": case.told(),
@@ -59,8 +60,7 @@ def measured(case: Case) -> dict:
 
 def implicit(case: Case) -> list[dict]:
     """What the implicit scheme does on some meshes, beside the cheapest explicit one that errs no more."""
-    finest = ran(case, EDGES[0], FRAMES[case.name])
-    explicit = [ran(case, edge, FRAMES[case.name]) for edge in EDGES[1:]]
+    finest, *explicit = [ran(case, edge, FRAMES[case.name]) for edge in EDGES[case.name]]
     found = []
     for edge, steps in IMPLICIT:
         run = ran(case, edge, FRAMES[case.name], integrator="implicit", substeps=steps)
@@ -92,7 +92,7 @@ def made_table() -> dict:
         part = fitted(kind, scenes) | {"implicit": rivals, "scenes": [row for _, row in scenes]}
         for law in part["laws"]:
             print(f"{kind}, tried down to {law['pilot_mm']:.3g} mm: margins {law['margin']}", flush=True)
-        out[kind] = {"seconds": round(FRAMES[kind] * FRAME, 3), "reference_mm": 1e3 * EDGES[0], **part}
+        out[kind] = {"seconds": round(FRAMES[kind] * FRAME, 3), "reference_mm": 1e3 * EDGES[kind][0], **part}
     return out
 
 
@@ -119,7 +119,7 @@ def asked_of(case: Case, budget: float) -> dict:
 
 def cheapest(case: Case, budget: float, reference: Kept, own: float) -> Kept | None:
     """The truly cheapest mesh measured that keeps the budget (and a flag's statistics), None if none does."""
-    for edge in reversed(EDGES[1:]):
+    for edge in reversed(EDGES[case.name][1:]):
         run = ran(case, edge, FRAMES[case.name])
         if apart(run.film, reference.film) + own > budget:
             continue
@@ -138,10 +138,10 @@ def checked(case: Case, budget: float) -> dict:
         except WrongArgument as refused:
             least = float(str(refused).split("keeps ")[1].split(" mm")[0])
             note, budget = f"{budget:g} refused, ", max(least, budget)
-    frames = FRAMES[case.name]
-    reference, run = ran(case, EDGES[0], frames), ran(case, choice.edge, frames)
-    gaps = [apart(ran(case, edge, frames).film, reference.film) for edge in EDGES[1:]]
-    own, _ = own_error(np.array(EDGES), np.array(gaps))
+    frames, edges = FRAMES[case.name], EDGES[case.name]
+    reference, run = ran(case, edges[0], frames), ran(case, choice.edge, frames)
+    gaps = [apart(ran(case, edge, frames).film, reference.film) for edge in edges[1:]]
+    own, _ = own_error(np.array(edges), np.array(gaps))
     gap, due = apart(run.film, reference.film), own if limit_known(case) else 0.0
     best = cheapest(case, budget, reference, due)
     found = {"told": case.told(), "note": note, "budget": budget, "edge_mm": 1e3 * choice.edge, "gap_mm": gap}
