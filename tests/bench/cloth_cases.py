@@ -28,7 +28,7 @@ _EDGES = (0.008, 0.0113, 0.016, 0.0226, 0.032, 0.0453, 0.064, 0.0905)
 EDGES = {
     "hanging": _EDGES,
     "flag": (0.0057, *_EDGES),
-    "teapot": (0.0057, *_EDGES),
+    "teapot": _EDGES,
 }  # [m]; the first is the reference
 FRAMES = {"hanging": 15, "flag": 5, "teapot": 5}  # 0.6, 0.2, 0.2 s: refining still converges
 

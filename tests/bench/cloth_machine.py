@@ -60,14 +60,14 @@ def second_start(scenes: tuple[str, ...], rounds: int, tell: Told) -> dict:
 
     `own`: without the time of the frame itself.
     """
-    rows = []
+    rows, env = [], os.environ | {"PYTHONPATH": str(ROOT)}
     for name in scenes:
         walls, spent, frame = [], [], []
         for turn in range(rounds + 1):
             tell(f"{name}, start {turn + 1} of {rounds + 1}")
             before, begin = os.times(), time.perf_counter()
             word = [sys.executable, "-m", "sim_core.cli", "cloth", name, "--frames", "1", "--json"]
-            told = subprocess.run(word, check=True, capture_output=True, cwd=ROOT, text=True).stdout
+            told = subprocess.run(word, check=True, capture_output=True, env=env, text=True).stdout
             walls.append(time.perf_counter() - begin)
             after = os.times()
             spent.append(sum(after[2:4]) - sum(before[2:4]))

@@ -179,5 +179,5 @@ def layers(cases: Sequence[int], frames: int, vertices: int | None, tell: Told) 
             end = made.drape(on_frame=lambda *_, spent=spent: spent.append(time.process_time()))
             crossed = intersections(end.positions, made.sheet.faces)
             row = {"case": case, "layers_mm": 1e3 * apart, "crossings": crossed, "stretch": end.worst_stretch}
-            rows.append(spread(1e3 * np.diff(spent)[1:]) | row)
+            rows.append(spread((1e3 * np.diff(spent)[1:]).tolist()) | row)
     return {"frames": frames, "vertices": vertices or 3020, "rows": rows}
