@@ -24,7 +24,6 @@ from sim_core.errors import WrongArgument
 
 FILE = Path(__file__).with_name("scenes.toml")
 NAMES = ("flag", "teapot", "hanging", "drape")
-LAYERS_EVERY = 4  # substeps between two impulses of self-contact
 PINS = ("edge", "corners", "corner", "middle", "four", "thirds")
 
 GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` of the published scenes
@@ -128,8 +127,7 @@ def scene(
         made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
     if layers:
-        contact = replace(made.contact or Contact(), thickness=layers, every=LAYERS_EVERY)
-        made = replace(made, contact=contact)
+        made = replace(made, contact=replace(made.contact or Contact(), thickness=layers))
     return made.lasting(frames or data["frames"])
 
 

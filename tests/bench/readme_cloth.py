@@ -1,6 +1,6 @@
 """The "Measured" tables in the cloth room's README, written from what the bench measured; nothing is typed in.
 
-simcore bench cloth -- --json docs/figures/cloth.json --plot docs/pictures/cloth-speed-error.png
+simcore bench cloth --json docs/figures/cloth.json --plot docs/pictures/cloth-speed-error.png
 python tests/bench/readme_cloth.py
 """
 
