@@ -6,6 +6,7 @@ from pathlib import Path
 
 LEAST = 1e-5  # [mm] what errs less is drawn there
 MOST = 1e3
+TICKS = (10, 20, 40, 100, 200, 400)  # [ms]
 COLOURS = {"explicit": "#185a8c", "single": "#c4781e", "implicit": "#be3c3c"}
 
 
@@ -38,8 +39,11 @@ def plot(scenes: dict, path: Path) -> None:
         panel.axvline(40, color="0.7", lw=1)
         panel.set(title=f"{name}\nafter {result['seconds']:g} s", xlabel="processor ms a frame")
         panel.title.set_fontsize(9)
+        panel.set_xlim(8, 500)
+        panel.set_xticks(TICKS, [f"{tick}" for tick in TICKS])
+        panel.minorticks_off()
     panels[0][0].set_ylabel("mean distance from the limit [mm]")
-    panels[0][0].legend(fontsize=8)
+    panels[0][1 % len(scenes)].legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(path, dpi=100)
     pyplot.close(figure)
