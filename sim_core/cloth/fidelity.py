@@ -163,7 +163,7 @@ def choose(
     if not kept:
         edge, least, _ = offered[0]
         raise WrongArgument(
-            f"error {error_mm:g} mm – the finest mesh measured, of {1e3 * edge:.0f} mm, keeps {_up(least)} mm for this "
+            f"error {error_mm:g} mm – the finest mesh measured, of {1e3 * edge:.2g} mm, keeps {_up(least)} mm for this "
             f"sheet; ask for that, or give --vertices"
         )
     best = min(kept, key=lambda row: row[2])

@@ -40,10 +40,11 @@ def test_the_implicit_scheme_is_never_the_cheaper_way(kind: str) -> None:
 
 
 def test_a_larger_budget_never_costs_more_and_budgets_lead_to_different_meshes() -> None:
-    found = [choose("flag", error_mm=b, size=(0.8, 0.8), wind=(3.0, 0.0, 1.2)) for b in (3.0, 4.0, 6.0, 40.0)]
+    budgets = (3.0, 4.0, 8.0, 40.0)
+    found = [choose("hanging", error_mm=b, size=(0.8, 0.8), pins="edge") for b in budgets]
     assert all(a.ms >= b.ms and a.edge <= b.edge for a, b in zip(found[:-1], found[1:], strict=True))
     assert len({f.edge for f in found}) >= 3
-    assert all(f.error_mm <= budget for f, budget in zip(found, (3.0, 4.0, 6.0, 40.0), strict=True))
+    assert all(f.error_mm <= budget for f, budget in zip(found, budgets, strict=True))
     assert f"{found[0].error_mm:.2g} mm" in found[0].why
 
 
@@ -64,6 +65,14 @@ def test_an_unseen_sheet_stays_within_its_budget(kind: str, budget: float, more:
         pilot(scene(kind, vertices=count, **more), more["size"], frames) for count in (choice.vertices, fine)
     ]
     assert 0.05 * budget < apart(*films) <= budget
+
+
+def test_a_flag_is_never_coarser_than_its_statistics_allow() -> None:
+    asked = {"size": (0.8, 0.8), "wind": (3.0, 0.0, 1.2)}
+    choice = choose("flag", error_mm=40, **asked)
+    assert 1e3 * choice.edge == pytest.approx(table()["flag"]["calm_mm"])
+    assert "statistics" in choice.why
+    assert choose("flag", error_mm=2, **asked).edge < choice.edge
 
 
 def test_size_pins_and_wind_enter_the_choice() -> None:
