@@ -152,7 +152,8 @@ def checked(case: Case, budget: float) -> dict:
         "cost_ratio": run.ms / best.ms if best else 1.0,
     }
     found["kept"] = gap + due <= budget
-    if case.name == "flag" and choice.edge > 0.99 * FINE[0]:  # a finer one is nearer the truth than the ensemble
+    # A mesh finer than the ensemble is nearer the truth than that is.
+    if case.name == "flag" and choice.edge > 0.99 * FINE[0]:
         found["after"] = after = compared(case, choice.edge)
         found["kept"] &= after["agree"]
     return found
