@@ -54,7 +54,8 @@ class Engine:
         self.moving = collider if isinstance(collider, MovingGrid) else None
         self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
         self.holds = (holds or Holds.of(count)).renumbered(self.number, self.order)
-        if min(self.holds.limit) < 1.0 and self.pace.precision == "single":
+        limited = min(self.holds.limit) < 1.0
+        if limited and self.pace.precision == "single":
             raise SimCoreError("holds.limit: lengths are kept in double precision only – take Pace()")
         self.contact = c = contact or Contact()
         self.shell = Shell(
@@ -71,7 +72,7 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
-        lanes = None if self.holds.limit else lanes_for(self.sheet, self.pace.precision)
+        lanes = None if limited else lanes_for(self.sheet, self.pace.precision)
         self.laned = Laned(self.sheet, lanes, longest, samples) if lanes else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)

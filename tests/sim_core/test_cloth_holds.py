@@ -45,7 +45,7 @@ def test_faces_may_be_of_several_cloths() -> None:
     with pytest.raises(SimCoreError, match="corner"):
         Sheet.of_corners(rest[faces][:-1], faces, [GF_CM], kind)
     with pytest.raises(SimCoreError, match="belongs to no face"):
-        Sheet.of_corners(rest[faces + 0], faces + 1, [GF_CM], kind)
+        Sheet.of_corners(rest[faces + 0], faces + 1, [GF_CM, heavy], kind)
 
 
 def test_pairs_are_drawn_together_and_stay() -> None:
