@@ -13,7 +13,7 @@ from sim_core.cloth.leaping import advance_lanes
 from sim_core.cloth.pairs import Finder
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet
-from sim_core.cloth.stability import FIRST_ROUNDS, first_mode
+from sim_core.cloth.stability import LEAST_ROUNDS, MOST_ROUNDS, SETTLED, first_mode
 from sim_core.cloth.stepping import Surroundings, room_of
 from sim_core.cloth.watching import lane_mode, stored_lanes
 from sim_core.errors import SimCoreError
@@ -26,7 +26,8 @@ GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonanc
 GUARD = (
     6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
 )
-ROUNDS = 4  # of the power iteration a frame, which goes on where the last frame left it
+
+HASTY_ROUNDS = 4  # of the power iteration in single precision, which is for previews
 
 
 @dataclass(frozen=True)
@@ -133,8 +134,9 @@ class Laned:
         here, there, _ = self._state
         here[:] = x - x.mean(axis=1, keepdims=True)
         there[:] = mode if first else mode + self._start
-        rounds = FIRST_ROUNDS if first else ROUNDS
-        value = lane_mode(self.lanes, self._cast(inverse), self.room, here, there, rounds)
+        usual = LEAST_ROUNDS if self.real is np.float64 else HASTY_ROUNDS
+        rounds = (MOST_ROUNDS if first else usual, MOST_ROUNDS, SETTLED)
+        value = lane_mode(self.lanes, self._cast(inverse), self.room, here, there, *rounds)
         mode[:] = there
         return float(value)
 

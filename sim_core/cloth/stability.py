@@ -18,7 +18,8 @@ from sim_core.cloth.banded import (
 from sim_core.cloth.bands import Bands
 from sim_core.cloth.stepping import Room
 
-FIRST_ROUNDS, NEXT_ROUNDS = 40, 8
+LEAST_ROUNDS, MOST_ROUNDS = 16, 60  # of the power iteration; the first of a run takes the most
+SETTLED = 2e-3  # share by which the largest eigenvalue may still grow in a round and count as found
 HASTE = 0.5  # of the shell's thickness, that a vertex may go in a step
 SHORTEST = 4e-6  # [s], to which haste alone shortens a step
 
@@ -49,11 +50,16 @@ def tensions_at(bands, room, x):
 
 
 @njit(cache=True, error_model="numpy")
-def _grown(bands, inverse, room, x, mode, rounds, bend_only):
-    """Largest eigenvalue of M^-1 K [1/s2] after `rounds` of power iteration on mode (3, V), which is renewed."""
+def _grown(bands, inverse, room, x, mode, least, bend_only):
+    """Largest eigenvalue of M^-1 K [1/s2] by power iteration on mode (3, V), which is renewed.
+
+    It takes `least` rounds or more, until it settles: where the cloth stiffens quickly (a jerk, a start that is no
+    rest) a few rounds a frame stay behind, the step is too long, and the cloth crumples without blowing up.
+    """
     out = room.force
     value = 0.0
-    for _ in range(rounds):
+    for turn in range(MOST_ROUNDS):
+        before = value
         if bend_only:
             out[:] = 0.0
             band_bends(bands.bend_runs, bands.bend, 1.0, mode[0], mode[1], mode[2], out[0], out[1], out[2])
@@ -69,6 +75,8 @@ def _grown(bands, inverse, room, x, mode, rounds, bend_only):
         for c in range(3):
             for i in range(len(inverse)):
                 mode[c, i] = -scale * out[c, i]
+        if turn + 1 >= least and not value - before > SETTLED * value:
+            break
     return value
 
 
@@ -93,13 +101,13 @@ def highest_frequency2(
     tensions_at(bands, room, x)
     if not first:
         mode += 0.2 * _start(mode.shape[1])
-    return float(_grown(bands, inverse, room, x, mode, FIRST_ROUNDS if first else NEXT_ROUNDS, False))
+    return float(_grown(bands, inverse, room, x, mode, MOST_ROUNDS if first else LEAST_ROUNDS, False))
 
 
 def bending_frequency2(bands: Bands, inverse: np.ndarray, room: Room) -> float:
     """Largest eigenvalue of M^-1 Q [1/s2]: bending alone, which does not change."""
     mode = first_mode(len(inverse))
-    return float(_grown(bands, inverse, room, mode.copy(), mode, FIRST_ROUNDS, True))
+    return float(_grown(bands, inverse, room, mode.copy(), mode, MOST_ROUNDS, True))
 
 
 def stable_step(omega2: float, beta: float) -> float:

@@ -110,7 +110,7 @@ def longest2(edges, length2, x):
 
 
 @njit(cache=True, error_model="numpy")
-def lane_mode(lanes, inverse, room, x, mode, rounds):
+def lane_mode(lanes, inverse, room, x, mode, least, most, settled):
     """`stability._grown` for lanes: the largest eigenvalue of M^-1 K [1/s2] at x, mode (3, V), which is renewed."""
     b, out, aside = lanes.bands, room.force, room.air
     c, tension, change = b.coupling, room.tension, room.change
@@ -120,7 +120,8 @@ def lane_mode(lanes, inverse, room, x, mode, rounds):
     lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
     value = 0.0
     out[:] = 0.0
-    for _ in range(rounds):
+    for turn in range(most):
+        before = value
         lane_strain_changes(b.edge_runs, x[0], x[1], x[2], mode[0], mode[1], mode[2], room.strain)
         lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, change)
         f, h = (out[0], out[1], out[2]), (aside[0], aside[1], aside[2])
@@ -142,4 +143,6 @@ def lane_mode(lanes, inverse, room, x, mode, rounds):
         for k in range(3):
             for i in range(len(inverse)):
                 mode[k, i] = scale * out[k, i]
+        if turn + 1 >= least and not value - before > settled * value:
+            break
     return value
