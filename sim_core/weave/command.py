@@ -62,6 +62,7 @@ def run(args: argparse.Namespace) -> int:
     """Relax, draw and write; returns the exit status."""
     from sim_core.weave.draft import plain
     from sim_core.weave.particles import relax_particles
+    from sim_core.weave.progress import shown
     from sim_core.weave.report import summary_of
     from sim_core.weave.solve import solve
     from sim_core.weave.words import dressed, weave_of
@@ -79,7 +80,8 @@ def run(args: argparse.Namespace) -> int:
     if args.relax:  # compiled before the clock runs: `seconds` is what the relaxation takes
         relax_particles(dressed(plain()), tolerance=0.1)
     begin = perf_counter()
-    geometry = solve(weave, particles=args.relax)
+    with shown(weave.name) as watch:
+        geometry = solve(weave, particles=args.relax, watch=watch)
     summary = summary_of(weave, geometry, perf_counter() - begin, origin)
     if args.wif:
         from sim_core.weave.wif import wif_of
