@@ -39,7 +39,9 @@ def cloth(
 def test_plain_crimp_within_one_and_a_half_per_cent_of_the_elastica(spacing, per):
     cell = relax_particles(cloth(plain(), spacing), per=per)
     assert cell.warp_crimp == pytest.approx(elastica_crimp(spacing), rel=0.015)
-    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-4)  # at rest to 1e-3
+    # warp and weft are treated alike: equal to rounding where the yarns touch in one point. Round yarns at p/d = 2 wrap
+    # each other; which places along that contact are pinned is left to rounding, and many states nearby are at rest.
+    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-12 if spacing > 2 else 1e-4)
     assert cell.penetration <= 5e-4
     assert cell.residual <= 1e-3
     if spacing > 2:  # round yarns that touch in one point
