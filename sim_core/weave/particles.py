@@ -24,7 +24,7 @@ from sim_core.weave.particle_scale import Scale, crimp_of
 from sim_core.weave.shifted import MANY, turns_of
 from sim_core.weave.yarn_steps import advance, factored, power
 
-__all__ = ["ParticleCell", "relax_particles"]
+__all__ = ["NotAtRest", "ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
 DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
@@ -42,6 +42,10 @@ STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
 SLACK = 1.0  # EI/l^3 on the diagonal: contacts that come between two weighings must not throw a yarn
 WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
+
+
+class NotAtRest(WeaveError):
+    """The particles were still moving after the steps that were allowed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +199,7 @@ def relax_particles(
     the net force on a particle, relative to the largest crossing force.  start: stage A of this weave, made if absent.
     watch: (2,) float64, steps done and residual of the last one, written as it goes for another thread to show.
     Above 10,000 crossings satins and twills are relaxed by one pick and one end, of which all others are shifts.
-    Raises WeaveError for a jammed sett, or where the cell does not come to rest within `most` steps.
+    Raises WeaveError for a jammed sett, NotAtRest where the cell does not come to rest within `most` steps.
     """
     from sim_core.weave.relaxation import relax
 
@@ -246,7 +250,7 @@ def relax_particles(
                 array /= STIFFER
         pins = np.vstack([pins, new])
     if residual > tolerance or deepest > PROMISED:
-        raise WeaveError(
+        raise NotAtRest(
             f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
             f"after {steps} steps) – lower the sett, or allow a larger residual"
         )
