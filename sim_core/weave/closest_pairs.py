@@ -83,14 +83,14 @@ def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, ove
 
 
 @njit(cache=True, error_model="numpy")
-def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, pins, least_deep):
+def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, pins, least_deep, turns):
     """Deepest overlap [D] of the curves of crossing yarns, whatever the particles touch, and the pins it asks for.
 
     wu, wz: (ends, picks * per), fu, fz: (picks, ends * per).  pins: (n, 6) pick, end, norm (0 round the warp, 1 round
     the weft), place t along the weft or s along the warp, how many pieces beside it the partner lies, and by how much
     the contact is set out [D]; those that there are.  least_deep: overlap [D] from which
-    a place is pinned.  Returns (overlap, (m, 6) new pins), the overlap negative where no yarns
-    touch. Minima are sought on a grid of half pieces, and polished.
+    a place is pinned.  turns: as of contact_forces.  Returns (overlap, (m, 6) new pins), the overlap negative where no
+    yarns touch. Minima are sought on a grid of half pieces, and polished.
     """
     picks, ends = lift.shape
     rows, columns = 4 * reach1 + 1, 4 * reach2 + 1
@@ -106,8 +106,9 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
     for i in range(picks):
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
+            e, c1 = (0, turns[j]) if len(turns) else (j, i * per)
             for a in range(rows):
-                warp[a, 0], warp[a, 1], _, _, _, _ = _place(wu, wz, j, i * per, 0.5 * a - reach1)
+                warp[a, 0], warp[a, 1], _, _, _, _ = _place(wu, wz, e, c1, 0.5 * a - reach1)
             for b in range(columns):
                 weft[b, 0], weft[b, 1], _, _, _, _ = _place(fu, fz, i, j * per, 0.5 * b - reach2)
             for norm in range(2):
@@ -137,7 +138,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                         continue
                     s, t = 0.5 * (where[a] if norm else a) - reach1, 0.5 * (a if norm else where[a]) - reach2
                     s1, t1, square = _polished(
-                        s, t, wu, wz, j, i * per, l1, fu, fz, i, j * per, l2, over_x, over_y, sign
+                        s, t, wu, wz, e, c1, l1, fu, fz, i, j * per, l2, over_x, over_y, sign
                     )
                     if square < here and abs(s1) <= reach1 + 1 and abs(t1) <= reach2 + 1:
                         here, s, t = square, s1, t1
@@ -145,7 +146,7 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                     if here >= (1.0 - least_deep) ** 2:
                         continue
                     if norm:
-                        place, aside = s, t - _place(wu, wz, j, i * per, s)[0] / l2
+                        place, aside = s, t - _place(wu, wz, e, c1, s)[0] / l2
                     else:
                         place, aside = t, s - _place(fu, fz, i, j * per, t)[0] / l1
                     known = False
@@ -181,7 +182,7 @@ def _weights(base, s, count):
 
 @njit(cache=True, error_model="numpy")
 def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-               stiff, renew, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
+               stiff, renew, weigh, hwu, hwz, hfu, hfz, turns):  # fmt: skip
     """Add the contact of the pinned places. Returns (energy, deepest overlap, largest pressing force).
 
     Arguments as of contact_forces, whose `pressing` grows by the pins' share; pins: (n, 6) as of curve_overlap.
@@ -191,13 +192,14 @@ def pin_forces(pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1
     for k in range(len(pins)):
         i, j = int(pins[k, 0]), int(pins[k, 1])
         sign = 1.0 if lift[i, j] else -1.0
+        e, c1 = (0, turns[j]) if len(turns) else (j, i * per)
         if pins[k, 2] == 1.0:
             more = _pinned(pins[k, 3], pins[k, 4], pins[k, 5],
-                           wu, wz, gwu, gwz, hwu, hwz, j, i * per, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
+                           wu, wz, gwu, gwz, hwu, hwz, e, c1, l1, fu, fz, gfu, gfz, hfu, hfz, i, j * per,
                            l2, reach2, wide_y, sign, stiff, weigh, out)  # fmt: skip
         else:
             more = _pinned(pins[k, 3], pins[k, 4], pins[k, 5],
-                           fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, j, i * per,
+                           fu, fz, gfu, gfz, hfu, hfz, i, j * per, l2, wu, wz, gwu, gwz, hwu, hwz, e, c1,
                            l1, reach1, wide_x, -sign, stiff, weigh, out)  # fmt: skip
         if renew:
             pins[k, 5] = set_out(pins[k, 5], out[6])

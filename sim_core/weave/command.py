@@ -10,6 +10,10 @@ from sim_core.arguments import ending, whole
 
 __all__ = ["add_parser", "run"]
 
+PER = 8  # particles a crossing and yarn
+MOST_PARTICLES = 4_000_000  # of a repeat: about 1 GB
+MOST_WORK = 3_000_000_000  # particles x steps of a large repeat: about five minutes
+
 DESCRIPTION = """\
 From draft to yarn to cloth.
 
@@ -25,7 +29,8 @@ SOURCE is one of
 
 Yarn heights of one repeat are brought into force balance: at the crossings (stage A, beams in contact), and with
 --relax in three dimensions (stage B: stretch, bending, contact, friction, flattened sections). Leno and compound
-weaves stay at stage A. A bare draft is woven of an assumed silk, which the summary says.
+weaves stay at stage A, and so do figures of more than 250,000 crossings or that do not come to rest in minutes, which a
+note in the summary says. A bare draft is woven of an assumed silk, which the summary says.
 
 Written on demand:
   --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json
@@ -63,7 +68,6 @@ def run(args: argparse.Namespace) -> int:
     from sim_core.weave.draft import plain
     from sim_core.weave.particles import relax_particles
     from sim_core.weave.report import summary_of
-    from sim_core.weave.solve import solve
     from sim_core.weave.words import dressed, weave_of
 
     for path in (args.yarns, args.wif):  # refused before the work, not after it
@@ -79,8 +83,8 @@ def run(args: argparse.Namespace) -> int:
     if args.relax:  # compiled before the clock runs: `seconds` is what the relaxation takes
         relax_particles(dressed(plain()), tolerance=0.1)
     begin = perf_counter()
-    geometry = solve(weave, particles=args.relax)
-    summary = summary_of(weave, geometry, perf_counter() - begin, origin)
+    geometry, note = _relaxed(weave, args.relax)
+    summary = summary_of(weave, geometry, perf_counter() - begin, origin) | note
     if args.wif:
         from sim_core.weave.wif import wif_of
         from sim_core.weave.wif_write import write_wif
@@ -96,6 +100,31 @@ def run(args: argparse.Namespace) -> int:
     text = json.dumps(summary, ensure_ascii=False, indent=2) if args.json else _text(weave.name, summary)
     sys.stdout.write(text + "\n")
     return 0
+
+
+def _relaxed(weave, particles: bool):
+    """Yarn geometry, and {"note": why it is stage A} where a large repeat was too much for the particles.
+
+    Satins and twills are no large repeats: one pick of them is relaxed.
+    """
+    from sim_core.weave.particles import MOST_STEPS, NotAtRest
+    from sim_core.weave.progress import shown
+    from sim_core.weave.shifted import MANY, turns_of
+    from sim_core.weave.solve import solve
+
+    count = 2 * PER * weave.draft.lift.size
+    large = particles and weave.draft.lift.size > MANY and turns_of(weave.draft.lift) is None
+    with shown(weave.name) as watch:
+        if large and count > MOST_PARTICLES:
+            reason = f"a repeat of {count:,} particles, more than {MOST_PARTICLES:,}"
+            return solve(weave), {"note": f"stage A, at the crossings: {reason}"}
+        try:
+            most = min(MOST_STEPS, max(1, MOST_WORK // count)) if large else MOST_STEPS
+            return solve(weave, particles=particles, per=PER, watch=watch, most=most), {}
+        except NotAtRest as error:
+            if not large:
+                raise
+            return solve(weave), {"note": f"stage A, at the crossings: {error}"}
 
 
 def _write(folder: Path, weave, geometry, size: int, summary: dict) -> None:
@@ -125,4 +154,6 @@ def _text(name: str, summary: dict) -> str:
             band = entry.get("band")
             between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
             lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
+    if "note" in summary:
+        lines.append(f"  {summary['note']}")
     return "\n".join(lines)

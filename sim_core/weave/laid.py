@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["brocade_heights", "lay_beams", "leno_paths", "leno_rest"]
 
+SET_OUT, MISSING = 20, 1e-6  # rounds, and overlap in yarn heights that is left
 MOST_CROSSINGS = 512  # of the repeat of a leno, whose contacts are solved densely
 
 
@@ -86,9 +87,16 @@ def _least_energy(stiff: np.ndarray, rows: np.ndarray, gaps: np.ndarray) -> tupl
     answer = rows @ inverse @ rows.T
     scale, thick = float(np.abs(answer).max()), float(gaps.max())
     root = np.linalg.cholesky(answer / scale + 1e-10 * np.eye(len(answer))).T
-    force, _ = nnls(root, np.linalg.solve(root.T, gaps / thick), maxiter=10_000)
-    force = force * thick / scale
-    return inverse @ rows.T @ force, force
+    wanted = gaps.copy()
+    for _ in range(SET_OUT):
+        force, _ = nnls(root, np.linalg.solve(root.T, wanted / thick), maxiter=10_000)
+        force = force * thick / scale
+        z = inverse @ rows.T @ force
+        missing = np.where(force > 0, gaps - rows @ z, 0.0)
+        if np.abs(missing).max() <= MISSING * thick:
+            break
+        wanted += missing  # what makes the matrix regular lets contacts overlap: they are set out by as much
+    return z, force
 
 
 def _crossings(draft) -> list[list[tuple[int, int, int]]]:

@@ -6,7 +6,8 @@ import numpy as np
 
 from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
-from sim_core.weave.relaxation import MANY, relax
+from sim_core.weave.relaxation import relax
+from sim_core.weave.shifted import MANY
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["areal_density", "cloth_parameters", "tensile_compliance"]

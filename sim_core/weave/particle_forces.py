@@ -163,7 +163,7 @@ def touch(
 
 @njit(cache=True, error_model="numpy")
 def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz):  # fmt: skip
+                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, turns):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
     wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
@@ -174,7 +174,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     overlap now, after their forces are taken (only where `weigh` is set).
     wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
     sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
-    place as woven.
+    place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifted.py).
     """
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
@@ -184,14 +184,15 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     for i in range(picks):
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
-            c1, c2 = i * per, j * per
+            e = 0 if len(turns) else j
+            c1, c2 = turns[j] if len(turns) else i * per, j * per
             total = 0.0
             for a in range(-reach1, reach1 + 1):
                 if not weigh and near[i, j, reach1 + a] == 0:
                     continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
-                more = touch(wu[j, n], a * l1, wz[j, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
+                more = touch(wu[e, n], a * l1, wz[e, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
                               gfu, gfz, weigh, hfu, hfz, 0.0, held[i, j, reach1 + a], out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
@@ -201,10 +202,10 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
                     continue
                 energy += more
                 if weigh:
-                    hwu[j, n] += out[4]
-                    hwz[j, n] += out[5]
-                gwu[j, n] += out[0]
-                gwz[j, n] += out[1]
+                    hwu[e, n] += out[4]
+                    hwz[e, n] += out[5]
+                gwu[e, n] += out[0]
+                gwz[e, n] += out[1]
                 total += out[3]
                 deepest = max(deepest, out[2])
             for b in range(-reach2, reach2 + 1):
@@ -212,7 +213,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
                     continue
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
-                more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, j, c1, l1, reach1, wide_x, -sign, stiff,
+                more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, e, c1, l1, reach1, wide_x, -sign, stiff,
                               gwu, gwz, weigh, hwu, hwz, 0.0, held[i, j, second + b], out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN
@@ -229,12 +230,12 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
                 total += out[3]
                 deepest = max(deepest, out[2])
             if friction > 0.0:
-                x, y = wu[j, c1], fu[i, c2]
+                x, y = wu[e, c1], fu[i, c2]
                 hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
-                gwu[j, c1] -= hold * x
+                gwu[e, c1] -= hold * x
                 gfu[i, c2] -= hold * y
                 if weigh:
-                    hwu[j, c1] += hold
+                    hwu[e, c1] += hold
                     hfu[i, c2] += hold
             pressing[i, j] = total
             largest = max(largest, total)
@@ -242,18 +243,20 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
 
 
 @njit(cache=True, error_model="numpy")
-def side_forces(u, z, spacing, wide, high, stiff, gu, gz, held, renew, weigh, hu, hz):
+def side_forces(u, z, spacing, wide, high, stiff, gu, gz, held, renew, weigh, hu, hz, turn):
     """Contact of neighbouring yarns of one system, section against section. Returns (energy, deepest overlap).
 
     held: (yarns, particles) by how much the contact with the next yarn is set out, and renew as of contact_forces.
+    turn: by how many particles the next yarn is the one before it, shifted back, where one stands for all; else 0.
     """
     yarns, count = u.shape
     energy, deepest = 0.0, 0.0
     for yarn in range(yarns):
         other = yarn + 1 if yarn < yarns - 1 else 0
         for k in range(count):
-            du = (spacing + u[other, k] - u[yarn, k]) / wide
-            dz = (z[other, k] - z[yarn, k]) / high
+            m = k + turn if k + turn < count else k + turn - count
+            du = (spacing + u[other, m] - u[yarn, k]) / wide
+            dz = (z[other, m] - z[yarn, k]) / high
             square = du * du + dz * dz
             gap = 1.0 + held[yarn, k]
             if square >= gap * gap or square < 1e-12:
@@ -267,12 +270,12 @@ def side_forces(u, z, spacing, wide, high, stiff, gu, gz, held, renew, weigh, hu
             energy += 0.5 * press * (gap - norm)
             deepest = max(deepest, abs(1.0 - norm))
             if weigh:
-                for y in (yarn, other):
-                    hu[y, k] += stiff * (du / (norm * wide)) ** 2
-                    hz[y, k] += stiff * (dz / (norm * high)) ** 2
+                for y, n in ((yarn, k), (other, m)):
+                    hu[y, n] += stiff * (du / (norm * wide)) ** 2
+                    hz[y, n] += stiff * (dz / (norm * high)) ** 2
             side, up = press * du / (norm * wide), press * dz / (norm * high)
-            gu[other, k] += side
-            gz[other, k] += up
+            gu[other, m] += side
+            gz[other, m] += up
             gu[yarn, k] -= side
             gz[yarn, k] -= up
     return energy, deepest

@@ -9,7 +9,6 @@ contact is an augmented Lagrangian: it stays soft, and is set out by what it ove
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, sqrt
 
 import numpy as np
 from numba import njit
@@ -21,9 +20,11 @@ from sim_core.weave.jam import check_jam
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
+from sim_core.weave.particle_scale import Scale, crimp_of
+from sim_core.weave.shifted import MANY, turns_of
 from sim_core.weave.yarn_steps import advance, factored, power
 
-__all__ = ["ParticleCell", "relax_particles"]
+__all__ = ["NotAtRest", "ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
 DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
@@ -34,7 +35,6 @@ ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
-SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 YARN_FRICTION = 0.3
 LONGEST_STEP = 0.7  # x 1 / fastest frequency
 SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
@@ -42,6 +42,10 @@ STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
 SLACK = 1.0  # EI/l^3 on the diagonal: contacts that come between two weighings must not throw a yarn
 WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
 SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
+
+
+class NotAtRest(WeaveError):
+    """The particles were still moving after the steps that were allowed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +85,17 @@ class ParticleCell:
         return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", nogil=True)
 def _settle(
-    places, lift, pressing, offsets, motion, pins, per, numbers, stiff, tolerance, overlap, most, overlapping
-):
+    places, lift, pressing, offsets, motion, pins, turns, per, numbers, stiff, tolerance, overlap, most, overlapping,
+    watch,
+):  # fmt: skip
     """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
     high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
     motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
-    overlapping: contacts are to be set out at once. Returns (residual, overlap, energy, steps, stiffness)."""
+    turns: (ends,) as of contact_forces, and those of the next end and pick in side_forces, or empty.
+    overlapping: contacts are to be set out at once.  watch: (2,) steps and residual, written.
+    Returns (residual, overlap, energy, steps, stiffness)."""
     wu, wz, fu, fz = places
     held, held1, held2 = offsets
     speed1, speed2, way1, way2 = motion
@@ -101,6 +108,7 @@ def _settle(
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
     made1, made2 = np.zeros((2, *wu.shape, 5)), np.zeros((2, *fu.shape, 5))
     bend1, bend2, pull1, pull2 = e1 / l1**3, e2 / l2**3, t1 / l1, t2 / l2
+    at, side1, side2 = turns
     residual, deepest, before, energy, steps = np.inf, np.inf, np.inf, 0.0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):
@@ -115,25 +123,25 @@ def _settle(
         side = 0.0
         if s1 > 0:
             more, side = side_forces(
-                wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, held1, renew, weigh, hwu, hwz
+                wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, held1, renew, weigh, hwu, hwz, side1
             )
             energy += more
         if s2 > 0:
             more, other = side_forces(
-                fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, held2, renew, weigh, hfu, hfz
+                fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, held2, renew, weigh, hfu, hfz, side2
             )
             energy += more
             side = max(side, other)
         more, deepest, largest = contact_forces(
             wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz,
+            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, at,
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
         if len(pins):
             more, deep, most_pressed = pin_forces(
                 pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-                stiff, renew, weigh, hwu, hwz, hfu, hfz,
+                stiff, renew, weigh, hwu, hwz, hfu, hfz, at,
             )  # fmt: skip
             energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
         if weigh:
@@ -149,6 +157,7 @@ def _settle(
                 factored(m, bend, pull, made)
         worst = max(power(vwu, vwz, gwu, gwz, way1), power(vfu, vfz, gfu, gfz, way2))
         residual = worst / max(largest, 1e-300)
+        watch[0], watch[1] = watch[0] + 1, residual
         if residual < 0.7 * best:
             best, since = residual, step
         elif (
@@ -182,12 +191,15 @@ def relax_particles(
     tolerance: float = RESIDUAL,
     start: YarnGeometry | None = None,
     most: int = MOST_STEPS,
+    watch: np.ndarray | None = None,
 ) -> ParticleCell:
     """Bring the particles of one repeat to rest.
 
     per: particles for each crossing and yarn, 4 to 64.  friction: Coulomb's mu between warp and weft.  tolerance: of
     the net force on a particle, relative to the largest crossing force.  start: stage A of this weave, made if absent.
-    Raises WeaveError for a jammed sett, or where the cell does not come to rest within `most` steps.
+    watch: (2,) float64, steps done and residual of the last one, written as it goes for another thread to show.
+    Above 10,000 crossings satins and twills are relaxed by one pick and one end, of which all others are shifts.
+    Raises WeaveError for a jammed sett, NotAtRest where the cell does not come to rest within `most` steps.
     """
     from sim_core.weave.relaxation import relax
 
@@ -196,13 +208,17 @@ def relax_particles(
     check_jam(weave)
     lift = np.ascontiguousarray(weave.draft.lift)
     first = start or relax(weave, tolerance=1e-4)
-    scale = _Scale.of(weave, per)
+    scale = Scale.of(weave, per)
+    turns = turns_of(lift) if lift.size > MANY else None
+    one = slice(None) if turns is None else slice(1)
+    shifts = (np.zeros(0, np.int64), 0, 0) if turns is None else turns.particles(per)
+    lift = lift[one]
     wz, fz = (
-        resampled(first.warp_height.T, per) / scale.length,
-        resampled(first.weft_height, per) / scale.length,
+        resampled(first.warp_height.T[one], per) / scale.length,
+        resampled(first.weft_height[one], per) / scale.length,
     )
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
-    pressing = first.force / scale.force
+    pressing = first.force[one] / scale.force
     stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
     l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
@@ -211,18 +227,20 @@ def relax_particles(
     for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
         offsets[0][:, :, middle] = pressing / (2 * stiff)
     places = wu, wz, fu, fz
+    watch = np.zeros(2) if watch is None else watch
     ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
     motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
         turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
         residual, deepest, energy, more, stiff = _settle(
-            places, lift, pressing, offsets, motion, pins, per, numbers, stiff, rough * tolerance, OVERLAP, turn,
-            deep > OVERLAP,
+            places, lift, pressing, offsets, motion, pins, shifts, per, numbers, stiff, rough * tolerance, OVERLAP,
+            turn, deep > OVERLAP, watch,
         )  # fmt: skip
         steps += more
         between, new = curve_overlap(
-            wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins, max(PINNED, deepest)
-        )
+            wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins, max(PINNED, deepest),
+            shifts[0],
+        )  # fmt: skip
         deep, deepest = deepest, max(deepest, between)
         if steps >= most or residual <= tolerance and deepest <= PROMISED:
             break
@@ -232,69 +250,22 @@ def relax_particles(
                 array /= STIFFER
         pins = np.vstack([pins, new])
     if residual > tolerance or deepest > PROMISED:
-        raise WeaveError(
+        raise NotAtRest(
             f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
             f"after {steps} steps) – lower the sett, or allow a larger residual"
         )
+    crimp1, crimp2 = crimp_of(wu, wz, l1), crimp_of(fu, fz, l2)
+    sides = [place * scale.length for place in (wu, wz, fu, fz)]
+    force = pressing * scale.force
+    if turns is not None:
+        sides, force = turns.all_yarns(per, sides, force)
+        crimp1, crimp2, energy = (
+            np.repeat(crimp1, len(force)),
+            np.repeat(crimp2, len(force)),
+            energy * len(force),
+        )
+    wu, wz, fu, fz = sides
     return ParticleCell(
-        per, wu * scale.length, wz * scale.length, fu * scale.length, fz * scale.length, pressing * scale.force,
-        _crimp(wu, wz, l1), _crimp(fu, fz, l2), float(residual), float(deepest),
+        per, wu, wz, fu, fz, force, crimp1, crimp2, float(residual), float(deepest),
         float(energy) * scale.force * scale.length, friction, int(steps),
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class _Scale:
-    """The repeat in units of D and EI/D^2."""
-
-    weave: Weave
-    length: float
-    force: float
-    stiffness: float
-    spacing: tuple[float, float]  # ends, picks
-    piece: tuple[float, float]
-    wide: tuple[float, float]  # contact norm along the weft, along the warp
-    reach: tuple[int, int]
-
-    @classmethod
-    def of(cls, weave: Weave, per: int) -> _Scale:
-        warp, weft = weave.warp, weave.weft
-        length = (warp.height + weft.height) / 2
-        stiffness = sqrt(warp.stiffness * weft.stiffness)
-        p1, p2 = weave.end_spacing / length, weave.pick_spacing / length
-        wide = (warp.width + weft.height) / 2 / length, (weft.width + warp.height) / 2 / length
-        piece = p2 / per, p1 / per
-        half = per * min(weave.draft.picks, weave.draft.ends) - 1
-        reach = tuple(min(ceil(w / p), per - 1, half) for w, p in ((wide[1], piece[0]), (wide[0], piece[1])))
-        return cls(weave, length, stiffness / length**2, stiffness, (p1, p2), piece, wide, reach)  # type: ignore[arg-type]
-
-    def numbers(self, friction: float) -> tuple[float, ...]:
-        warp, weft = self.weave.warp, self.weave.weft
-        sides = []
-        for yarn, room in ((warp, self.spacing[0]), (weft, self.spacing[1])):
-            wide = yarn.width / self.length
-            # a section is never wider than its room: packed fibres give way sideways
-            sides += [min(wide, room) if room < 1.7 * wide else 0.0, yarn.height / self.length]
-        return (
-            *self.piece, warp.stiffness / self.stiffness, weft.stiffness / self.stiffness, warp.tension / self.force,
-            weft.tension / self.force, *self.wide, float(self.reach[0]), float(self.reach[1]), *self.spacing, *sides,
-            friction, SLIP,
-        )  # fmt: skip
-
-
-def _crimp(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
-    """Excess arc length of each yarn: of the Catmull-Rom curves that are in contact, by Gauss's rule in each piece."""
-    speed = np.zeros_like(u)
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    for f, weight in zip((nodes + 1) / 2, weights / 2, strict=True):
-        square = np.full_like(u, piece**2)
-        for p in (u, z):
-            before, after, next_ = np.roll(p, 1, axis=1), np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
-            rise = (
-                6 * f * (1 - f) * (after - p)
-                + (1 - f) * (1 - 3 * f) * (after - before) / 2
-                + f * (3 * f - 2) * (next_ - p) / 2
-            )
-            square += rise**2
-        speed += weight * np.sqrt(square)
-    return speed.mean(axis=1) / piece - 1

@@ -18,12 +18,11 @@ from sim_core.errors import WeaveError
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
 from sim_core.weave.model import Weave
-from sim_core.weave.shifted import draft_shift, shifted_forces
+from sim_core.weave.shifted import MANY, draft_shift, shifted_forces
 
 __all__ = ["beam_stiffness", "relax"]
 
 TOLERANCE = 1e-9
-MANY = 10_000  # crossings, beyond which maps and parameters are content with less, and satins are solved by a pick
 TOLERANCE_MANY = 1e-6
 ITERATIONS = 20_000
 OVER_RELAXATION = 1.7

@@ -150,7 +150,8 @@ def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothP
     plain = replace(ground_of(weave), extra=None)
     if channels.order is not None or channels.layer is not None:
         plain = _stand_in(weave)
-    from sim_core.weave.relaxation import MANY, relax
+    from sim_core.weave.relaxation import relax
+    from sim_core.weave.shifted import MANY
 
     if plain.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and plain.draft is weave.draft:
         base = geometry

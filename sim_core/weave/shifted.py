@@ -1,14 +1,21 @@
-"""Stage A of drafts whose picks are shifts of one another, as in satins and twills: one pick holds all heights.
+"""Drafts whose picks are shifts of one another, as in satins and twills: one pick holds all heights.
 
-Then mode k along the ends is mode -shift k along the picks, the two dimensions are one, and few of its crossings touch
-(in a satin those round the one that interlaces). So the contact is found exactly by an active set, even over floats so
-long that the alternating direction method would need millions of iterations.
+In stage A mode k along the ends is mode -shift k along the picks, the two dimensions are one, and few of its crossings
+touch (in a satin those round the one that interlaces). So the contact is found exactly by an active set, even over
+floats so long that the alternating direction method would need millions of iterations. In stage B one pick and one end
+are relaxed (`Turns`).
 """
+
+from dataclasses import dataclass
+from math import gcd
 
 import numpy as np
 
-__all__ = ["draft_shift", "shifted_forces"]
+__all__ = ["MANY", "Turns", "draft_shift", "shifted_forces", "turns_of"]
 
+MANY = (
+    10_000  # crossings, beyond which satins and twills are solved by one pick, and maps are content with less
+)
 EXCHANGES = 2000
 TOGETHER = 30  # exchanges of all crossings that are wrong, then one at a time
 ZERO = 1e-9  # of D, and of the largest force
@@ -75,3 +82,47 @@ def _balance(kernel: np.ndarray, side: np.ndarray, at: np.ndarray) -> tuple[np.n
 def _places(shape: tuple[int, ...], shift: int) -> np.ndarray:
     """(picks, ends) place in the first pick of every crossing."""
     return (np.arange(shape[1]) - shift * np.arange(shape[0])[:, None]) % shape[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Turns:
+    """How one end and one pick stand for all: from pick to pick the cloth is the same, `shift` ends further.
+
+    pick: (ends,) the pick that crosses end 0 as pick 0 crosses this end. Every crossing of the one pick is so one of
+    the one end, and all forces between them are those on either.
+    """
+
+    shift: int
+    pick: np.ndarray
+
+    def particles(self, per: int) -> tuple[np.ndarray, int, int]:
+        """`turns` of the kernels: (ends,) particle of end 0 for each end; turns of the next end and the next pick."""
+        count = len(self.pick)
+        return self.pick * per, int(self.pick[1]) * per, (-self.shift) % count * per
+
+    def all_yarns(
+        self, per: int, places: list[np.ndarray], force: np.ndarray
+    ) -> tuple[list[np.ndarray], np.ndarray]:
+        """Places and forces of all yarns from those of one.
+
+        places: side and height of the end, side and height of the pick, (1, n) each; returned as (count, n).
+        force: (1, ends) at the crossings of the pick; returned as (count, count).
+        """
+        count = len(self.pick)
+        made = [np.zeros((count, place.shape[1])) for place in places]
+        for k in range(count):
+            for yarn, turn, of in ((self.shift * k % count, k, 0), (k, self.shift * k, 2)):
+                for system in (of, of + 1):
+                    made[system][yarn] = np.roll(places[system][0], turn * per)
+        return made, force[0][_places((count, count), self.shift)]
+
+
+def turns_of(lift: np.ndarray) -> Turns | None:
+    """The turns of a draft whose picks and ends are all shifts of one; None of any other. lift: (picks, ends) bool."""
+    picks, ends = lift.shape
+    shift = draft_shift(lift) if picks == ends else None
+    if shift is None or gcd(shift, ends) != 1:
+        return None
+    pick = np.zeros(ends, np.int64)
+    pick[np.arange(ends) * shift % ends] = -np.arange(ends) % ends
+    return Turns(shift, pick)

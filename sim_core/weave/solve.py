@@ -9,7 +9,7 @@ import numpy as np
 from sim_core.weave.draft import Draft
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.model import Weave
-from sim_core.weave.particles import ParticleCell, relax_particles
+from sim_core.weave.particles import MOST_STEPS, ParticleCell, relax_particles
 from sim_core.weave.relaxation import relax
 from sim_core.weave.strands import main_picks
 
@@ -27,12 +27,19 @@ def ground_of(weave: Weave) -> Weave:
 
 
 def solve(
-    weave: Weave, *, particles: bool = False, per: int = 8, friction: float = 0.3, tolerance: float = 1e-3
+    weave: Weave,
+    *,
+    particles: bool = False,
+    per: int = 8,
+    friction: float = 0.3,
+    tolerance: float = 1e-3,
+    watch: np.ndarray | None = None,
+    most: int | None = None,
 ):
     """Relax a weave: stage A, and stage B on it with `particles`. Returns YarnGeometry or ParticleCell over the draft.
 
     The ground of a brocade is relaxed alone. Leno and compound weaves stay at stage A (their ends cross or lie over
-    one another, which the particles' grid of crossings does not hold).
+    one another, which the particles' grid of crossings does not hold).  watch, most: as of relax_particles.
     """
     ground = ground_of(weave)
     channels = weave.draft.channels
@@ -43,7 +50,8 @@ def solve(
         series = max(int(s.max()) + 1 for s in (channels.end_series, channels.pick_series) if s is not None)
         return relax(weave, share=series, tolerance=1e-8)
     if particles and simple:
-        cell = relax_particles(ground, per=per, friction=friction, tolerance=tolerance)
+        cell = relax_particles(ground, per=per, friction=friction, tolerance=tolerance, watch=watch,
+                               most=most or MOST_STEPS)  # fmt: skip
         return _tiled_cell(cell, weave) if ground is not weave else cell
     geometry = relax(ground)
     return _tiled(geometry, weave) if ground is not weave else geometry

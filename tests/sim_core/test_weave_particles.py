@@ -10,17 +10,20 @@ from sim_core.errors import WeaveError
 from sim_core.weave import Channels, Draft, Weave, Yarn, plain, satin, twill
 from sim_core.weave.closest_pairs import curve_overlap, pin_forces
 from sim_core.weave.elastica import elastica_crimp, peirce_crimp
+from sim_core.weave.generators import basket
 from sim_core.weave.jam import check_jam, jam_limits
 from sim_core.weave.laid import lay_beams
 from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.particles import relax_particles
 from sim_core.weave.relaxation import beam_stiffness
+from sim_core.weave.shifted import turns_of
 from sim_core.weave.solve import ground_of, solve
 from sim_core.weave.strands import strands
 from sim_core.weave.structures import gauze
 from sim_core.weave.yarn_steps import advance, factored
 
 D = 1e-4
+NO_TURNS = np.zeros(0, np.int64)
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 
 
@@ -36,7 +39,9 @@ def cloth(
 def test_plain_crimp_within_one_and_a_half_per_cent_of_the_elastica(spacing, per):
     cell = relax_particles(cloth(plain(), spacing), per=per)
     assert cell.warp_crimp == pytest.approx(elastica_crimp(spacing), rel=0.015)
-    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-4)  # at rest to 1e-3
+    # warp and weft are treated alike: equal to rounding where the yarns touch in one point. Round yarns at p/d = 2 wrap
+    # each other; which places along that contact are pinned is left to rounding, and many states nearby are at rest.
+    assert cell.weft_crimp == pytest.approx(cell.warp_crimp[0], rel=1e-12 if spacing > 2 else 1e-4)
     assert cell.penetration <= 5e-4
     assert cell.residual <= 1e-3
     if spacing > 2:  # round yarns that touch in one point
@@ -166,13 +171,12 @@ def test_forces_are_the_slope_of_the_energy():
     g = np.zeros_like(u), np.zeros_like(u)
     out = 0.02 * rng.random(u.shape)
 
-    def side(a, b):
-        return side_forces(
-            a, b, 0.6, 0.9, 0.8, 5.0, np.zeros_like(a), np.zeros_like(a), out, False, False, *h[:2]
-        )[0]
+    def side(a, b, ga, gb, weigh):
+        given: list = [a, b, 0.6, 0.9, 0.8, 5.0, ga, gb, out, False, weigh, *h[:2], 0]
+        return side_forces(*given)
 
-    assert side_forces(u, z, 0.6, 0.9, 0.8, 5.0, *g, out, False, True, *h[:2])[1] > 0.05
-    check(side, g)
+    assert side(u, z, *g, True)[1] > 0.05
+    check(lambda a, b: side(a, b, np.zeros_like(a), np.zeros_like(a), False)[0], g)
 
 
 def test_contact_acts_equally_on_both_yarns():
@@ -204,7 +208,8 @@ def test_contact_acts_equally_on_both_yarns():
         0.01,
         False,
     )
-    _, deepest, largest = contact_forces(*values, *stiffness)
+    given: list = [*values, *stiffness, NO_TURNS]
+    _, deepest, largest = contact_forces(*given)
     assert deepest > 0.05
     assert largest > 0
     assert g[1].sum() == pytest.approx(-g[3].sum(), rel=1e-9)
@@ -242,6 +247,39 @@ def test_the_same_weave_gives_the_same_bits():
     np.testing.assert_array_equal(first.warp_height, second.warp_height)
 
 
+@pytest.mark.parametrize(
+    ("draft", "spacing", "flattening"),
+    [
+        (satin(8, 3), 4, 1.0),
+        (satin(8, 3), 2.6, 1.8),
+        (satin(5, 2), 4, 2.0),
+        (twill(3, 1), 3.5, 1.6),
+        (twill(2, 1), 3, 1.0),
+    ],
+)
+def test_one_end_and_one_pick_stand_for_all_of_a_satin(monkeypatch, draft, spacing, flattening):
+    """As satins above 10,000 crossings are relaxed, against all yarns of the repeat; 2.6: neighbours touch."""
+    weave = cloth(draft, spacing, flattening=flattening)
+    whole = relax_particles(weave)
+    monkeypatch.setattr("sim_core.weave.particles.MANY", 0)
+    one = relax_particles(weave)
+    assert one.steps == whole.steps
+    for name in ("warp_side", "warp_height", "weft_side", "weft_height"):
+        np.testing.assert_allclose(getattr(one, name), getattr(whole, name), atol=1e-9 * D)
+    np.testing.assert_allclose(one.force, whole.force, atol=1e-9 * whole.force.max())
+    np.testing.assert_allclose(one.warp_crimp, whole.warp_crimp, rtol=1e-8)
+    np.testing.assert_allclose(one.weft_crimp, whole.weft_crimp, rtol=1e-8)
+    assert one.energy == pytest.approx(whole.energy)
+
+
+def test_drafts_whose_yarns_are_no_shifts_of_one_are_relaxed_whole():
+    assert turns_of(basket(2, 2).lift) is None
+    assert turns_of(np.vstack([satin(5, 2).lift] * 2)) is None
+    turns = turns_of(twill(2, 2).lift)
+    assert turns is not None
+    assert turns.shift in (1, 3)
+
+
 def test_particles_out_of_range_are_named():
     with pytest.raises(WeaveError, match="particles"):
         relax_particles(cloth(plain(), 4), per=3)
@@ -269,10 +307,10 @@ def test_leno_doups_lie_over_every_pick_and_beneath_the_end_they_cross(name):
     need = (weave.warp.height + weave.weft.height) / 2
     picks = warp.height[:, ::16]
     at = weft.height[:, ::16].T
-    assert (picks - at)[doup].min() >= need * (1 - 1e-3)
-    assert (at - picks)[ground].min() >= need * (1 - 1e-3)
+    assert (picks - at)[doup].min() >= need * (1 - 1e-5)
+    assert (at - picks)[ground].min() >= need * (1 - 1e-5)
     middle = warp.height[:, 8::16]
-    assert middle[ground].mean() - middle[doup].mean() >= weave.warp.height * (1 - 1e-3)
+    assert middle[ground].mean() - middle[doup].mean() >= weave.warp.height * (1 - 1e-5)
 
 
 def test_brocade_lies_on_its_ground():
@@ -290,7 +328,8 @@ def test_brocade_lies_on_its_ground():
 def test_a_leno_is_in_balance_and_says_how_well(name):
     weave = Weave.load(FOLDER / f"{name}.toml")
     made = solve(weave)
-    assert 0 < made.residual < 1e-3
+    assert 0 < made.residual < 1e-6
+    assert made.penetration <= 1e-5 * (weave.warp.height + weave.weft.height) / 2
     assert made.force.min() >= 0
     assert made.force.max() > 0
     # each pick is pressed up by its ground ends as much as down by its doups
@@ -368,16 +407,18 @@ def test_penetration_is_measured_between_the_particles():
     shift = 3.5 * step  # brings these places over one another
     wu, fu = np.full((4, n), shift), np.full((4, n), shift)
     above = np.ones((4, 4), bool)
-    found, pins = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4)
+    found, pins = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4, NO_TURNS)
     # Catmull-Rom at the middle of a piece: 9/16 of each neighbour, -1/16 of the next
     least = 2 * (0.45 + 0.2 * (9 / 8 * 0.125 - 1 / 8 * 0.375))
     assert found == pytest.approx(1 - least, abs=1e-9)
     assert len(pins) == 32  # one a crossing and norm
     np.testing.assert_allclose(pins[:, 3], 3.5, atol=1e-6)
-    again, more = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, pins, 4e-4)
+    again, more = curve_overlap(wu, wz, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, pins, 4e-4, NO_TURNS)
     assert again == found
     assert len(more) == 0  # it is pinned
-    apart, none = curve_overlap(wu, wz + 1, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4)
+    apart, none = curve_overlap(
+        wu, wz + 1, fu, fz, above, 8, step, step, 1.0, 1.0, 7, 7, NO_PINS, 4e-4, NO_TURNS
+    )
     assert apart < 0
     assert len(none) == 0
 
@@ -394,7 +435,24 @@ def test_pins_act_equally_on_both_yarns_and_as_the_slope_of_their_energy():
     def forces(values):
         g, h = ([np.zeros((2, 16)) for _ in range(4)] for _ in range(2))
         pressing = np.zeros((2, 2))
-        given: list = [pins, *values, *g, lift, pressing, 8, 0.3, 0.3, *flat, 7, 7, 100.0, False, True, *h]
+        given: list = [
+            pins,
+            *values,
+            *g,
+            lift,
+            pressing,
+            8,
+            0.3,
+            0.3,
+            *flat,
+            7,
+            7,
+            100.0,
+            False,
+            True,
+            *h,
+            NO_TURNS,
+        ]
         energy, deepest, largest = pin_forces(*given)
         assert deepest > 0.01
         assert largest == pressing.max() > 0
