@@ -71,7 +71,7 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
-        lanes = None if self.holds.limit else lanes_for(self.sheet, self.pace.precision)
+        lanes = None if min(self.holds.limit) < 1.0 else lanes_for(self.sheet, self.pace.precision)
         self.laned = Laned(self.sheet, lanes, longest, samples) if lanes else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
