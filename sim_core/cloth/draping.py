@@ -20,6 +20,7 @@ from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, schedule
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
+from sim_core.errors import FileProblem
 
 if TYPE_CHECKING:
     from sim_core.cloth.certifier import Mesh
@@ -74,6 +75,7 @@ def drape(
     checkpoint: Path | None = None,
     checkpoint_seconds: float | None = None,
     keep: bool = False,
+    only_own: bool = False,
     certify: bool | Mesh = False,
 ) -> Drape:
     """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
@@ -85,7 +87,8 @@ def drape(
     air: what blows, and brakes; None costs nothing.
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
-    it behind, finished, for a caller who has more to do.
+    it behind, finished, for a caller who has more to do. only_own: refuse a file that this run cannot go on from,
+    where it would else be written over.
     certify: look, every frame, whether anything passed through the cloth, by continuous collision detection (needs
     ipctk), and do the frame again where it did; or the mesh, vertices (S, 3) [m] and faces, of a still collider to
     be looked at as well. The start must be free of intersections.
@@ -110,8 +113,15 @@ def drape(
         run.certify(x, None if certify is True else certify)
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
+        + (sheet.mass, sheet.corner, sheet.stencil.own, sheet.stencil.coupling, sheet.stencil.bend)
     )
-    state = (load_checkpoint(checkpoint, key) if checkpoint else None) or RunState(x, v)
+    found = load_checkpoint(checkpoint, key) if checkpoint else None
+    if checkpoint and only_own and not found and checkpoint.exists():
+        raise FileProblem(
+            f"{checkpoint}: no state of this run (other settings, an older engine, or damaged) – "
+            "name another file, or remove it"
+        )
+    state = found or RunState(x, v)
     pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
     _run_frames(run, state, _Hooks(progress, on_frame, checkpoint, key, pause))
     if checkpoint and keep:

@@ -26,7 +26,7 @@ def summary_of(
         "frames": result.frames,
         "seconds": 0.0,
         "compile_seconds": 0.0,
-        "ms_per_frame": round(1e3 * float(np.median(result.frame_seconds or (np.nan,))), 2),
+        "ms_per_frame": _middle(result.frame_seconds),
         "substeps": round(result.substeps / max(result.frames, 1), 1),
         "integrator": settings["integrator"],
         "precision": settings["precision"],
@@ -50,6 +50,11 @@ def summary_of(
         coefficient = drape_coefficient(result.positions, made.sheet.faces, width)
         summary["drape_coefficient"] = round(coefficient, 4)
     return summary
+
+
+def _middle(seconds: tuple[float, ...]) -> float | None:
+    """The median [ms]; None where every frame was there already, in the state that was gone on from."""
+    return round(1e3 * float(np.median(seconds)), 2) if seconds else None
 
 
 def _crossed(made: Scene, result: Drape) -> int:
@@ -101,7 +106,8 @@ def tell(args: argparse.Namespace, summary: dict[str, Any]) -> None:
         return
     s = summary
     line = f"{s['scene']}: {s['vertices']} vertices, {s['frames']} frames in {s['seconds']:.1f} s"
-    line += f", {s['ms_per_frame']:.1f} ms a frame (median), {s['substeps']:.0f} substeps, {s['integrator']}"
+    pace = "all of them kept" if s["ms_per_frame"] is None else f"{s['ms_per_frame']:.1f} ms a frame (median)"
+    line += f", {pace}, {s['substeps']:.0f} substeps, {s['integrator']}"
     line += f", stretch at most {s['worst_stretch']:.3f}, {s['penetrations']} penetrations"
     line += f", {s['intersections']} intersections"
     sys.stdout.write(line + "\n")

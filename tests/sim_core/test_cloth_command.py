@@ -144,6 +144,42 @@ def test_an_interrupted_run_keeps_its_frames_and_goes_on_to_the_same_bits(
         assert part["positions"].tobytes() == whole["positions"].tobytes()
 
 
+def test_a_state_of_another_run_is_refused_and_left_as_it_is(capsys, tmp_path: Path) -> None:
+    kept = tmp_path / "state"
+    words = ["--frames", "2", "--vertices", "120", "--resume", str(kept)]
+    summary(capsys, ["hanging", *words])
+    before = kept.read_bytes()
+    assert cli.main(["cloth", "flag", *words]) == 1
+    told = capsys.readouterr().err
+    assert "no state of this run" in told
+    assert "Traceback" not in told
+    assert kept.read_bytes() == before
+
+
+def test_a_finished_run_resumed_says_that_no_frame_was_left(capsys, tmp_path: Path) -> None:
+    words = ["hanging", "--frames", "2", "--vertices", "120", "--resume", str(tmp_path / "state")]
+    assert summary(capsys, words)["ms_per_frame"] > 0
+    assert summary(capsys, words)["ms_per_frame"] is None  # NaN is no JSON
+    assert cli.main(["cloth", *words]) == 0
+    assert "all of them kept" in capsys.readouterr().out
+
+
+def test_a_folder_is_refused_as_a_file_before_anything_runs(capsys, tmp_path: Path) -> None:
+    (tmp_path / "a.npz").mkdir()
+    assert cli.main(["cloth", "hanging", "--frames", "100000", "--out", str(tmp_path / "a.npz")]) == 2
+    assert "folder" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["a.npz"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_code_is_compiled_with_a_scene_of_the_same_loop(name: str) -> None:
+    from sim_core.cloth.command import WARM
+    from sim_core.cloth.engine import Engine
+
+    small, whole = (Engine(scene(name, vertices=count).sheet).laned for count in (WARM, None))
+    assert (small is None) == (whole is None)
+
+
 def test_seeds_gusts_and_winds_change_the_flag() -> None:
     from sim_core.cloth import drape
 

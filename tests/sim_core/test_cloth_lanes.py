@@ -8,6 +8,7 @@ import pytest
 from sim_core.cloth import Live, Phase, drape
 from sim_core.cloth.bands import ordered
 from sim_core.cloth.engine import Engine
+from sim_core.cloth.holding import Holds
 from sim_core.cloth.laned import (
     lane_bends,
     lane_further,
@@ -116,6 +117,15 @@ def test_a_lattice_in_double_falls_over_lanes_as_over_bands():
         patch.setattr("sim_core.cloth.engine.lanes_for", lambda *_: None)
         bands = run(made)
     assert apart(run(made), bands) < 1e-5
+
+
+def test_lanes_are_taken_in_the_precision_asked_for_unless_lengths_are_kept():
+    sheet = hang_edge(0.05).sheet
+    for pace, real in ((None, np.float64), (SINGLE, np.float32)):
+        laned = Engine(sheet, pace=pace).laned
+        assert laned is not None
+        assert laned.real is real
+    assert Engine(sheet, holds=Holds.of(len(sheet.rest), limit=(1.0, 0.04))).laned is None
 
 
 def test_a_disc_in_single_falls_as_in_double():

@@ -128,6 +128,20 @@ def test_damaged_or_foreign_checkpoints_are_left_aside(tmp_path: Path) -> None:
         assert end.positions.tobytes() == expected.positions.tobytes()
 
 
+def test_a_state_is_not_gone_on_from_with_another_second_material(tmp_path: Path) -> None:
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.1)
+    kind = (np.arange(len(faces)) > 3).astype(np.int32)
+    x, file = np.column_stack([rest, np.zeros(len(rest))]), tmp_path / "run.npz"
+
+    def run(stretch: float, **more) -> np.ndarray:
+        materials = [Material(0.05, 50.0), Material(0.05, stretch)]
+        sheet = Sheet.of_corners(rest[faces], faces, materials, kind)
+        return drape(sheet, x, [Phase(0.2)], pins=(0,), **more).positions
+
+    run(50.0, checkpoint=file, keep=True)
+    assert run(500.0, checkpoint=file).tobytes() == run(500.0).tobytes()
+
+
 def test_phase_ends_early_once_at_rest() -> None:
     sheet = Sheet.of(*equilateral_sheet(0.2, 0.2, 0.1), Material(0.05, 50.0))
     x = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))])
