@@ -75,6 +75,7 @@ class PiboSettings:
     shell: float = 0.003
     spring: float = 0.03  # of the shell; softened later, stacked folds would sink through each other
     self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)  # falling, settling, resting
+    damped: float = 1e-4  # [s] stiffness damping while resting: what is squeezed trembles less
 
 
 def pibo_on_figure(
@@ -202,9 +203,12 @@ def _draped(
         contact = Contact(
             s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
         )
+        sheet = half.sheet
+        if run == len(phases) - 1:
+            sheet = replace(sheet, material=replace(sheet.material, stiffness_damping=s.damped))
         runs.append(
             drape(
-                half.sheet,
+                sheet,
                 runs[-1].positions if runs else start,
                 course,
                 velocities=runs[-1].velocities if runs else None,
