@@ -194,18 +194,13 @@ def _draped(
     """All runs; frames and substeps of the result are those of all."""
     solid, holds, runs = field.solid(), _holds(half), []
     for run, course in enumerate(phases):
-        shell = {
-            "spring": s.spring,
-            "self_friction": s.self_friction[min(run, len(s.self_friction) - 1)],
-            "every": 2,
-            "partly": run < len(phases) - 1,
-        }
+        last, friction = run == len(phases) - 1, s.self_friction[min(run, len(s.self_friction) - 1)]
+        shell = {"spring": s.spring, "self_friction": friction, "every": 2, "partly": not last}
         contact = Contact(
             s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
         )
-        sheet = half.sheet
-        if run == len(phases) - 1:
-            sheet = replace(sheet, material=replace(sheet.material, stiffness_damping=s.damped))
+        damped = replace(half.sheet.material, stiffness_damping=s.damped)
+        sheet = replace(half.sheet, material=damped) if last else half.sheet
         runs.append(
             drape(
                 sheet,
