@@ -197,13 +197,16 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
         "certify": args.certify,
     }
     if args.error is not None:
+        for name in ("vertices", "integrator"):
+            if getattr(args, name) not in (None, "auto"):
+                raise WrongArgument(f"--{name}: --error chooses it – give one of the two")
         from sim_core.cloth.fidelity import choose
 
         choice = choose(
             args.scene, error_mm=args.error, case=args.case, size=args.size, pins=args.pins, wind=args.wind
         )
         settings |= {"substeps": None, "integrator": choice.integrator, "why": choice.why}
-        settings["vertices"] = args.vertices or choice.vertices
+        settings["vertices"] = choice.vertices
     return settings
 
 

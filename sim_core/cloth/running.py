@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,7 +110,18 @@ class Run:
         self.frame_under(state, self._conditions(now, state.frame), self._pinned(now.phase))
 
     def frame_under(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
-        """One frame under the given conditions."""
+        """One frame under the given conditions; broken off in the midst, it leaves the state as it was."""
+        begun = replace(state, tally=replace(state.tally))
+        try:
+            self._frame(state, under, pins)
+        except BaseException as error:
+            for name in ("mode", "safety", "rollbacks", "fallbacks", "tally"):
+                setattr(state, name, getattr(begun, name))
+            if _interrupted(error):
+                raise KeyboardInterrupt from error
+            raise
+
+    def _frame(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
         engine = self.engine
         begin = self._begin(state)
         start = time.perf_counter()
@@ -230,6 +242,13 @@ class Run:
             wind=wind,
             press=press,
         )
+
+
+def _interrupted(error: BaseException | None) -> bool:
+    """Whether an interrupt is behind it: compiled code comes back with SystemErrors, one the cause of another."""
+    while isinstance(error, SystemError):
+        error = error.__cause__
+    return isinstance(error, KeyboardInterrupt)
 
 
 def checked_state(

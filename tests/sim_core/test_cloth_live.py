@@ -91,3 +91,31 @@ def test_a_falling_cloth_meets_a_floor_in_live_mode() -> None:
         x = live.step()
     assert x[:, 1].min() > 0.0029
     assert x[:, 1].max() < 0.01
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_an_interrupt_in_the_midst_of_a_frame_leaves_the_state_as_it_was(
+    compiled: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Compiled code comes back from Ctrl-C with SystemErrors, the interrupt the cause of the first."""
+    from sim_core.cloth.engine import Engine
+    from sim_core.cloth.scenes import scene
+
+    def stopped(*_: object) -> None:
+        if compiled:
+            inner = SystemError("returned a result with an exception set")
+            inner.__cause__ = KeyboardInterrupt()
+            raise SystemError("and so did its caller") from inner
+        raise KeyboardInterrupt
+
+    made = scene("hanging", vertices=100)
+    live = Live(made.sheet, made.positions, pins=made.pins)
+    live.step()
+    state = live._state
+    before = state.mode.tobytes(), state.positions.tobytes(), state.safety, state.rollbacks, state.frame
+    with monkeypatch.context() as patch:
+        patch.setattr(Engine, "advance", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            live.step()
+    after = state.mode.tobytes(), state.positions.tobytes(), state.safety, state.rollbacks, state.frame
+    assert after == before
