@@ -7,6 +7,7 @@ from sim_core.cloth.holding import Holds
 from sim_core.cloth.live import Live
 from sim_core.cloth.material import Material
 from sim_core.cloth.moving import MovingGrid, moving_mesh
+from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Live",
     "Material",
     "MovingGrid",
+    "Pace",
     "Phase",
     "Sheet",
     "Solid",

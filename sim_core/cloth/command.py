@@ -14,13 +14,14 @@ import numpy as np
 
 from sim_core.arguments import ending, number, whole
 from sim_core.cloth.outcome import summary_of, tell, write
-from sim_core.errors import WrongArgument
+from sim_core.errors import SimCoreError, WrongArgument
 
 if TYPE_CHECKING:
     from sim_core.cloth.draping import Drape
     from sim_core.cloth.precision import Pace
     from sim_core.cloth.scenes import Scene
 
+BLOWN = 10.0  # times its length that an edge has in no cloth: a fixed step was too long
 DESCRIPTION = """\
 Simulates the scenes of the published work; --case picks one of their sequences (sim_core/cloth/scenes.toml).
 
@@ -181,6 +182,10 @@ def run(args: argparse.Namespace) -> int:
         if heard.told:
             sys.stderr.write("\r\x1b[K")
     seconds = time.perf_counter() - begin
+    if settings["substeps"] and not result.worst_stretch < BLOWN:
+        raise SimCoreError(
+            f"--substeps {settings['substeps']}: too few, the cloth blew up – leave it out, and the step is found"
+        )
     write(args, made, heard.film, settings)
     summary = summary_of(args, made, result, settings, heard.penetrations)
     summary |= {"seconds": round(seconds, 3), "compile_seconds": round(compiled, 3)}

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.given import finite
 from sim_core.errors import SimCoreError
 
 FARTHEST = 5e-6  # [m] that an edge is shortened or lengthened by in a substep: quicker, it would go through other cloth
@@ -50,7 +51,7 @@ class Holds(NamedTuple):
 
         Raises SimCoreError for indices out of range, bounds that leave no room and a limit that is no share.
         """
-        if not all(0.0 < share <= 1.0 for share in limit):
+        if np.shape(limit) != (2,) or not all(0.0 < finite("holds.limit", share) <= 1.0 for share in limit):
             raise SimCoreError(
                 f"holds.limit: {limit} – two shares of an edge's length, above 0 and at most 1"
             )

@@ -221,3 +221,15 @@ def test_what_a_scene_does_not_have_is_named() -> None:
     ):
         with pytest.raises(WrongArgument, match=word):
             scene(name, **more)
+
+
+def test_a_fixed_step_that_blows_the_cloth_up_is_one_line(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    out = tmp_path / "film.npz"
+    found = cli.main(
+        ["cloth", "hanging", "--vertices", "200", "--frames", "2", "--substeps", "3", "--out", str(out)]
+    )
+    assert found == 1
+    assert "--substeps 3: too few" in capsys.readouterr().err
+    assert not out.exists()

@@ -213,3 +213,9 @@ def test_a_body_that_comes_quickly_wakes_the_cloth_in_time() -> None:
         low.append(solid.distance(done.positions).min())
     assert min(low) > 0.0
     assert low[0] > 0.004 > low[2]  # at first it is far away, and in the end it carries the cloth
+
+
+@pytest.mark.parametrize("limit", [0.04, (0.04,), (0.04, 0.04, 0.04), ("a", "b")])
+def test_limits_are_two_numbers(limit: object) -> None:
+    with pytest.raises(SimCoreError, match=r"holds\.limit"):
+        Holds.of(4, limit=limit)  # type: ignore[arg-type]
