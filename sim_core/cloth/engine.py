@@ -59,7 +59,12 @@ class Engine:
             raise SimCoreError("holds.limit: lengths are kept in double precision only – take Pace()")
         self.contact = c = contact or Contact()
         self.shell = Shell(
-            float(c.thickness), float(c.skin), float(c.spring), float(c.self_friction), int(c.every)
+            float(c.thickness),
+            float(c.skin),
+            float(c.spring),
+            float(c.self_friction),
+            int(c.every),
+            float(c.separation),
         )
         vertices, middles = contact_samples(self.sheet.edges, self.sheet.faces, count)
         image = np.zeros(count, bool)

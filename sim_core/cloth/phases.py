@@ -50,7 +50,8 @@ class Contact:
 
     thickness [m] is the distance two layers of cloth keep (0: no self-contact). untangle: in how many steps of a tenth
     of it, after each frame, the cloth is taken out of itself where it passed through (0: it is left so); partly: also
-    where some of it stays, for a start that is tangled.
+    where some of it stays, for a start that is tangled. separation: share of the speed at which near layers part that
+    they lose; with little of it squeezed folds bounce in their shell for ever.
     """
 
     clearance: float = 0.003
@@ -58,6 +59,7 @@ class Contact:
     thickness: float = 0.0
     skin: float = 0.008
     spring: float = 0.03
+    separation: float = 0.05
     self_friction: float = 0.2
     every: int = 1
     cap: float = 0.0005
@@ -118,6 +120,7 @@ def check_contact(contact: Contact) -> None:
     for name in ("clearance", "sample_clearance", "thickness", "skin", "spring", "self_friction", "cap"):
         finite(f"contact.{name}", getattr(contact, name), least=0)
     finite("contact.speed_limit", contact.speed_limit, least=0)
+    finite("contact.separation", contact.separation, least=0)
     whole("contact.every", contact.every, 1, "substeps between two looks, 1 or more")
     whole("contact.untangle", contact.untangle, 0, "steps after each frame, 0 or more")
     if contact.thickness > 0 and contact.skin <= 0:

@@ -23,6 +23,7 @@ class Shell(NamedTuple):
     spring: float  # impulse per depth, in units of mass / dt
     friction: float
     every: int  # substeps between two impulses
+    separation: float  # share of the separating speed that is taken, as far as the spring pushes
 
 
 @njit(cache=True, error_model="numpy")
@@ -45,7 +46,7 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
     if vn < 0.0:
         gain += (1.0 if depth > 0.75 else 0.3) * -vn
     else:
-        gain = max(gain - 0.05 * vn, 0.0)
+        gain = max(gain - shell.separation * vn, 0.0)
     tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
     slide = math.sqrt(tx * tx + ty * ty + tz * tz)
     lost = 0.0

@@ -75,7 +75,9 @@ class PiboSettings:
     shell: float = 0.003
     spring: float = 0.03  # of the shell; softened later, stacked folds would sink through each other
     self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)  # falling, settling, resting
-    damped: float = 1e-4  # [s] stiffness damping while resting: what is squeezed trembles less
+    separation: float = (
+        0.3  # of the separating speed taken while resting, lest squeezed folds bounce in their shells
+    )
 
 
 def pibo_on_figure(
@@ -196,14 +198,13 @@ def _draped(
     for run, course in enumerate(phases):
         last, friction = run == len(phases) - 1, s.self_friction[min(run, len(s.self_friction) - 1)]
         shell = {"spring": s.spring, "self_friction": friction, "every": 2, "partly": not last}
+        shell |= {"separation": s.separation} if last else {}
         contact = Contact(
             s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
         )
-        damped = replace(half.sheet.material, stiffness_damping=s.damped)
-        sheet = replace(half.sheet, material=damped) if last else half.sheet
         runs.append(
             drape(
-                sheet,
+                half.sheet,
                 runs[-1].positions if runs else start,
                 course,
                 velocities=runs[-1].velocities if runs else None,

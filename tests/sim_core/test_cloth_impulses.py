@@ -27,7 +27,7 @@ def met(gap: float, velocity: tuple[float, float, float], friction: float, kind:
         upper, below = [0.5, 0.5, 0, 0], [0, 0, 0.5, 0.5]
     v = np.asarray(upper)[:, None].astype(bool) * np.array(velocity)
     v = np.ascontiguousarray(v, float)
-    shell = Shell(THICKNESS, 0.001, SPRING, friction, 1)
+    shell = Shell(THICKNESS, 0.001, SPRING, friction, 1, 0.05)
     repel(x, v, np.ones(4), faces, edges, points, crossings, (len(points), len(crossings)), shell, 1e-3)
     weights = np.array(below)
     return np.asarray(upper) @ v - weights @ v
