@@ -40,7 +40,12 @@ def test_hanging_chain_is_the_catenary(edges: int) -> None:
     s = sheet.rest[:, 0] - length / 2
     x = a * np.arcsinh(s / a)
     exact = np.column_stack([x, a * np.cosh(x / a) - a * math.cosh(span / (2 * a)), sheet.rest[:, 1]])
-    start = np.column_stack([span * s / length, -0.25 * (1 - (2 * s / length) ** 2), sheet.rest[:, 1]])
+    # From an arc of the chain's length: a start stretched here and crushed there may end with a vertex flipped over.
+    arc = brentq(lambda r: 2 * r * math.sin(length / (2 * r)) - span, 0.4, 5)
+    turn = s / arc
+    start = np.column_stack(
+        [arc * np.sin(turn), arc * (math.cos(length / (2 * arc)) - np.cos(turn)), sheet.rest[:, 1]]
+    )
     ends = np.flatnonzero(np.abs(np.abs(s) - length / 2) < 1e-9)
     start[ends] = exact[ends]
     end = drape(sheet, start, [Phase(2.4, damping=8.0)], pins=ends.tolist())
