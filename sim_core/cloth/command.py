@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sim_core.cloth.precision import Pace
     from sim_core.cloth.scenes import Scene
 
+WARM = 120  # vertices of the scene that code is compiled with: enough for lanes
 BLOWN = 10.0  # times its length that an edge has in no cloth: a fixed step was too long
 DESCRIPTION = """\
 Simulates the scenes of the published work; --case picks one of their sequences (sim_core/cloth/scenes.toml).
@@ -105,11 +106,6 @@ def add_parser(subparsers: Any) -> None:
     add("--out", type=ending(".npz"), metavar="FILE.npz", help="write the frames")
     add("--video", type=ending(".mp4"), metavar="FILE.mp4", help="film them")
     add("--json", action="store_true", help="print a machine-readable summary")
-
-
-WARM = (
-    120  # vertices of the scene that code is compiled with: enough for lanes where the scene itself has them
-)
 
 
 @dataclass

@@ -54,8 +54,8 @@ class Engine:
         self.moving = collider if isinstance(collider, MovingGrid) else None
         self.packed = collider.packed() if isinstance(collider, Solid) else _NOTHING
         self.holds = (holds or Holds.of(count)).renumbered(self.number, self.order)
-        limited = min(self.holds.limit) < 1.0
-        if limited and self.pace.precision == "single":
+        self.limited = min(self.holds.limit) < 1.0
+        if self.limited and self.pace.precision == "single":
             raise SimCoreError("holds.limit: lengths are kept in double precision only – take Pace()")
         self.contact = c = contact or Contact()
         self.shell = Shell(
@@ -77,7 +77,7 @@ class Engine:
         self.room = room_of(len(self.sheet.edges), count, longest, samples)
         layers = (count, len(self.sheet.edges), len(self.sheet.faces)) if self.shell.thickness else (0, 0, 0)
         self.finder, self.pairs = finder_of(*layers), (pairs_of(layers[0]), pairs_of(layers[0]))
-        lanes = None if limited else lanes_for(self.sheet, self.pace.precision)
+        lanes = None if self.limited else lanes_for(self.sheet, self.bands, self.pace.precision)
         self.laned = Laned(self.sheet, lanes, longest, samples) if lanes else None
         free = self.sheet.stencil.inverse_mass
         self.lightest = _lightest(self.sheet)
@@ -245,7 +245,7 @@ class Engine:
         self, under: Conditions, inverse: np.ndarray, x: np.ndarray, v: np.ndarray, part: float, h: float
     ) -> None:
         """Lengths, seams, solids, bounds and images after an implicit step."""
-        if min(self.holds.limit) < 1.0:
+        if self.limited:
             ends, length2 = self.sheet.edges, self.sheet.stencil.length2
             strain = ((x[ends[:, 0]] - x[ends[:, 1]]) ** 2).sum(1) - length2
             keep_lengths(self.holds.limit, inverse, ends, length2, strain, x, v)

@@ -88,6 +88,18 @@ class Holds(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
+def _bring_together(x, v, i, j, shares, along, way, speed):
+    """i and j come nearer along the unit vector from j to i, by way [m] and at a speed [m/s] that they share."""
+    a, b = shares
+    for c in range(3):
+        n = along[c]
+        x[i, c] -= a * way * n
+        x[j, c] += b * way * n
+        v[i, c] -= a * speed * n
+        v[j, c] += b * speed * n
+
+
+@njit(cache=True, error_model="numpy")
 def draw_together(holds, inverse_mass, x, v, share, rate):
     """No pair is further apart than `share` of its span; what is gets the speed of closing, rate * span [m/s]."""
     for k in range(len(holds.pairs)):
@@ -108,12 +120,7 @@ def draw_together(holds, inverse_mass, x, v, share, rate):
         push = gap - limit
         apart = (v[i, 0] - v[j, 0]) * nx + (v[i, 1] - v[j, 1]) * ny + (v[i, 2] - v[j, 2]) * nz
         excess = max(apart + rate * holds.spans[k], 0.0)
-        for c in range(3):
-            n = nx if c == 0 else (ny if c == 1 else nz)
-            x[i, c] -= a * push * n
-            x[j, c] += b * push * n
-            v[i, c] -= a * excess * n
-            v[j, c] += b * excess * n
+        _bring_together(x, v, i, j, (a, b), (nx, ny, nz), push, excess)
 
 
 @njit(cache=True, error_model="numpy")
@@ -143,12 +150,7 @@ def keep_lengths(limit, inverse_mass, edges, length2, strain, x, v):
             apart = 0.0
         a, b = inverse_mass[i] / total, inverse_mass[j] / total
         way = min(max(excess, -FARTHEST), FARTHEST)
-        for c in range(3):
-            n = nx if c == 0 else (ny if c == 1 else nz)
-            x[i, c] -= a * way * n
-            x[j, c] += b * way * n
-            v[i, c] -= a * apart * n
-            v[j, c] += b * apart * n
+        _bring_together(x, v, i, j, (a, b), (nx, ny, nz), way, apart)
 
 
 @njit(cache=True, error_model="numpy")

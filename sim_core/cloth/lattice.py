@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim_core.cloth.bands import GROUP, Bands, bands_of
+from sim_core.cloth.bands import GROUP, Bands
 from sim_core.cloth.sheet import Sheet
 
 OFFSETS = 3  # directions of the edges of a lattice of triangles
@@ -38,8 +38,11 @@ class Lanes(NamedTuple):
     odd_weight: np.ndarray
 
 
-def lattice_lanes(sheet: Sheet, real: type = np.float64) -> Lanes | None:
-    """The lanes of a sheet in band order that is a lattice of rows, of numbers `real`; None if it is none."""
+def lattice_lanes(sheet: Sheet, bands: Bands, real: type = np.float64) -> Lanes | None:
+    """The lanes of a sheet in band order that is a lattice of rows, of numbers `real`; None if it is none.
+
+    bands: of this sheet.
+    """
     count = len(sheet.mass)
     ends = sheet.edges.astype(np.int64)
     steps, kind = np.unique(ends[:, 1] - ends[:, 0], return_inverse=True)
@@ -73,7 +76,7 @@ def lattice_lanes(sheet: Sheet, real: type = np.float64) -> Lanes | None:
         table += kept.shape[1]
     coefficients = np.ascontiguousarray(np.concatenate(tables, axis=1), real)
     bend, bend_runs, odd = _bends(sheet, count, folds)
-    made = bands_of(sheet)._replace(
+    made = bands._replace(
         edge_runs=np.array(edge_runs, np.uint64),
         tension_runs=np.array(tension_runs, np.uint64),
         length2=coefficients[0],
@@ -86,9 +89,8 @@ def lattice_lanes(sheet: Sheet, real: type = np.float64) -> Lanes | None:
     return Lanes(made, slots, np.zeros((0, 15), np.uint64), *odd)
 
 
-def plain_lanes(sheet: Sheet, real: type = np.float32) -> Lanes:
-    """The bands of any sheet in band order as lanes, of numbers `real`."""
-    bands = bands_of(sheet)
+def plain_lanes(bands: Bands, real: type = np.float32) -> Lanes:
+    """The bands of any sheet as lanes, of numbers `real`."""
     further = bands.vertex_runs[:, 2] > 0
     first = bands._replace(
         edge_runs=_own_coefficients(bands.edge_runs),
@@ -102,7 +104,7 @@ def plain_lanes(sheet: Sheet, real: type = np.float32) -> Lanes:
     )
     none = np.zeros(0, np.int64)
     rest = np.ascontiguousarray(bands.vertex_runs[further])
-    return Lanes(first, len(sheet.edges), rest, np.zeros(1, np.int64), none, none, np.zeros(0, real))
+    return Lanes(first, len(bands.own), rest, np.zeros(1, np.int64), none, none, np.zeros(0, real))
 
 
 def _own_coefficients(runs: np.ndarray) -> np.ndarray:

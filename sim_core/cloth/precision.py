@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim_core.cloth.bands import Bands
 from sim_core.cloth.collider import Packed
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.lattice import Lanes, lattice_lanes, plain_lanes
@@ -68,11 +69,11 @@ class Pace:
         return GUARD * bend_omega2 * (0.5 * step) ** 3 if self.guarded else 0.0
 
 
-def lanes_for(sheet: Sheet, precision: str) -> Lanes | None:
-    """The lanes of a sheet in band order; None in double precision where it is no lattice: bands serve it better."""
+def lanes_for(sheet: Sheet, bands: Bands, precision: str) -> Lanes | None:
+    """The lanes of a sheet in band order; None in double precision where it is no lattice: its bands serve better."""
     if precision == "single":
-        return lattice_lanes(sheet, np.float32) or plain_lanes(sheet, np.float32)
-    return lattice_lanes(sheet)
+        return lattice_lanes(sheet, bands, np.float32) or plain_lanes(bands, np.float32)
+    return lattice_lanes(sheet, bands)
 
 
 class Laned:

@@ -75,9 +75,7 @@ class PiboSettings:
     shell: float = 0.003
     spring: float = 0.03  # of the shell; softened later, stacked folds would sink through each other
     self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)  # falling, settling, resting
-    separation: float = (
-        0.3  # of the separating speed taken while resting, lest squeezed folds bounce in their shells
-    )
+    separation: float = 0.3  # of that speed, taken while resting, lest squeezed folds bounce in their shells
 
 
 def pibo_on_figure(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Live, Phase, drape
-from sim_core.cloth.bands import ordered
+from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.engine import Engine
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.laned import (
@@ -76,7 +76,7 @@ def crumpled(sheet, seed=1):
 @pytest.mark.parametrize(("real", "off"), [(np.float32, 2e-4), (np.float64, 1e-9)])
 def test_lanes_of_a_lattice_have_the_forces_of_the_book(edge, real, off):
     sheet, _ = ordered(hang_edge(edge).sheet)
-    lanes, x = lattice_lanes(sheet, real), crumpled(sheet)
+    lanes, x = lattice_lanes(sheet, bands_of(sheet), real), crumpled(sheet)
     there = expected(sheet, x)
     assert np.abs(accelerations(sheet, lanes, x) - there).max() < off * np.abs(there).max()
 
@@ -85,18 +85,19 @@ def test_lanes_of_any_mesh_have_the_forces_of_the_book():
     sheet, _ = ordered(Sheet.of(*disc(0.3, 0.02), GF_CM))
     x = crumpled(sheet)
     there = expected(sheet, x)
-    found = accelerations(sheet, plain_lanes(sheet), x)
+    found = accelerations(sheet, plain_lanes(bands_of(sheet)), x)
     assert np.abs(found - there).max() < 2e-4 * np.abs(there).max()
 
 
 def test_coefficients_of_a_lattice_repeat_in_a_short_table_and_a_disc_is_none():
     sheet, _ = ordered(hang_edge(0.0134).sheet)
-    lanes = lattice_lanes(sheet)
+    lanes = lattice_lanes(sheet, bands_of(sheet))
     assert lanes.bands.own.size < 0.2 * len(sheet.edges)
     assert lanes.bands.bend.shape[1] < 0.3 * len(sheet.mass)
     assert lanes.bands.vertex_runs[:, 1].sum() == len(sheet.mass)
     assert lanes.edges < 1.1 * len(sheet.edges)
-    assert lattice_lanes(ordered(Sheet.of(*disc(0.3, 0.02), GF_CM))[0]) is None
+    round_, _ = ordered(Sheet.of(*disc(0.3, 0.02), GF_CM))
+    assert lattice_lanes(round_, bands_of(round_)) is None
 
 
 def test_a_row_unlike_the_others_keeps_its_own_coefficients():
@@ -105,7 +106,8 @@ def test_a_row_unlike_the_others_keeps_its_own_coefficients():
     stiff[len(stiff) // 2] *= 1 + 100 * SAME
     other = replace(sheet, stencil=sheet.stencil._replace(own=stiff))
     x = crumpled(sheet)
-    change = accelerations(other, lattice_lanes(other), x) - accelerations(sheet, lattice_lanes(sheet), x)
+    change = accelerations(other, lattice_lanes(other, bands_of(other)), x)
+    change -= accelerations(sheet, lattice_lanes(sheet, bands_of(sheet)), x)
     assert 1 <= (np.abs(change).max(axis=0) > 0).sum() <= 2
 
 
