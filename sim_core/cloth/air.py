@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_core.errors import SimCoreError
+from sim_core.cloth.given import FURTHEST, finite, triple, whole
 
 _TONES = 6  # sine waves a gust is made of
 
@@ -29,14 +29,11 @@ class Air:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if np.shape(self.wind) != (3,) or not np.isfinite(self.wind).all():
-            raise SimCoreError(f"air.wind: {self.wind} – expected three finite speeds (x, y, z) in m/s")
+        object.__setattr__(self, "wind", triple("air.wind", self.wind, "in m/s"))
         for name in ("density", "drag", "gusts"):
-            value = getattr(self, name)
-            if not (np.isfinite(value) and value >= 0):
-                raise SimCoreError(f"air.{name}: {value} – must be a finite number, 0 or more")
-        if not (np.isfinite(self.gust_seconds) and self.gust_seconds > 0):
-            raise SimCoreError(f"air.gust_seconds: {self.gust_seconds} – must be a time above 0 s")
+            finite(f"air.{name}", getattr(self, name), least=0, most=FURTHEST)
+        finite("air.gust_seconds", self.gust_seconds, above=0)
+        whole("air.seed", self.seed, 0, "a whole number of 0 or more", most=2**63)
 
     @property
     def press(self) -> float:
@@ -45,11 +42,11 @@ class Air:
 
     def blowing(self, wind: Sequence[float]) -> Air:
         """The same air with another wind (x, y, z) [m/s]."""
-        return replace(self, wind=tuple(float(speed) for speed in wind))
+        return replace(self, wind=triple("air.wind", wind, "in m/s"))
 
     def at(self, seconds: float) -> np.ndarray:
         """The wind (3,) [m/s] at a time [s]."""
-        wind = np.asarray(self.wind, float)
+        seconds, wind = finite("seconds", seconds), np.asarray(self.wind, float)
         if self.gusts == 0:
             return wind
         rng = np.random.default_rng(self.seed)

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from sim_core.cloth.given import points, told, triangles
 from sim_core.cloth.zones import moved_together, zones_of
 from sim_core.errors import SimCoreError
 from sim_core.metrics import intersections
@@ -114,12 +115,9 @@ class Certifier:
 def _checked(solid: Mesh | None) -> Mesh:
     if solid is None:
         return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
-    try:
-        vertices, faces = np.asarray(solid[0], float), np.asarray(solid[1])
-    except (TypeError, ValueError, IndexError):
-        raise SimCoreError("certify: give True, or the vertices (S, 3) and faces (F, 3) of a solid") from None
-    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or faces.ndim != 2 or faces.shape[1:] != (3,):
-        raise SimCoreError(f"certify: solid {vertices.shape}, {faces.shape} – expected (S, 3) and (F, 3)")
-    if not np.isfinite(vertices).all() or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
-        raise SimCoreError("certify: the solid has vertices that are not finite or faces that name none")
-    return vertices, faces.astype(np.int32)
+    if not isinstance(solid, tuple | list) or len(solid) != 2:
+        raise SimCoreError(
+            f"certify: {told(solid)} – give True, or the vertices (S, 3) and faces (F, 3) of a solid"
+        )
+    vertices = points("certify: the solid's vertices", solid[0])
+    return vertices, triangles("certify: the solid's faces", solid[1], len(vertices)).astype(np.int32)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.cloth.certificate import Tally
+from sim_core.cloth.given import told
 from sim_core.errors import FileProblem
 from sim_core.reading import read_npz
 
@@ -44,6 +45,29 @@ def run_key(parts: Iterable[object]) -> str:
         data = np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode()
         digest.update(str(len(data)).encode() + b":" + data)
     return digest.hexdigest()
+
+
+def checkpoint_file(path: str | Path) -> Path:
+    """The path, with a folder to write to; raises FileProblem for what is no file or holds something else.
+
+    A state cut off in the midst is no hindrance: it will be written over.
+    """
+    if not isinstance(path, str | Path) or not str(path) or "\0" in str(path):
+        raise FileProblem(f"checkpoint: {told(path)} – give the path of a file")
+    file = Path(path)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if file.is_dir():
+            raise FileProblem(f"{file}: this is a folder – name a file")
+        with file.open("rb") as stream:
+            begin = stream.read(2)
+    except FileNotFoundError:
+        return file
+    except OSError as error:
+        raise FileProblem(f"{file}: {error.strerror} – name another file for the checkpoint") from error
+    if begin not in (b"", b"PK"):
+        raise FileProblem(f"{file}: this is no state of a run – name another file, or remove it")
+    return file
 
 
 def save_checkpoint(path: Path, key: str, state: RunState) -> None:

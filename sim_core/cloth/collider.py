@@ -7,11 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim_core.cloth.given import FURTHEST, finite, numeric, of_kind, told, triple
+from sim_core.cloth.given import points as checked_points
 from sim_core.errors import SimCoreError
 
 CAPSULE, CYLINDER, BOX, HALFSPACE, GRID, MOVING = range(6)
 FASTEST = 4  # column of a moving grid: the most that its distance changes anywhere between the two keys [m]
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
+MOST_NODES = 2e8  # of a grid
 _NO_GRID = np.zeros((2, 2, 2), np.float32)
 _AT_REST = np.zeros(2)
 
@@ -30,20 +33,36 @@ class Packed(NamedTuple):
 
 
 def _vector(name: str, value: object) -> np.ndarray:
-    array = np.asarray(value, float)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise SimCoreError(f"{name}: {value} – expected three finite numbers (x, y, z) in metres")
-    return array
+    return np.array(triple(name, value, "in metres"))
 
 
-def _positive(name: str, value: float, *, zero: bool = False) -> float:
-    if not np.isfinite(value) or value < 0 or (value == 0 and not zero):
-        raise SimCoreError(f"{name}: {value} – must be a finite length above 0 [m]")
-    return float(value)
+def _positive(name: str, value: object) -> float:
+    return finite(f"{name} [m]", value, above=0, most=FURTHEST)
+
+
+def nodes(name: str, value: object) -> np.ndarray:
+    """Values (nx, ny, nz) float32 [m] at the nodes of a grid; raises SimCoreError for what is none."""
+    what = "expected a finite (nx, ny, nz), at least 2 each way"
+    values = numeric(name, value, what)
+    if values.ndim != 3 or min(values.shape) < 2 or not (np.abs(values) <= FURTHEST).all():
+        raise SimCoreError(f"{name}: shape {values.shape} – {what}")
+    return np.ascontiguousarray(values, np.float32)
+
+
+def _count(way: np.ndarray, cell: float) -> float:
+    """Nodes of a grid along way (3,) [m], as a float that may be infinite."""
+    with np.errstate(over="ignore"):
+        return float(np.prod(way / cell + 2))
 
 
 class Solid:
-    """Common face of all solids; the distance is negative inside."""
+    """Common face of all solids; the distance is negative inside.
+
+    Raises SimCoreError, naming the value, for a shape that cannot be.
+    """
+
+    def __post_init__(self) -> None:
+        self.packed()
 
     def packed(self) -> Packed:
         """The arrays the compiled distance reads."""
@@ -54,7 +73,9 @@ class Solid:
         return Packed(np.array([kind]), data, grid)
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
-        raise NotImplementedError
+        raise SimCoreError(
+            "solid: it has no shape – take a Capsule, Cylinder, Box, HalfSpace, GridSdf or Union"
+        )
 
     def _ball(self) -> np.ndarray:
         return np.array([0.0, 0.0, 0.0, -1.0])
@@ -63,7 +84,7 @@ class Solid:
         """Signed distance (N,) [m] at points (N, 3)."""
         from sim_core.cloth.distance import distances
 
-        return distances(self.packed(), np.ascontiguousarray(points, float))
+        return distances(self.packed(), checked_points("points", points))
 
 
 @dataclass(frozen=True)
@@ -97,7 +118,7 @@ class Cylinder(Solid):
         length = float(np.linalg.norm(end - start))
         _positive("cylinder: distance from start to end", length)
         _positive("cylinder.radius", self.radius)
-        if not 0 <= self.rounding <= min(self.radius, length / 2):
+        if not 0 <= finite("cylinder.rounding", self.rounding) <= min(self.radius, length / 2):
             raise SimCoreError(f"cylinder.rounding: {self.rounding} – at most the radius and half the length")
         middle, axis = (start + end) / 2, (end - start) / length
         return CYLINDER, np.r_[middle, axis, length / 2, self.radius, self.rounding], _NO_GRID
@@ -118,9 +139,10 @@ class Box(Solid):
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         centre, half = _vector("box.centre", self.centre), _vector("box.size", self.size) / 2
-        if half.min() <= 0 or not 0 <= self.rounding <= half.min() or not np.isfinite(self.yaw):
+        rounding, _ = finite("box.rounding", self.rounding), finite("box.yaw", self.yaw)
+        if half.min() <= 0 or not 0 <= rounding <= half.min():
             raise SimCoreError(
-                f"box: size {self.size}, rounding {self.rounding} – sizes above 0, rounding at most half"
+                f"box: size {told(self.size)}, rounding {self.rounding} – sizes above 0, rounding at most half"
             )
         return BOX, np.r_[centre, half, self.rounding, np.cos(self.yaw), np.sin(self.yaw)], _NO_GRID
 
@@ -154,19 +176,20 @@ class GridSdf(Solid):
     values: np.ndarray = field(repr=False)
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
-        values = np.ascontiguousarray(self.values, np.float32)
-        if values.ndim != 3 or min(values.shape) < 2 or not np.isfinite(values).all():
-            raise SimCoreError(
-                f"grid: shape {values.shape} – expected a finite (nx, ny, nz), at least 2 each way"
-            )
+        values = nodes("grid.values", self.values)
         return GRID, np.r_[_vector("grid.origin", self.origin), _positive("grid.cell", self.cell)], values
 
     @staticmethod
     def sample(solid: Solid, low: np.ndarray, high: np.ndarray, cell: float) -> GridSdf:
         """The grid of another solid's distance over the box from `low` to `high` (3,)."""
+        of_kind("solid", solid, Solid, "a solid is meant")
+        low, high = _vector("low", low), _vector("high", high)
+        _positive("cell", cell)
+        if (low > high).any() or not _count(high - low, cell) <= MOST_NODES:
+            raise SimCoreError(f"cell: {cell} – from low to high, in at most {MOST_NODES:g} nodes")
         axes = [np.arange(a, b + cell, cell) for a, b in zip(low, high, strict=True)]
-        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-        values = solid.distance(points.reshape(-1, 3)).reshape(points.shape[:3])
+        places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+        values = solid.distance(places.reshape(-1, 3)).reshape(places.shape[:3])
         return GridSdf((float(low[0]), float(low[1]), float(low[2])), cell, values)
 
 
@@ -178,9 +201,10 @@ class Union(Solid):
 
     def packed(self) -> Packed:
         """The parts' arrays, one below the other."""
+        if not isinstance(self.parts, tuple | list):
+            raise SimCoreError(f"union: a {type(self.parts).__name__} – give its parts as a tuple of solids")
         for part in self.parts:
-            if not isinstance(part, Solid):
-                raise SimCoreError(f"union: a {type(part).__name__} – its parts are solids")
+            of_kind("union", part, Solid, "its parts are solids")
         packs = [part.packed() for part in self.parts]
         if not packs:
             raise SimCoreError("union: no parts – name at least one solid")

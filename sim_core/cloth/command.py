@@ -32,7 +32,9 @@ Simulates the scenes of the published work; --case picks one of their sequences 
   drape     the disc of the Cusick test on its pedestal       3 cases, 100 frames
 
 A frame is 1/25 s. --out FILE.npz holds positions (T, V, 3) float32 [m], faces, uv, pins, dt and the settings as
-JSON. --error MM lets the shipped table choose mesh and steps; --substeps and --integrator set them by hand.
+JSON. --error MM lets the shipped table choose mesh and steps (flag, teapot, hanging); by hand --vertices, --courant,
+--substeps and --integrator set them. What the table was not measured with, it refuses: --layers, --gusts, --precision
+single, and the settings it chooses itself.
 --precision single halves the time at errors of about 0.05 mm; --courant trades steps for time error.
 With --resume FILE an interrupted run goes on where it was, to the same bits.
 """
@@ -198,9 +200,11 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
         "certify": args.certify,
     }
     if args.error is not None:
-        for name in ("vertices", "integrator"):
-            if getattr(args, name) not in (None, "auto"):
-                raise WrongArgument(f"--{name}: --error chooses it – give one of the two")
+        for name, free in _CHOSEN.items():
+            if getattr(args, name) not in free:
+                raise WrongArgument(
+                    f"--{name}: --error chooses the setting, {_WHY[name]} – give one of the two"
+                )
         from sim_core.cloth.fidelity import choose
 
         choice = choose(
@@ -209,6 +213,24 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
         settings |= {"substeps": None, "integrator": choice.integrator, "why": choice.why}
         settings["vertices"] = choice.vertices
     return settings
+
+
+_CHOSEN = {  # by --error; what may stand beside it
+    "vertices": (None,),
+    "integrator": (None, "auto"),
+    "courant": (None,),
+    "precision": ("double",),
+    "gusts": (0.0,),
+    "layers": (0.0,),
+}
+_WHY = {
+    "vertices": "the mesh above all",
+    "integrator": "and has measured the explicit one",
+    "courant": "the share of the step with it",
+    "precision": "whose errors are of double precision",
+    "gusts": "whose errors are of a steady wind",
+    "layers": "whose errors are of cloth without self-contact",
+}
 
 
 def _pace(settings: dict[str, Any]) -> Pace:

@@ -12,15 +12,16 @@ import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.checkpoint import RunState, load_checkpoint, run_key, save_checkpoint
+from sim_core.cloth.checkpoint import RunState, checkpoint_file, load_checkpoint, run_key, save_checkpoint
 from sim_core.cloth.collider import Solid
+from sim_core.cloth.given import called, finite, triple
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, schedule
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
-from sim_core.errors import FileProblem
+from sim_core.errors import FileProblem, SimCoreError
 
 if TYPE_CHECKING:
     from sim_core.cloth.certifier import Mesh
@@ -72,7 +73,7 @@ def drape(
     velocities: np.ndarray | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
-    checkpoint: Path | None = None,
+    checkpoint: str | Path | None = None,
     checkpoint_seconds: float | None = None,
     keep: bool = False,
     only_own: bool = False,
@@ -83,12 +84,13 @@ def drape(
     substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
     integrator: "explicit", "implicit" (backward Euler, substeps steps a frame or 8), or "auto": explicit, with the
     implicit scheme for frames that would blow up.
+    down: the way in which a phase's gravity is counted.
     pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
     air: what blows, and brakes; None costs nothing.
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
-    it behind, finished, for a caller who has more to do. only_own: refuse a file that this run cannot go on from,
-    where it would else be written over.
+    it behind, finished, for a caller who has more to do. only_own: refuse a state that this run cannot go on from,
+    where it would else be written over; a file that is no state at all is always refused.
     certify: look, every frame, whether anything passed through the cloth, by continuous collision detection (needs
     ipctk), and do the frame again where it did; or the mesh, vertices (S, 3) [m] and faces, of a still collider to
     be looked at as well. The start must be free of intersections.
@@ -96,6 +98,14 @@ def drape(
     """
     start = time.perf_counter()
     x, v = checked_state(sheet, positions, velocities)
+    if not any(triple("down", down, "of the way down")):
+        raise SimCoreError("down: (0, 0, 0) has no direction – for no gravity give Phase(…, gravity=(0, 0))")
+    for name, function in (("progress", progress), ("on_frame", on_frame)):
+        called(name, function)
+    pause = CHECKPOINT_SECONDS
+    if checkpoint_seconds is not None:
+        pause = finite("checkpoint_seconds", checkpoint_seconds, least=0)
+    file = None if checkpoint is None else checkpoint_file(checkpoint)
     run = Run(
         sheet,
         phases,
@@ -104,30 +114,29 @@ def drape(
         pins,
         holds,
         air=air,
-        down=np.asarray(down, float),
+        down=down,
         substeps=substeps,
         integrator=integrator,
         pace=pace,
     )
     if certify is not False:
-        run.certify(x, None if certify is True else certify)
+        run.certify(x, certify)
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
         + (sheet.mass, sheet.corner, sheet.stencil.own, sheet.stencil.coupling, sheet.stencil.bend)
     )
-    found = load_checkpoint(checkpoint, key) if checkpoint else None
-    if checkpoint and only_own and not found and checkpoint.exists():
+    found = load_checkpoint(file, key) if file else None
+    if file and only_own and not found and file.exists():
         raise FileProblem(
-            f"{checkpoint}: no state of this run (other settings, an older engine, or damaged) – "
+            f"{file}: no state of this run (other settings, an older engine, or damaged) – "
             "name another file, or remove it"
         )
     state = found or RunState(x, v)
-    pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
-    _run_frames(run, state, _Hooks(progress, on_frame, checkpoint, key, pause))
-    if checkpoint and keep:
-        save_checkpoint(checkpoint, key, state)
-    elif checkpoint:
-        checkpoint.unlink(missing_ok=True)
+    _run_frames(run, state, _Hooks(progress, on_frame, file, key, pause))
+    if file and keep:
+        save_checkpoint(file, key, state)
+    elif file:
+        file.unlink(missing_ok=True)
     return _result(run, state, time.perf_counter() - start)
 
 

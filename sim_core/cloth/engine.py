@@ -11,6 +11,7 @@ from sim_core.cloth.bands import bands_of, ordered
 from sim_core.cloth.collider import Packed, Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
+from sim_core.cloth.given import within
 from sim_core.cloth.health import Health
 from sim_core.cloth.holding import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.implicit import Implicit, Load
@@ -92,9 +93,7 @@ class Engine:
         key = tuple(pins)
         if key not in self._inverse:
             index = np.asarray(key, np.int64)
-            if index.min() < 0 or index.max() >= len(self.order):
-                wrong = index.max() if index.max() >= len(self.order) else index.min()
-                raise SimCoreError(f"pins: index {wrong} – the sheet has vertices 0 to {len(self.order) - 1}")
+            within("pins", index, len(self.order))
             inverse = self.sheet.stencil.inverse_mass.copy()
             inverse[self.number[index]] = 0.0
             self._inverse[key] = inverse

@@ -23,10 +23,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from sim_core.cloth.given import finite, told, triple
 from sim_core.cloth.material import Material
 from sim_core.cloth.phases import FRAME
 from sim_core.cloth.pilot import PILOTS, apart, gap, pilot
-from sim_core.cloth.scenes import Scene, case_values, material, scene
+from sim_core.cloth.scenes import Scene, case_values, checked_cloth, checked_size, scene
 from sim_core.errors import WrongArgument
 
 FILE = Path(__file__).with_name("fidelity.json")
@@ -144,14 +145,15 @@ def choose(
 
     The error is the mean distance of the sheet's material points from where they would be, in the worst frame of the
     table's `seconds`, mesh and time error together; for a flag also that of its mean shape after 0.5 s. Raises
-    WrongArgument for a scene the table does not know, a sheet outside what was measured, and a budget that not even
-    the finest mesh keeps.
+    SimCoreError for what has no meaning, WrongArgument for a scene the table does not know, a sheet outside what was
+    measured, and a budget that not even the finest mesh keeps.
     """
     known = table()
-    if name not in known:
-        raise WrongArgument(f"error: no table for {name!r} – there is one for {', '.join(sorted(known))}")
-    if not (math.isfinite(error_mm) and error_mm > 0):
-        raise WrongArgument(f"error {error_mm} mm – a budget is above 0")
+    if not isinstance(name, str) or name not in known:
+        raise WrongArgument(
+            f"scene {told(name)}: no table of errors – there is one for {', '.join(sorted(known))}"
+        )
+    finite("error_mm: the budget [mm]", error_mm, above=0)
     asked = _asked(name, case, size, pins, wind, cloth)
     _within(asked)
     part = known[name]
@@ -183,15 +185,12 @@ def _asked(
     if pins is not None and name != "hanging":
         raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
     if wind is not None and name != "flag":
-        raise WrongArgument(f"wind – only the flag stands in one, not {name}")
+        raise WrongArgument(f"wind – only the flag stands in the wind, not {name}")
     values = case_values(name, case)
-    width, height = values["size"] if size is None else size
-    blown = None
-    if name == "flag":
-        x, y, z = values["wind"] if wind is None else wind
-        blown = float(x), float(y), float(z)
+    blown = triple("wind", values["wind"] if wind is None else wind, "in m/s") if name == "flag" else None
     held = str(values.get("pins", "")) if pins is None else pins
-    return Asked(name, (float(width), float(height)), cloth or material(), held, blown, case)
+    size = checked_size(values["size"] if size is None else size)
+    return Asked(name, size, checked_cloth(cloth), held, blown, case)
 
 
 def _up(value: float) -> str:
@@ -220,8 +219,8 @@ def _within(asked: Asked) -> None:
     """Raises WrongArgument for a sheet outside the measured scenes."""
     part = table()[asked.kind]
     known = part["laws"][0]["pins"]
-    if asked.pins not in known:
-        raise WrongArgument(f"pins {asked.pins!r} – the table has {', '.join(sorted(known))}")
+    if not isinstance(asked.pins, str) or asked.pins not in known:
+        raise WrongArgument(f"pins {told(asked.pins)} – the table has {', '.join(sorted(known))}")
     if asked.wind is not None and abs(asked.wind[2]) < LEAST_CROSS:
         raise WrongArgument(
             f"wind {asked.wind} – with less than {LEAST_CROSS} m/s across the flag rounding decides where it buckles, "

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from sim_core.cloth.collider import GridSdf
+from sim_core.cloth.collider import MOST_NODES, GridSdf
 from sim_core.cloth.field_loops import crossings, interpolate, splat, spread, sweep
-from sim_core.cloth.given import triangles
+from sim_core.cloth.given import FURTHEST, coordinates, finite, told, triangles, triple
+from sim_core.cloth.given import points as checked_points
 from sim_core.errors import SimCoreError
 
 __all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
@@ -71,7 +72,11 @@ def field_of(
     Raises SimCoreError on wrong shapes, non-finite input, an open mesh and a grid beyond 200 million nodes.
     """
     vertices, faces = _checked(vertices, faces, cell, band)
-    hulls = [np.ascontiguousarray(points, float) for points in hulls]
+    if not isinstance(hulls, list | tuple):
+        raise SimCoreError(f"field: hulls: {told(hulls)} – give a list of point sets (N, 3)")
+    hulls = [checked_points("field: hulls", points) for points in hulls]
+    if exact is not None:
+        finite("field: exact [m]", exact, least=0, most=FURTHEST)
     origin, shape = _grid(vertices if not hulls else np.concatenate([vertices, *hulls]), cell, band, box)
     exact = min(band, EXACT_CELLS * cell if exact is None else exact)
     values = _signed(vertices, faces, origin, shape, cell, band, exact, far)
@@ -140,28 +145,30 @@ def _signed(
 def _grid(
     points: np.ndarray, cell: float, band: float, box: Box | None
 ) -> tuple[np.ndarray, tuple[int, int, int]]:
-    low, high = (points.min(0) - band, points.max(0) + band) if box is None else map(np.asarray, box)
-    counts = np.ceil((high - low) / cell - 1e-9).astype(int) + 1
-    if counts.min() < 2 or counts.prod() > 2e8:
-        raise SimCoreError(f"field: {counts} nodes of {cell} m – take larger cells or a smaller box")
-    return np.array(low, float), (int(counts[0]), int(counts[1]), int(counts[2]))
+    if box is None:
+        low, high = points.min(0) - band, points.max(0) + band
+    elif isinstance(box, list | tuple) and len(box) == 2:
+        low, high = (np.array(triple("field: box", corner, "in metres")) for corner in box)
+    else:
+        raise SimCoreError(f"field: box: {told(box)} – give its lowest and its highest corner")
+    with np.errstate(over="ignore"):
+        counts = np.ceil((high - low) / cell - 1e-9) + 1
+        many = float(counts.prod())
+    if counts.min() < 2 or many > MOST_NODES:
+        raise SimCoreError(
+            f"field: a box of {many:.3g} nodes, {cell} m a cell – take larger cells, at most {MOST_NODES:g} nodes"
+        )
+    return low, (int(counts[0]), int(counts[1]), int(counts[2]))
 
 
 def _checked(
     vertices: np.ndarray, faces: np.ndarray, cell: float, band: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    vertices, faces = np.ascontiguousarray(vertices, float), triangles("field: faces", faces)
-    faces = np.ascontiguousarray(faces, np.int32)
-    if not (np.isfinite(cell) and np.isfinite(band) and 0 < cell and 2 * cell <= band):
-        raise SimCoreError(
-            f"field: cell {cell}, band {band} – lengths in metres, the band at least two cells"
-        )
-    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or faces.ndim != 2 or faces.shape[1:] != (3,):
-        raise SimCoreError(f"field: shapes {vertices.shape}, {faces.shape} – expected (V, 3) and (F, 3)")
-    if len(faces) == 0 or faces.min() < 0 or faces.max() >= len(vertices):
-        raise SimCoreError(f"field: faces name vertices beyond the {len(vertices)} there are, or none")
-    if not np.isfinite(vertices).all():
-        raise SimCoreError("field: vertices are not finite – mend the mesh")
+    vertices = coordinates("field: vertices", vertices)
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,):
+        raise SimCoreError(f"field: vertices: shape {vertices.shape} – expected (V, 3)")
+    checked_cell("field", cell, band)
+    faces = np.ascontiguousarray(triangles("field: faces", faces, len(vertices)), np.int32)
     there = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1).astype(np.int64)
     forward = np.where(faces[:, [0, 1, 2]] < faces[:, [1, 2, 0]], 1, -1).ravel()
     _, first, index = np.unique(
@@ -175,7 +182,18 @@ def _checked(
             f"field: the mesh is open or ill-wound at {len(torn)} edges, the first between vertices {a} and {b} at "
             f"({x:.3f}, {y:.3f}, {z:.3f}) m – close it first"
         )
-    a, b, c = (vertices[faces[:, k]] - vertices.mean(0) for k in range(3))
-    if (np.cross(a, b) * c).sum() < 0.0:
+    if inside_out(vertices, faces):
         raise SimCoreError("field: the mesh is inside out – turn its faces counter-clockwise from outside")
     return vertices, faces
+
+
+def inside_out(vertices: np.ndarray, faces: np.ndarray) -> bool:
+    """Whether a closed mesh, vertices (V, 3) and faces (F, 3), encloses less than nothing."""
+    a, b, c = (vertices[faces[:, k]] - vertices.mean(0) for k in range(3))
+    return float((np.cross(a, b) * c).sum()) < 0.0
+
+
+def checked_cell(name: str, cell: object, band: object) -> None:
+    """Raises SimCoreError where a grid's cell and band [m] have no meaning."""
+    size = finite(f"{name}: cell [m]", cell, above=0, most=FURTHEST)
+    finite(f"{name}: band [m], at least two cells", band, least=2 * size, most=FURTHEST)

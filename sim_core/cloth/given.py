@@ -1,40 +1,121 @@
-"""What callers hand over, checked before anything runs: numbers, arrays, indices."""
+"""What callers hand over, checked before anything runs: numbers, arrays, indices, kinds of things.
+
+Every check takes the name that the caller knows the value by and raises one SimCoreError of one line: name, value,
+what is meant. Values come back as the type that is worked with.
+"""
 
 from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterable
+from typing import TypeVar
 
 import numpy as np
 
 from sim_core.errors import SimCoreError
 
 FURTHEST = 1e6  # [m], [m/s], [m/s2]: beyond, squares and steps lose their meaning
+GREATEST = 1e12  # of any other number
+MOST = 2**31 - 1  # of anything that is counted
+
+Kind = TypeVar("Kind")
 
 
-def finite(name: str, value: object, *, least: float | None = None, above: float | None = None) -> float:
-    """The value as a float; raises SimCoreError, naming it, where it is no finite number in its bounds."""
-    real = float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
-    low, high = (-math.inf if bound is None else bound for bound in (least, above))
-    if not (math.isfinite(real) and real >= low and real > high):
-        bound = f", {least:g} or more" if least is not None else ""
-        bound = f" above {above:g}" if above is not None else bound
-        raise SimCoreError(f"{name}: {value} – must be a finite number{bound}")
+def told(value: object, most: int = 60) -> str:
+    """The value in one line, cut where it is longer than a line bears."""
+    try:
+        text = str(value) if isinstance(value, numbers.Real) else repr(value)
+    except (ValueError, RecursionError):  # an integer of thousands of digits, a list in itself
+        return f"a {type(value).__name__} too large to show"
+    text = " ".join(text.split())
+    return text if len(text) <= most else text[:most] + "…"
+
+
+def of_kind(name: str, value: object, kind: type[Kind], remedy: str) -> Kind:
+    """The value, if it is of that kind."""
+    if not isinstance(value, kind):
+        raise SimCoreError(f"{name}: a {type(value).__name__} – {remedy}")
+    return value
+
+
+def called(name: str, value: object) -> None:
+    """Something to be called, or None."""
+    if value is not None and not callable(value):
+        raise SimCoreError(f"{name}: a {type(value).__name__} – give a function, or None")
+
+
+def one_of(name: str, value: object, known: tuple[str, ...]) -> None:
+    """One of the words that are known."""
+    if not isinstance(value, str) or value not in known:
+        raise SimCoreError(f"{name}: {told(value)} – there are {', '.join(known)}")
+
+
+def finite(
+    name: str,
+    value: object,
+    *,
+    least: float | None = None,
+    above: float | None = None,
+    most: float | None = None,
+) -> float:
+    """A finite number in its bounds (none given: within ±GREATEST) as a float."""
+    try:
+        real = float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    except OverflowError:  # an integer of more than 308 digits
+        real = math.inf
+    low, over = (-GREATEST if bound is None else bound for bound in (least, above))
+    high = GREATEST if most is None else most
+    if not (low <= real <= high and real > over):  # NaN is not
+        bounds = [f"{word}{b:g}" for word, b in (("at least ", least), ("above ", above)) if b is not None]
+        bounds += [f"at most {high:g}"] if most is not None or real > high else []
+        bounds += [f"at least {-GREATEST:g}"] if real < low and least is None else []
+        raise SimCoreError(
+            f"{name}: {told(value)} – must be a finite number{', ' * bool(bounds)}{', '.join(bounds)}"
+        )
     return real
 
 
+def whole(name: str, value: object, least: int, why: str, most: int = MOST) -> int:
+    """A whole number from `least` to `most`, which `why` tells about."""
+    number = int(value) if isinstance(value, numbers.Integral) and not isinstance(value, bool) else least - 1
+    if not least <= number <= most:
+        raise SimCoreError(f"{name}: {told(value)} – {why}")
+    return number
+
+
+def numeric(name: str, value: object, what: str) -> np.ndarray:
+    """The value as an array of real numbers, not copied where it is one; `what` is meant."""
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError, OverflowError):  # ragged lists
+        array = np.array(None)
+    if array.dtype.kind not in "iuf":
+        raise SimCoreError(f"{name}: {told(value)} – no array of numbers; {what}")
+    return array
+
+
+def row(
+    name: str, value: object, what: str, count: int, *, least: float = -FURTHEST, most: float = FURTHEST
+) -> tuple[float, ...]:
+    """So many finite numbers, none beyond its bounds; `what` is meant."""
+    array = numeric(name, value, what)
+    if array.shape != (count,) or not ((array >= least) & (array <= most)).all():
+        raise SimCoreError(f"{name}: {told(value)} – {what}")
+    return tuple(float(one) for one in array)
+
+
+def triple(name: str, value: object, unit: str) -> tuple[float, float, float]:
+    """Three finite numbers of at most a million."""
+    x, y, z = row(name, value, f"expected three finite numbers (x, y, z) {unit}", 3)
+    return x, y, z
+
+
 def coordinates(name: str, value: object, shape: tuple[int, ...] | None = None) -> np.ndarray:
-    """A copy (…, 2 or 3) float64 of what is given; raises SimCoreError for text, ragged lists, NaN and giants.
+    """A copy (…, 2 or 3) float64 of what is given: no text, ragged list, NaN or giant.
 
     shape: what it must have, told with `needs`. The first vertex that is wrong is named.
     """
-    try:
-        array = np.array(value, float, order="C")
-    except (TypeError, ValueError):
-        raise SimCoreError(
-            f"{name}: no array of numbers – one row of coordinates [m] for each vertex"
-        ) from None
+    array = np.array(numeric(name, value, "one row of coordinates [m] for each vertex"), float, order="C")
     if shape is not None and array.shape != shape:
         raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
     if not array.size:
@@ -49,29 +130,57 @@ def coordinates(name: str, value: object, shape: tuple[int, ...] | None = None) 
     return array
 
 
-def triangles(name: str, value: object) -> np.ndarray:
-    """Faces (F, 3) as whole numbers, F > 0; raises SimCoreError for any other shape or kind."""
+def points(name: str, value: object) -> np.ndarray:
+    """Points (N, 3) float64 [m], N of 0 or more, all finite and within reach."""
+    array = np.ascontiguousarray(numeric(name, value, "points (N, 3) are meant"), float)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise SimCoreError(f"{name}: shape {array.shape} – points (N, 3) are meant")
+    return coordinates(name, array) if len(array) else array
+
+
+def triangles(name: str, value: object, count: int | None = None) -> np.ndarray:
+    """Faces (F, 3) as whole numbers, F > 0, of vertices 0 to count - 1 where their count is given."""
     try:
         faces = np.ascontiguousarray(value)
-    except ValueError:
+    except (TypeError, ValueError, OverflowError):
         raise SimCoreError(f"{name}: rows of different length – expected (F, 3) integers, F > 0") from None
-    whole = np.issubdtype(faces.dtype, np.integer)
-    if faces.ndim != 2 or faces.shape[1:] != (3,) or not whole or not len(faces):
+    kind = np.issubdtype(faces.dtype, np.integer)
+    if faces.ndim != 2 or faces.shape[1:] != (3,) or not kind or not len(faces):
         raise SimCoreError(f"{name}: shape {faces.shape}, {faces.dtype} – expected (F, 3) integers, F > 0")
+    if count is not None:
+        within(name, faces, count)
     return faces
 
 
-def vertex_numbers(name: str, value: Iterable[object]) -> tuple[int, ...]:
-    """Vertices by their numbers; raises SimCoreError for what is no whole number."""
-    found = tuple(value)
+def within(name: str, index: np.ndarray, count: int) -> None:
+    """Whole numbers of vertices that there are."""
+    if index.size and (index.min() < 0 or index.max() >= count):
+        wrong = index.max() if index.max() >= count else index.min()
+        raise SimCoreError(f"{name}: index {wrong} – there are vertices 0 to {count - 1}")
+
+
+def vertex_numbers(name: str, value: object, count: int = MOST) -> tuple[int, ...]:
+    """Vertices by their numbers, 0 to count - 1."""
+    try:
+        found = tuple(value)  # type: ignore[arg-type]
+    except TypeError:
+        raise SimCoreError(
+            f"{name}: {told(value)} – give a sequence of vertices, such as [0, 9]; none: ()"
+        ) from None
     for one in found:
-        if not isinstance(one, numbers.Integral):
-            raise SimCoreError(f"{name}: {one!r} – vertices are named by whole numbers")
-    return tuple(int(one) for one in found)  # type: ignore[call-overload]
+        if not isinstance(one, numbers.Integral) or isinstance(one, bool):
+            raise SimCoreError(f"{name}: {told(one)} – vertices are named by whole numbers")
+        if not 0 <= int(one) < count:
+            raise SimCoreError(f"{name}: index {told(one)} – there are vertices 0 to {count - 1}")
+    return tuple(int(one) for one in found)
 
 
-def whole(name: str, value: object, least: int, why: str) -> int:
-    """A whole number, `least` or more; raises SimCoreError with `why`."""
-    if not isinstance(value, numbers.Integral) or int(value) < least:
-        raise SimCoreError(f"{name}: {value} – {why}")
-    return int(value)
+def vertex_pairs(name: str, value: object, count: int) -> np.ndarray:
+    """Pairs of vertices (K, 2) int32, K of 0 or more."""
+    array = numeric(name, value, "pairs of vertices (K, 2)")
+    if array.size == 0:
+        return np.zeros((0, 2), np.int32)
+    if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != 2:
+        raise SimCoreError(f"{name}: shape {array.shape}, {array.dtype} – expected whole numbers (K, 2)")
+    within(name, array, count)
+    return np.ascontiguousarray(array, np.int32)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.given import finite
+from sim_core.cloth.given import coordinates, numeric, row, told, vertex_pairs, whole
 from sim_core.errors import SimCoreError
 
 FARTHEST = 5e-6  # [m] that an edge is shortened or lengthened by in a substep: quicker, it would go through other cloth
@@ -51,40 +51,47 @@ class Holds(NamedTuple):
 
         Raises SimCoreError for indices out of range, bounds that leave no room and a limit that is no share.
         """
-        if np.shape(limit) != (2,) or not all(0.0 < finite("holds.limit", share) <= 1.0 for share in limit):
-            raise SimCoreError(
-                f"holds.limit: {limit} – two shares of an edge's length, above 0 and at most 1"
-            )
+        count = whole("holds: count", count, 1, "vertices of the sheet, 1 or more")
+        what = "two shares of an edge's length, above 0 and at most 1"
+        shorter, longer = row("holds.limit", limit, what, 2, least=1e-300, most=1.0)
         none = np.zeros((0, 2), np.int32)
-        pairs = none if pairs is None else np.ascontiguousarray(pairs, np.int32).reshape(-1, 2)
-        slaves = none if slaves is None else np.ascontiguousarray(slaves, np.int32).reshape(-1, 2)
-        for name, index in (("pairs", pairs), ("slaves", slaves)):
-            if index.size and (index.min() < 0 or index.max() >= count):
-                raise SimCoreError(f"holds.{name}: vertex {index.max()} – there are 0 to {count - 1}")
+        pairs = none if pairs is None else vertex_pairs("holds.pairs", pairs, count)
+        slaves = none if slaves is None else vertex_pairs("holds.slaves", slaves, count)
         spans = np.zeros(len(pairs))
         if len(pairs):
             if positions is None:
                 raise SimCoreError("holds: pairs need positions – give where the sheet starts")
+            positions = coordinates("holds: positions", positions, (count, 3))
             spans = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
         if low is None and high is None:
             low = high = np.zeros(0)
         else:
-            low = np.full(count, -np.inf) if low is None else np.ascontiguousarray(low, float)
-            high = np.full(count, np.inf) if high is None else np.ascontiguousarray(high, float)
-            if len(low) != count or len(high) != count or (low > high).any():
-                raise SimCoreError(
-                    f"holds: bounds of {len(low)} and {len(high)} vertices, low <= high, needed"
-                )
+            low = _bound("low", low, -np.inf, count)
+            high = _bound("high", high, np.inf, count)
+            if (low > high).any():
+                wrong = np.flatnonzero(low > high)[0]
+                raise SimCoreError(f"holds.low: vertex {wrong} has no room – low <= high is needed")
         same = np.arange(count, dtype=np.int32)
         for a, b in pairs:  # chains of pairs count as one point, too
             same[same == same[b]] = same[a]
-        return Holds(pairs, spans, same, low, high, slaves, (float(limit[0]), float(limit[1])))
+        return Holds(pairs, spans, same, low, high, slaves, (shorter, longer))
 
     def renumbered(self, number: np.ndarray, order: np.ndarray) -> Holds:
         """The same holds for vertices of which i is now called number[i]; order (V,) is the way back."""
         moved = [number[a].astype(np.int32) for a in (self.pairs, self.same[order], self.slaves)]
         low, high = (a[order] if len(a) else a for a in (self.low, self.high))
         return Holds(moved[0], self.spans, moved[1], low, high, moved[2], self.limit)
+
+
+def _bound(name: str, value: np.ndarray | None, free: float, count: int) -> np.ndarray:
+    """A bound (V,) [m] for each vertex, `free` where there is none; raises SimCoreError for NaN and other lengths."""
+    if value is None:
+        return np.full(count, free)
+    what = f"expected one bound for each of {count} vertices, not NaN; -inf or inf: none"
+    array = numeric(f"holds.{name}", value, what)
+    if array.shape != (count,) or np.isnan(array).any():
+        raise SimCoreError(f"holds.{name}: {told(value)} – {what}")
+    return np.ascontiguousarray(array, float)
 
 
 @njit(cache=True, error_model="numpy")

@@ -12,9 +12,9 @@ from sim_core.cloth.certificate import Certificate
 from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
-from sim_core.cloth.given import finite, vertex_numbers
+from sim_core.cloth.given import finite, of_kind, points, told, triple, vertex_numbers
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Phase, check_gravity
+from sim_core.cloth.phases import FRAME, Contact, Phase
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.running import Run, checked_state
 from sim_core.cloth.sheet import Sheet
@@ -49,7 +49,8 @@ class Live:
         certify: bool | Mesh = False,
     ) -> None:
         x, v = checked_state(sheet, positions, None)
-        down = np.array([0.0, -1.0, 0.0])
+        self._gravity = np.array(triple("gravity", gravity, "in m/s2"))
+        self.damping = sheet.material.mass_damping if damping is None else finite("damping", damping, least=0)
         phases = [Phase(FRAME)]
         self._run = Run(
             sheet,
@@ -59,18 +60,14 @@ class Live:
             pins,
             None,
             air=air,
-            down=down,
+            down=(0.0, -1.0, 0.0),
             substeps=substeps,
             integrator=integrator,
             pace=pace,
         )
         if certify is not False:
-            self._run.certify(x, None if certify is True else certify)
+            self._run.certify(x, certify)
         self._state = RunState(x, v)
-        self._gravity = np.asarray(gravity, float)
-        check_gravity(self._gravity)
-        self.damping = sheet.material.mass_damping if damping is None else damping
-        finite("damping", self.damping, least=0)
         self._limit = (contact or Contact()).speed_limit
         self.pins, self.air, self.body = self._run.pins, air, 0.0
 
@@ -118,53 +115,60 @@ class Live:
 
         wind (x, y, z) [m/s] from now on, reached within the frame; pins: the vertices held from now on; targets
         (len(pins), 3) [m]: where they are led within the frame (None: they stay); pulls: vertices (P,) and forces
-        (P, 3) [N] of this frame; body: the key a moving collider reaches at the end of the frame.
+        (P, 3) [N] of this frame; body: the key a moving collider reaches at the end of the frame. Raises SimCoreError
+        on bad input; then, and where it is interrupted, all is as it was.
         """
-        if pins is not None:
-            self.pins = vertex_numbers("pins", pins)
-        before = None if self.air is None else self.air.at(self._state.frame * FRAME)
+        count, held, air = len(self._state.positions), self.pins, self.air
+        held = vertex_numbers("pins", held if pins is None else pins, count)
+        if air is not None:
+            of_kind("air", air, Air, "an Air is meant")
+        before = np.zeros(3) if air is None else air.at(self._state.frame * FRAME)
         if wind is not None:
-            self.air = (self.air or Air()).blowing(wind)
+            air = (air or Air()).blowing(wind)
         blown, press = None, 0.0
-        if self.air is not None:
-            after = self.air.at((self._state.frame + 1) * FRAME)
-            blown, press = np.stack([np.zeros(3) if before is None else before, after]), self.air.press
-        early = self.body
-        self.body = early if body is None else finite("body", body, least=0)
+        if air is not None:
+            blown, press = np.stack([before, air.at((self._state.frame + 1) * FRAME)]), air.press
+        early, late = (
+            finite("body", key, least=0) for key in (self.body, self.body if body is None else body)
+        )
+        if self._run.engine.moving is not None:
+            self._run.engine.moving.between(early, late)
         under = Conditions(
             gravity=self._gravity,
             damping=finite("damping", self.damping, least=0),
             friction=self._run.sheet.material.friction,
             speed_limit=self._limit,
-            body=(early, self.body),
+            body=(early, late),
             wind=blown,
             press=press,
-            pulls=self._checked_pulls(pulls),
-            led=self._checked_targets(targets),
+            pulls=_checked_pulls(pulls, count),
+            led=_checked_targets(targets, held),
         )
-        self._run.frame_under(self._state, under, tuple(sorted(set(self.pins))))
+        self._run.frame_under(self._state, under, tuple(sorted(set(held))))
+        self.pins, self.air, self.body = held, air, late
         self._state.trace, self._state.seconds = self._state.trace[-1:], self._state.seconds[-1:]
         return self.positions
 
-    def _checked_targets(self, targets: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        if targets is None:
-            return np.zeros(0, np.int64), np.zeros((0, 3))
-        targets = np.asarray(targets, float)
-        if targets.shape != (len(self.pins), 3) or not np.isfinite(targets).all():
-            raise SimCoreError(
-                f"targets: shape {targets.shape} – one finite place for each of {len(self.pins)} pins"
-            )
-        return np.array(self.pins, np.int64), targets
 
-    def _checked_pulls(self, pulls: tuple[np.ndarray, np.ndarray] | None) -> tuple[np.ndarray, np.ndarray]:
-        if pulls is None:
-            return np.zeros(0, np.int64), np.zeros((0, 3))
-        index, force = np.asarray(pulls[0], np.int64), np.asarray(pulls[1], float)
-        count = len(self._state.positions)
-        if force.shape != (len(index), 3) or not np.isfinite(force).all():
-            raise SimCoreError(
-                f"pulls: {len(index)} vertices and forces {force.shape} – one finite force for each"
-            )
-        if len(index) and (index.min() < 0 or index.max() >= count):
-            raise SimCoreError(f"pulls: vertex {index.max()} – the sheet has 0 to {count - 1}")
-        return index, force
+def _checked_targets(targets: np.ndarray | None, held: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices (L,) that are led, and where to (L, 3) [m]."""
+    if targets is None:
+        return np.zeros(0, np.int64), np.zeros((0, 3))
+    places = points("targets", targets)
+    if len(places) != len(held):
+        raise SimCoreError(f"targets: shape {places.shape} – one finite place for each of {len(held)} pins")
+    return np.array(held, np.int64), places
+
+
+def _checked_pulls(pulls: tuple[np.ndarray, np.ndarray] | None, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices (P,) that are pulled, of `count`, and their forces (P, 3) [N]."""
+    if pulls is None:
+        return np.zeros(0, np.int64), np.zeros((0, 3))
+    if not isinstance(pulls, tuple | list) or len(pulls) != 2:
+        raise SimCoreError(f"pulls: {told(pulls)} – give vertices (P,) and their forces (P, 3) [N]")
+    index, force = vertex_numbers("pulls: vertices", pulls[0], count), points("pulls: forces", pulls[1])
+    if len(force) != len(index):
+        raise SimCoreError(
+            f"pulls: {len(index)} vertices and forces {force.shape} – one finite force for each"
+        )
+    return np.array(index, np.int64), force

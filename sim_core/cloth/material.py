@@ -33,6 +33,18 @@ class ParametersLike(Protocol):
     def friction(self) -> float: ...
 
 
+_OF_A_WEAVE = {
+    "density": "density",
+    "stretch": "stretch_weft",
+    "stretch_warp": "stretch_warp",
+    "shear": "shear",
+    "poisson": "poisson",
+    "bend": "bend_weft",
+    "bend_warp": "bend_warp",
+    "friction": "friction",
+}
+
+
 @dataclass(frozen=True)
 class Material:
     """A thin elastic sheet; the warp runs along pattern y, the weft along pattern x.
@@ -61,7 +73,7 @@ class Material:
         for name in ("bend", "bend_warp", "friction", "mass_damping", "stiffness_damping"):
             if name != "bend_warp" or self.bend_warp is not None:
                 finite(f"material.{name}", getattr(self, name), least=0)
-        if not -1.0 < finite("material.poisson", self.poisson) < 1.0:
+        if not -1.0 < finite("material.poisson", self.poisson, least=-1, most=1) < 1.0:
             raise SimCoreError(f"material.poisson: {self.poisson} – must lie between -1 and 1 (plane stress)")
 
     @staticmethod
@@ -69,18 +81,15 @@ class Material:
         parameters: ParametersLike, *, mass_damping: float = 0.5, stiffness_damping: float = 2e-5
     ) -> Material:
         """The material of a weave's homogenised parameters."""
-        return Material(
-            density=float(parameters.density),
-            stretch=float(parameters.stretch_weft),
-            stretch_warp=float(parameters.stretch_warp),
-            shear=float(parameters.shear),
-            poisson=float(parameters.poisson),
-            bend=float(parameters.bend_weft),
-            bend_warp=float(parameters.bend_warp),
-            friction=float(parameters.friction),
-            mass_damping=mass_damping,
-            stiffness_damping=stiffness_damping,
-        )
+        found = {}
+        for ours, theirs in _OF_A_WEAVE.items():
+            if not hasattr(parameters, theirs):
+                kind = type(parameters).__name__
+                raise SimCoreError(
+                    f"parameters: a {kind} has no {theirs} – give the ClothParameters of a weave"
+                )
+            found[ours] = finite(f"parameters.{theirs}", getattr(parameters, theirs))
+        return Material(**found, mass_damping=mass_damping, stiffness_damping=stiffness_damping)
 
     def elasticity(self) -> np.ndarray:
         """D (3, 3) [N/m] of W = g.D.g/2 per area, g = (G00, G11, G01) the Green strain (St. Venant-Kirchhoff)."""

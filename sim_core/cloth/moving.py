@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim_core.cloth.collider import FASTEST, GRID, MOVING, Packed
-from sim_core.cloth.given import triangles
+from sim_core.cloth.collider import FASTEST, GRID, MOVING, GridSdf, Packed, nodes
+from sim_core.cloth.given import FURTHEST, called, finite, numeric, of_kind, triangles, triple, whole
 from sim_core.errors import SimCoreError
 
 _WIDTH = 20
@@ -21,6 +21,7 @@ class MovingGrid:
 
     origin (3,), cell [m]; name identifies all poses (a hash of what they are made from) for checkpoints. Between two
     keys the distance is blended linearly, so a limb should move less than half its thickness from key to key.
+    Raises SimCoreError, naming the value, for what is no grid.
     """
 
     origin: tuple[float, float, float]
@@ -31,29 +32,51 @@ class MovingGrid:
     _kept: dict[int, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
     _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
 
+    def __post_init__(self) -> None:
+        triple("body.origin", self.origin, "in metres")
+        finite("body.cell [m]", self.cell, above=0, most=FURTHEST)
+        whole("body.count", self.count, 1, "key poses, 1 or more")
+        if self.key is None:
+            raise SimCoreError("body.key: None – give a function of a key's number")
+        called("body.key", self.key)
+        of_kind("body.name", self.name, str, "a text is meant")
+
     def packed(self, early: float, late: float) -> tuple[Packed, tuple[float, float]]:
         """The arrays for a frame in which the body goes from `early` to `late` (in keys), and both within its keys.
 
         Raises SimCoreError when a frame would pass a key, or leave them.
         """
+        first, second = self.between(early, late)
+        if first == second:
+            return self._pack(GRID, first, first), (0.0, 0.0)
+        return self._pack(MOVING, first, second), (early - first, late - first)
+
+    def between(self, early: float, late: float) -> tuple[int, int]:
+        """The keys that a frame from `early` to `late` lies between, one and the same where it rests on one."""
         low, high = min(early, late), max(early, late)
         if low < -1e-9 or high > self.count - 1 + 1e-9:
             raise SimCoreError(f"body: keys {early:.2f} to {late:.2f} – there are 0 to {self.count - 1}")
         if high - low < 1e-9 and abs(low - round(low)) < 1e-9:
-            return self._pack(GRID, round(low), round(low)), (0.0, 0.0)
+            return round(low), round(low)
         k = min(int(low + 1e-9), self.count - 2)
         if high > k + 1 + 1e-9:
             raise SimCoreError(
                 f"body: a frame goes from key {early:.2f} to {late:.2f} – at most to the next key"
             )
-        return self._pack(MOVING, k, k + 1), (early - k, late - k)
+        return k, k + 1
+
+    def solid(self, k: int) -> GridSdf:
+        """The body in pose k, as a solid that stands still."""
+        return GridSdf(self.origin, self.cell, self._kept[k] if k in self._kept else self.key(k))
 
     def _pack(self, kind: int, first: int, second: int) -> Packed:
         for k in [k for k in self._kept if k not in (first, second)]:
             del self._kept[k]
         for k in (first, second):
             if k not in self._kept:
-                self._kept[k] = np.ascontiguousarray(self.key(k), np.float32)
+                self._kept[k] = nodes(f"body: key {k}", self.key(k))
+        if self._kept[first].shape != self._kept[second].shape:
+            raise SimCoreError(f"body: keys {first} and {second} have other nodes – all lie on one grid")
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
         if kind == MOVING:
@@ -76,21 +99,18 @@ def moving_mesh(
     positions (T, V, 3) [m]; faces (F, 3) counter-clockwise from outside, closed; cell, band [m] of the distance
     fields, which are made as the frames come. A phase with body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what
     is thinner than twice the way of one frame may be missed in between. Raises SimCoreError at once where the mesh is
-    open, ill-wound or not finite, and says where.
+    open, ill-wound or not finite, or is turned inside out in any frame, and says where.
     """
-    from sim_core.cloth.field import field_of
+    from sim_core.cloth.field import checked_cell, field_of, inside_out
 
-    faces = triangles("moving mesh: faces", faces)
-    try:
-        frames = np.array(positions, float, order="C")
-    except (TypeError, ValueError):
-        raise SimCoreError("moving mesh: positions are no array of numbers – expected (T, V, 3)") from None
+    frames = np.array(numeric("moving mesh: positions", positions, "expected (T, V, 3)"), float, order="C")
     if frames.ndim != 3 or frames.shape[2] != 3 or not len(frames):
         raise SimCoreError(f"moving mesh: positions {frames.shape} – expected (T, V, 3), T at least 1")
-    wrong = np.flatnonzero(~np.isfinite(frames).all((1, 2)))
+    wrong = np.flatnonzero(~(np.abs(frames) <= FURTHEST).all((1, 2)))
     if len(wrong):
         raise SimCoreError(f"moving mesh: frame {wrong[0]} has vertices that are not finite – mend it")
-    faces = np.array(faces, np.int32, order="C")
+    checked_cell("moving mesh", cell, band)
+    faces = np.array(triangles("moving mesh: faces", faces, frames.shape[1]), np.int32, order="C")
     low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
     digest = hashlib.sha256(frames.tobytes() + faces.tobytes()).hexdigest()[:16]
 
@@ -98,5 +118,8 @@ def moving_mesh(
         return field_of(frames[k], faces, cell=cell, band=band, box=(low, high), far=False).values
 
     first, origin = key(0), (float(low[0]), float(low[1]), float(low[2]))
+    for number, vertices in enumerate(frames[1:], 1):  # the first is looked at with its field
+        if inside_out(vertices, faces):
+            raise SimCoreError(f"moving mesh: frame {number} is turned inside out – mend it")
     name = f"mesh {digest} cell {cell} band {band}"
     return MovingGrid(origin, cell, len(frames), key, name, {0: first})

@@ -4,30 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 
-import numpy as np
-
-from sim_core.cloth.given import FURTHEST, finite, vertex_numbers, whole
+from sim_core.cloth.given import finite, of_kind, row, told, vertex_numbers, whole
 from sim_core.errors import SimCoreError
 
-__all__ = [
-    "FRAME",
-    "Contact",
-    "Moment",
-    "Phase",
-    "check_contact",
-    "check_gravity",
-    "check_phases",
-    "schedule",
-]
+__all__ = ["FRAME", "Contact", "Moment", "Phase", "checked_phases", "schedule"]
 
 FRAME = 1 / 25  # [s]
+MOST_FRAMES = 1_000_000  # of a run: eleven hours of cloth
+WIDEST = 1.0  # [m] that a cloth may keep away from things and from itself
 
 
 @dataclass(frozen=True)
 class Phase:
-    """A stretch of a run: seconds, gravity [m/s2] from..to, mass damping [1/s], friction (None: the material's)."""
+    """A stretch of a run: seconds, gravity [m/s2] from..to, mass damping [1/s], friction (None: the material's).
+
+    Raises SimCoreError, naming the value, for what cannot be run.
+    """
 
     seconds: float
     gravity: tuple[float, float] = (9.81, 9.81)
@@ -43,6 +36,22 @@ class Phase:
     )  # share of their first distance that sewing pairs may have, from..to
     body: tuple[float, float] | None = None  # keys of a moving body, from..to (None: where it is)
 
+    def __post_init__(self) -> None:
+        finite("phase.seconds", self.seconds, above=0, most=MOST_FRAMES * FRAME)
+        kept: dict[str, object] = {
+            "gravity": row("phase.gravity", self.gravity, "two finite numbers [m/s2], from and to", 2),
+            "sewing": row("phase.sewing", self.sewing, "two shares, from and to, 0 or more", 2, least=0),
+            "pins": vertex_numbers("phase.pins", self.pins),
+        }
+        if self.body is not None:
+            kept["body"] = row("phase.body", self.body, "two keys, from and to, 0 or more", 2, least=0)
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
+        for name in ("damping", "friction", "speed_limit", "rest"):
+            if getattr(self, name) is not None:
+                finite(f"phase.{name}", getattr(self, name), least=0)
+        of_kind("phase.label", self.label, str, "a text is meant")
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -51,7 +60,8 @@ class Contact:
     thickness [m] is the distance two layers of cloth keep (0: no self-contact). untangle: in how many steps of a tenth
     of it, after each frame, the cloth is taken out of itself where it passed through (0: it is left so); partly: also
     where some of it stays, for a start that is tangled. separation: share of the speed at which near layers part that
-    they lose; with little of it squeezed folds bounce in their shell for ever.
+    they lose; with little of it squeezed folds bounce in their shell for ever. Raises SimCoreError, naming the value,
+    for what has no meaning.
     """
 
     clearance: float = 0.003
@@ -66,6 +76,17 @@ class Contact:
     speed_limit: float = 1e3
     untangle: int = 0
     partly: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("clearance", "sample_clearance", "thickness", "skin", "cap"):
+            finite(f"contact.{name} [m]", getattr(self, name), least=0, most=WIDEST)
+        for name in ("spring", "separation", "self_friction", "speed_limit"):
+            finite(f"contact.{name}", getattr(self, name), least=0)
+        whole("contact.every", self.every, 1, "substeps between two looks, 1 or more")
+        whole("contact.untangle", self.untangle, 0, "steps after each frame, 0 to 1000", most=1000)
+        of_kind("contact.partly", self.partly, bool, "True or False is meant")
+        if self.thickness > 0 and self.skin <= 0:
+            raise SimCoreError("contact.skin: 0 – self-contact has to look further than its thickness")
 
 
 @dataclass(frozen=True)
@@ -93,41 +114,19 @@ def schedule(phases: Sequence[Phase]) -> list[Moment]:
     return frames
 
 
-def check_phases(phases: Sequence[Phase]) -> None:
-    """Raises SimCoreError, naming the phase and the value, for what cannot be run."""
-    if not phases:
+def checked_phases(phases: Sequence[Phase]) -> tuple[Phase, ...]:
+    """The phases of a run; raises SimCoreError where they are none, or too long."""
+    try:
+        found = tuple(phases)
+    except TypeError:
+        raise SimCoreError(
+            f"phases: {told(phases)} – give a sequence of them, such as [Phase(1.0)]"
+        ) from None
+    if not found:
         raise SimCoreError("phases: there is none – a run needs one")
-    for number, phase in enumerate(phases):
-        if not isinstance(phase, Phase):
-            raise SimCoreError(f"phases: {number} is a {type(phase).__name__} – a Phase is meant")
-        if not (isinstance(phase.seconds, Real) and np.isfinite(phase.seconds) and phase.seconds > 0):
-            raise SimCoreError(f"phases: {number} lasts {phase.seconds} s – a finite duration above 0")
-        if not (np.isfinite(phase.gravity) & (np.abs(phase.gravity) <= FURTHEST)).all():
-            raise SimCoreError(f"phases: {number} has gravity {phase.gravity} – two finite numbers [m/s2]")
-        for name in ("damping", "friction", "speed_limit", "rest"):
-            if getattr(phase, name) is not None:
-                finite(f"phases: {number}: {name}", getattr(phase, name), least=0)
-        for name in ("sewing", "body"):
-            for value in getattr(phase, name) or ():
-                finite(f"phases: {number}: {name}", value, least=0)
-        vertex_numbers(f"phases: {number}: pins", phase.pins)
-
-
-def check_contact(contact: Contact) -> None:
-    """Raises SimCoreError, naming the value, for a contact that has no meaning."""
-    if not isinstance(contact, Contact):
-        raise SimCoreError(f"contact: a {type(contact).__name__} – a Contact is meant")
-    for name in ("clearance", "sample_clearance", "thickness", "skin", "spring", "self_friction", "cap"):
-        finite(f"contact.{name}", getattr(contact, name), least=0)
-    finite("contact.speed_limit", contact.speed_limit, least=0)
-    finite("contact.separation", contact.separation, least=0)
-    whole("contact.every", contact.every, 1, "substeps between two looks, 1 or more")
-    whole("contact.untangle", contact.untangle, 0, "steps after each frame, 0 or more")
-    if contact.thickness > 0 and contact.skin <= 0:
-        raise SimCoreError("contact.skin: 0 – self-contact has to look further than its thickness")
-
-
-def check_gravity(gravity: np.ndarray) -> None:
-    """Raises SimCoreError where gravity, or the way down, is not three finite numbers."""
-    if gravity.shape != (3,) or not (np.isfinite(gravity) & (np.abs(gravity) <= FURTHEST)).all():
-        raise SimCoreError(f"gravity: {gravity.tolist()} – expected three finite numbers (x, y, z)")
+    for number, phase in enumerate(found):
+        of_kind(f"phases: {number}", phase, Phase, "a Phase is meant")
+    frames = sum(max(1, round(phase.seconds / FRAME)) for phase in found)
+    if frames > MOST_FRAMES:
+        raise SimCoreError(f"phases: {frames} frames – a run has at most {MOST_FRAMES}")
+    return found

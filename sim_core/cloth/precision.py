@@ -8,6 +8,7 @@ import numpy as np
 
 from sim_core.cloth.bands import Bands
 from sim_core.cloth.collider import Packed
+from sim_core.cloth.given import finite, one_of
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.lattice import Lanes, lattice_lanes, plain_lanes
 from sim_core.cloth.leaping import advance_lanes
@@ -17,7 +18,6 @@ from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import LEAST_ROUNDS, MOST_ROUNDS, SETTLED, first_mode
 from sim_core.cloth.stepping import Surroundings, room_of
 from sim_core.cloth.watching import lane_mode, stored_lanes
-from sim_core.errors import SimCoreError
 
 PRECISIONS = ("double", "single")
 COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
@@ -42,12 +42,8 @@ class Pace:
     courant: float = COURANT
 
     def __post_init__(self) -> None:
-        if self.precision not in PRECISIONS:
-            raise SimCoreError(f"precision: {self.precision!r} – there are {', '.join(PRECISIONS)}")
-        if not 0.01 <= self.courant <= MOST_COURANT:
-            raise SimCoreError(
-                f"courant: {self.courant} – a share of 0.01 to {MOST_COURANT} of the stable step"
-            )
+        one_of("pace.precision", self.precision, PRECISIONS)
+        finite("pace.courant: share of the stable step", self.courant, least=0.01, most=MOST_COURANT)
 
     @property
     def guarded(self) -> bool:

@@ -14,10 +14,10 @@ from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.engine import IMPLICIT_STEPS, Engine
-from sim_core.cloth.given import coordinates, vertex_numbers, whole
+from sim_core.cloth.given import coordinates, of_kind, one_of, vertex_numbers, whole
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, check_contact, check_gravity, check_phases
+from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, checked_phases, schedule
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.stability import first_mode, passing_step, stable_with
@@ -34,7 +34,15 @@ SHELL_VERSION = 2  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
 LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
+MOST_FIXED = 100_000  # substeps of a frame that may be asked for
 INTEGRATORS = ("auto", "explicit", "implicit")
+_KINDS = {  # of what a run may be given, and the remedy
+    "contact": (Contact, "a Contact is meant"),
+    "holds": (Holds, "make them with Holds.of"),
+    "air": (Air, "an Air is meant, such as Air((4, 0, 1))"),
+    "pace": (Pace, 'a Pace is meant, such as Pace("single", 0.9)'),
+    "collider": (Solid | MovingGrid, "give a Solid, or moving_mesh() of a closed mesh"),
+}
 
 
 class Run:
@@ -50,41 +58,45 @@ class Run:
         holds: Holds | None,
         *,
         air: Air | None,
-        down: np.ndarray,
+        down: Sequence[float],
         substeps: int | None,
         integrator: str,
         pace: Pace | None = None,
     ) -> None:
-        check_phases(phases)
-        check_contact(contact or Contact())
-        check_gravity(down)
+        for name, value, (kind, remedy) in zip(
+            _KINDS, (contact, holds, air, pace, collider), _KINDS.values(), strict=True
+        ):
+            if value is not None:
+                of_kind(name, value, kind, remedy)
         if substeps is not None:
-            whole("substeps", substeps, 1, "a frame needs at least one")
-        if not isinstance(collider, Solid | MovingGrid | None):
+            whole("substeps", substeps, 1, f"1 to {MOST_FIXED} in a frame", most=MOST_FIXED)
+        one_of("integrator", integrator, INTEGRATORS)
+        self.sheet, self.phases, self.fixed, self.air = sheet, checked_phases(phases), substeps, air
+        self.down, self.integrator, count = np.array(down, float), integrator, len(sheet.rest)
+        self.pins = vertex_numbers("pins", pins, count)
+        if holds is not None and len(holds.same) != count:
             raise SimCoreError(
-                f"collider: a {type(collider).__name__} – give a Solid, or moving_mesh() of a closed mesh"
+                f"holds: of {len(holds.same)} vertices – the sheet has {count}: Holds.of({count}, …)"
             )
-        self.sheet, self.phases, self.fixed, self.air, self.down = sheet, tuple(phases), substeps, air, down
-        if integrator not in INTEGRATORS:
-            raise SimCoreError(f"integrator: {integrator!r} – there are {', '.join(INTEGRATORS)}")
-        self.integrator = integrator
-        self.pins = vertex_numbers("pins", pins)
+        for phase in self.phases:
+            vertex_numbers("phase.pins", phase.pins, count)
+        if isinstance(collider, MovingGrid):
+            for moment in schedule(self.phases):
+                collider.between(*moment.body)
         self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
         self.pace = self.engine.pace
         self.certified: Certified | None = None
         none = np.zeros((0, 3))
         self._left = (none, none), (none, none)  # what the last frame left, as given out and in band order
         self._given = (contact or Contact(), holds or Holds.of(len(sheet.rest)))
-        for phase in self.phases:
-            self.engine.inverse_mass(self._pinned(phase))
 
-    def certify(self, start: np.ndarray, solid: Mesh | None) -> None:
-        """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider."""
+    def certify(self, start: np.ndarray, solid: bool | Mesh) -> None:
+        """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider, or True."""
         from sim_core.cloth.certifying import Certified  # what only the certifier needs takes half a second
 
         if self.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
-        self.certified = Certified(self.engine, start, solid)
+        self.certified = Certified(self.engine, start, None if solid is True else solid)  # type: ignore[arg-type]
 
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
@@ -255,6 +267,7 @@ def checked_state(
     sheet: Sheet, positions: np.ndarray, velocities: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
+    of_kind("sheet", sheet, Sheet, "make one with Sheet.of")
     shape = (len(sheet.rest), 3)
     x = coordinates("positions", positions, shape)
     return x, np.zeros(shape) if velocities is None else coordinates("velocities", velocities, shape)

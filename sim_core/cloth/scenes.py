@@ -14,13 +14,14 @@ import numpy as np
 from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
 from sim_core.cloth.draping import Drape, drape
+from sim_core.cloth.given import finite, of_kind, row, told, whole
 from sim_core.cloth.material import Material
-from sim_core.cloth.phases import FRAME, Contact, Phase
+from sim_core.cloth.phases import FRAME, MOST_FRAMES, WIDEST, Contact, Phase
 from sim_core.cloth.precision import COURANT
 from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
 from sim_core.cloth.sheet import Sheet
 from sim_core.cloth.teapot import teapot_solid
-from sim_core.errors import WrongArgument
+from sim_core.errors import SimCoreError, WrongArgument
 
 FILE = Path(__file__).with_name("scenes.toml")
 NAMES = ("flag", "teapot", "hanging", "drape")
@@ -48,6 +49,7 @@ class Scene:
 
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
+        frames = whole("frames", frames, 1, "1 or more, of 1/25 s", most=MOST_FRAMES)
         return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME),))
 
     def drape(self, **settings: Any) -> Drape:
@@ -79,10 +81,10 @@ def case_values(name: str, case: int = 1) -> dict[str, Any]:
 
     Raises WrongArgument for a scene or case that is not there.
     """
-    if name not in NAMES:
-        raise WrongArgument(f"scene {name!r} – there are {', '.join(NAMES)}")
-    if not 1 <= case <= cases(name):
-        raise WrongArgument(f"case {case} – {name} has 1 to {cases(name)}")
+    if not isinstance(name, str) or name not in NAMES:
+        raise WrongArgument(f"scene {told(name)} – there are {', '.join(NAMES)}")
+    if not isinstance(case, int) or not 1 <= case <= cases(name):
+        raise WrongArgument(f"case {told(case)} – {name} has 1 to {cases(name)}")
     return dict(_data()[name]["cases"][case - 1])
 
 
@@ -113,28 +115,38 @@ def scene(
     """
     values = case_values(name, case)
     data = _data()[name]
-    if wind is not None and name != "flag":
-        raise WrongArgument(f"wind – only the flag stands in one, not {name}")
+    gusts = finite("gusts", gusts, least=0)
+    if (wind is not None or gusts) and name != "flag":
+        word = "gusts" if wind is None else "wind"
+        raise WrongArgument(f"{word} – only the flag stands in the wind, not {name}")
     if pins is not None and name != "hanging":
         raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
     values |= {k: v for k, v in (("size", size), ("wind", wind), ("pins", pins)) if v is not None}
-    width, height = _checked_size(values["size"])
-    count, cloth = vertices or data["vertices"], cloth or material()
+    (width, height), cloth = checked_size(values["size"]), checked_cloth(cloth)
+    count = data["vertices"] if vertices is None else whole("vertices", vertices, 12, "12 or more")
     made = {"flag": _flag, "teapot": _teapot, "hanging": _hanging, "drape": _drape}[name](
         values, width, height, count, cloth
     )
     if made.air is not None:
         made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
-    if layers:
+    if finite("layers [m]", layers, least=0, most=WIDEST):
         made = replace(made, contact=replace(made.contact or Contact(), thickness=layers))
-    return made.lasting(frames or data["frames"])
+    return made.lasting(data["frames"] if frames is None else frames)
 
 
-def _checked_size(size: Sequence[float]) -> tuple[float, float]:
-    if len(size) != 2 or not all(np.isfinite(s) and 0.05 <= s <= 10 for s in size):
-        raise WrongArgument(f"size {tuple(size)} – width and height of 0.05 to 10 m")
-    return float(size[0]), float(size[1])
+def checked_size(size: object) -> tuple[float, float]:
+    """Width and height [m] of a sheet; raises WrongArgument for what is none."""
+    try:
+        width, height = row("size", size, "width and height of 0.05 to 10 m", 2, least=0.05, most=10.0)
+    except SimCoreError as error:
+        raise WrongArgument(str(error)) from None
+    return width, height
+
+
+def checked_cloth(cloth: Material | None) -> Material:
+    """The material, that of `scenes.toml` if there is none; raises SimCoreError for what is none."""
+    return material() if cloth is None else of_kind("cloth", cloth, Material, "a Material is meant")
 
 
 def _sheet(width: float, height: float, count: int, cloth: Material) -> Sheet:
@@ -170,8 +182,8 @@ def _hanging(values: dict[str, Any], width: float, height: float, count: int, cl
 
 def pinned(rest: np.ndarray, width: float, height: float, kind: str) -> tuple[int, ...]:
     """The vertices a set of pins holds, `kind` one of PINS, on a sheet whose rest (V, 2) starts at the origin."""
-    if kind not in PINS:
-        raise WrongArgument(f"pins {kind!r} – there are {', '.join(PINS)}")
+    if not isinstance(kind, str) or kind not in PINS:
+        raise WrongArgument(f"pins: {told(kind)} – there are {', '.join(PINS)}")
     if kind == "edge":
         return tuple(int(i) for i in np.flatnonzero(rest[:, 1] < 1e-9))
     places = {

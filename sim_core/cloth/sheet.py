@@ -14,7 +14,7 @@ import numpy as np
 from scipy import sparse
 
 from sim_core.cloth.bending import bending_matrix
-from sim_core.cloth.given import coordinates, triangles
+from sim_core.cloth.given import coordinates, numeric, of_kind, told, triangles, vertex_numbers
 from sim_core.cloth.material import Material
 from sim_core.errors import SimCoreError
 
@@ -75,11 +75,17 @@ class Sheet:
         be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
         coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
         """
-        faces, kind = triangles("faces", faces), np.asarray(kind)
+        faces, kind = triangles("faces", faces), numeric("kind", kind, "expected whole numbers (F,)")
         corner = coordinates("corner", corner)
-        if corner.shape != (*faces.shape, 2) or len(kind) != len(faces) or not materials:
+        if corner.shape != (*faces.shape, 2) or kind.shape != (len(faces),):
             raise SimCoreError(
-                f"corner: {corner.shape}, faces: {faces.shape} – expected (F, 3, 2) and (F, 3), kind (F,)"
+                f"corner: {corner.shape}, faces: {faces.shape}, kind: {kind.shape} – expected (F, 3, 2), (F, 3), (F,)"
+            )
+        if not isinstance(materials, list | tuple) or not materials:
+            raise SimCoreError(f"materials: {told(materials)} – give a list of Material, at least one")
+        if faces.max() >= faces.size:
+            raise SimCoreError(
+                f"faces: index {faces.max()} – {len(faces)} faces have no more than {faces.size} vertices"
             )
         if not np.issubdtype(kind.dtype, np.integer) or kind.min() < 0 or kind.max() >= len(materials):
             raise SimCoreError(
@@ -103,8 +109,7 @@ class Sheet:
         kind: np.ndarray,
     ) -> Sheet:
         for material in materials:
-            if not isinstance(material, Material):
-                raise SimCoreError(f"material: a {type(material).__name__} – a Material is meant")
+            of_kind("material", material, Material, "a Material is meant")
         _check_needles(corner)
         edges, face_edges = face_edge_table(faces)
         area = _areas(corner)
@@ -124,10 +129,7 @@ class Sheet:
 
     def pinned(self, pins: np.ndarray) -> Stencil:
         """The stencil with the vertices `pins` (K,) held in place."""
-        if len(pins) == 0:
-            return self.stencil
-        if pins.min() < 0 or pins.max() >= len(self.mass):
-            raise SimCoreError(f"pins: index {pins.max()} – the sheet has vertices 0 to {len(self.mass) - 1}")
+        pins = np.array(vertex_numbers("pins", pins, len(self.mass)), np.int64)
         inverse = self.stencil.inverse_mass.copy()
         inverse[pins] = 0.0
         return self.stencil._replace(inverse_mass=inverse)
@@ -141,15 +143,10 @@ def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    if not isinstance(rest, np.ndarray) or not np.issubdtype(rest.dtype, np.number):
-        rest = coordinates("rest", rest)
-    rest, faces = np.ascontiguousarray(rest, float), triangles("faces", faces)
+    rest = coordinates("rest", rest)
     if rest.ndim != 2 or rest.shape[1] != 2:
         raise SimCoreError(f"rest: shape {rest.shape} – expected (V, 2), metres in the pattern plane")
-    rest = coordinates("rest", rest)
-    if faces.min() < 0 or faces.max() >= len(rest):
-        wrong = faces.max() if faces.max() >= len(rest) else faces.min()
-        raise SimCoreError(f"faces: index {wrong} – there are vertices 0 to {len(rest) - 1}")
+    faces = triangles("faces", faces, len(rest))
     unused = np.setdiff1d(np.arange(len(rest)), faces)
     if len(unused):
         raise SimCoreError(f"rest: vertex {unused[0]} belongs to no face – remove it")

@@ -1,12 +1,29 @@
 """Bad input ends in one clear error before anything runs, by the public functions and by the command."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sim_core import cli
-from sim_core.cloth import Box, Contact, HalfSpace, Live, Material, Phase, Sheet, Union, drape, moving_mesh
+from sim_core.cloth import (
+    Air,
+    Box,
+    Contact,
+    HalfSpace,
+    Holds,
+    Live,
+    Material,
+    Pace,
+    Phase,
+    Sheet,
+    Solid,
+    Union,
+    choose,
+    drape,
+    moving_mesh,
+)
 from sim_core.cloth import running as cloth_running
 from sim_core.cloth.field import field_of
 from sim_core.cloth.mending import mended
@@ -37,10 +54,10 @@ MESHES = {
     "needle or has no area": lambda: Sheet.of(REST, np.vstack([FACES, [0, 0, 1]]), GF_CM),
     "density: -0.1": lambda: Material(-0.1, 50.0),
     "density: 0": lambda: Material(0.0, 50.0),
-    "density: light": lambda: Material("light", 50.0),  # type: ignore[arg-type]
+    "density: 'light'": lambda: Material("light", 50.0),  # type: ignore[arg-type]
     "bend_warp: -1": lambda: Material(0.05, 50.0, bend_warp=-1.0),
     "faces: rows of different length": lambda: Sheet.of(REST, [[0, 1, 2], [1, 2]], GF_CM),  # type: ignore[arg-type]
-    "rest: no array of numbers": lambda: Sheet.of([["a", "b"]], FACES, GF_CM),  # type: ignore[arg-type]
+    "rest: .* no array of numbers": lambda: Sheet.of([["a", "b"]], FACES, GF_CM),  # type: ignore[arg-type]
     "rest: vertex 1 lies beyond": lambda: Sheet.of(1e200 * REST, FACES, GF_CM),
     "smaller than 1e-07 m": lambda: Sheet.of(1e-9 * REST, FACES, GF_CM),
     "material: a str": lambda: Sheet.of(REST, FACES, "silk"),  # type: ignore[arg-type]
@@ -49,9 +66,42 @@ MESHES = {
     "open or ill-wound": lambda: moving_mesh(PYRAMID[None], SIDES[:3]),
     "open or ill-wound at": lambda: field_of(PYRAMID, SIDES[:3]),
     "inside out": lambda: field_of(PYRAMID, SIDES[:, ::-1].copy()),
-    "field: faces name vertices beyond": lambda: moving_mesh(PYRAMID[None], SIDES + 9),
+    "moving mesh: faces: index 12": lambda: moving_mesh(PYRAMID[None], SIDES + 9),
     "moving mesh: faces: .* expected": lambda: moving_mesh(PYRAMID[None], SIDES + 0.5),
     "moving mesh: frame 1 has vertices": lambda: moving_mesh(np.stack([PYRAMID, math.nan * PYRAMID]), SIDES),
+    "moving mesh: frame 2 is turned inside out": lambda: moving_mesh(
+        np.stack([PYRAMID, PYRAMID, PYRAMID * [1, 1, -1]]), SIDES
+    ),
+    "moving mesh: cell": lambda: moving_mesh(PYRAMID[None], SIDES, cell="a"),  # type: ignore[arg-type]
+    "phase.seconds: 0.0": lambda: Phase(0.0),
+    "phase.seconds: nan": lambda: Phase(math.nan),
+    "phase.seconds: 1e.300 .* at most 40000": lambda: Phase(1e300),
+    "phase.seconds: 'long'": lambda: Phase("long"),  # type: ignore[arg-type]
+    "phase.gravity: 9.81 – two finite numbers": lambda: Phase(0.08, 9.81),  # type: ignore[arg-type]
+    "phase.gravity: .9.81, inf": lambda: Phase(1.0, (9.81, math.inf)),
+    "phase.gravity: .1e": lambda: Phase(1.0, (1e300, 1e300)),
+    "phase.damping: -1": lambda: Phase(1.0, damping=-1.0),
+    "phase.friction: nan": lambda: Phase(1.0, friction=math.nan),
+    "phase.sewing: .nan": lambda: Phase(1.0, sewing=(math.nan, 0.0)),
+    "phase.body: .nan": lambda: Phase(1.0, body=(math.nan, 0.0)),
+    "phase.pins: 3 – give a sequence": lambda: Phase(1.0, pins=3),  # type: ignore[arg-type]
+    "contact.clearance .m.: -1": lambda: Contact(clearance=-1.0),
+    "contact.thickness .m.: nan": lambda: Contact(thickness=math.nan),
+    "contact.every: 0": lambda: Contact(every=0),
+    "contact.every: nan": lambda: Contact(every=math.nan),  # type: ignore[arg-type]
+    "contact.skin": lambda: Contact(thickness=0.002, skin=0.0),
+    "contact.untangle: -1": lambda: Contact(untangle=-1),
+    "union: a int": lambda: Union((3,)),  # type: ignore[arg-type]
+    "box.yaw: nan": lambda: Box((0, 0, 0), (1, 1, 1), 0.0, math.nan),
+    "halfspace.normal": lambda: HalfSpace(normal=(0.0, 0.0, 0.0)),
+    "solid: it has no shape": lambda: Solid().packed(),
+    "air.seed: -1": lambda: Air(seed=-1),
+    "air.wind: 'x'": lambda: Air("x"),  # type: ignore[arg-type]
+    "pace.courant.*'a'": lambda: Pace("double", "a"),  # type: ignore[arg-type]
+    "holds.low: .*not NaN": lambda: Holds.of(len(REST), low=np.full(len(REST), math.nan)),
+    "holds.pairs: .*float64": lambda: Holds.of(len(REST), pairs=[[0.5, 1.0]], positions=FLAT),  # type: ignore[arg-type]
+    "error_mm.*'a'": lambda: choose("flag", error_mm="a"),  # type: ignore[arg-type]
+    "size: .1, 1, 1. – width": lambda: choose("flag", error_mm=10, size=(1, 1, 1)),
 }
 
 
@@ -66,39 +116,44 @@ RUNS = {
     "positions: vertex 2 is not finite": {"positions": with_nan(FLAT)},
     "positions: shape": {"positions": FLAT[:-1]},
     "velocities: vertex 2": {"velocities": with_nan(FLAT)},
-    "lasts 0.0 s": {"phases": [Phase(0.0)]},
-    "lasts nan s": {"phases": [Phase(math.nan)]},
     "there is none": {"phases": []},
-    "0 has gravity": {"phases": [Phase(1.0, (9.81, math.inf))]},
-    "0: damping: -1": {"phases": [Phase(1.0, damping=-1.0)]},
-    "0: friction": {"phases": [Phase(1.0, friction=math.nan)]},
+    "phases: 3 – give a sequence": {"phases": 3},
+    "phases: 1500000 frames": {"phases": [Phase(30_000.0)] * 2},
+    "phase.pins: index 99": {"phases": [Phase(1.0, pins=(99,))]},
     "substeps: 0": {"substeps": 0},
     "substeps: -4": {"substeps": -4},
-    "pins: index 99": {"pins": [99]},
-    "gravity: .*three finite": {"down": (0.0, math.nan, 0.0)},
-    "contact.clearance: -1": {"contact": Contact(clearance=-1.0)},
-    "contact.thickness: nan": {"contact": Contact(thickness=math.nan)},
-    "contact.every: 0": {"contact": Contact(every=0)},
-    "contact.skin": {"contact": Contact(thickness=0.002, skin=0.0)},
-    "integrator": {"integrator": "magic"},
-    "normal": {"collider": HalfSpace(normal=(0.0, 0.0, 0.0))},
-    "collider: a tuple": {"collider": (PYRAMID, SIDES)},
-    "union: a int": {"collider": Union((3,))},  # type: ignore[arg-type]
-    "box: size": {"collider": Box((0, 0, 0), (1, 1, 1), 0.0, math.nan)},
-    "contact: a str": {"contact": "all of it"},
-    "contact.every: nan": {"contact": Contact(every=math.nan)},  # type: ignore[arg-type]
-    "contact.untangle: -1": {"contact": Contact(untangle=-1)},
     "substeps: 3.5": {"substeps": 3.5},
+    "substeps: 1000000000 ": {"substeps": 10**9},
+    "pins: index 99": {"pins": [99]},
     "pins: 0.5": {"pins": [0.5]},
-    "positions: no array": {"positions": [["a"] * 3] * len(FLAT)},
+    "pins: 3 – give a sequence": {"pins": 3},
+    "pins: None – give a sequence": {"pins": None},
+    "down: .*three finite": {"down": (0.0, math.nan, 0.0)},
+    "down: 'abc'": {"down": "abc"},
+    "down: .0, 0, 0. has no direction": {"down": (0, 0, 0)},
+    "integrator: 'magic'": {"integrator": "magic"},
+    "collider: a tuple": {"collider": (PYRAMID, SIDES)},
+    "body: keys 0.00 to 4.00": {
+        "collider": moving_mesh(PYRAMID[None], SIDES),
+        "phases": [Phase(0.04, body=(0.0, 4.0))],
+    },
+    "contact: a str": {"contact": "all of it"},
+    "air: a str": {"air": "x"},
+    "pace: a str": {"pace": "single"},
+    "holds: a list": {"holds": []},
+    "holds: of 3 vertices": {"holds": Holds.of(3)},
+    "sheet: a str": {"sheet": "silk"},
+    "positions: .*no array": {"positions": [["a"] * 3] * len(FLAT)},
     "velocities: vertex 0 lies beyond": {"velocities": 0 * FLAT + 1e200},
-    "phases: 0 is a int": {"phases": [3]},
-    "lasts long s": {"phases": [Phase("long")]},  # type: ignore[arg-type]
-    "0: sewing: nan": {"phases": [Phase(1.0, sewing=(math.nan, 0.0))]},
-    "0: body: nan": {"phases": [Phase(1.0, body=(math.nan, 0.0))]},
-    "0 has gravity .1e": {"phases": [Phase(1.0, (1e300, 1e300))]},
+    "phases: 0: a int": {"phases": [3]},
     "no stable step": {"sheet": Sheet.of(REST, FACES, Material(1e-300, 50.0))},
-    "certify: ": {"certify": "yes"},
+    "certify: 'yes'": {"certify": "yes"},
+    "on_frame: a int": {"on_frame": 3},
+    "checkpoint_seconds: 'often'": {"checkpoint_seconds": "often"},
+    "checkpoint: 3 – give the path": {"checkpoint": 3},
+    "this is no state of a run": {"checkpoint": __file__},
+    "this is a folder": {"checkpoint": str(Path(__file__).parent)},
+    "for the checkpoint": {"checkpoint": Path(__file__) / "below a file"},
 }
 
 
@@ -126,7 +181,7 @@ def test_runs_without_meaning_are_named_before_anything_runs(
         ({"damping": -1.0}, "damping: -1"),
         ({"pins": [-1]}, "pins: index -1"),
         ({"substeps": 0}, "substeps: 0"),
-        ({"damping": "much"}, "damping: much"),
+        ({"damping": "much"}, "damping: 'much'"),
         ({"pins": [0.5]}, "pins: 0.5"),
     ],
 )
@@ -142,16 +197,20 @@ def test_a_live_cloth_names_them_too(more: dict, word: str) -> None:
         ({"wind": (1.0,)}, "air.wind"),
         ({"pins": [99]}, "pins: index 99"),
         ({"pins": [0.5]}, "pins: 0.5"),
+        ({"wind": "abc"}, "air.wind: 'abc'"),
+        ({"pulls": ([3.7], [[0.0, 0.0, 1.0]])}, "pulls: vertices: 3.7"),
+        ({"pulls": 3}, "pulls: 3"),
         ({"targets": np.full((0, 2), 0.0)}, "targets: shape"),
         ({"pulls": ([0], [[math.nan, 0.0, 0.0]])}, "pulls"),
-        ({"pulls": ([-1], [[1.0, 0.0, 0.0]])}, "pulls: vertex"),
+        ({"pulls": ([-1], [[1.0, 0.0, 0.0]])}, "pulls: vertices: index -1"),
         ({"body": math.nan}, "body: nan"),
     ],
 )
 def test_a_step_of_a_live_cloth_names_them_and_changes_nothing(more: dict, word: str) -> None:
     live = Live(SHEET, FLAT)
     with pytest.raises(SimCoreError, match=word):
-        live.step(**more)
+        live.step(**{"wind": (9.0, 0.0, 0.0), "pins": [1]} | more)
+    assert (live.pins, live.air, live.body) == ((), None, 0.0)
     assert live.frame == 0
     assert np.array_equal(live.positions, FLAT)
     live.damping = math.nan
@@ -167,6 +226,7 @@ def test_a_step_of_a_live_cloth_names_them_and_changes_nothing(more: dict, word:
         ["--vertices", "-5"],
         ["--size", "nan,1"],
         ["--size=-1,1"],
+        ["--size", "0.001,1"],
         ["--wind", "inf,0,0"],
         ["--gusts", "nan"],
         ["--error", "0"],
@@ -174,6 +234,12 @@ def test_a_step_of_a_live_cloth_names_them_and_changes_nothing(more: dict, word:
         ["--pins", "nails"],
         ["--seed", "-1"],
         ["--integrator", "magic"],
+        ["--error", "20", "--layers", "3"],
+        ["--error", "20", "--gusts", "0.3"],
+        ["--error", "20", "--precision", "single"],
+        ["--error", "20", "--courant", "0.5"],
+        ["--error", "20", "--vertices", "900"],
+        ["--error", "20", "--integrator", "implicit"],
     ],
 )
 def test_the_command_says_it_in_one_line(words: list[str], capsys) -> None:

@@ -160,7 +160,7 @@ def test_what_cannot_be_certified_is_said_before_anything_runs() -> None:
     with pytest.raises(SimCoreError, match="sewing pairs"):
         drape(sheet, x, [Phase(0.04)], certify=True, holds=holds)
     open_end = (np.zeros((3, 3)), np.array([[0, 1, 3]]))
-    with pytest.raises(SimCoreError, match="faces that name none"):
+    with pytest.raises(SimCoreError, match="certify: the solid's faces: index 3"):
         drape(sheet, x, [Phase(0.04)], certify=open_end, collider=HalfSpace())
 
 

@@ -167,7 +167,7 @@ def test_a_finished_run_resumed_says_that_no_frame_was_left(capsys, tmp_path: Pa
 @pytest.mark.parametrize("other", [("--vertices", "200"), ("--integrator", "implicit")])
 def test_an_error_is_not_promised_for_a_mesh_or_scheme_set_by_hand(other: tuple[str, str], capsys) -> None:
     assert cli.main(["cloth", "hanging", "--frames", "1", "--error", "20", *other]) == 2
-    assert "--error chooses it" in capsys.readouterr().err
+    assert "--error chooses the setting" in capsys.readouterr().err
 
 
 def test_a_folder_is_refused_as_a_file_before_anything_runs(capsys, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from sim_core.cloth.fidelity import Asked, bounds, choose, table
 from sim_core.cloth.phases import FRAME
 from sim_core.cloth.pilot import GRID, PILOTS, apart, gap, grid_film, pilot
 from sim_core.cloth.scenes import GF_CM, scene
-from sim_core.errors import WrongArgument
+from sim_core.errors import SimCoreError, WrongArgument
 
 KINDS = ("flag", "hanging", "teapot")
 
@@ -88,17 +88,17 @@ def test_what_cannot_be_kept_or_was_not_measured_is_refused_in_one_line() -> Non
     least = float(str(refused.value).split("keeps ")[1].split(" mm")[0])
     assert choose("hanging", error_mm=least, size=(0.7, 0.7)).error_mm <= least
     for words, asked in {
-        "no table for 'curtain'": ("curtain", {}),
+        "scene 'curtain': no table": ("curtain", {}),
         "case 99": ("flag", {"case": 99}),
         "rounding decides where it buckles": ("flag", {"wind": (4.0, 0.0, 0.0)}),
         r"width \[m\] 5": ("hanging", {"size": (5.0, 1.0)}),
         "pins 'nails'": ("hanging", {"pins": "nails"}),
         "only the hanging cloth takes them": ("flag", {"pins": "edge"}),
-        "only the flag stands in one": ("teapot", {"wind": (1.0, 0.0, 1.0)}),
+        "only the flag stands in the wind": ("teapot", {"wind": (1.0, 0.0, 1.0)}),
     }.items():
         with pytest.raises(WrongArgument, match=words):
             choose(asked[0], error_mm=10, **asked[1])
-    with pytest.raises(WrongArgument, match="above 0"):
+    with pytest.raises(SimCoreError, match="above 0"):
         choose("flag", error_mm=float("nan"))
 
 

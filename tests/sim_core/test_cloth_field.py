@@ -153,7 +153,7 @@ def test_bad_meshes_are_refused_in_one_line() -> None:
         ),
         ((vertices, np.r_[faces[:-1], faces[-1:, ::-1]]), "open or ill-wound"),
         ((np.where(vertices > 0.09, np.nan, vertices), faces), "not finite"),
-        ((vertices[:, :2], faces), "shapes"),
+        ((vertices[:, :2], faces), "vertices: shape"),
         ((vertices, faces[:0]), "F > 0"),
     ):
         with pytest.raises(SimCoreError, match=word) as caught:

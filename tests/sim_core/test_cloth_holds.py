@@ -75,7 +75,7 @@ def test_pairs_are_drawn_together_and_stay() -> None:
     assert holds.same[pairs[0, 0]] == holds.same[pairs[0, 1]]
     with pytest.raises(SimCoreError, match="pairs"):
         Holds.of(3, pairs=np.array([[0, 3]]), positions=x)
-    with pytest.raises(SimCoreError, match="bounds"):
+    with pytest.raises(SimCoreError, match="no room"):
         Holds.of(2, low=np.ones(2), high=np.zeros(2))
 
 

@@ -58,7 +58,7 @@ def test_what_cannot_be_done_is_named() -> None:
     live, sheet, start, _ = hung()
     with pytest.raises(SimCoreError, match="targets: shape"):
         live.step(targets=np.zeros((2, 2)))
-    with pytest.raises(SimCoreError, match="pulls: vertex 999"):
+    with pytest.raises(SimCoreError, match="pulls: vertices: index 999"):
         live.step(pulls=(np.array([999]), np.zeros((1, 3))))
     with pytest.raises(SimCoreError, match="pins: index 999"):
         live.step(pins=[999])
