@@ -1,4 +1,4 @@
-"""The scenes of the published work, read from `scenes.toml`, and two small ones for tests."""
+"""The scenes of the published work and two beside them, read from `scenes.toml`, and two small ones for tests."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
 from sim_core.cloth.draping import Drape, drape
 from sim_core.cloth.given import finite, of_kind, row, told, whole
+from sim_core.cloth.limb import limb_body
 from sim_core.cloth.material import Material
+from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, MOST_FRAMES, WIDEST, Contact, Phase
 from sim_core.cloth.precision import COURANT
 from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
@@ -24,7 +26,7 @@ from sim_core.cloth.teapot import teapot_solid
 from sim_core.errors import SimCoreError, WrongArgument
 
 FILE = Path(__file__).with_name("scenes.toml")
-NAMES = ("flag", "teapot", "hanging", "drape")
+NAMES = ("flag", "teapot", "hanging", "limb", "drape")
 PINS = ("edge", "corners", "corner", "middle", "four", "thirds")
 
 GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` of the published scenes
@@ -42,7 +44,7 @@ class Scene:
     positions: np.ndarray
     phases: tuple[Phase, ...]
     pins: tuple[int, ...] = ()
-    collider: Solid | None = None
+    collider: Solid | MovingGrid | None = None
     contact: Contact | None = None
     air: Air | None = None
     courant: float = COURANT
@@ -50,7 +52,8 @@ class Scene:
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
         frames = whole("frames", frames, 1, "1 or more, of 1/25 s", most=MOST_FRAMES)
-        return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME),))
+        body = None if self.phases[0].body is None else (0.0, float(frames))  # a key for each frame
+        return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME, body=body),))
 
     def drape(self, **settings: Any) -> Drape:
         """Simulates the scene; settings: those of `draping.drape`."""
@@ -124,15 +127,15 @@ def scene(
     values |= {k: v for k, v in (("size", size), ("wind", wind), ("pins", pins)) if v is not None}
     (width, height), cloth = checked_size(values["size"]), checked_cloth(cloth)
     count = data["vertices"] if vertices is None else whole("vertices", vertices, 12, "12 or more")
-    made = {"flag": _flag, "teapot": _teapot, "hanging": _hanging, "drape": _drape}[name](
-        values, width, height, count, cloth
-    )
+    most = {"least": 1, "why": "1 or more, of 1/25 s", "most": MOST_FRAMES}
+    values["frames"] = data["frames"] if frames is None else whole("frames", frames, **most)
+    made = _MAKERS[name](values, width, height, count, cloth)
     if made.air is not None:
         made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
     if finite("layers [m]", layers, least=0, most=WIDEST):
         made = replace(made, contact=replace(made.contact or Contact(), thickness=layers))
-    return made.lasting(data["frames"] if frames is None else frames)
+    return made.lasting(values["frames"])
 
 
 def checked_size(size: object) -> tuple[float, float]:
@@ -173,6 +176,17 @@ def _teapot(values: dict[str, Any], width: float, height: float, count: int, clo
     return Scene("teapot", sheet, positions, phases, (), teapot_solid(scale), contact)
 
 
+def _limb(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
+    sheet = _sheet(width, height, count, replace(cloth, mass_damping=1.0, stiffness_damping=5e-5))
+    data, moves = _data()["limb"], {name: values[name] for name in ("swing", "turn", "period", "frames")}
+    body = limb_body(data["length"], data["radius"], still=data["still"], **moves)
+    flat = sheet.rest - [width / 2, height / 2]
+    top = data["radius"] + 0.02
+    positions = np.column_stack([flat[:, 0] + data["length"] / 2, np.full(len(flat), top), flat[:, 1]])
+    phases = (Phase(1.0, label="limb", body=(0.0, 1.0)),)
+    return Scene("limb", sheet, positions, phases, (), body, Contact(clearance=0.003, sample_clearance=0.001))
+
+
 def _hanging(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
     sheet = _sheet(width, height, count, cloth)
     positions = np.column_stack([sheet.rest[:, 0], np.zeros(len(sheet.rest)), sheet.rest[:, 1]])
@@ -210,6 +224,9 @@ def _drape(values: dict[str, Any], width: float, height: float, count: int, clot
     pedestal = Cylinder((0.0, -0.05, 0.0), (0.0, 0.0, 0.0), 0.3 * width, 0.002)
     contact = Contact(clearance=0.003, sample_clearance=0.001)
     return Scene("drape", sheet, positions, (Phase(1.0, label="drape"),), (), pedestal, contact)
+
+
+_MAKERS = {"flag": _flag, "teapot": _teapot, "hanging": _hanging, "limb": _limb, "drape": _drape}
 
 
 def drape_coefficient(positions: np.ndarray, faces: np.ndarray, width: float) -> float:
