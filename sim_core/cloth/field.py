@@ -1,4 +1,4 @@
-"""Signed distance of a closed mesh on a grid: exact near the surface, swept beyond. See README.md."""
+"""Signed distance of a closed mesh on a grid: exact near the surface, swept beyond. See DETAILS.md."""
 
 from __future__ import annotations
 

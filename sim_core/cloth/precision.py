@@ -22,7 +22,7 @@ from sim_core.cloth.watching import lane_mode, stored_lanes
 PRECISIONS = ("double", "single")
 COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
 MOST_COURANT = 0.95
-SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see README)
+SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see DETAILS.md)
 GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonance down
 GUARD = (
     6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little

@@ -36,7 +36,7 @@ GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` 
 class Scene:
     """What `drape` needs: sheet, start positions (V, 3) [m], phases, pins, collider, contact, air.
 
-    courant: the share of the stable step at which the scene's time error is small (see the README's table).
+    courant: the share of the stable step at which the scene's time error is small (see DETAILS.md, Measured).
     """
 
     name: str

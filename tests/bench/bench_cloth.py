@@ -16,7 +16,7 @@ Parts, all of them if none is named:
     processes  throughput of two processes over one, beside two spin loops (wants both cores to itself)
 
 --json keeps the parts of the file that are not run again, so that each can be measured when the machine is idle.
-`python tests/bench/readme_cloth.py` writes docs/figures/cloth.json into sim_core/cloth/README.md.
+`python tests/bench/readme_cloth.py` writes docs/figures/cloth.json into sim_core/cloth (README.md, DETAILS.md).
 """
 
 import argparse

@@ -1,4 +1,6 @@
-"""The peers' figures as tables: python tests/bench/cloth_peer_tables.py writes cloth_peers/README.md from docs/figures.
+"""The peers' figures as tables: python tests/bench/cloth_peer_tables.py writes them from docs/figures.
+
+All of them stand in cloth_peers/README.md, a line a peer in the cloth room's README.
 
 docs/figures/cloth-peers.json comes from `simcore bench cloth -- --peers --json docs/figures/cloth-peers.json`.
 """
@@ -17,6 +19,9 @@ FIGURES, README = (
     ROOT / "docs/figures/cloth-peers.json",
     Path(__file__).with_name("cloth_peers") / "README.md",
 )
+ROOM = ROOT / "sim_core/cloth/README.md"
+SHORT = "<!-- peers: python tests/bench/cloth_peer_tables.py -->", "<!-- end of peers -->"
+ASKED = "hang_edge", 40  # the scene of the issue, and how many times faster than every peer
 BEGIN, END = "<!-- figures: python tests/bench/cloth_peer_tables.py -->", "<!-- end of figures -->"
 
 
@@ -64,12 +69,70 @@ def tables(results: dict) -> str:
     return "\n\n".join(parts)
 
 
+def short_cell(peer: dict | None) -> str:
+    """What stands for one peer in one scene: its time, times ours, and how far its limit is from ours."""
+    if peer is None or "error" in peer:
+        return "not compared"
+    near = peer["cheapest_within_2mm"] or peer["best"]
+    if near is None:
+        return "only its limit was run"
+    never = "" if peer["cheapest_within_2mm"] else f" (never within 2 mm: {millimetres(near['own']['mean'])})"
+    return (
+        f"{near['cpu_ms']:.0f} ms{never}, {told_ratio(near['ratio'])} / {told_ratio(near.get('ratio_cheapest'))} "
+        f"times ours; limit {millimetres(peer['limit_from_ours']['mean'])} mm off"
+    )
+
+
+def short(results: dict) -> str:
+    """A line a peer: over our default (far more exact than asked) / over our cheapest setting within 2 mm."""
+    heads = [
+        f"{name}, {part['vertices']:,} vertices, {part['seconds']:g} s" for name, part in results.items()
+    ]
+    names = list(dict.fromkeys(engine for part in results.values() for engine in part["peers"]))
+    lines = [f"| peer | {' | '.join(heads)} |", "|-|" + "-|" * len(heads)]
+    for name in names:
+        cells = [short_cell(part["peers"].get(name)) for part in results.values()]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    ours = []
+    for part in results.values():
+        usual, cheap = part["ours"]["settings"][0], part["ours"]["cheapest_within_2mm"]
+        ours.append(
+            f"{usual['cpu_ms']:.1f} ms, {usual['error']['mean']:.1e} mm / {cheap['cpu_ms']:.1f} ms, "
+            f"{cheap['error']['mean']:.1e} mm ({cheap['name']})"
+        )
+    lines.append(f"| ours, default / cheapest | {' | '.join(ours)} |")
+    return "\n".join(lines) + "\n\n" + verdict(results)
+
+
+def verdict(results: dict) -> str:
+    """How the least ratio of the scene that was asked for stands to what was asked."""
+    scene, times = ASKED
+    found = [
+        (peer["cheapest_within_2mm"] or {}, name)
+        for name, peer in results[scene]["peers"].items()
+        if "error" not in peer
+    ]
+    rows = [(row["ratio"], row.get("ratio_cheapest"), name) for row, name in found if row]
+    told = f"Asked on {scene}: {times} times faster than every peer within 2 mm. "
+    usual = min(rows)
+    told += f"Least over our default, {usual[0]:.1f} ({usual[2]})"
+    alike = [(row[1], row[2]) for row in rows if row[1] is not None]
+    if alike:
+        told += f"; like for like, each at its cheapest within 2 mm, {min(alike)[0]:.1f} ({min(alike)[1]})"
+    return told + "." + ("" if results[scene]["complete"] else " The sweep is not complete.")
+
+
+def placed(path: Path, begin: str, end: str, text: str) -> None:
+    """Puts a text between its marks."""
+    before, _, rest = path.read_text("utf-8").partition(begin)
+    _, _, after = rest.partition(end)
+    path.write_text(f"{before}{begin}\n{text}\n{end}{after}", "utf-8")
+
+
 def main() -> int:
-    text = README.read_text("utf-8")
-    before, _, rest = text.partition(BEGIN)
-    _, _, after = rest.partition(END)
     results = json.loads(FIGURES.read_text("utf-8"))
-    README.write_text(f"{before}{BEGIN}\n{tables(results)}\n{END}{after}", "utf-8")
+    placed(README, BEGIN, END, tables(results))
+    placed(ROOM, *SHORT, short(results))
     return 0
 
 

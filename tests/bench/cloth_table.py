@@ -2,7 +2,7 @@
 
     python tests/bench/cloth_table.py            measures the training scenes, fits the law, writes the table
     python tests/bench/cloth_table.py --check    20 other scenes; --seed N draws others
-    python tests/bench/cloth_table.py --readme   puts the table into sim_core/cloth/README.md
+    python tests/bench/cloth_table.py --readme   puts the table into sim_core/cloth/DETAILS.md
 
 Runs are kept under build/cloth-fidelity; an interrupted one goes on. Error: mean distance [mm] of the sheet's
 material points from the finest mesh in the worst frame, plus the finest mesh's own error, read off the order in which
@@ -27,7 +27,7 @@ from sim_core.cloth.phases import FRAME
 from sim_core.cloth.pilot import PILOTS, apart, gap
 from sim_core.errors import WrongArgument
 
-README = Path(__file__).parents[2] / "sim_core" / "cloth" / "README.md"
+DETAILS = Path(__file__).parents[2] / "sim_core" / "cloth" / "DETAILS.md"
 MARKS = ("<!-- fidelity -->", "<!-- end of fidelity -->")
 IMPLICIT = (
     (0.064, 2),
@@ -184,7 +184,7 @@ def check(seed: int) -> int:
 
 
 def readme() -> None:
-    """Puts a table of what the shipped law says of the published scenes between the marks in the README."""
+    """Puts a table of what the shipped law says of the published scenes between the marks in the room's DETAILS."""
     known = json.loads(FILE.read_text("utf-8"))
     lines = [
         "| scene | measured scenes | in the first | 2 mm | 5 mm | 10 mm | 20 mm | 30 mm |",
@@ -198,9 +198,9 @@ def readme() -> None:
             except WrongArgument as refused:
                 cells.append(f"– (least {str(refused).split('keeps ')[1].split(' mm')[0]} mm)")
         lines.append(f"| {kind} | {len(part['scenes'])} | {part['seconds']:g} s | {' | '.join(cells)} |")
-    text = README.read_text("utf-8")
+    text = DETAILS.read_text("utf-8")
     before, _, rest = text.partition(MARKS[0])
-    README.write_text(
+    DETAILS.write_text(
         f"{before}{MARKS[0]}\n" + "\n".join(lines) + f"\n{MARKS[1]}{rest.partition(MARKS[1])[2]}"
     )
 
@@ -210,7 +210,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--check", action="store_true", help="only check the table that is there")
-    parser.add_argument("--readme", action="store_true", help="only write the README's table")
+    parser.add_argument("--readme", action="store_true", help="only write the table of the room's DETAILS")
     parser.add_argument("--seed", type=int, default=71, help="of the scenes that are checked (default: 71)")
     args = parser.parse_args()
     if args.readme:

@@ -1,6 +1,7 @@
 """The cloth bench's own figures: the README holds what was measured, and small runs have the figures' shape."""
 
 import json
+import re
 import sys
 from dataclasses import replace
 from importlib import import_module
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim_core import cloth
 from sim_core.cloth.scenes import hang_edge, scene
 
 NAMES = ("cloth_cases", "cloth_curves", "cloth_measures", "cloth_runs", "readme_cloth")
@@ -28,8 +30,53 @@ def test_the_readme_holds_what_was_measured(bench) -> None:
     readme = bench["readme_cloth"]
     found = json.loads((ROOT / "docs/figures/cloth.json").read_text("utf-8"))
     assert not found["quick"]
-    text = (ROOT / "sim_core/cloth/README.md").read_text("utf-8")
+    text = (ROOT / "sim_core/cloth/DETAILS.md").read_text("utf-8")
     assert readme.tables(found) in text.split(readme.BEGIN)[1].split(readme.END)[0]
+    text, (begin, end) = (ROOT / "sim_core/cloth/README.md").read_text("utf-8"), readme.HEAD
+    assert readme.headline(found) in text.split(begin)[1].split(end)[0]
+
+
+def test_the_readme_holds_the_peers_figures(bench, monkeypatch) -> None:
+    peers = import_module("cloth_peer_tables")
+    for name in ("cloth_peer_tables", "cloth_figures", "cloth_sweeps", "mapping"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    results = json.loads(peers.FIGURES.read_text("utf-8"))
+    text, (begin, end) = peers.ROOM.read_text("utf-8"), peers.SHORT
+    told = text.split(begin)[1].split(end)[0]
+    assert peers.short(results) in told
+    assert peers.tables(results) in peers.README.read_text("utf-8")
+    least = min(p["cheapest_within_2mm"]["ratio_cheapest"] for p in results["hang_edge"]["peers"].values())
+    assert f"within 2 mm, {least:.1f} (" in told
+
+
+def test_a_peer_that_was_not_compared_or_never_came_near_is_told(bench, monkeypatch) -> None:
+    peers = import_module("cloth_peer_tables")
+    for name in ("cloth_peer_tables", "cloth_figures", "cloth_sweeps", "mapping"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    far = {"cpu_ms": 50.0, "ratio": 12.5, "own": {"mean": 3.14}}
+    assert peers.short_cell(None) == peers.short_cell({"error": "no module"}) == "not compared"
+    told = peers.short_cell({"cheapest_within_2mm": None, "best": far, "limit_from_ours": {"mean": 0.5}})
+    assert told == "50 ms (never within 2 mm: 3.1), 12.5 / – times ours; limit 0.5 mm off"
+
+
+def test_pages_of_the_room_name_files_and_tests_that_are_there() -> None:
+    room, tests = ROOT / "sim_core/cloth", ROOT / "tests/sim_core"
+    known = "".join(path.read_text("utf-8") for path in tests.glob("test_cloth_*.py"))
+    for page in ("README.md", "DETAILS.md"):
+        text = (room / page).read_text("utf-8")
+        for name in set(re.findall(r"`(?:test_cloth_\w+\.py: )?(test_\w+)`", text)):
+            assert f"def {name}(" in known, f"{page}: {name}"
+        for name in set(re.findall(r"`(\w+\.(?:py|toml|json))\b", text)):
+            assert (room / name).exists() or (tests / name).exists(), f"{page}: {name}"
+        for link in re.findall(r"\]\(([^)#]+)", text):
+            assert (room / link).exists(), f"{page}: {link}"
+
+
+def test_the_readme_shows_public_names_alone() -> None:
+    text = (ROOT / "sim_core/cloth/README.md").read_text("utf-8").split("```")[1]
+    (line,) = re.findall(r"from sim_core.cloth import (.*)", text)
+    assert set(line.split(", ")) <= set(cloth.__all__)
+    assert set(re.findall(r"\b([A-Z]\w+|choose|drape|scene)[.(]", text)) <= set(line.split(", "))
 
 
 def test_more_substeps_err_less_and_are_told(bench) -> None:

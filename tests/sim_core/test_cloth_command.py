@@ -225,7 +225,7 @@ def test_a_limb_is_closed_and_of_its_size() -> None:
 
 @pytest.mark.parametrize(("case", "frames", "way"), [(1, 51, (-0.01, 0.052, 0.0)), (2, 44, (0.0, 0.1, 0.0))])
 def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tuple[float, ...]) -> None:
-    """Still from 0.8 to 1 s; raised as far as it goes at the end. Edges shorter than the arm's bend is wide: friction."""
+    """Still from 0.8 to 1 s, raised as far as it goes at the end; edges short beside the arm, so friction holds."""
     made, film = scene("limb", case, vertices=1200, frames=frames), []
     body, limit = made.collider, 0.003
     assert isinstance(body, MovingGrid)
