@@ -33,7 +33,7 @@ def write_film(
 ) -> None:
     """Draws positions (V, 3) of every frame; around (N, 3) [m] is what the camera keeps in view; whole or not at all.
 
-    solid: vertices and faces of what the cloth lies on.
+    solid: vertices (S, 3), or (T, S, 3) after each frame, and faces of what the cloth lies on.
     """
     film_needs()
     import av
@@ -47,10 +47,11 @@ def write_film(
         stream: Any = film.add_stream("libx264", rate=rate)  # PyAV's stubs know no stream by a codec's name
         stream.width, stream.height, stream.pix_fmt = *SIZE, "yuv420p"
         stream.options = {"crf": "23", "preset": "medium"}
-        for positions in frames:
+        for index, positions in enumerate(frames):
             surfaces = [Surface(positions.astype(float), faces, _CLOTH, sheen=0.3)]
             if solid is not None:
-                surfaces.append(Surface(*solid, _SOLID))
+                places, sides = solid
+                surfaces.append(Surface(places[index] if places.ndim == 3 else places, sides, _SOLID))
             picture = np.ascontiguousarray(render(surfaces, camera, SIZE))
             film.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
         film.mux(stream.encode(None))

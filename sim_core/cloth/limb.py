@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim_core.cloth.moving import MovingGrid, moving_mesh
 from sim_core.cloth.phases import FRAME
 
 AROUND, TO_POLE = 24, 6  # vertices of a ring, rings from the middle of an end to its pole
@@ -32,7 +31,7 @@ def limb_mesh(length: float, radius: float) -> tuple[np.ndarray, np.ndarray]:
     return vertices, np.concatenate(faces).astype(np.int32)
 
 
-def limb_body(
+def limb_film(
     length: float,
     radius: float,
     *,
@@ -41,8 +40,8 @@ def limb_body(
     period: float,
     still: float,
     frames: int,
-) -> MovingGrid:
-    """The limb, a key for each of `frames` frames and one for the start.
+) -> tuple[np.ndarray, np.ndarray]:
+    """The limb's vertices (frames + 1, V, 3) [m] at the start and after each frame, and its faces (F, 3).
 
     After `still` [s] it goes to and fro by swing (3,) [m], and is raised and lowered about its end at the origin by
     turn [degrees], once in a period [s]; it starts and stops gently.
@@ -55,4 +54,4 @@ def limb_body(
     turned = np.stack(
         [c * x - s * y, s * x + c * y, np.broadcast_to(vertices[:, 2], (len(share), len(x)))], -1
     )
-    return moving_mesh(turned + share[:, None, None] * np.asarray(swing, float), faces)
+    return turned + share[:, None, None] * np.asarray(swing, float), faces

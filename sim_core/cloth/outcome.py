@@ -89,7 +89,7 @@ def write(args: argparse.Namespace, made: Scene, film: list[np.ndarray], setting
         from sim_core.cloth.film import write_film
         from sim_core.cloth.teapot import teapot_mesh
 
-        solid = teapot_mesh() if made.name == "teapot" else None
+        solid = teapot_mesh() if made.name == "teapot" else made.shown
         write_film(
             args.video,
             film,

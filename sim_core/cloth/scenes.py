@@ -15,9 +15,9 @@ from sim_core.cloth.air import Air
 from sim_core.cloth.collider import Capsule, Cylinder, Solid
 from sim_core.cloth.draping import Drape, drape
 from sim_core.cloth.given import finite, of_kind, row, told, whole
-from sim_core.cloth.limb import limb_body
+from sim_core.cloth.limb import limb_film
 from sim_core.cloth.material import Material
-from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.moving import MovingGrid, moving_mesh
 from sim_core.cloth.phases import FRAME, MOST_FRAMES, WIDEST, Contact, Phase
 from sim_core.cloth.precision import COURANT
 from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
@@ -36,6 +36,7 @@ GF_CM = Material(0.05, 49.0, 0.3, 4.9e-5, 0.3, 0.5, 2e-5)  # the preset `gf-cm` 
 class Scene:
     """What `drape` needs: sheet, start positions (V, 3) [m], phases, pins, collider, contact, air.
 
+    shown: vertices (T, S, 3) [m] after each frame, and faces, of a body that moves, for a film.
     courant: the share of the stable step at which the scene's time error is small (see DETAILS.md, Measured).
     """
 
@@ -48,6 +49,7 @@ class Scene:
     contact: Contact | None = None
     air: Air | None = None
     courant: float = COURANT
+    shown: tuple[np.ndarray, np.ndarray] | None = None
 
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
@@ -179,12 +181,14 @@ def _teapot(values: dict[str, Any], width: float, height: float, count: int, clo
 def _limb(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
     sheet = _sheet(width, height, count, replace(cloth, mass_damping=1.0, stiffness_damping=5e-5))
     data, moves = _data()["limb"], {name: values[name] for name in ("swing", "turn", "period", "frames")}
-    body = limb_body(data["length"], data["radius"], still=data["still"], **moves)
+    film, faces = limb_film(data["length"], data["radius"], still=data["still"], **moves)
     flat = sheet.rest - [width / 2, height / 2]
     top = data["radius"] + 0.02
     positions = np.column_stack([flat[:, 0] + data["length"] / 2, np.full(len(flat), top), flat[:, 1]])
     phases = (Phase(1.0, label="limb", body=(0.0, 1.0)),)
-    return Scene("limb", sheet, positions, phases, (), body, Contact(clearance=0.003, sample_clearance=0.001))
+    contact = Contact(clearance=0.003, sample_clearance=0.001)
+    body, shown = moving_mesh(film, faces), (film[1:], faces)
+    return Scene("limb", sheet, positions, phases, (), body, contact, shown=shown)
 
 
 def _hanging(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:

@@ -233,6 +233,10 @@ def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tupl
     away = [body.solid(key).distance(x) for key, x in enumerate(film, 1)]
     assert min(a.min() for a in away) > 0.9 * limit
     assert max(a.min() for a in away[20:]) < 1.1 * limit
+    assert made.shown is not None
+    assert (
+        np.abs(body.solid(frames).distance(made.shown[0][-1])).max() < 0.003
+    )  # what a film shows is what carries
     carried = away[24] < 1.5 * limit
     assert carried.sum() > 50
     assert (film[-1] - film[24])[carried].mean(0) == pytest.approx(way, abs=0.005)
