@@ -53,6 +53,7 @@ class Drape:
     )
     frame_seconds: tuple[float, ...] = field(default=(), repr=False)  # what each frame of this process took
     certificate: Certificate | None = None  # of a run under the certifier
+    smoothed: float = 0.0  # [m] over which a hopeless start was smoothed first; 0: it began where it was put
 
 
 def drape(
@@ -85,6 +86,8 @@ def drape(
     implicit scheme for frames that would blow up.
     pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
     air: what blows, and brakes; None costs nothing.
+    positions of which most edges are longer than three times their length are no sheet, and are smoothed into one
+    before the first frame, unless a solid or holds are there (`smoothing.py`; `Drape.smoothed` tells).
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
     it behind, finished, for a caller who has more to do. only_own: refuse a file that this run cannot go on from,
@@ -111,6 +114,8 @@ def drape(
     )
     if certify is not False:
         run.certify(x, None if certify is True else certify)
+    begun = run.begun(x, v)
+    x = begun.positions
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
         + (sheet.mass, sheet.corner, sheet.stencil.own, sheet.stencil.coupling, sheet.stencil.bend)
@@ -121,7 +126,7 @@ def drape(
             f"{checkpoint}: no state of this run (other settings, an older engine, or damaged) – "
             "name another file, or remove it"
         )
-    state = found or RunState(x, v)
+    state = found or begun
     pause = CHECKPOINT_SECONDS if checkpoint_seconds is None else checkpoint_seconds
     _run_frames(run, state, _Hooks(progress, on_frame, checkpoint, key, pause))
     if checkpoint and keep:
@@ -192,6 +197,7 @@ def _result(run: Run, state: RunState, seconds: float) -> Drape:
         state.stretch,
         tuple(state.seconds),
         found,
+        state.smoothed,
     )
 
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.given import finite, vertex_numbers
@@ -66,7 +65,7 @@ class Live:
         )
         if certify is not False:
             self._run.certify(x, None if certify is True else certify)
-        self._state = RunState(x, v)
+        self._state = self._run.begun(x, v)
         self._gravity = np.asarray(gravity, float)
         check_gravity(self._gravity)
         self.damping = sheet.material.mass_damping if damping is None else damping
@@ -93,6 +92,11 @@ class Live:
     def fallbacks(self) -> int:
         """Frames that the implicit scheme had to take over."""
         return self._state.fallbacks
+
+    @property
+    def smoothed(self) -> float:
+        """The length [m] over which a hopeless start was smoothed; 0: it began where it was put."""
+        return self._state.smoothed
 
     @property
     def substeps(self) -> int:
