@@ -86,8 +86,8 @@ def drape(
     implicit scheme for frames that would blow up.
     pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
     air: what blows, and brakes; None costs nothing.
-    positions of which most edges are longer than three times their length are no sheet, and are smoothed into one
-    before the first frame, unless a solid or holds are there (`smoothing.py`; `Drape.smoothed` tells).
+    positions that are no sheet, points thrown about, are smoothed into one before the first frame, unless a solid or
+    holds are there (`smoothing.py`; `Drape.smoothed` tells).
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
     it behind, finished, for a caller who has more to do. only_own: refuse a file that this run cannot go on from,

@@ -1,8 +1,8 @@
-"""A start that is no sheet is made one: points thrown about are smoothed until their edges can be believed.
+"""A start that is no sheet is made one: points thrown about are smoothed until they are a sheet again.
 
-Where most edges are longer than the watchdog would let any become (three times their length), positions say where the
-cloth is but nothing of its shape, and what the membrane's forces would make of them is a crumple that passes through
-itself and, without self-contact, stays so. Such a start x0 is replaced, pins kept, by the x of least
+Where most edges are far longer than at rest and neighbouring faces do not lie alike, positions say where the cloth is
+but nothing of its shape. What the membrane's forces make of them is a crumple that passes through itself and, without
+self-contact, stays so. Such a start x0 is replaced, pins kept, by the x of least
 
     |x - x0|^2 + l^4 (curvature of x)^2,
 
@@ -22,8 +22,11 @@ from scipy import sparse
 from sim_core.cloth.bending import bending_matrix
 from sim_core.cloth.factor import Factored
 from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.untangling import faces_at_edges
 
-HOPELESS = 3.0  # times its length, that the watchdog lets no edge become
+LONGER = 1.25  # times its length, that more than half of the edges of a hopeless start are longer than
+ALIKE = 0.5  # mean cosine between neighbouring faces' normals, below: noise of half an edge has .4, a gale's folds .6
+FEWEST = 20  # edges between two faces: of fewer any may be folded
 EVEN = 1.1  # times its length: most edges may be no longer, nor shorter by as much, for the smoothing to end
 MOST = 0.95  # of the edges: a vertex that belongs to no curvature, at a corner say, stays where it was thrown
 GIVEN = 2.0  # times its length, or its half, that any edge may be of in a start that is given instead
@@ -32,18 +35,28 @@ FIRM = 10.0  # stretch against the distance from the start, on the scale of the 
 
 
 def hopeless(sheet: Sheet, x: np.ndarray) -> bool:
-    """Whether more than half of all edges are longer than three times their length at x (V, 3) [m]."""
-    return bool(2 * np.count_nonzero(_longer(sheet, x) > HOPELESS) > len(sheet.edges))
+    """Whether x (V, 3) [m] is no sheet: most edges a quarter too long, faces turned anyhow.
+
+    Neither alone: cloth may be stretched, and it may be crumpled; in the worst gales it is not both.
+    """
+    if 2 * np.count_nonzero(_longer(sheet, x) > LONGER) <= len(sheet.edges):
+        return False
+    third = faces_at_edges(sheet.edges, sheet.faces)
+    inner = third[:, 1] >= 0
+    a, b, c, d = (x[k] for k in (*sheet.edges[inner].T, *third[inner].T))
+    one, two = np.cross(b - a, c - a), np.cross(d - a, b - a)
+    size = np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1)
+    cosine = (one * two).sum(1) / np.maximum(size, 1e-300)
+    return bool(len(cosine) >= FEWEST and cosine.mean() < ALIKE)
 
 
 def smoothed(sheet: Sheet, start: np.ndarray, pins: Sequence[int]) -> tuple[np.ndarray, float]:
     """A sheet near a hopeless start (V, 3) [m] that passes through itself nowhere, pins where they were.
 
     Also the length l [m] over which it was smoothed; the start itself and 0 where it is not hopeless, or where no
-    such sheet is found (one that is evenly stretched to four times its size is no noise). The centre of mass of a
-    sheet without pins stays. Same input, same bits.
+    such sheet is found. The centre of mass of a sheet without pins stays. Same input, same bits.
     """
-    if not hopeless(sheet, start):
+    if not hopeless(sheet, start) or len(set(pins)) == len(start):
         return start, 0.0
     from sim_core.metrics import intersections  # what only bad starts need
 
@@ -51,7 +64,7 @@ def smoothed(sheet: Sheet, start: np.ndarray, pins: Sequence[int]) -> tuple[np.n
     length, last = 2 * float(np.sqrt(sheet.stencil.length2).mean()), 2 * float(np.sqrt(smoother.area))
     while True:
         smooth = smoother.low_pass(length)
-        if np.quantile(_longer(sheet, smooth), MOST) < (EVEN if length < last else HOPELESS):
+        if np.quantile(_longer(sheet, smooth), MOST) < (EVEN if length < last else GIVEN):
             x = smoother.unstretched(length, smooth)
             longer = _longer(sheet, x)
             low, high = np.quantile(longer, [1 - MOST, MOST])

@@ -42,7 +42,7 @@ def hung(sheet: Sheet, x: np.ndarray, pins: tuple[int, ...]) -> Drape:
     return drape(sheet, x, [Phase(8.0, damping=2.0), Phase(6.0, damping=6.0)], pins=pins)
 
 
-@pytest.mark.parametrize("size", [0.3, 1.0])
+@pytest.mark.parametrize("size", [0.05, 0.3, 1.0])
 def test_points_thrown_about_come_to_hang_as_a_flat_start_does(size: float) -> None:
     made = hang_edge(0.08)
     flat = hung(made.sheet, made.positions, made.pins)
@@ -82,9 +82,23 @@ def test_other_starts_are_left_to_the_bit() -> None:
     inverted[list(pins)] = x[list(pins)]  # a row of edges twelve times their length
     torn = x.copy()
     torn[-1] += 5.0
-    wild = thrown(x, pins, 0.03)
-    for start in (x, inverted, torn, wild, 4.0 * x, 0.0 * x, x[::-1] * [1.0, 1.0, 0.0]):
+    shaken, wide = thrown(x, pins, 0.015), 4.0 * thrown(x, pins, 0.005)
+    crumpled = 0.2 * thrown(x, (), 0.3)
+    for start in (x, inverted, torn, shaken, wide, crumpled, 0.0 * x):
         there, length = smoothed(made.sheet, start, pins)
+        assert length == 0.0
+        assert there is start
+
+
+def test_folded_squares_and_sheets_that_are_all_pins_are_left_alone() -> None:
+    corner = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    square = Sheet.of(corner, np.array([[0, 1, 2], [0, 2, 3]]), CLOTH)
+    folded = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [2.0, 0.5, 0.5]])
+    made = hang_edge(0.1)
+    every = tuple(range(len(made.positions)))
+    wild = thrown(made.positions, made.pins, 0.3)
+    for sheet, start, pins in ((square, folded, (0,)), (made.sheet, wild, every)):
+        there, length = smoothed(sheet, start, pins)
         assert length == 0.0
         assert there is start
 
