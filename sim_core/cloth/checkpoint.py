@@ -36,6 +36,7 @@ class RunState:
     film: list[np.ndarray] = field(default_factory=list)  # (V, 3) float32 per finished frame
     mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
     tally: Tally = field(default_factory=Tally)  # of the certifier
+    smoothed: float = 0.0  # [m] over which a hopeless start was smoothed
 
 
 def run_key(parts: Iterable[object]) -> str:
@@ -75,7 +76,7 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
     counters = (state.rollbacks, state.substeps, state.fallbacks, state.stretch)
-    counters += (state.tally.redone, state.tally.zones, state.tally.uncertified)
+    counters += (state.tally.redone, state.tally.zones, state.tally.uncertified, state.smoothed)
     numbers = np.array([state.frame, state.last_step, state.safety, *counters], float)
     with beside.open("wb") as stream:
         np.savez(
@@ -100,6 +101,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
         if str(data["key"]) != key:
             return None
         frame, last, safety, rollbacks, substeps, fallbacks, stretch, *tally = data["numbers"]
+        smoothed = float(tally.pop()) if len(tally) > 3 else 0.0
         return RunState(
             positions=data["positions"],
             velocities=data["velocities"],
@@ -114,6 +116,7 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
             film=list(data["film"]),
             mode=data["mode"],
             tally=Tally(*map(int, tally)),
+            smoothed=smoothed,
         )
     except (FileProblem, ValueError, TypeError, OverflowError):
         return None

@@ -54,6 +54,7 @@ class Drape:
     )
     frame_seconds: tuple[float, ...] = field(default=(), repr=False)  # what each frame of this process took
     certificate: Certificate | None = None  # of a run under the certifier
+    smoothed: float = 0.0  # [m] over which a hopeless start was smoothed first; 0: it began where it was put
 
 
 def drape(
@@ -87,6 +88,8 @@ def drape(
     down: the way in which a phase's gravity is counted.
     pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
     air: what blows, and brakes; None costs nothing.
+    positions that are no sheet, points thrown about, are smoothed into one before the first frame, unless a solid or
+    holds are there (`smoothing.py`; `Drape.smoothed` tells).
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
     checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
     it behind, finished, for a caller who has more to do. only_own: refuse a state that this run cannot go on from,
@@ -121,6 +124,8 @@ def drape(
     )
     if certify is not False:
         run.certify(x, certify)
+    begun = run.begun(x, v)
+    x = begun.positions
     key = run_key(
         (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
         + (sheet.mass, sheet.corner, sheet.stencil.own, sheet.stencil.coupling, sheet.stencil.bend)
@@ -131,7 +136,7 @@ def drape(
             f"{file}: no state of this run (other settings, an older engine, or damaged) – "
             "name another file, or remove it"
         )
-    state = found or RunState(x, v)
+    state = found or begun
     _run_frames(run, state, _Hooks(progress, on_frame, file, key, pause))
     if file and keep:
         save_checkpoint(file, key, state)
@@ -201,6 +206,7 @@ def _result(run: Run, state: RunState, seconds: float) -> Drape:
         state.stretch,
         tuple(state.seconds),
         found,
+        state.smoothed,
     )
 
 

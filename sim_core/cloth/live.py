@@ -9,7 +9,6 @@ import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.checkpoint import RunState
 from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.given import finite, of_kind, points, told, triple, vertex_numbers
@@ -67,7 +66,7 @@ class Live:
         )
         if certify is not False:
             self._run.certify(x, certify)
-        self._state = RunState(x, v)
+        self._state = self._run.begun(x, v)
         self._limit = (contact or Contact()).speed_limit
         self.pins, self.air, self.body = self._run.pins, air, 0.0
 
@@ -90,6 +89,11 @@ class Live:
     def fallbacks(self) -> int:
         """Frames that the implicit scheme had to take over."""
         return self._state.fallbacks
+
+    @property
+    def smoothed(self) -> float:
+        """The length [m] over which a hopeless start was smoothed; 0: it began where it was put."""
+        return self._state.smoothed
 
     @property
     def substeps(self) -> int:

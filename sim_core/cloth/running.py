@@ -20,6 +20,7 @@ from sim_core.cloth.moving import MovingGrid
 from sim_core.cloth.phases import FRAME, Contact, Moment, Phase, checked_phases, schedule
 from sim_core.cloth.precision import Pace
 from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.smoothing import smoothed
 from sim_core.cloth.stability import first_mode, passing_step, stable_with
 from sim_core.cloth.watching import ways
 from sim_core.errors import SimCoreError
@@ -97,6 +98,18 @@ class Run:
         if self.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
         self.certified = Certified(self.engine, start, None if solid is True else solid)  # type: ignore[arg-type]
+
+    def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
+        """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
+
+        Not where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
+        """
+        engine, holds = self.engine, self.engine.holds
+        held = engine.limited or len(holds.pairs) or len(holds.low) or len(holds.slaves)
+        if held or engine.moving or len(engine.packed.kind) or self.certified is not None:
+            return RunState(x, v)
+        smooth, length = smoothed(self.sheet, x, self._pinned(self.phases[0]))
+        return RunState(smooth, v, smoothed=length)
 
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""

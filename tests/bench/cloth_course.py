@@ -72,6 +72,7 @@ class Course:
     per_frame: float
     fallbacks: int
     uncertified: int | None
+    smoothed: float = 0.0  # [m] over which a hopeless start was smoothed first
 
     @property
     def finite(self) -> bool:
@@ -87,6 +88,8 @@ class Course:
         if self.inside:
             words.append(f"**{self.inside} inside**")
         words.append(f"crossings {self.before} then {self.crossed}")
+        if self.smoothed:
+            words.append(f"the start smoothed over {self.smoothed:.2g} m")
         if self.uncertified is not None:
             words.append(f"uncertified frames {self.uncertified}")
         return ", ".join(words)
@@ -153,6 +156,7 @@ def course(given: Setting) -> Course:
         steps / given.frames,
         live.fallbacks,
         None if found is None else found.uncertified,
+        live.smoothed,
     )
 
 

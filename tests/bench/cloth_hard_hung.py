@@ -9,6 +9,7 @@ from cloth_course import STRETCH, UNIQUE, Outcome, Setting, calm, course, longes
 from sim_core.cloth import Contact, Material, Sheet
 from sim_core.cloth.mending import mended
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet, hang_edge, scene
+from sim_core.metrics import intersections
 
 LAYERED = Contact(thickness=0.002)
 # Stretch and bending a hundred times as stiff along the warp, which hangs down, or along the weft.
@@ -61,6 +62,27 @@ def started(start: Callable[[np.ndarray], np.ndarray]) -> Outcome:
 
 def noise(x: np.ndarray) -> np.ndarray:
     return x + np.random.default_rng(4).normal(0, 0.3, x.shape)
+
+
+def thrown_about(size: float, seeds: int = 10) -> Outcome:
+    """Noise of so many metres, each seed a start of its own: all come to hang as the flat start does."""
+    made = hang_edge(0.04)
+    pins, damping = list(made.pins), settling(1.0, 4.0, 400)
+    flat = Setting(made.sheet, made.positions, 600, made.pins, damping=damping, watch=False)
+    reference, off, crossed, kept, fallbacks, lengths = course(flat).end, 0.0, 0, True, 0, []
+    for seed in range(seeds):
+        wild = made.positions + np.random.default_rng(seed).normal(0, size, made.positions.shape)
+        wild[pins] = made.positions[pins]
+        one = course(replace(flat, start=wild))
+        off = max(off, 1e3 * float(np.linalg.norm(one.end - reference, axis=1).max()))
+        crossed = max(crossed, intersections(one.end, made.sheet.faces))
+        kept &= one.steady(calm=True)
+        fallbacks += one.fallbacks
+        lengths.append(one.smoothed)
+    kept &= off < UNIQUE and crossed == 0
+    figures = f"{seeds} seeds: at most {off:.2g} mm off and {crossed} crossings at the end"
+    over = f"starts smoothed over {min(lengths):.2g} to {max(lengths):.2g} m"
+    return Outcome(kept, "unique", f"{figures}, {over}", fallbacks)
 
 
 def inverted(x: np.ndarray) -> np.ndarray:
@@ -182,6 +204,9 @@ HUNG: dict[str, Callable[[], Outcome]] = {
     "anisotropy 1 : 100": lambda: unique(edge(OTHER_WAY)),
     "Poisson's ratio 0.49": lambda: unique(edge(replace(GF_CM, poisson=0.49))),
     "random start, 0.3 m": lambda: started(noise),
+    "random starts, 0.1 m": lambda: thrown_about(0.1),
+    "random starts, 0.3 m": lambda: thrown_about(0.3),
+    "random starts, 1 m": lambda: thrown_about(1.0),
     "inverted start": lambda: started(inverted),
     "wind of 60 m/s, soft": lambda: gale(49.0),
     "wind of 60 m/s, stiff": lambda: gale(4900.0),
