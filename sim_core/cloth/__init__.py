@@ -17,12 +17,12 @@ from sim_core.cloth.live import Live
 from sim_core.cloth.material import Material
 from sim_core.cloth.moving import MovingGrid, moving_mesh
 from sim_core.cloth.precision import Pace
-from sim_core.cloth.scenes import Scene, scene
 from sim_core.cloth.sheet import Sheet
 
 if TYPE_CHECKING:
     from sim_core.cloth.fidelity import Choice, choose
     from sim_core.cloth.field import DistanceField, field_of
+    from sim_core.cloth.scenes import Scene, scene
 
 __all__ = [
     "Air",
@@ -53,7 +53,14 @@ __all__ = [
     "scene",
 ]
 
-_LATE = {"Choice": "fidelity", "choose": "fidelity", "DistanceField": "field", "field_of": "field"}
+_LATE = {
+    "Choice": "fidelity",
+    "DistanceField": "field",
+    "Scene": "scenes",
+    "choose": "fidelity",
+    "field_of": "field",
+    "scene": "scenes",
+}
 
 
 def __getattr__(name: str) -> object:
