@@ -100,7 +100,7 @@ def gale(stretch: float) -> Outcome:
 
     damping = settling(0.5, 4.0, 25)
     flag = Setting(made.sheet, made.positions, 250, made.pins, blow=blow, damping=damping, free=27)
-    return calm(replace(flag, contact=BLOWN))
+    return calm(replace(flag, contact=BLOWN), until=26)
 
 
 def torn() -> Outcome:
