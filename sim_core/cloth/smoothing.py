@@ -37,7 +37,7 @@ FIRM = 10.0  # stretch against the distance from the start, on the scale of the 
 def hopeless(sheet: Sheet, x: np.ndarray) -> bool:
     """Whether x (V, 3) [m] is no sheet: most edges a quarter too long, faces turned anyhow.
 
-    Neither alone: cloth may be stretched, and it may be crumpled; in the worst gales it is not both.
+    Neither alone: cloth may be stretched, and it may be crumpled; in no gale looked at it was both.
     """
     if 2 * np.count_nonzero(_longer(sheet, x) > LONGER) <= len(sheet.edges):
         return False

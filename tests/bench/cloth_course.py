@@ -69,10 +69,15 @@ class Course:
     crossed: int
     before: int
     worst_crossed: int
-    per_frame: float
+    steps: tuple[int, ...]
     fallbacks: int
     uncertified: int | None
     smoothed: float = 0.0  # [m] over which a hopeless start was smoothed first
+
+    @property
+    def per_frame(self) -> float:
+        """Steps a frame, on the mean."""
+        return sum(self.steps) / max(len(self.steps), 1)
 
     @property
     def finite(self) -> bool:
@@ -125,12 +130,12 @@ def course(given: Setting) -> Course:
     before = x
     if given.watch:
         crossings = [metrics.intersections(x, sheet.faces)]
-    steps = 0
+    steps: list[int] = []
     for frame in range(given.frames):
         live.damping, before = given.damping(frame), x
         wind = None if given.blow is None else given.blow(frame)
         x = live.step(targets=given.drive(frame), wind=wind)
-        steps += live.substeps
+        steps.append(live.substeps)
         if not np.isfinite(x).all():
             break
         worst = max(worst, longest(sheet, x))
@@ -153,7 +158,7 @@ def course(given: Setting) -> Course:
         crossings[-1],
         crossings[min(given.free, len(crossings) - 1)],
         max(crossings),
-        steps / given.frames,
+        tuple(steps),
         live.fallbacks,
         None if found is None else found.uncertified,
         live.smoothed,
@@ -193,15 +198,23 @@ def unique(given: Setting, reference: np.ndarray | None = None, *, rule: str = "
 
 
 def calm(
-    given: Setting, *, most: float | None = None, also: Callable[[Course], tuple[bool, str]] | None = None
+    given: Setting,
+    *,
+    most: float | None = None,
+    until: int | None = None,
+    also: Callable[[Course], tuple[bool, str]] | None = None,
 ) -> Outcome:
     """Kinetic energy goes to zero and self-intersections do not grow; stretch within 10 % of a quarter of the step.
 
-    most: an analytic bound of the stretch instead; also: what else must hold, and its words.
+    most: an analytic bound of the stretch instead; until: the frame by which the longest edge has been, where steps
+    are so much shorter before it that a quarter of the mean would be none of theirs; also: what else must hold, and
+    its words.
     """
     one = course(given)
     if most is None:
-        fine = course(given.finer(2 * round(2 * one.per_frame))).stretch
+        steps = one.steps[:until]
+        quarter = 2 * round(2 * sum(steps) / len(steps))
+        fine = course(replace(given, frames=len(steps)).finer(quarter)).stretch
         kept, figures = (
             abs(one.stretch / fine - 1) < STRETCH,
             f"stretch {one.stretch:.3f} (refined {fine:.3f}), ",
