@@ -1,0 +1,91 @@
+"""Rest of large figures: contact that stays soft, curves kept apart without pins, and common waves moved at once.
+
+Pins hold places; in a large figure in a close sett the yarns slide far before they rest, leave their pins, and get new
+ones, while the contact is stiffened round after round. Here nothing is pinned: where two curves come nearer to each
+other than their particles do, the particles of that crossing keep farther by as much, which is renewed as they slide.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim_core.weave.common_waves import CommonWaves
+from sim_core.weave.curve_gaps import curve_gaps
+from sim_core.weave.particle_forces import side_forces
+from sim_core.weave.particle_scale import Scale
+from sim_core.weave.settling import Outcome, Yarns
+
+__all__ = ["rest_of_figure"]
+
+SOFT = 20.0  # stiffness of the contact, x largest crossing force
+TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between two looks at the contacts
+LAST = 50  # steps without waves in which it must come to rest
+FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
+PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
+
+
+def rest_of_figure(
+    yarns: Yarns, scale: Scale, begun: Outcome, *, tolerance: float, overlap: float, most: int
+) -> Outcome:
+    """Bring yarns that the plain way did not bring to rest to it, or to `most` steps; begun: how that way ended.
+
+    overlap: of curves [D] that is allowed, and of the gap of two that press.
+    """
+    picks, ends = yarns.lift.shape
+    stiff = SOFT * yarns.hardest
+    for array in yarns.offsets:  # presses as before
+        array *= begun.stiff / stiff
+    apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
+    waves = CommonWaves.of((picks, ends), yarns.per, yarns.numbers, stiff)
+    steps, turn, done = begun.steps, 0, begun
+    while steps < most:
+        look = turn % ROUND == 0
+        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, renew=look and turn > 0)
+        steps += done.steps
+        if look:
+            _measure(gaps, yarns, scale)
+            apart = np.clip(apart - gaps, 0.0, FARTHEST)
+        if done.residual <= tolerance and -gaps.min() <= overlap:
+            done = yarns.settle(stiff, LAST, apart=apart, tolerance=tolerance)
+            steps += done.steps
+            _measure(gaps, yarns, scale)
+            deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
+            if done.residual <= tolerance and deepest <= overlap:
+                return Outcome(done.residual, deepest, done.energy, steps, stiff)
+        wu, wz, fu, fz = yarns.places
+        waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
+        turn += 1
+    _measure(gaps, yarns, scale)
+    deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
+    return Outcome(done.residual, deepest, done.energy, steps, stiff)
+
+
+def _measure(gaps: np.ndarray, yarns: Yarns, scale: Scale) -> None:
+    """Fill gaps (picks, ends, 2) [D] of the curves at every crossing, round the warp and round the weft."""
+    l1, l2 = yarns.numbers[:2]
+    curve_gaps(*yarns.places, yarns.lift, yarns.per, l1, l2, *scale.wide, *scale.reach, gaps)
+
+
+def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
+    """Deepest overlap of curves, or widest gap of two that press on each other [D]."""
+    nearest = gaps.min(axis=2)
+    pressed = pressing > PRESSED * pressing.max()
+    return float(max(-nearest.min(), nearest[pressed].max(initial=0.0)))
+
+
+def _of_neighbours(yarns: Yarns) -> float:
+    """Deepest overlap of neighbours of one system, or widest gap across which they press [D]."""
+    *_, p1, p2, wide1, high1, wide2, high2, _, _ = yarns.numbers
+    found = 0.0
+    wu, wz, fu, fz = yarns.places
+    for u, z, spacing, wide, high, held in (
+        (wu, wz, p1, wide1, high1, yarns.offsets[1]),
+        (fu, fz, p2, wide2, high2, yarns.offsets[2]),
+    ):
+        if wide > 0:
+            spare = np.zeros_like(u)
+            deep = side_forces(
+                u, z, spacing, wide, high, 1.0, spare, spare, held, False, False, spare, spare, 0
+            )
+            found = max(found, deep[1])
+    return found
