@@ -7,6 +7,9 @@ other than their particles do, the particles of that crossing keep farther by as
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import ceil
+
 import numpy as np
 
 from sim_core.weave.common_waves import CommonWaves
@@ -18,9 +21,19 @@ from sim_core.weave.settling import Outcome, Yarns
 __all__ = ["rest_of_figure"]
 
 SOFT = 20.0  # stiffness of the contact, x largest crossing force
-TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between two looks at the contacts
+TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between two looks at the curves
 LAST = 50  # steps without waves in which it must come to rest
 FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
+SLIDE = 0.5  # of D, that yarns slide sideways and their contacts must follow
+TURNED, LEAST = (
+    2e-3,
+    0.05,
+)  # of D, a gap that turns to overlap and back by more is followed more slowly, down to so much
+FREE, STICK, SLID = (
+    40,
+    15,
+    0.03,
+)  # moves until crossings may stick; between two times; of D, away from where they stuck
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 
@@ -33,37 +46,70 @@ def rest_of_figure(
     """
     picks, ends = yarns.lift.shape
     stiff = SOFT * yarns.hardest
+    yarns = _reaching(yarns, scale)
     for array in yarns.offsets:  # presses as before
         array *= begun.stiff / stiff
     apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
     waves = CommonWaves.of((picks, ends), yarns.per, yarns.numbers, stiff)
+    calm, stuck = np.ones_like(gaps), None
     steps, turn, done = begun.steps, 0, begun
     while steps < most:
         look = turn % ROUND == 0
-        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, renew=look and turn > 0)
+        if turn >= FREE and turn % STICK == 0:
+            stuck = _stuck(yarns, stuck)
+        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, stuck=stuck, renew=look and turn > 0)
         steps += done.steps
         if look:
-            _measure(gaps, yarns, scale)
-            apart = np.clip(apart - gaps, 0.0, FARTHEST)
+            before = gaps.copy()
+            _measure(gaps, yarns)
+            turned = (before * gaps < 0) & (np.abs(before - gaps) > TURNED)
+            calm = np.clip(np.where(turned, 0.5, 1.1) * calm, LEAST, 1.0)
+            apart = np.clip(apart - calm * gaps, 0.0, FARTHEST)
         if done.residual <= tolerance and -gaps.min() <= overlap:
-            done = yarns.settle(stiff, LAST, apart=apart, tolerance=tolerance)
+            done = yarns.settle(stiff, LAST, apart=apart, stuck=stuck, tolerance=tolerance)
             steps += done.steps
-            _measure(gaps, yarns, scale)
+            _measure(gaps, yarns)
             deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
             if done.residual <= tolerance and deepest <= overlap:
                 return Outcome(done.residual, deepest, done.energy, steps, stiff)
         wu, wz, fu, fz = yarns.places
         waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
         turn += 1
-    _measure(gaps, yarns, scale)
+    _measure(gaps, yarns)
     deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
     return Outcome(done.residual, deepest, done.energy, steps, stiff)
 
 
-def _measure(gaps: np.ndarray, yarns: Yarns, scale: Scale) -> None:
+def _reaching(yarns: Yarns, scale: Scale) -> Yarns:
+    """The same yarns, but particles as far beyond a crossing as they slide here may touch, too."""
+    old = scale.reach
+    most = yarns.per * min(yarns.lift.shape) - 1
+    new = [
+        min(reach + ceil(SLIDE / piece), yarns.per - 1, most)
+        for reach, piece in zip(old, scale.piece, strict=True)
+    ]
+    held = np.zeros((*yarns.lift.shape, 2 * (sum(new) + 1)))
+    for first, second, start in ((0, 0, 0), (2 * old[0] + 1, 2 * new[0] + 1, 1)):
+        width, wider = 2 * old[start] + 1, new[start] - old[start]
+        held[:, :, second + wider : second + wider + width] = yarns.offsets[0][:, :, first : first + width]
+    numbers = (*yarns.numbers[:8], float(new[0]), float(new[1]), *yarns.numbers[10:])
+    return replace(yarns, numbers=numbers, offsets=(held, *yarns.offsets[1:]))
+
+
+def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
+    """(picks, ends, 2) places of both yarns at each crossing: where it stuck before, unless it slid away from there."""
+    wu, _, fu, _ = yarns.places
+    here = np.dstack([wu[:, :: yarns.per].T, fu[:, :: yarns.per]])
+    if before is None:
+        return here
+    away = np.hypot(*np.moveaxis(here - before, 2, 0)) > SLID
+    return np.where(away[..., None], here, before)
+
+
+def _measure(gaps: np.ndarray, yarns: Yarns) -> None:
     """Fill gaps (picks, ends, 2) [D] of the curves at every crossing, round the warp and round the weft."""
-    l1, l2 = yarns.numbers[:2]
-    curve_gaps(*yarns.places, yarns.lift, yarns.per, l1, l2, *scale.wide, *scale.reach, gaps)
+    l1, l2, _, _, _, _, wide1, wide2, reach1, reach2 = yarns.numbers[:10]
+    curve_gaps(*yarns.places, yarns.lift, yarns.per, l1, l2, wide1, wide2, int(reach1), int(reach2), gaps)
 
 
 def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:

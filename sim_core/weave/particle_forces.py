@@ -17,6 +17,7 @@ NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of th
 # share of the focal distance on it is held to the place below it; the curve's own particles touch on both flanks.
 BOWL = 0.6
 FARTHEST = 0.05  # a contact is set out
+STATIC = 0.2  # by how much static friction exceeds sliding friction
 SKIN = 1.08  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
@@ -184,7 +185,8 @@ def touch(
 
 @njit(cache=True, error_model="numpy")
 def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, turns, apart):  # fmt: skip
+                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, turns, apart,
+                   stuck):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
     wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
@@ -198,6 +200,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifted.py).
     apart: empty, or (picks, ends, 2) [D] by how much points keep farther from the warp and from the weft, so that the
     curves keep apart between the particles too (see curve_gaps).
+    stuck: empty, or (picks, ends, 2) [D] places of end and pick at which a crossing came to stick: static friction.
     """
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
@@ -256,6 +259,14 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
             if friction > 0.0:
                 x, y = wu[e, c1], fu[i, c2]
                 hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
+                if len(stuck):
+                    dx, dy = x - stuck[i, j, 0], y - stuck[i, j, 1]
+                    more = STATIC * friction * pressing[i, j] / sqrt(dx * dx + dy * dy + slip * slip)
+                    gwu[e, c1] -= more * dx
+                    gfu[i, c2] -= more * dy
+                    if weigh:
+                        hwu[e, c1] += more
+                        hfu[i, c2] += more
                 gwu[e, c1] -= hold * x
                 gfu[i, c2] -= hold * y
                 if weigh:

@@ -58,18 +58,21 @@ class Yarns:
         *,
         pins: np.ndarray | None = None,
         apart: np.ndarray | None = None,
+        stuck: np.ndarray | None = None,
         tolerance: float = -1.0,
         overlap: float = 1.0,
         renew: bool = False,
     ) -> Outcome:
         """At most `most` steps with contact of this stiffness, fewer if it comes to rest within tolerance and overlap.
 
-        pins: (n, 6) as of curve_overlap.  apart: (picks, ends, 2) as of contact_forces.  renew: set contacts out first.
+        pins: (n, 6) as of curve_overlap.  apart, stuck: (picks, ends, 2) as of contact_forces.
+        renew: set contacts out first.
         """
         return Outcome(
             *settle(
                 self.places, self.forces, self.lift, self.pressing, self.offsets, self.motion,
                 np.zeros((0, 6)) if pins is None else pins, np.zeros((0, 0, 2)) if apart is None else apart,
+                np.zeros((0, 0, 2)) if stuck is None else stuck,
                 self.shifts, self.per, self.numbers, stiff, tolerance, overlap, most, renew, self.watch,
             )
         )  # fmt: skip
@@ -77,12 +80,12 @@ class Yarns:
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def settle(
-    places, forces, lift, pressing, offsets, motion, pins, apart, turns, per, numbers, stiff, tolerance, overlap, most,
-    overlapping, watch,
+    places, forces, lift, pressing, offsets, motion, pins, apart, stuck, turns, per, numbers, stiff, tolerance, overlap,
+    most, overlapping, watch,
 ):  # fmt: skip
     """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
     high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
-    forces: written.  apart: as of contact_forces.
+    forces: written.  apart, stuck: as of contact_forces.
     motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
     turns: (ends,) as of contact_forces, and those of the next end and pick in side_forces, or empty.
     overlapping: contacts are to be set out at once.  watch: (2,) steps and residual, written.
@@ -125,7 +128,7 @@ def settle(
             side = max(side, other)
         more, deepest, largest = contact_forces(
             wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, at, apart,
+            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, at, apart, stuck,
         )  # fmt: skip
         energy += more
         deepest = max(deepest, side)
