@@ -25,15 +25,10 @@ TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between t
 LAST = 50  # steps without waves in which it must come to rest
 FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
 SLIDE = 0.5  # of D, that yarns slide sideways and their contacts must follow
-TURNED, LEAST = (
-    2e-3,
-    0.05,
-)  # of D, a gap that turns to overlap and back by more is followed more slowly, down to so much
-FREE, STICK, SLID = (
-    40,
-    15,
-    0.03,
-)  # moves until crossings may stick; between two times; of D, away from where they stuck
+TURNED = 2e-3  # of D: a gap that turns to overlap and back by more is followed by half, down to LEAST
+LEAST = 0.05
+FREE, STICK = 20, 15  # moves until yarns that slid may stick, and between two such times
+SLID = 0.03  # of D, away from where they stuck
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 

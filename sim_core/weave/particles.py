@@ -171,10 +171,11 @@ def _pinned(yarns: Yarns, scale: Scale, stiff: float, tolerance: float, most: in
             stiff, turn, pins=pins, tolerance=rough * tolerance, overlap=OVERLAP, renew=deep > OVERLAP
         )
         steps, stiff = steps + done.steps, done.stiff
-        between, new = curve_overlap(
+        asked: list = [
             *yarns.places, yarns.lift, yarns.per, l1, l2, wide_x, wide_y, *scale.reach, pins,
             max(PINNED, done.overlap), yarns.shifts[0],
-        )  # fmt: skip
+        ]  # fmt: skip
+        between, new = curve_overlap(*asked)
         deep = done.overlap
         done = Outcome(done.residual, max(deep, between), done.energy, steps, stiff)
         if steps >= most or _rests(done, tolerance):
