@@ -47,7 +47,7 @@ class CommonWaves:
     ) -> None:
         """Add the waves that answer the forces to the heights warp (ends, picks * per), weft (picks, ends * per)."""
         force = gathered(warp_force, self.per).T + gathered(weft_force, self.per)
-        wave = SHARE * irfft2(rfft2(force) / self.stiffness, force.shape)
+        wave = SHARE * np.asarray(irfft2(np.asarray(rfft2(force)) / self.stiffness, force.shape))
         warp += resampled(wave.T, self.per)
         weft += resampled(wave, self.per)
 
@@ -62,5 +62,5 @@ def gathered(force: np.ndarray, per: int) -> np.ndarray:
         (1 + 2 * t) * (1 - t) ** 2 + turn * t * t * (3 - 2 * t)
         + slope * (t * (1 - t) ** 2 - turn * t * t * (1 - t))
     )  # fmt: skip
-    modes = rfft(force.reshape(len(force), count, per), axis=1)
-    return irfft((modes * np.conj(way)).sum(axis=2), count, axis=1)
+    modes = np.asarray(rfft(force.reshape(len(force), count, per), axis=1))
+    return np.asarray(irfft((modes * np.conj(way)).sum(axis=2), count, axis=1))

@@ -10,6 +10,12 @@ __all__ = ["curve_gaps"]
 
 @njit(cache=True, error_model="numpy")
 def curve_gaps(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, gaps):
+    """How far the curves of crossing yarns are from touching, in each of the two norms; less than 0 where they overlap.
+
+    wu, wz: (ends, picks * per), fu, fz: (picks, ends * per) [D], curves through these as in curve_overlap, the minima
+    of whose distance are found likewise.  gaps: (picks, ends, 2) [D], written: round the warp, round the weft; yarns
+    farther than 1 D beyond touching count as that far.
+    """
     picks, ends = lift.shape
     rows, columns = 4 * reach1 + 1, 4 * reach2 + 1
     warp, weft, grid = np.zeros((rows, 2)), np.zeros((columns, 2)), np.zeros((rows, columns))

@@ -104,7 +104,9 @@ def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
 def _measure(gaps: np.ndarray, yarns: Yarns) -> None:
     """Fill gaps (picks, ends, 2) [D] of the curves at every crossing, round the warp and round the weft."""
     l1, l2, _, _, _, _, wide1, wide2, reach1, reach2 = yarns.numbers[:10]
-    curve_gaps(*yarns.places, yarns.lift, yarns.per, l1, l2, wide1, wide2, int(reach1), int(reach2), gaps)
+    wu, wz, fu, fz = yarns.places
+    one, two = int(reach1), int(reach2)
+    curve_gaps(wu, wz, fu, fz, yarns.lift, yarns.per, l1, l2, wide1, wide2, one, two, gaps)
 
 
 def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
