@@ -241,6 +241,7 @@ def _pinned(s, aside, held, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, g
         hz2,
         aside,
         held,
+        1.0,
         out,
     )
     if more > 0.0:

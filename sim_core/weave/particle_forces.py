@@ -17,6 +17,7 @@ NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of th
 # share of the focal distance on it is held to the place below it; the curve's own particles touch on both flanks.
 BOWL = 0.6
 FARTHEST = 0.05  # a contact is set out
+STATIC = 0.2  # by how much static friction exceeds sliding friction
 SKIN = 1.08  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
@@ -78,7 +79,27 @@ def set_out(held, norm):
 
 @njit(cache=True, error_model="numpy")
 def touch(
-    c, d, z, u2, z2, yarn2, base, l2, reach, wide_d, sign, stiff, fu2, fz2, weigh, hu2, hz2, aside, held, out
+    c,
+    d,
+    z,
+    u2,
+    z2,
+    yarn2,
+    base,
+    l2,
+    reach,
+    wide_d,
+    sign,
+    stiff,
+    fu2,
+    fz2,
+    weigh,
+    hu2,
+    hz2,
+    aside,
+    held,
+    one,
+    out,
 ):
     """Contact of a point with the curve of a crossing yarn.
 
@@ -87,6 +108,7 @@ def touch(
     dc^2 + (dd / wide_d)^2 + dz^2 is found by Newton: a flat section lies on the yarn that it crosses and turns with its
     slope. sign: +1 where the point belongs above.  aside: pieces from the place below the point to where Newton starts.
     held: by how much the contact is set out, in D; where that is too much, it presses across a gap, told as overlap.
+    one: the norm at which they touch, 1, or more where the curves come nearer to each other than the point does.
     Adds the reaction to fu2, fz2; writes force on the point along c, along z, overlap, pressing force, the contact's
     stiffness along c and z, and the norm to out. weigh: add the stiffness that the curve's particles feel to hu2, hz2.
     """
@@ -137,9 +159,9 @@ def touch(
         high = 0.05
     norm = sqrt(dc * dc + dd * dd / (wide_d * wide_d) + high * high)
     out[6] = norm
-    if norm >= 1.0 + held:
+    if norm >= one + held:
         return 0.0
-    press = stiff * (1.0 + held - norm)
+    press = stiff * (one + held - norm)
     along_c, along_d, along_z = (
         press * dc / norm, press * dd / (wide_d * wide_d * norm), press * sign * high / norm
     )  # fmt: skip
@@ -157,13 +179,14 @@ def touch(
             hu2[yarn2, n] += w * stiff_d
             hz2[yarn2, n] += w * stiff_z
         out[4], out[5] = stiff * (dc / norm) ** 2, stiff_z
-    out[0], out[1], out[2], out[3] = along_c, along_z, abs(1.0 - norm), press * high / norm
-    return 0.5 * press * (1.0 + held - norm)
+    out[0], out[1], out[2], out[3] = along_c, along_z, abs(one - norm), press * high / norm
+    return 0.5 * press * (one + held - norm)
 
 
 @njit(cache=True, error_model="numpy")
 def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, turns):  # fmt: skip
+                   reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, turns, apart,
+                   stuck):  # fmt: skip
     """Add contact and friction at every crossing. Returns (energy, deepest overlap, largest pressing force).
 
     wu, wz (ends, picks * per), fu, fz (picks, ends * per) and their forces g...; lift (picks, ends).
@@ -175,6 +198,9 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
     sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
     place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifted.py).
+    apart: empty, or (picks, ends, 2) [D] by how much points keep farther from the warp and from the weft, so that the
+    curves keep apart between the particles too (see curve_gaps).
+    stuck: empty, or (picks, ends, 2) [D] places of end and pick at which a crossing came to stick: static friction.
     """
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
@@ -187,17 +213,18 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
             e = 0 if len(turns) else j
             c1, c2 = turns[j] if len(turns) else i * per, j * per
             total = 0.0
+            one_f, one_w = (1.0 + apart[i, j, 0], 1.0 + apart[i, j, 1]) if len(apart) else (1.0, 1.0)
             for a in range(-reach1, reach1 + 1):
                 if not weigh and near[i, j, reach1 + a] == 0:
                     continue
                 n = c1 + a
                 n = n + n1 if n < 0 else n - n1 if n >= n1 else n
                 more = touch(wu[e, n], a * l1, wz[e, n], fu, fz, i, c2, l2, reach2, wide_y, sign, stiff,
-                              gfu, gfz, weigh, hfu, hfz, 0.0, held[i, j, reach1 + a], out)  # fmt: skip
+                              gfu, gfz, weigh, hfu, hfz, 0.0, held[i, j, reach1 + a], one_w, out)  # fmt: skip
                 if weigh:
                     near[i, j, reach1 + a] = out[6] < SKIN
                 if renew:
-                    held[i, j, reach1 + a] = set_out(held[i, j, reach1 + a], out[6])
+                    held[i, j, reach1 + a] = set_out(held[i, j, reach1 + a], out[6] + (1.0 - one_w))
                 if more == 0.0:
                     continue
                 energy += more
@@ -214,11 +241,11 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
                 n = c2 + b
                 n = n + n2 if n < 0 else n - n2 if n >= n2 else n
                 more = touch(fu[i, n], b * l2, fz[i, n], wu, wz, e, c1, l1, reach1, wide_x, -sign, stiff,
-                              gwu, gwz, weigh, hwu, hwz, 0.0, held[i, j, second + b], out)  # fmt: skip
+                              gwu, gwz, weigh, hwu, hwz, 0.0, held[i, j, second + b], one_f, out)  # fmt: skip
                 if weigh:
                     near[i, j, second + b] = out[6] < SKIN
                 if renew:
-                    held[i, j, second + b] = set_out(held[i, j, second + b], out[6])
+                    held[i, j, second + b] = set_out(held[i, j, second + b], out[6] + (1.0 - one_f))
                 if more == 0.0:
                     continue
                 energy += more
@@ -232,6 +259,14 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
             if friction > 0.0:
                 x, y = wu[e, c1], fu[i, c2]
                 hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
+                if len(stuck):
+                    dx, dy = x - stuck[i, j, 0], y - stuck[i, j, 1]
+                    more = STATIC * friction * pressing[i, j] / sqrt(dx * dx + dy * dy + slip * slip)
+                    gwu[e, c1] -= more * dx
+                    gfu[i, c2] -= more * dy
+                    if weigh:
+                        hwu[e, c1] += more
+                        hfu[i, c2] += more
                 gwu[e, c1] -= hold * x
                 gfu[i, c2] -= hold * y
                 if weigh:

@@ -11,23 +11,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from sim_core.errors import WeaveError
-from sim_core.weave.closest_pairs import curve_overlap, pin_forces
+from sim_core.weave.closest_pairs import curve_overlap
+from sim_core.weave.figures import rest_of_figure
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.jam import check_jam
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
-from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.particle_scale import Scale, crimp_of
+from sim_core.weave.settling import Outcome, Yarns
 from sim_core.weave.shifted import MANY, turns_of
-from sim_core.weave.yarn_steps import advance, factored, power
 
 __all__ = ["NotAtRest", "ParticleCell", "relax_particles"]
 
 RESIDUAL = 1e-3
-DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
 OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
 PINNED, PROMISED = 4.2e-4, 5e-4
 LOOK = 300  # steps after which pins are sought again though the yarns still move
@@ -35,13 +33,12 @@ ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
+FIGURE, BEGIN = (
+    500,
+    100,
+)  # crossings from which it is a figure, relaxed another way if it is not at rest in so many steps
 YARN_FRICTION = 0.3
-LONGEST_STEP = 0.7  # x 1 / fastest frequency
-SHORTER, PATIENCE, SHORTEST = 0.8, 800, 0.3  # of that, after so many steps without gain, down to so many
 STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
-SLACK = 1.0  # EI/l^3 on the diagonal: contacts that come between two weighings must not throw a yarn
-WEIGH, FADE = 10, 0.99  # steps between two weighings of the particles, and how slowly a mass may fall
-SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossings
 
 
 class NotAtRest(WeaveError):
@@ -85,104 +82,6 @@ class ParticleCell:
         return float(np.ptp(self.warp_height, axis=1).max()), float(np.ptp(self.weft_height, axis=1).max())
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _settle(
-    places, lift, pressing, offsets, motion, pins, turns, per, numbers, stiff, tolerance, overlap, most, overlapping,
-    watch,
-):  # fmt: skip
-    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
-    high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
-    motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
-    turns: (ends,) as of contact_forces, and those of the next end and pick in side_forces, or empty.
-    overlapping: contacts are to be set out at once.  watch: (2,) steps and residual, written.
-    Returns (residual, overlap, energy, steps, stiffness)."""
-    wu, wz, fu, fz = places
-    held, held1, held2 = offsets
-    speed1, speed2, way1, way2 = motion
-    l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
-    reach1, reach2 = int(r1), int(r2)
-    gwu, gwz, gfu, gfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    (vwu, vwz), (vfu, vfz) = speed1, speed2
-    hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
-    near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
-    made1, made2 = np.zeros((2, *wu.shape, 5)), np.zeros((2, *fu.shape, 5))
-    bend1, bend2, pull1, pull2 = e1 / l1**3, e2 / l2**3, t1 / l1, t2 / l2
-    at, side1, side2 = turns
-    residual, deepest, before, energy, steps = np.inf, np.inf, np.inf, 0.0, 0
-    longest, best, since = LONGEST_STEP, np.inf, 0
-    for step in range(most):
-        steps = step + 1
-        renew = overlapping
-        weigh = renew or step % WEIGH == 0
-        overlapping = False
-        gwu[:], gwz[:], gfu[:], gfz[:] = 0.0, 0.0, 0.0, 0.0
-        if weigh:
-            hwu[:], hwz[:], hfu[:], hfz[:] = 0.0, 0.0, 0.0, 0.0
-        energy = yarn_forces(wu, wz, l1, e1, t1, gwu, gwz) + yarn_forces(fu, fz, l2, e2, t2, gfu, gfz)
-        side = 0.0
-        if s1 > 0:
-            more, side = side_forces(
-                wu, wz, p1, s1, h1, SIDE * stiff, gwu, gwz, held1, renew, weigh, hwu, hwz, side1
-            )
-            energy += more
-        if s2 > 0:
-            more, other = side_forces(
-                fu, fz, p2, s2, h2, SIDE * stiff, gfu, gfz, held2, renew, weigh, hfu, hfz, side2
-            )
-            energy += more
-            side = max(side, other)
-        more, deepest, largest = contact_forces(
-            wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, held, renew, per, l1, l2, wide_x, wide_y,
-            reach1, reach2, stiff, friction, slip, weigh, hwu, hwz, hfu, hfz, at,
-        )  # fmt: skip
-        energy += more
-        deepest = max(deepest, side)
-        if len(pins):
-            more, deep, most_pressed = pin_forces(
-                pins, wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, per, l1, l2, wide_x, wide_y, reach1, reach2,
-                stiff, renew, weigh, hwu, hwz, hfu, hfz, at,
-            )  # fmt: skip
-            energy, deepest, largest = energy + more, max(deepest, deep), max(largest, most_pressed)
-        if weigh:
-            for m, h, bend, pull, made in (
-                (mwu, hwu, bend1, pull1, made1[0]),
-                (mwz, hwz, bend1, pull1, made1[1]),
-                (mfu, hfu, bend2, pull2, made2[0]),
-                (mfz, hfz, bend2, pull2, made2[1]),
-            ):
-                for y in range(m.shape[0]):
-                    for k in range(m.shape[1]):
-                        m[y, k] = max(SLACK * bend + 3.0 * h[y, k], FADE * m[y, k])
-                factored(m, bend, pull, made)
-        worst = max(power(vwu, vwz, gwu, gwz, way1), power(vfu, vfz, gfu, gfz, way2))
-        residual = worst / max(largest, 1e-300)
-        watch[0], watch[1] = watch[0] + 1, residual
-        if residual < 0.7 * best:
-            best, since = residual, step
-        elif (
-            step - since > PATIENCE
-        ):  # some particles flutter between touching and not: smaller steps calm them
-            longest, best, since = max(SHORTER * longest, SHORTEST), residual, step
-        if weigh and residual < tolerance:
-            if deepest <= overlap:
-                break
-            if not renew:
-                # at rest, but the yarns overlap: contacts are set out by as much, and stiffened where that helps little
-                if deepest > max(DEEP, HELPED * before):
-                    factor = min(max(deepest / DEEP, 2.0), 20.0)
-                    stiff *= factor
-                    held /= factor
-                    held1 /= factor
-                    held2 /= factor
-                    pins[:, 5] /= factor
-                overlapping, before = True, deepest
-                continue
-        advance(wu, wz, vwu, vwz, gwu, gwz, made1[0], made1[1], way1, longest)
-        advance(fu, fz, vfu, vfz, gfu, gfz, made2[0], made2[1], way2, longest)
-    return residual, deepest, energy, steps, stiff
-
-
 def relax_particles(
     weave: Weave,
     *,
@@ -221,40 +120,26 @@ def relax_particles(
     pressing = first.force[one] / scale.force
     stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
-    l1, l2, wide_x, wide_y = *numbers[:2], *numbers[6:8]
-    deep, steps, pins = 0.0, 0, np.zeros((0, 6))
     offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
     for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
         offsets[0][:, :, middle] = pressing / (2 * stiff)
     places = wu, wz, fu, fz
-    watch = np.zeros(2) if watch is None else watch
     ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
     motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
-    for rough in (*ROUGH, *(1.0,) * ROUNDS):
-        turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
-        residual, deepest, energy, more, stiff = _settle(
-            places, lift, pressing, offsets, motion, pins, shifts, per, numbers, stiff, rough * tolerance, OVERLAP,
-            turn, deep > OVERLAP, watch,
-        )  # fmt: skip
-        steps += more
-        between, new = curve_overlap(
-            wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, *scale.reach, pins, max(PINNED, deepest),
-            shifts[0],
-        )  # fmt: skip
-        deep, deepest = deepest, max(deepest, between)
-        if steps >= most or residual <= tolerance and deepest <= PROMISED:
-            break
-        if deep > OVERLAP:  # not at rest: stiffer contact leaves less to set out
-            stiff *= STIFFER
-            for array in (*offsets, pins[:, 5]):
-                array /= STIFFER
-        pins = np.vstack([pins, new])
-    if residual > tolerance or deepest > PROMISED:
+    yarns = Yarns(
+        places, tuple(np.zeros_like(place) for place in places), lift, pressing, offsets, motion, shifts, per, numbers,
+        stiff / SOFT, np.zeros(2) if watch is None else watch,
+    )  # fmt: skip
+    figure = turns is None and lift.size >= FIGURE
+    done = _pinned(yarns, scale, stiff, tolerance, min(most, BEGIN) if figure else most)
+    if figure and not _rests(done, tolerance):
+        done = rest_of_figure(yarns, scale, done, tolerance=tolerance, overlap=PROMISED, most=most)
+    if not _rests(done, tolerance):
         raise NotAtRest(
-            f"weave {weave.name}: the yarns do not come to rest (residual {residual:.1e}, overlap {deepest:.1e} D, "
-            f"after {steps} steps) – lower the sett, or allow a larger residual"
+            f"weave {weave.name}: the yarns do not come to rest (residual {done.residual:.1e}, "
+            f"overlap {done.overlap:.1e} D, after {done.steps} steps) – lower the sett, or allow a larger residual"
         )
-    crimp1, crimp2 = crimp_of(wu, wz, l1), crimp_of(fu, fz, l2)
+    crimp1, crimp2, energy = crimp_of(wu, wz, numbers[0]), crimp_of(fu, fz, numbers[1]), done.energy
     sides = [place * scale.length for place in (wu, wz, fu, fz)]
     force = pressing * scale.force
     if turns is not None:
@@ -266,6 +151,38 @@ def relax_particles(
         )
     wu, wz, fu, fz = sides
     return ParticleCell(
-        per, wu, wz, fu, fz, force, crimp1, crimp2, float(residual), float(deepest),
-        float(energy) * scale.force * scale.length, friction, int(steps),
+        per, wu, wz, fu, fz, force, crimp1, crimp2, float(done.residual), float(done.overlap),
+        float(energy) * scale.force * scale.length, friction, int(done.steps),
     )  # fmt: skip
+
+
+def _rests(done: Outcome, tolerance: float) -> bool:
+    return done.residual <= tolerance and done.overlap <= PROMISED
+
+
+def _pinned(yarns: Yarns, scale: Scale, stiff: float, tolerance: float, most: int) -> Outcome:
+    """Rounds of rest and pins, of contact that is stiffened where the yarns still overlap."""
+    deep, steps, pins = 0.0, 0, np.zeros((0, 6))
+    l1, l2, wide_x, wide_y = *yarns.numbers[:2], *yarns.numbers[6:8]
+    done = Outcome(np.inf, np.inf, 0.0, 0, stiff)
+    for rough in (*ROUGH, *(1.0,) * ROUNDS):
+        turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
+        done = yarns.settle(
+            stiff, turn, pins=pins, tolerance=rough * tolerance, overlap=OVERLAP, renew=deep > OVERLAP
+        )
+        steps, stiff = steps + done.steps, done.stiff
+        asked: list = [
+            *yarns.places, yarns.lift, yarns.per, l1, l2, wide_x, wide_y, *scale.reach, pins,
+            max(PINNED, done.overlap), yarns.shifts[0],
+        ]  # fmt: skip
+        between, new = curve_overlap(*asked)
+        deep = done.overlap
+        done = Outcome(done.residual, max(deep, between), done.energy, steps, stiff)
+        if steps >= most or _rests(done, tolerance):
+            break
+        if deep > OVERLAP:  # not at rest: stiffer contact leaves less to set out
+            stiff *= STIFFER
+            for array in (*yarns.offsets, pins[:, 5]):
+                array /= STIFFER
+        pins = np.vstack([pins, new])
+    return done

@@ -27,7 +27,8 @@ class SurfaceMaps:
 
     albedo, normal: (n, n, 3) uint8; normal as glTF has it (x right, y up).  height, opacity: (n, n) uint8.
     roughness: (n, n) uint8, of the highlight across the yarn.  direction: (n, n, 3) uint8, red and green the direction
-    of the yarn (glTF's anisotropy texture: cos, sin to 0..255, y up), blue its strength.
+    of the yarn (glTF's anisotropy texture: cos, sin to 0..255, y up), blue its strength; angles from -45 to 135
+    degrees, so that neither warp nor weft turns round between neighbouring pixels, which filters would blend to naught.
     yarn: (n, n) uint16, number of the yarn on top plus 1, 0 in gaps.
     size: (x, y) [m] of the tile.  relief: [m] between height 0 and 255.  repeats: (across, up).
     """
@@ -159,6 +160,10 @@ def _resolve(height, yarn, dx, dy, run, colour, across, colours, streak, low, hi
             opacity[i, j] = int(cover * 255 + 0.5)
             spread = np.sqrt(c2 * c2 + s2 * s2)
             half = 0.5 * np.arctan2(s2, c2)
+            if (
+                half < -np.pi / 4
+            ):  # a direction and its opposite are one: turned round where neither warp nor weft runs
+                half += np.pi
             mean_tilt = tilt / cover if cover > 0 else 0.0
             rough[i, j] = int(min(0.34 + 0.5 * mean_tilt + 0.25 * (1 - cover), 1.0) * 255 + 0.5)
             direction[i, j, 0] = int((np.cos(half) / 2 + 0.5) * 255 + 0.5)

@@ -208,7 +208,7 @@ def test_contact_acts_equally_on_both_yarns():
         0.01,
         False,
     )
-    given: list = [*values, *stiffness, NO_TURNS]
+    given: list = [*values, *stiffness, NO_TURNS, *2 * [np.zeros((0, 0, 2))]]
     _, deepest, largest = contact_forces(*given)
     assert deepest > 0.05
     assert largest > 0
