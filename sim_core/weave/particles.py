@@ -33,10 +33,8 @@ ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
-FIGURE, BEGIN = (
-    500,
-    100,
-)  # crossings from which it is a figure, relaxed another way if it is not at rest in so many steps
+FIGURE = 500  # crossings from which it is a figure, relaxed another way
+BEGIN = 100  # where it is not at rest in so many steps
 YARN_FRICTION = 0.3
 STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
 
