@@ -25,8 +25,8 @@ SAG = 0.0013  # strain under the coat's own weight if spread evenly; at a neckli
 FOLD = 1.3  # bending length (B / rho g)^(1/3) in edges: below 1.15 folds look like crumpled paper
 GAP = 0.004  # [m] from the middle, which the fronts do not pass
 # On a figure that moves cloth needs room; on one that stands still the same room only squeezes it where it is narrow.
-DRESSING = Contact(0.005, 0.0025, SHELL, speed_limit=2.5, untangle=UNTANGLE)
-SETTLING = replace(DRESSING, clearance=0.003, sample_clearance=0.0015, separation=0.3)
+DRESSING = Contact(0.004, 0.002, SHELL, speed_limit=2.5, untangle=UNTANGLE, partly=True)
+SETTLING = replace(DRESSING, clearance=0.003, sample_clearance=0.0015, separation=0.3, partly=False)
 
 
 class FigureLike(Protocol):

@@ -47,7 +47,7 @@ class Schedule:
     friction: float = 0.45
     slip: float = 0.1
     frames_per_key: int = 1
-    at_rest: float = 8e-6  # [m] p99 of the displacement per frame at which it is called at rest
+    at_rest: float = 7e-6  # [m] p99 of the displacement per frame at which it is called at rest
 
     def keys(self) -> int:
         """How many key poses the arms pass, first and last included."""
