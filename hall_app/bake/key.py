@@ -10,7 +10,7 @@ from ..content.loading import Content, Exhibit
 __all__ = ["BAKE_VERSION", "bake_key"]
 
 # Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
-BAKE_VERSION = 6
+BAKE_VERSION = 7
 
 
 def bake_key(content: Content, exhibit: Exhibit) -> str:

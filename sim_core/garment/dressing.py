@@ -14,7 +14,7 @@ from sim_core.cloth.phases import schedule
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.schedule import GRAVITY, LIMIT, UNTANGLE, Pose, Schedule
+from sim_core.garment.schedule import GRAVITY, LIMIT, SHELL, UNTANGLE, Pose, Schedule
 from sim_core.garment.sewing import Cloth
 from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
@@ -24,6 +24,9 @@ OVER = 0.012  # [m] of the laid cloth above shoulders and arms
 SAG = 0.0013  # strain under the coat's own weight if spread evenly; at a neckline on sloping shoulders it is not
 FOLD = 1.3  # bending length (B / rho g)^(1/3) in edges: below 1.15 folds look like crumpled paper
 GAP = 0.004  # [m] from the middle, which the fronts do not pass
+# On a figure that moves cloth needs room; on one that stands still the same room only squeezes it where it is narrow.
+DRESSING = Contact(0.004, 0.002, SHELL, speed_limit=2.5, untangle=UNTANGLE, partly=True)
+SETTLING = replace(DRESSING, clearance=0.003, sample_clearance=0.0015, separation=0.3, partly=False)
 
 
 class FigureLike(Protocol):
@@ -41,13 +44,12 @@ class FigureLike(Protocol):
 
 @dataclass(frozen=True)
 class Worn:
-    """A dressed half: the cut cloth, its draped pattern vertices (P, 3), both runs, the seam gap before welding [m]."""
+    """A dressed half: the cut cloth, its draped pattern vertices (P, 3), all runs, the seam gap before welding [m]."""
 
     cloth: Cloth
     positions: np.ndarray
     half: Half
-    sewn: Drape
-    draped: Drape
+    runs: tuple[Drape, ...]
     gap: float
     materials: list[Material]
     choices: dict[str, str]
@@ -68,7 +70,7 @@ def dress(
     """Dresses one half; on_frame(index, pattern positions (P, 3), pose) hears 25 frames a second.
 
     stitch: the fronts stay closer to the middle than the third number [m] between two heights below the shoulder
-    [m], as a display stitch keeps them. checkpoint: file to go on from; a second is written beside it.
+    [m], as a display stitch keeps them. checkpoint: file to go on from; two more are written beside it.
     """
     cloth = pattern.cloth(edge)
     materials, kind, choices = robe_materials(
@@ -79,7 +81,6 @@ def dress(
     ]
     body = timing.body(figure.origin, figure.cell, figure.field, figure.name)
     start = laid(pattern, cloth, _laying(figure))
-    contact = Contact(0.005, 0.0025, 0.004, every=1, speed_limit=2.5, untangle=UNTANGLE)
     stages = _Stages(cloth, timing, progress, on_frame)
 
     open_ = half_sheet(cloth, cloth.joined, materials, kind, apart, even=True)
@@ -90,7 +91,7 @@ def dress(
         x,
         timing.sewing(),
         collider=body,
-        contact=contact,
+        contact=DRESSING,
         holds=holds,
         checkpoint=checkpoint,
         keep=True,
@@ -102,26 +103,33 @@ def dress(
     x = shut.gathered(sewn.positions[open_.number])
     v = shut.gathered(sewn.velocities[open_.number])
     v[shut.middle, 0] = 0.0
-    phases = timing.dressing(_nape(pattern, cloth, shut))
-    second = checkpoint.with_name(checkpoint.name + ".2") if checkpoint else None
-    draped = drape(
-        shut.sheet,
-        x,
-        phases,
-        velocities=v,
-        collider=body,
-        contact=contact,
-        holds=_holds(pattern, cloth, shut, stitch, x),
-        checkpoint=second,
-        **stages.hooks(shut, sewn.frames, phases),
-    )
-    if checkpoint:
-        checkpoint.unlink(missing_ok=True)
-    return Worn(cloth, draped.positions[shut.number], shut, sewn, draped, gap, materials, choices)
+    nape, runs = _nape(pattern, cloth, shut), [sewn]
+    files = [checkpoint.with_name(f"{checkpoint.name}.{number}") if checkpoint else None for number in (2, 3)]
+    courses = (timing.dressing(nape), DRESSING), (timing.settling(nape), SETTLING)
+    for (phases, contact), file in zip(courses, files, strict=True):
+        runs.append(
+            drape(
+                shut.sheet,
+                x,
+                phases,
+                velocities=v,
+                collider=body,
+                contact=contact,
+                holds=_holds(pattern, cloth, shut, stitch, x),
+                checkpoint=file,
+                keep=True,
+                **stages.hooks(shut, sum(run.frames for run in runs), phases),
+            )
+        )
+        x, v = runs[-1].positions, runs[-1].velocities
+    for file in (checkpoint, *files):
+        if file:
+            file.unlink(missing_ok=True)
+    return Worn(cloth, x[shut.number], shut, tuple(runs), gap, materials, choices)
 
 
 class _Stages:
-    """Turns frames and progress of the two runs into those of one."""
+    """Turns frames and progress of all runs into those of one."""
 
     def __init__(
         self,
@@ -135,7 +143,8 @@ class _Stages:
     def hooks(self, half: Half, first: int, phases: tuple[Phase, ...]) -> dict[str, Any]:
         """The keyword arguments of `drape` that report one run whose first frame is number `first`."""
         own = _frames(phases)
-        whole = _frames(self._timing.sewing()) + _frames(self._timing.dressing(()))
+        timing = self._timing
+        whole = sum(_frames(part) for part in (timing.sewing(), timing.dressing(()), timing.settling(())))
         poses = _poses(self._timing, phases)
 
         def told(fraction: float, label: str) -> None:

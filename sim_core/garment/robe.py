@@ -69,8 +69,8 @@ def robe_on_figure(
     errors = robe_errors(garment, *figure.mesh(schedule.pose))
     errors |= {
         "seam_gap_sewn_m": worn.gap,
-        "rest_p99_m": worn.draped.rest_p99,
-        "rest_max_m": worn.draped.rest_max,
+        "rest_p99_m": worn.runs[-1].rest_p99,
+        "rest_max_m": worn.runs[-1].rest_max,
         "mass_kg": 2 * float(worn.half.sheet.mass[: worn.half.real].sum()),
     }
     clock.lap("check")
@@ -83,9 +83,9 @@ def robe_on_figure(
         inputs=hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16],
         schedule=asdict(schedule),
         figure=figure.name,
-        simulated=(worn.sewn.frames + worn.draped.frames) / 25,
-        substeps=worn.sewn.substeps + worn.draped.substeps,
-        rollbacks=worn.sewn.rollbacks + worn.draped.rollbacks,
+        simulated=sum(run.frames for run in worn.runs) / 25,
+        substeps=sum(run.substeps for run in worn.runs),
+        rollbacks=sum(run.rollbacks for run in worn.runs),
         seconds=clock.laps,
         errors=errors,
     )

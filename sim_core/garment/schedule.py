@@ -14,6 +14,9 @@ __all__ = ["Pose", "Schedule"]
 
 GRAVITY = 9.81  # [m/s2]
 LIMIT = 0.04  # strain at which the threads of a softened cloth have no more to give: edges are held there
+SHELL = (
+    0.003  # [m] that two layers of a robe keep; with more, those that an elbow or an armpit squeezes strain
+)
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
@@ -29,7 +32,8 @@ class Pose:
 class Schedule:
     """Seconds of each phase, and the pose at the end.
 
-    friction: of cloth on the figure in the end; frames_per_key: film frames from one key pose to the next.
+    friction: of cloth on the figure in the end; slip: while it finds its place, as if a hand smoothed the sleeves;
+    frames_per_key: film frames from one key pose to the next.
     """
 
     pose: Pose = Pose(45.0, 12.0)
@@ -41,8 +45,9 @@ class Schedule:
     release: float = 0.6
     rest: float = 3.0
     friction: float = 0.45
+    slip: float = 0.1
     frames_per_key: int = 1
-    at_rest: float = 8e-6  # [m] p99 of the displacement per frame at which it is called at rest
+    at_rest: float = 7e-6  # [m] p99 of the displacement per frame at which it is called at rest
 
     def keys(self) -> int:
         """How many key poses the arms pass, first and last included."""
@@ -69,14 +74,31 @@ class Schedule:
         )
 
     def dressing(self, nape: tuple[int, ...]) -> tuple[Phase, ...]:
-        """From the welded robe on outstretched arms to rest; `nape`: vertices pinned while the arms come down."""
-        last = float(self.keys() - 1)
-        hanging = Phase(self.hang, (2.0, GRAVITY), 3.0, 0.15, "hanging")
-        settling = Phase(self.settle, damping=1.5, friction=0.6 * self.friction, label="settling", pins=nape)
+        """From the welded robe on outstretched arms to arms that are down; `nape`: vertices pinned meanwhile."""
         return (
-            hanging,
-            Phase(self.lower, damping=2.5, friction=0.25, label="arms down", pins=nape, body=(0.0, last)),
-            settling,
-            replace(settling, seconds=self.release, damping=5.0, friction=self.friction, pins=()),
-            Phase(self.rest, damping=10.0, friction=self.friction, label="at rest", rest=self.at_rest),
+            Phase(self.hang, (2.0, GRAVITY), 3.0, 0.15, "hanging"),
+            Phase(
+                self.lower,
+                damping=2.5,
+                friction=self.slip,
+                label="arms down",
+                pins=nape,
+                body=(0.0, self._down()),
+            ),
         )
+
+    def settling(self, nape: tuple[int, ...]) -> tuple[Phase, ...]:
+        """From arms that are down to rest; `nape`: vertices let go on the way."""
+        down = self._down(), self._down()
+        still = Phase(self.settle, damping=1.5, friction=self.slip, label="settling", pins=nape, body=down)
+        return (
+            still,
+            replace(still, seconds=self.release, damping=5.0, friction=self.friction, pins=()),
+            Phase(
+                self.rest, damping=10.0, friction=self.friction, label="at rest", rest=self.at_rest, body=down
+            ),
+        )
+
+    def _down(self) -> float:
+        """The last key."""
+        return float(self.keys() - 1)

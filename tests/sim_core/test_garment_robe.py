@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
+from sim_core.cloth.phases import schedule
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern, detail, robe_on_figure, write_glb
 from sim_core.garment.figure import Figure
@@ -77,6 +78,17 @@ def test_a_coarse_coat_keeps_the_limits(coat: Garment) -> None:
     assert 1.30 < x[:, 1].max() < 1.50
 
 
+def test_it_settles_on_the_figure_as_the_arms_came_down() -> None:
+    timing = Schedule()
+    down, still = timing.dressing((1, 2)), timing.settling((1, 2))
+    last = schedule(down)[-1].body[1]
+    assert timing.pose_of(last) == timing.pose
+    assert {moment.body for moment in schedule(still)} == {(last, last)}
+    assert still[0].pins == (1, 2)
+    assert not still[-1].pins
+    assert still[-1].rest == timing.at_rest
+
+
 @pytest.mark.slow
 def test_coat_survives_file_detail_and_model(
     coat: Garment, ling: Weave, figure: Figure, tmp_path: Path
@@ -108,7 +120,7 @@ def test_same_bits_also_after_an_interrupt(ling: Weave, figure: Figure, tmp_path
     )
     monkeypatch.setattr(draping, "CHECKPOINT_SECONDS", 0.0)
     file = tmp_path / "robe.npz"
-    for stop in (4, 15):  # while it is sewn, and while the arms come down
+    for stop in (4, 15, 21):  # while it is sewn, while the arms come down, and while it settles
 
         def halt(index: int, x: np.ndarray, pose: Pose, stop: int = stop) -> None:
             if index == stop:
