@@ -14,9 +14,7 @@ __all__ = ["Pose", "Schedule"]
 
 GRAVITY = 9.81  # [m/s2]
 LIMIT = 0.04  # strain at which the threads of a softened cloth have no more to give: edges are held there
-SHELL = (
-    0.003  # [m] that two layers of a robe keep; with more, those that an elbow or an armpit squeezes strain
-)
+SHELL = 0.003  # [m] that two layers of a robe keep; with more, what elbows and armpits squeeze is strained
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
