@@ -62,7 +62,7 @@ class PiboSettings:
     forearm the scarf falls; low: height of its middle behind, above the hip's mark.
     """
 
-    robe: float = 0.002
+    robe: float = 0.004
     cell: float = 0.008
     reach: float = 0.075
     low: float = 0.02
@@ -72,7 +72,7 @@ class PiboSettings:
     end: float = 0.24
     waves: float = 5.0
     clearance: float = 0.004
-    shell: float = 0.003
+    shell: float = 0.0025
     spring: float = 0.03  # of the shell; softened later, stacked folds would sink through each other
     self_friction: tuple[float, ...] = (0.5, 0.7, 1.0)  # falling, settling, resting
     separation: float = 0.3  # of that speed, taken while resting, lest squeezed folds bounce in their shells
