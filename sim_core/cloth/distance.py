@@ -72,14 +72,23 @@ def _box(r, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
+def _within(u, count):
+    """The nearest place in a row of `count` nodes that has one behind it; NaN, of a frame that blew up, is its begin.
+
+    min and max would hand NaN on, and as an index it leads out of the grid.
+    """
+    u = u if u > 0.0 else 0.0
+    last = count - 1.000001
+    return u if u < last else last
+
+
+@njit(cache=True, error_model="numpy")
 def _grid(r, grid, x, y, z):
     """Trilinear value and gradient; outside the box the value at its border plus the way there."""
     nx, ny, nz = grid.shape
     per = 1.0 / r[3]
     u, v, w = (x - r[0]) * per, (y - r[1]) * per, (z - r[2]) * per
-    cu = min(max(u, 0.0), nx - 1.000001)
-    cv = min(max(v, 0.0), ny - 1.000001)
-    cw = min(max(w, 0.0), nz - 1.000001)
+    cu, cv, cw = _within(u, nx), _within(v, ny), _within(w, nz)
     ox, oy, oz = (u - cu) * r[3], (v - cv) * r[3], (w - cw) * r[3]
     i, j, k = np.uint64(cu), np.uint64(cv), np.uint64(cw)
     a, b, c = cu - i, cv - j, cw - k

@@ -158,7 +158,8 @@ class _Hooks:
     def heard(self, state: RunState) -> None:
         """Hands the last frame on; kept for the film if the run may be interrupted."""
         if self.on_frame:
-            frame = state.positions.astype(np.float32)
+            with np.errstate(over="ignore"):  # too few substeps were asked for: their places may be beyond it
+                frame = state.positions.astype(np.float32)
             if self.checkpoint:
                 state.film.append(frame)
             self.on_frame(len(state.trace) - 1, frame)

@@ -30,6 +30,7 @@ from sim_core.errors import SimCoreError
 AIR_SHARE = 0.5  # of the time in which air stops a face, between two looks at it
 IMPLICIT_STEPS = 8  # a frame by backward Euler
 IMPLICIT_PASSES = 4  # over the contacts after each of them
+MOST_PINNED = 16  # sets of pins whose masses are kept
 UNTANGLE = 0.1  # of the shell's thickness: one step of taking the cloth out of itself
 _NOTHING = Packed(np.zeros(0, np.int64), np.zeros((0, 20)), np.zeros((2, 2, 2), np.float32))
 
@@ -96,6 +97,8 @@ class Engine:
             within("pins", index, len(self.order))
             inverse = self.sheet.stencil.inverse_mass.copy()
             inverse[self.number[index]] = 0.0
+            if len(self._inverse) >= MOST_PINNED:  # a live cloth may be held elsewhere in every frame
+                self._inverse = {(): self._inverse[()]}
             self._inverse[key] = inverse
         return self._inverse[key]
 

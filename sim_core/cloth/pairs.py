@@ -101,11 +101,13 @@ def hash_points(points, cell, finder):
     """
     lx = ly = lz = np.inf
     hx = hy = hz = -np.inf
+    total = 0.0
     for i in range(len(points)):
+        total += points[i, 0] + points[i, 1] + points[i, 2]  # NaN shows in a sum; min and max pass it over
         lx, hx = min(lx, points[i, 0]), max(hx, points[i, 0])
         ly, hy = min(ly, points[i, 1]), max(hy, points[i, 1])
         lz, hz = min(lz, points[i, 2]), max(hz, points[i, 2])
-    if not (hx - lx < FAR and hy - ly < FAR and hz - lz < FAR):
+    if np.isnan(total) or not (hx - lx < FAR and hy - ly < FAR and hz - lz < FAR):
         return (0, 0, 0), (0.0, 0.0, 0.0), cell  # what blew up is told by whoever checks the frame
     most = len(finder.start) - 1
     while ((hx - lx) / cell + 1.0) * ((hy - ly) / cell + 1.0) * ((hz - lz) / cell + 1.0) > most:

@@ -20,7 +20,8 @@ from sim_core.cloth import (
     Union,
     drape,
 )
-from sim_core.cloth.pairs import edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
+from sim_core.cloth.distance import distances
+from sim_core.cloth.pairs import edge_edge_pairs, finder_of, hash_points, pairs_of, vertex_face_pairs
 from sim_core.cloth.scenes import bar, equilateral_sheet, scene
 from sim_core.errors import SimCoreError
 from sim_core.garment.solids import solid_mesh
@@ -48,6 +49,31 @@ def test_distance_agrees_with_a_fine_mesh_of_the_solid(solid: Solid) -> None:
     deep = np.concatenate([vertices.mean(0)[None], 0.5 * (vertices + vertices.mean(0))])
     assert (solid.distance(deep) < 0).all()
     assert metrics.surface_distance(deep, vertices, faces) == pytest.approx(-solid.distance(deep), abs=4e-4)
+
+
+def test_places_beyond_measure_lead_out_of_no_grid() -> None:
+    """A frame that blows up asks for them before it is rolled back."""
+    grid = GridSdf.sample(
+        Capsule((0.0, 0.0, 0.0), (0.3, 0.0, 0.0), 0.1), np.full(3, -0.2), np.full(3, 0.5), 0.05
+    )
+    wild = np.random.default_rng(0).choice([np.nan, np.inf, -np.inf, 1e300, -1e300, 0.1], (2000, 3))
+    found = distances(grid.packed(), wild)
+    there = (wild == 0.1).all(1)
+    assert there.any()
+    assert np.isfinite(found[there]).all()
+    assert (found[there] == found[there][0]).all()
+    assert not np.isfinite(found[~there & np.isinf(wild).any(1) & ~np.isnan(wild).any(1)]).any()
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e300])
+def test_points_beyond_measure_lie_in_no_cell(wrong: float) -> None:
+    points = np.random.default_rng(0).random((50, 3))
+    finder = finder_of(50, 100, 60)
+    assert min(hash_points(points, 0.1, finder)[0]) > 0
+    for i in (0, 20, 49):
+        wild = points.copy()
+        wild[i, 1] = wrong
+        assert hash_points(wild, 0.1, finder)[0] == (0, 0, 0)
 
 
 def test_union_is_the_nearest_part_and_floor_counts() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
+from sim_core.cloth.engine import MOST_PINNED, Engine
 from sim_core.cloth.mending import mended
 from sim_core.cloth.rows import equilateral_sheet
 from sim_core.errors import SimCoreError
@@ -119,3 +120,14 @@ def test_an_interrupt_in_the_midst_of_a_frame_leaves_the_state_as_it_was(
             live.step()
     after = state.mode.tobytes(), state.positions.tobytes(), state.safety, state.rollbacks, state.frame
     assert after == before
+
+
+def test_pins_that_change_for_ever_take_no_more_room() -> None:
+    _, sheet, start, _ = hung()
+    engine = Engine(sheet)
+    for pin in range(len(start)):
+        engine.inverse_mass((pin,))
+    assert len(engine._inverse) <= MOST_PINNED < len(start)
+    held = engine.inverse_mass((3,))
+    assert np.flatnonzero(held == 0.0).tolist() == [engine.number[3]]
+    assert (engine.inverse_mass(()) > 0.0).all()
