@@ -52,7 +52,8 @@ class ParticleCell:
     weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
     warp_crimp: (ends,), weft_crimp: (picks,), of the curves.  residual: largest net force on a particle / largest
     crossing force.  penetration: deepest overlap of two yarns that cross, anywhere on their curves, or of particles
-    of neighbours, or widest gap across which a contact presses, in units of D, the mean height of warp and weft.
+    of neighbours, or widest gap across which a contact presses (of figures: a crossing), in units of D, the mean height
+    of warp and weft.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 
