@@ -105,15 +105,14 @@ def run(args: argparse.Namespace) -> int:
 def _relaxed(weave, particles: bool):
     """Yarn geometry, and {"note": why it is stage A} where a large repeat was too much for the particles.
 
-    Satins and twills are no large repeats: one pick of them is relaxed.
+    Satins and twills are no large repeats: one pick of them is relaxed, or pins bring them to rest soon.
     """
-    from sim_core.weave.particles import MOST_STEPS, NotAtRest
+    from sim_core.weave.particles import MOST_STEPS, NotAtRest, is_figure
     from sim_core.weave.progress import shown
-    from sim_core.weave.shifted import MANY, turns_of
     from sim_core.weave.solve import solve
 
     count = 2 * PER * weave.draft.lift.size
-    large = particles and weave.draft.lift.size > MANY and turns_of(weave.draft.lift) is None
+    large = particles and is_figure(weave.draft.lift)
     with shown(weave.name) as watch:
         if large and count > MOST_PARTICLES:
             reason = f"a repeat of {count:,} particles, more than {MOST_PARTICLES:,}"

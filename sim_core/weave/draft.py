@@ -257,8 +257,7 @@ def satin(ends: int, step: int) -> Draft:
         raise WeaveError(f"satin {ends}: step {step} makes a twill – choose 1 < step < {ends - 1}")
     if gcd(ends, step) != 1:
         good = [s for s in range(2, ends - 1) if gcd(ends, s) == 1]
-        raise WeaveError(
-            f"satin {ends}: step {step} shares a factor with {ends} – choose one of {good or 'none'}"
-        )
+        remedy = f"choose one of {good}" if good else "no regular satin has so many ends"
+        raise WeaveError(f"satin {ends}: step {step} shares a factor with {ends} – {remedy}")
     picks, columns = np.indices((ends, ends))
     return Draft(f"satin {ends}/{step}", (picks - step * columns) % ends != 0)

@@ -60,15 +60,16 @@ def rest_of_figure(
             turned = (before * gaps < 0) & (np.abs(before - gaps) > TURNED)
             calm = np.clip(np.where(turned, 0.5, 1.1) * calm, LEAST, 1.0)
             apart = np.clip(apart - calm * gaps, 0.0, FARTHEST)
-        if done.residual <= tolerance and -gaps.min() <= overlap:
-            done = yarns.settle(stiff, LAST, apart=apart, stuck=stuck, tolerance=tolerance)
+        if steps < most and done.residual <= tolerance and -gaps.min() <= overlap:
+            done = yarns.settle(stiff, min(LAST, most - steps), apart=apart, stuck=stuck, tolerance=tolerance)
             steps += done.steps
             _measure(gaps, yarns)
             deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
             if done.residual <= tolerance and deepest <= overlap:
                 return Outcome(done.residual, deepest, done.energy, steps, stiff)
-        wu, wz, fu, fz = yarns.places
-        waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
+        if steps < most:  # else what is told of the yarns must be of where they end
+            wu, wz, fu, fz = yarns.places
+            waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
         turn += 1
     _measure(gaps, yarns)
     deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))

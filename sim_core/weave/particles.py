@@ -8,7 +8,7 @@ contact is an augmented Lagrangian: it stays soft, and is set out by what it ove
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,9 +21,9 @@ from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particle_scale import Scale, crimp_of
 from sim_core.weave.settling import Outcome, Yarns
-from sim_core.weave.shifted import MANY, turns_of
+from sim_core.weave.shifted import MANY, draft_shift, turns_of
 
-__all__ = ["NotAtRest", "ParticleCell", "relax_particles"]
+__all__ = ["NotAtRest", "ParticleCell", "is_figure", "relax_particles"]
 
 RESIDUAL = 1e-3
 OVERLAP = 4.5e-4  # of D, where contact acts; what is promised, of curves everywhere, is
@@ -33,8 +33,9 @@ ROUNDS = 400  # of rest and pins
 ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
-FIGURE = 500  # crossings from which it is a figure, relaxed another way
-BEGIN = 100  # where it is not at rest in so many steps
+FIGURE = 500  # crossings from which it is a figure, unless it is a satin or a twill
+BEGIN = 100  # steps after which a figure that is not at rest is relaxed another way
+FIGURE_STEPS = 5000  # and after which pins have the rest of the steps, from the start
 YARN_FRICTION = 0.3
 STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
 
@@ -51,7 +52,8 @@ class ParticleCell:
     weft_side, weft_height: (picks, ends * per) [m].  force: (picks, ends) [N] that presses at each crossing.
     warp_crimp: (ends,), weft_crimp: (picks,), of the curves.  residual: largest net force on a particle / largest
     crossing force.  penetration: deepest overlap of two yarns that cross, anywhere on their curves, or of particles
-    of neighbours, or widest gap across which a contact presses, in units of D, the mean height of warp and weft.
+    of neighbours, or widest gap across which a contact presses (of figures: a crossing), in units of D, the mean height
+    of warp and weft.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 
@@ -96,6 +98,7 @@ def relax_particles(
     the net force on a particle, relative to the largest crossing force.  start: stage A of this weave, made if absent.
     watch: (2,) float64, steps done and residual of the last one, written as it goes for another thread to show.
     Above 10,000 crossings satins and twills are relaxed by one pick and one end, of which all others are shifts.
+    Figures (see is_figure) are relaxed by rest_of_figure first, and by pins where that does not bring them to rest.
     Raises WeaveError for a jammed sett, NotAtRest where the cell does not come to rest within `most` steps.
     """
     from sim_core.weave.relaxation import relax
@@ -107,31 +110,27 @@ def relax_particles(
     first = start or relax(weave, tolerance=1e-4)
     scale = Scale.of(weave, per)
     turns = turns_of(lift) if lift.size > MANY else None
+    figure = is_figure(lift)
     one = slice(None) if turns is None else slice(1)
     shifts = (np.zeros(0, np.int64), 0, 0) if turns is None else turns.particles(per)
     lift = lift[one]
-    wz, fz = (
-        resampled(first.warp_height.T[one], per) / scale.length,
-        resampled(first.weft_height[one], per) / scale.length,
-    )
-    wu, fu = np.zeros_like(wz), np.zeros_like(fz)
-    pressing = first.force[one] / scale.force
-    stiff = SOFT * max(float(pressing.max()), 1e-12)
     numbers = scale.numbers(friction)
-    offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
-    for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
-        offsets[0][:, :, middle] = pressing / (2 * stiff)
-    places = wu, wz, fu, fz
-    ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
-    motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
-    yarns = Yarns(
-        places, tuple(np.zeros_like(place) for place in places), lift, pressing, offsets, motion, shifts, per, numbers,
-        stiff / SOFT, np.zeros(2) if watch is None else watch,
-    )  # fmt: skip
-    figure = turns is None and lift.size >= FIGURE
-    done = _pinned(yarns, scale, stiff, tolerance, min(most, BEGIN) if figure else most)
+    watch = np.zeros(2) if watch is None else watch
+
+    def start_again() -> Yarns:
+        return _begun(first, lift, one, scale, per, numbers, shifts, watch)
+
+    yarns = start_again()
+    done = _pinned(yarns, scale, tolerance, min(most, BEGIN) if figure else most)
     if figure and not _rests(done, tolerance):
-        done = rest_of_figure(yarns, scale, done, tolerance=tolerance, overlap=PROMISED, most=most)
+        done = rest_of_figure(
+            yarns, scale, done, tolerance=tolerance, overlap=PROMISED, most=min(most, FIGURE_STEPS)
+        )
+        if not _rests(done, tolerance) and done.steps < most:  # long floats may rest by pins alone
+            yarns, before = start_again(), done.steps
+            done = _pinned(yarns, scale, tolerance, most - before)
+            done = replace(done, steps=before + done.steps)
+    wu, wz, fu, fz = yarns.places
     if not _rests(done, tolerance):
         raise NotAtRest(
             f"weave {weave.name}: the yarns do not come to rest (residual {done.residual:.1e}, "
@@ -139,7 +138,7 @@ def relax_particles(
         )
     crimp1, crimp2, energy = crimp_of(wu, wz, numbers[0]), crimp_of(fu, fz, numbers[1]), done.energy
     sides = [place * scale.length for place in (wu, wz, fu, fz)]
-    force = pressing * scale.force
+    force = yarns.pressing * scale.force
     if turns is not None:
         sides, force = turns.all_yarns(per, sides, force)
         crimp1, crimp2, energy = (
@@ -154,13 +153,40 @@ def relax_particles(
     )  # fmt: skip
 
 
+def _begun(
+    first: YarnGeometry, lift: np.ndarray, one: slice, scale: Scale, per: int, numbers: tuple[float, ...],
+    shifts: tuple, watch: np.ndarray,
+) -> Yarns:  # fmt: skip
+    """Yarns along the beams of stage A, pressing as they do, where they were woven."""
+    wz, fz = (
+        resampled(first.warp_height.T[one], per) / scale.length,
+        resampled(first.weft_height[one], per) / scale.length,
+    )
+    wu, fu = np.zeros_like(wz), np.zeros_like(fz)
+    pressing = first.force[one] / scale.force
+    hardest = max(float(pressing.max()), 1e-12)
+    offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
+    for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
+        offsets[0][:, :, middle] = pressing / (2 * SOFT * hardest)
+    places = wu, wz, fu, fz
+    ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
+    motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
+    forces = tuple(np.zeros_like(place) for place in places)
+    return Yarns(places, forces, lift, pressing, offsets, motion, shifts, per, numbers, hardest, watch)
+
+
+def is_figure(lift: np.ndarray) -> bool:
+    """Whether a large draft is no satin or twill, whose long floats rest by pins alone. lift: (picks, ends)."""
+    return lift.size >= FIGURE and draft_shift(lift) is None
+
+
 def _rests(done: Outcome, tolerance: float) -> bool:
     return done.residual <= tolerance and done.overlap <= PROMISED
 
 
-def _pinned(yarns: Yarns, scale: Scale, stiff: float, tolerance: float, most: int) -> Outcome:
+def _pinned(yarns: Yarns, scale: Scale, tolerance: float, most: int) -> Outcome:
     """Rounds of rest and pins, of contact that is stiffened where the yarns still overlap."""
-    deep, steps, pins = 0.0, 0, np.zeros((0, 6))
+    deep, steps, pins, stiff = 0.0, 0, np.zeros((0, 6)), SOFT * yarns.hardest
     l1, l2, wide_x, wide_y = *yarns.numbers[:2], *yarns.numbers[6:8]
     done = Outcome(np.inf, np.inf, 0.0, 0, stiff)
     for rough in (*ROUGH, *(1.0,) * ROUNDS):

@@ -6,9 +6,11 @@ import pytest
 from sim_core.weave import Weave, Yarn, plain, relax_particles, surface_maps
 from sim_core.weave.common_waves import CommonWaves, gathered
 from sim_core.weave.curve_gaps import curve_gaps
+from sim_core.weave.draft import Draft, satin
 from sim_core.weave.generators import damask
 from sim_core.weave.lines import resampled
 from sim_core.weave.particle_forces import STATIC, contact_forces
+from sim_core.weave.particles import NotAtRest, is_figure
 from sim_core.weave.relaxation import beam_stiffness
 from sim_core.weave.words import dressed
 
@@ -81,6 +83,36 @@ def test_a_figure_crimps_as_by_pins():
     assert way.steps != plain_way.steps
     assert way.warp_crimp.mean() == pytest.approx(plain_way.warp_crimp.mean(), rel=0.01)
     assert way.weft_crimp.mean() == pytest.approx(plain_way.weft_crimp.mean(), rel=0.01)
+
+
+@pytest.mark.parametrize("steps", [100, 101, 115, 150])
+def test_a_figure_takes_no_more_steps_than_allowed(figure, steps):
+    watch = np.zeros(2)
+    with pytest.raises(NotAtRest, match=f"after {steps} steps"):
+        relax_particles(figure[0], most=steps, watch=watch)
+    assert watch[0] == steps
+
+
+def test_satins_are_no_figures_and_rest_by_pins():
+    """Floats of 30 crossings slide too little to leave their pins, and do not come to rest the figures' way."""
+    assert not is_figure(satin(32, 23).lift)
+    assert not is_figure(np.tile(satin(8, 3).lift, (4, 4)))
+    cell = relax_particles(dressed(satin(32, 23)), most=2000)
+    assert cell.residual <= 1e-3
+    assert cell.penetration <= 5e-4
+
+
+def test_what_does_not_rest_the_figures_way_rests_by_pins_from_the_start(monkeypatch):
+    """A satin with one crossing turned over is a figure of long floats."""
+    lift = satin(32, 23).lift.copy()
+    lift[3, 5] ^= True
+    assert is_figure(lift)
+    monkeypatch.setattr("sim_core.weave.particles.FIGURE_STEPS", 150)
+    watch = np.zeros(2)
+    cell = relax_particles(dressed(Draft("turned", lift)), most=3000, watch=watch)
+    assert cell.residual <= 1e-3
+    assert cell.penetration <= 5e-4
+    assert cell.steps == watch[0] <= 3000
 
 
 def test_gaps_are_those_of_the_curves_not_of_the_particles():

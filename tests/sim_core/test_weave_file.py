@@ -1,5 +1,6 @@
 """Weave files: read, round trip, and every mistake with file, key and remedy."""
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ def test_shipped_weaves_load_and_survive_a_dictionary(path):
     weave = Weave.load(path)
     assert weave.name == path.stem
     assert Weave.from_dict(weave.to_dict()) == weave
+    assert tomllib.loads(path.read_text("utf-8"))["source"]
 
 
 def test_satin_file_with_weft_face(tmp_path):
