@@ -28,7 +28,7 @@ LOW = 0.05  # least height in the norm: yarns on the wrong side are still pushed
 
 
 @njit(cache=True, error_model="numpy")
-def _place(u, z, yarn, base, s):
+def place_on(u, z, yarn, base, s):
     """(side, height) of the curve at s pieces from particle `base`, their first and their second derivatives by s."""
     count = u.shape[1]
     k = int(floor(s))
@@ -51,15 +51,15 @@ def _place(u, z, yarn, base, s):
 
 
 @njit(cache=True, error_model="numpy")
-def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, over_y, sign):
+def polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, over_y, sign):
     """Newton from (s, t) to the nearest local minimum of the norm. Returns (s, t, squared norm).
 
     over_x, over_y: 1 / the square of the half widths.
     """
     square = 9.0
     for step in range(POLISH + 1):
-        u, z, du, dz, ddu, ddz = _place(wu, wz, end, base1, s)
-        v, y, dv, dy, ddv, ddy = _place(fu, fz, pick, base2, t)
+        u, z, du, dz, ddu, ddz = place_on(wu, wz, end, base1, s)
+        v, y, dv, dy, ddv, ddy = place_on(fu, fz, pick, base2, t)
         x, d, h = (u - t * l2) * over_x, (s * l1 - v) * over_y, z - y
         high = max(sign * h, LOW)
         square = x * x / over_x + d * d / over_y + high * high
@@ -80,6 +80,43 @@ def _polished(s, t, wu, wz, end, base1, l1, fu, fz, pick, base2, l2, over_x, ove
             break
         s, t = s + ms, t + mt
     return s, t, square
+
+
+@njit(cache=True, error_model="numpy")
+def half_pieces(u, z, yarn, base, reach, out):
+    """(side, height) of a curve at every half piece up to `reach` both ways from particle `base`, into out."""
+    for a in range(4 * reach + 1):
+        out[a, 0], out[a, 1], _, _, _, _ = place_on(u, z, yarn, base, 0.5 * a - reach)
+
+
+@njit(cache=True, error_model="numpy")
+def least_by_line(warp, weft, reach1, reach2, l1, l2, over_x, over_y, sign, norm, grid, least, where):
+    """Least squared norm along each line across the one yarn, in the second norm across the other, and where it is.
+
+    warp, weft: as half_pieces wrote them.  grid, least, where: written.  Returns how many lines there are.
+    """
+    rows, columns = 4 * reach1 + 1, 4 * reach2 + 1
+    for a in range(rows):
+        for b in range(columns):
+            x = warp[a, 0] - (0.5 * b - reach2) * l2
+            d = (0.5 * a - reach1) * l1 - weft[b, 0]
+            high = max(sign * (warp[a, 1] - weft[b, 1]), LOW)
+            grid[a, b] = x * x * over_x + d * d * over_y + high * high
+    lines = columns if norm else rows
+    for a in range(lines):
+        line = grid[:, a] if norm else grid[a]
+        where[a] = np.argmin(line)
+        least[a] = line[where[a]]
+    return lines
+
+
+@njit(cache=True, error_model="numpy")
+def is_minimum(least, a, lines):
+    """Whether line a is no farther than its neighbours, and near enough to be polished."""
+    here = least[a]
+    if here > NEAR * NEAR or (a > 0 and least[a - 1] < here):
+        return False
+    return not (a < lines - 1 and least[a + 1] < here)
 
 
 @njit(cache=True, error_model="numpy")
@@ -107,37 +144,22 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
             e, c1 = (0, turns[j]) if len(turns) else (j, i * per)
-            for a in range(rows):
-                warp[a, 0], warp[a, 1], _, _, _, _ = _place(wu, wz, e, c1, 0.5 * a - reach1)
-            for b in range(columns):
-                weft[b, 0], weft[b, 1], _, _, _, _ = _place(fu, fz, i, j * per, 0.5 * b - reach2)
+            half_pieces(wu, wz, e, c1, reach1, warp)
+            half_pieces(fu, fz, i, j * per, reach2, weft)
             for norm in range(2):
                 over_x = 1.0 / wide_x**2 if norm == 0 else 1.0
                 over_y = 1.0 / wide_y**2 if norm == 1 else 1.0
-                for a in range(rows):
-                    for b in range(columns):
-                        x = warp[a, 0] - (0.5 * b - reach2) * l2
-                        d = (0.5 * a - reach1) * l1 - weft[b, 0]
-                        high = max(sign * (warp[a, 1] - weft[b, 1]), LOW)
-                        grid[a, b] = x * x * over_x + d * d * over_y + high * high
-                # the least along each line across the one yarn, in the second norm across the other
-                lines = columns if norm else rows
-                for a in range(lines):
-                    line = grid[:, a] if norm else grid[a]
-                    where[a] = np.argmin(line)
-                    least[a] = line[where[a]]
+                lines = least_by_line(
+                    warp, weft, reach1, reach2, l1, l2, over_x, over_y, sign, norm, grid, least, where
+                )
                 fresh = len(new)
                 for a in range(lines):
                     here = least[a]
                     best = min(best, here)
-                    if (
-                        here > NEAR * NEAR
-                        or (a > 0 and least[a - 1] < here)
-                        or (a < lines - 1 and least[a + 1] < here)
-                    ):
+                    if not is_minimum(least, a, lines):
                         continue
                     s, t = 0.5 * (where[a] if norm else a) - reach1, 0.5 * (a if norm else where[a]) - reach2
-                    s1, t1, square = _polished(
+                    s1, t1, square = polished(
                         s, t, wu, wz, e, c1, l1, fu, fz, i, j * per, l2, over_x, over_y, sign
                     )
                     if square < here and abs(s1) <= reach1 + 1 and abs(t1) <= reach2 + 1:
@@ -146,9 +168,9 @@ def curve_overlap(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, rea
                     if here >= (1.0 - least_deep) ** 2:
                         continue
                     if norm:
-                        place, aside = s, t - _place(wu, wz, e, c1, s)[0] / l2
+                        place, aside = s, t - place_on(wu, wz, e, c1, s)[0] / l2
                     else:
-                        place, aside = t, s - _place(fu, fz, i, j * per, t)[0] / l1
+                        place, aside = t, s - place_on(fu, fz, i, j * per, t)[0] / l1
                     known = False
                     k = chain[i, j]
                     while k >= 0:

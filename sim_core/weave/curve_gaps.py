@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from sim_core.weave.closest_pairs import LOW, NEAR, _place, _polished
+from sim_core.weave.closest_pairs import half_pieces, is_minimum, least_by_line, polished
 
 __all__ = ["curve_gaps"]
 
@@ -24,36 +24,22 @@ def curve_gaps(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2
         for j in range(ends):
             sign = 1.0 if lift[i, j] else -1.0
             e, c1 = j, i * per
-            for a in range(rows):
-                warp[a, 0], warp[a, 1], _, _, _, _ = _place(wu, wz, e, c1, 0.5 * a - reach1)
-            for b in range(columns):
-                weft[b, 0], weft[b, 1], _, _, _, _ = _place(fu, fz, i, j * per, 0.5 * b - reach2)
+            half_pieces(wu, wz, e, c1, reach1, warp)
+            half_pieces(fu, fz, i, j * per, reach2, weft)
             for norm in range(2):
                 over_x = 1.0 / wide_x**2 if norm == 0 else 1.0
                 over_y = 1.0 / wide_y**2 if norm == 1 else 1.0
                 best = 4.0
-                for a in range(rows):
-                    for b in range(columns):
-                        x = warp[a, 0] - (0.5 * b - reach2) * l2
-                        d = (0.5 * a - reach1) * l1 - weft[b, 0]
-                        high = max(sign * (warp[a, 1] - weft[b, 1]), LOW)
-                        grid[a, b] = x * x * over_x + d * d * over_y + high * high
-                lines = columns if norm else rows
-                for a in range(lines):
-                    line = grid[:, a] if norm else grid[a]
-                    where[a] = np.argmin(line)
-                    least[a] = line[where[a]]
+                lines = least_by_line(
+                    warp, weft, reach1, reach2, l1, l2, over_x, over_y, sign, norm, grid, least, where
+                )
                 for a in range(lines):
                     here = least[a]
                     best = min(best, here)
-                    if (
-                        here > NEAR * NEAR
-                        or (a > 0 and least[a - 1] < here)
-                        or (a < lines - 1 and least[a + 1] < here)
-                    ):
+                    if not is_minimum(least, a, lines):
                         continue
                     s, t = 0.5 * (where[a] if norm else a) - reach1, 0.5 * (a if norm else where[a]) - reach2
-                    s1, t1, square = _polished(
+                    s1, t1, square = polished(
                         s, t, wu, wz, e, c1, l1, fu, fz, i, j * per, l2, over_x, over_y, sign
                     )
                     if square < here and abs(s1) <= reach1 + 1 and abs(t1) <= reach2 + 1:

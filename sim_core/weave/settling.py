@@ -154,9 +154,8 @@ def settle(
         watch[0], watch[1] = watch[0] + 1, residual
         if residual < 0.7 * best:
             best, since = residual, step
-        elif (
-            step - since > PATIENCE
-        ):  # some particles flutter between touching and not: smaller steps calm them
+        elif step - since > PATIENCE:
+            # some particles flutter between touching and not: smaller steps calm them
             longest, best, since = max(SHORTER * longest, SHORTEST), residual, step
         if weigh and residual < tolerance:
             if deepest <= overlap:

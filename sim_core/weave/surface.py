@@ -160,9 +160,8 @@ def _resolve(height, yarn, dx, dy, run, colour, across, colours, streak, low, hi
             opacity[i, j] = int(cover * 255 + 0.5)
             spread = np.sqrt(c2 * c2 + s2 * s2)
             half = 0.5 * np.arctan2(s2, c2)
-            if (
-                half < -np.pi / 4
-            ):  # a direction and its opposite are one: turned round where neither warp nor weft runs
+            # A direction and its opposite are one: turned round where neither warp nor weft runs.
+            if half < -np.pi / 4:
                 half += np.pi
             mean_tilt = tilt / cover if cover > 0 else 0.0
             rough[i, j] = int(min(0.34 + 0.5 * mean_tilt + 0.25 * (1 - cover), 1.0) * 255 + 0.5)
