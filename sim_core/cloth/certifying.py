@@ -48,10 +48,12 @@ class Certified:
         end: State,
         last: float,
         count: int,
+        usual: float,
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Positions, velocities (3, V) and steps of the frame that went from begin to end in `count` steps.
 
-        last [s]: the step before it. A frame that begins with intersections is left as it is, to untangle.
+        last [s]: the step before it; usual [s]: as for `Engine.advance`. A frame that begins with intersections is
+        left as it is, to untangle.
         """
         start = time.perf_counter()
         try:
@@ -61,7 +63,7 @@ class Certified:
             if self.certifier.free(begin[0].T, end[0].T):
                 return *end, count
             tally.redone += 1
-            return self._again(tally, under, pins, begin, end, last, count)
+            return self._again(tally, under, pins, begin, end, last, count, usual)
         finally:
             self.seconds += time.perf_counter() - start
 
@@ -74,11 +76,12 @@ class Certified:
         end: State,
         last: float,
         count: int,
+        usual: float,
     ) -> tuple[np.ndarray, np.ndarray, int]:
         engine, inverse, slow = self.engine, self.engine.inverse_mass(pins), self.engine.pace.slow
         for finer in FINER:
             steps = slow * int(np.ceil(finer * count / (slow * PARTS)))
-            x, v, zones = self._in_parts(under, pins, begin, last, steps)
+            x, v, zones = self._in_parts(under, pins, begin, last, steps, usual)
             if zones >= 0 and engine.health.good(under, begin, (x, v)):
                 tally.zones += zones
                 return x, v, steps * PARTS
@@ -91,7 +94,7 @@ class Certified:
         return np.ascontiguousarray(there.T), np.ascontiguousarray(speed.T), count
 
     def _in_parts(
-        self, under: Conditions, pins: tuple[int, ...], begin: State, last: float, steps: int
+        self, under: Conditions, pins: tuple[int, ...], begin: State, last: float, steps: int, usual: float
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """The frame's end and how often zones were needed, -1 where that did not help."""
         engine, inverse, zones = self.engine, self.engine.inverse_mass(pins), 0
@@ -99,7 +102,7 @@ class Certified:
         for part in range(PARTS):
             early, late, here = part / PARTS, (part + 1) / PARTS, x.copy()
             now = under.part(early, late, engine.outward(x))
-            engine.advance(now, pins, x, v, last, steps, share=1 / PARTS)
+            engine.advance(now, pins, x, v, last, steps, share=1 / PARTS, usual=usual)
             if not np.isfinite(x).all():
                 return x, v, -1
             there, speed, rounds, free = self.certifier.mended(here.T, x.T, v.T, inverse)

@@ -149,12 +149,17 @@ class Engine:
         count: int,
         guard: float = 0.0,
         share: float = 1.0,
+        usual: float = 0.0,
     ) -> None:
         """Moves x, v (3, V) in place through one frame of `count` substeps; `last` [s] is the step before it.
 
-        guard: least stiffness damping [s]; share: of a frame that `under` lasts for.
+        guard: least stiffness damping [s]; share: of a frame that `under` lasts for; usual: the step [s] that layers
+        are as stiff as at, however short the steps are (0: at the steps').
         """
         material, c, dt = self.sheet.material, self.contact, share * FRAME / count
+        shell = self.shell
+        if usual > 0.0:
+            shell = shell._replace(spring=shell.spring * (dt / usual) ** 2)
         self._lead(under, pins, x, v, share * FRAME)
         packed, body = self.moving.packed(*under.body) if self.moving else (self.packed, (0.0, 0.0))
         around = Surroundings(
@@ -175,7 +180,7 @@ class Engine:
             self.slow(dt) if count % self.pace.slow == 0 else 1,
         )
         if self.laned:
-            touching = ((self.vertices, self.middles), self.holds, self.shell)
+            touching = ((self.vertices, self.middles), self.holds, shell)
             searched = (self.finder, self.pairs[0], self.pairs[1])
             inverse = self.inverse_mass(pins)
             self.pairs = self.laned.advance(
@@ -184,7 +189,7 @@ class Engine:
             return
         s = self.sheet
         fixed = (self.bands, self.inverse_mass(pins), s.edges, s.faces, s.rest, packed)
-        touch = (self.vertices, self.middles, self.holds, self.shell, around, self.room, self.finder)
+        touch = (self.vertices, self.middles, self.holds, shell, around, self.room, self.finder)
         self.pairs = advance(*fixed, *touch, *self.pairs, x, v, last, dt, count)
 
     def _lead(

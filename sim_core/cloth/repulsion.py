@@ -14,6 +14,8 @@ from numba import njit
 
 from sim_core.cloth.pairs import edge_edge_pairs, segment_parameters, triangle_weights, vertex_face_pairs
 
+LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
+
 
 class Shell(NamedTuple):
     """Settings of self-contact; thickness 0 switches it off."""
@@ -30,12 +32,14 @@ class Shell(NamedTuple):
 def _impulse(x, v, inverse_mass, index, weight, shell, dt):
     """One contact between four vertices whose weights (signed, sum 0) span the separation."""
     dx = dy = dz = vx = vy = vz = 0.0
-    total = 0.0
+    total = most = 0.0
     for k in range(4):
         i, w = index[k], weight[k]
         dx, dy, dz = dx + w * x[i, 0], dy + w * x[i, 1], dz + w * x[i, 2]
         vx, vy, vz = vx + w * v[i, 0], vy + w * v[i, 1], vz + w * v[i, 2]
         total += w * w * inverse_mass[i]
+        most = max(most, abs(w) * inverse_mass[i])
+    total = max(total, most / LEVER)
     gap = math.sqrt(dx * dx + dy * dy + dz * dz)
     if gap >= shell.thickness or gap < 1e-9 or total == 0.0:
         return

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
-SHELL_VERSION = 2  # the same for layers that touch
+SHELL_VERSION = 3  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
 LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
@@ -153,16 +153,17 @@ class Run:
         if self.integrator == "implicit":
             count = self.fixed or IMPLICIT_STEPS
             x, v = self._implicit(under, pins, begin, count)
+            usual = 0.0
             if not np.isfinite(x).all():
                 raise SimCoreError(
                     f"frame {state.frame}: the implicit scheme found no way on – use the explicit"
                 )
         else:
-            x, v, count = self._explicit(state, under, pins, begin)
+            x, v, count, usual = self._explicit(state, under, pins, begin)
         engine.untangle(pins, x, v)
         if self.certified is not None:
             last = state.last_step
-            x, v, count = self.certified.frame(state.tally, under, pins, begin, (x, v), last, count)
+            x, v, count = self.certified.frame(state.tally, under, pins, begin, (x, v), last, count, usual)
         state.seconds.append(time.perf_counter() - start)
         way = np.zeros(x.shape[1])
         ways(begin[0], x, way)
@@ -187,6 +188,11 @@ class Run:
         self.engine.advance_implicit(under, pins, x, v, count)
         return x, v
 
+    def _count(self, step: float) -> int:
+        """Steps of a frame, of a whole number of impulses of bending, at a largest stable step [s]."""
+        slow = self.pace.slow
+        return slow * int(np.ceil(FRAME / (slow * self.pace.courant * step)))
+
     def _gives_in(self, attempt: int, count: int) -> bool:
         """Half the step did not help either, or there would be too many: the implicit scheme's turn, if it may."""
         late = attempt == 1 or (attempt == 0 and count > MOST_SUBSTEPS)
@@ -198,9 +204,14 @@ class Run:
         under: Conditions,
         pins: tuple[int, ...],
         begin: tuple[np.ndarray, np.ndarray],
-    ) -> tuple[np.ndarray, np.ndarray, int]:
-        """Positions, velocities (3, V) and steps of one frame; the state's safety, mode and counters change."""
+    ) -> tuple[np.ndarray, np.ndarray, int, float]:
+        """Positions, velocities (3, V), steps and usual step [s] of one frame; safety, mode and counters change.
+
+        The usual step is that of the cloth alone. Layers repel with the force they have at it: an impulse for each
+        step would throw the harder, the shorter the steps of a second try are.
+        """
         engine, pace, step, guard = self.engine, self.pace, 0.0, 0.0
+        usual = 0.0
         if not self.fixed:
             first = state.mode.shape != begin[0].shape
             mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
@@ -208,19 +219,18 @@ class Run:
             guard = pace.guard(step, engine.bend_omega2)
             if guard > self.sheet.material.stiffness_damping:
                 step = stable_with(step, guard)
+            usual = FRAME / self._count(step)
             layers = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
             step = min(step, layers / pace.courant)
             state.mode = mode
         longest = np.inf
         for attempt in range(MAX_HALVINGS):
-            count = self.fixed or pace.slow * int(
-                np.ceil(FRAME / (pace.slow * pace.courant * state.safety * step))
-            )
+            count = self.fixed or self._count(state.safety * step)
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
-                engine.advance(under, pins, x, v, state.last_step, count, guard)
+                engine.advance(under, pins, x, v, state.last_step, count, guard, usual=usual)
                 if self.fixed:
-                    return x, v, count
+                    return x, v, count, usual
                 good = engine.health.good(under, begin, (x, v))
                 if not good and not under.quiet and np.isfinite(x).all():
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
@@ -230,7 +240,7 @@ class Run:
                     late = passing_step(engine.shell.thickness, v)
                     if FRAME / count <= LATE * late:
                         state.safety = min(1.0, state.safety * 1.1)
-                        return x, v, count
+                        return x, v, count, usual
                     step = min(step, late / pace.courant)  # it became faster than layers can bear on the way
                     engine.forget()
                     continue
@@ -239,7 +249,7 @@ class Run:
                 x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
                 if engine.health.good(under, begin, (x, v)):
                     state.fallbacks += 1
-                    return x, v, IMPLICIT_STEPS
+                    return x, v, IMPLICIT_STEPS, usual
                 engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
