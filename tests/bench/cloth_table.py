@@ -1,7 +1,7 @@
 """Makes `sim_core/cloth/fidelity.json`, and checks what it promises on 20 scenes it has not seen.
 
     python tests/bench/cloth_table.py            measures the training scenes, fits the law, writes the table
-    python tests/bench/cloth_table.py --check    20 other scenes; --seed N draws others
+    python tests/bench/cloth_table.py --check    20 other scenes; --seed N draws others; kept in docs/figures
     python tests/bench/cloth_table.py --readme   puts the table into sim_core/cloth/DETAILS.md
 
 Runs are kept under build/cloth-fidelity; an interrupted one goes on. Error: mean distance [mm] of the sheet's
@@ -28,6 +28,7 @@ from sim_core.cloth.pilot import PILOTS, apart, gap
 from sim_core.errors import WrongArgument
 
 DETAILS = Path(__file__).parents[2] / "sim_core" / "cloth" / "DETAILS.md"
+CHECKED = Path(__file__).parents[2] / "docs" / "figures" / "cloth-choose.json"
 MARKS = ("<!-- fidelity -->", "<!-- end of fidelity -->")
 IMPLICIT = (
     (0.064, 2),
@@ -160,7 +161,7 @@ def checked(case: Case, budget: float) -> dict:
 
 
 def check(seed: int) -> int:
-    """Prints a line per unseen scene; returns how many kept their budget."""
+    """Prints a line per unseen scene, keeps what came of them; returns how many kept their budget."""
     rows = []
     for k, case in enumerate(unseen(seed)):
         row = checked(case, BUDGETS[(k + k // 6) % len(BUDGETS)])
@@ -180,7 +181,28 @@ def check(seed: int) -> int:
         f"{np.median(ratios):.1f}, largest {max(ratios):.1f}; edges of {min(r['edge_mm'] for r in rows):.3g} to "
         f"{max(r['edge_mm'] for r in rows):.3g} mm"
     )
+    known = json.loads(CHECKED.read_text("utf-8")) if CHECKED.is_file() else {}
+    known[str(seed)] = {
+        "kept": kept,
+        "of": len(rows),
+        "cost_ratio": {"median": round(float(np.median(ratios)), 2), "largest": round(max(ratios), 2)},
+        "edges_mm": [round(f(r["edge_mm"] for r in rows), 2) for f in (min, max)],
+        "missed": [{"told": r["told"], "budget_mm": r["budget"]} for r in rows if not r["kept"]],
+    }
+    CHECKED.write_text(json.dumps(known, indent=1) + "\n", "utf-8")
     return kept
+
+
+def checks() -> list[str]:
+    """A line for every seed whose 20 scenes were checked."""
+    known = json.loads(CHECKED.read_text("utf-8")) if CHECKED.is_file() else {}
+    return [
+        f"- `--check --seed {seed}`: kept in {row['kept']} of {row['of']}; cost over the cheapest mesh that would do: "
+        f"median {row['cost_ratio']['median']:.1f}, largest {row['cost_ratio']['largest']:.1f}"
+        + "".join(f"; missed: {m['told']}, {m['budget_mm']:.3g} mm" for m in row["missed"])
+        + "."
+        for seed, row in sorted(known.items(), key=lambda item: int(item[0]))
+    ]
 
 
 def readme() -> None:
@@ -198,6 +220,7 @@ def readme() -> None:
             except WrongArgument as refused:
                 cells.append(f"– (least {str(refused).split('keeps ')[1].split(' mm')[0]} mm)")
         lines.append(f"| {kind} | {len(part['scenes'])} | {part['seconds']:g} s | {' | '.join(cells)} |")
+    lines += ["", *checks()]
     text = DETAILS.read_text("utf-8")
     before, _, rest = text.partition(MARKS[0])
     DETAILS.write_text(

@@ -166,6 +166,11 @@ def headline(found: dict) -> str:
     )
     starts = ", ".join(f"{r['scene']} {r['wall_s']:.2f} s" for r in found["start"]["rows"])
     lines.append(f"| second start of `simcore cloth`, call to end | ≤ 2 s | {starts} |")
+    kept = [f"{row['kept']} of {row['of']} (seed {seed})" for seed, row in found.get("choose", {}).items()]
+    if kept:
+        lines.append(
+            f"| `choose`: scenes the table has not seen, within the budget | ≥ 19 of 20 | {', '.join(kept)} |"
+        )
     return "\n".join(lines)
 
 
@@ -192,6 +197,8 @@ def main() -> int:
             "readme_cloth: docs/figures/cloth.json is of --quick – run the bench without it", file=sys.stderr
         )
         return 1
+    choose = ROOT / "docs/figures/cloth-choose.json"  # of tests/bench/cloth_table.py --check
+    found["choose"] = json.loads(choose.read_text("utf-8")) if choose.is_file() else {}
     placed(
         ROOM / "DETAILS.md",
         BEGIN,

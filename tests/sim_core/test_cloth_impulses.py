@@ -5,7 +5,7 @@ import pytest
 
 from sim_core.cloth import GridSdf
 from sim_core.cloth.contact import collide_samples, collide_vertices
-from sim_core.cloth.repulsion import Shell, repel
+from sim_core.cloth.repulsion import LEVER, Shell, repel
 
 THICKNESS = 0.004  # [m]
 SPRING = 1e-9  # so weak that damping and friction are seen alone
@@ -54,6 +54,18 @@ def test_sliding_loses_friction_times_the_normal_impulse(kind: str, friction: fl
 @KINDS
 def test_friction_takes_half_of_the_sliding_at_most(kind: str) -> None:
     assert met(0.2 * THICKNESS, (0.4, -1.0, 0.0), 1.0, kind)[0] == pytest.approx(0.2, abs=1e-6)
+
+
+@pytest.mark.parametrize("arm", [0.5, 0.1, 0.01, 1e-4])
+def test_what_is_pushed_near_its_pin_is_not_thrown(arm: float) -> None:
+    """A led edge meets another one `arm` of its length from its pin: to give way there its end would need 1 / arm."""
+    x = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02 * arm, 2e-4, -0.01], [0.02 * arm, 2e-4, 0.01]])
+    v = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
+    free, edges, crossing = np.array([0.0, 1.0, 0.0, 0.0]), np.array([[0, 1], [2, 3]], np.int32), [[0, 1]]
+    shell, none = Shell(THICKNESS, 0.001, SPRING, 0.0, 1, 0.05), np.zeros((0, 3), np.int32)
+    pairs = np.zeros((0, 2), np.int32), np.array(crossing, np.int32)
+    repel(x, v, free, none, edges, *pairs, (0, 1), shell, 1e-3)
+    assert v[1] == pytest.approx([0.0, -min(1 / arm, LEVER), 0.0], abs=1e-4)
 
 
 @pytest.mark.parametrize(("slope", "pushed"), [(1.0, True), (0.78, True), (0.72, False), (0.0, False)])

@@ -42,6 +42,28 @@ def test_pins_go_where_they_are_led_and_are_let_go() -> None:
     assert x[pins[1:], 1].max() < start[pins[1:], 1].min() - 0.005
 
 
+@pytest.mark.parametrize("seed", [0, 3])
+def test_pins_thrown_about_within_a_frame_do_not_break_layers(seed: int) -> None:
+    """Neighbouring pins are torn apart by several edges: the frame is done again, and the cloth slows down after."""
+    rest, faces = equilateral_sheet(1.0, 1.0, 0.05)
+    sheet = Sheet.of(rest, faces, CLOTH)
+    start = np.column_stack([rest[:, 0], -rest[:, 1], np.zeros(len(rest))])
+    pins = np.flatnonzero(rest[:, 1] < 1e-9).tolist()
+    live, thrown = (
+        Live(sheet, start, pins=pins, contact=Contact(thickness=0.004)),
+        np.random.default_rng(seed),
+    )
+    live.step(targets=start[pins] + 0.05 * thrown.standard_normal((len(pins), 3)))
+    stored = live._run.engine.stored
+    energy = [stored(live._run.engine.inward(live.positions), live._run.engine.inward(live.velocities))]
+    for _ in range(10):
+        x = live.step()
+        energy.append(stored(live._run.engine.inward(x), live._run.engine.inward(live.velocities)))
+    fall = sheet.mass.sum() * 9.81 * 0.5  # [J] that gravity may still give
+    assert max(energy[1:]) < energy[0] + fall
+    assert np.linalg.norm(live.velocities, axis=1).max() < 15.0  # [m/s]; tight threads sound on
+
+
 def test_wind_and_pulls_move_it_the_way_they_go() -> None:
     live, _, start, _ = hung()
     low = int(np.argmin(start[:, 1]))
@@ -102,7 +124,7 @@ def test_an_interrupt_in_the_midst_of_a_frame_leaves_the_state_as_it_was(
     from sim_core.cloth.engine import Engine
     from sim_core.cloth.scenes import scene
 
-    def stopped(*_: object) -> None:
+    def stopped(*_: object, **__: object) -> None:
         if compiled:
             inner = SystemError("returned a result with an exception set")
             inner.__cause__ = KeyboardInterrupt()
