@@ -166,7 +166,7 @@ def headline(found: dict) -> str:
     )
     starts = ", ".join(f"{r['scene']} {r['wall_s']:.2f} s" for r in found["start"]["rows"])
     lines.append(f"| second start of `simcore cloth`, call to end | ≤ 2 s | {starts} |")
-    kept = [f"{row['kept']} of {row['of']} (seed {seed})" for seed, row in found.get("choose", {}).items()]
+    kept = [f"{row['kept']} of {row['of']} (seed {seed})" for seed, row in found["choose"].items()]
     if kept:
         lines.append(
             f"| `choose`: scenes the table has not seen, within the budget | ≥ 19 of 20 | {', '.join(kept)} |"
@@ -190,15 +190,21 @@ def placed(path: Path, begin: str, end: str, text: str) -> None:
     path.write_text(f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}", "utf-8")
 
 
+def figures() -> dict:
+    """What was measured: the bench's parts, and what `cloth_table.py --check` found, seed by seed."""
+    folder = ROOT / "docs/figures"
+    found = json.loads((folder / "cloth.json").read_text("utf-8"))
+    choose = folder / "cloth-choose.json"
+    return found | {"choose": json.loads(choose.read_text("utf-8")) if choose.is_file() else {}}
+
+
 def main() -> int:
-    found = json.loads((ROOT / "docs/figures/cloth.json").read_text("utf-8"))
+    found = figures()
     if found["quick"]:
         print(
             "readme_cloth: docs/figures/cloth.json is of --quick – run the bench without it", file=sys.stderr
         )
         return 1
-    choose = ROOT / "docs/figures/cloth-choose.json"  # of tests/bench/cloth_table.py --check
-    found["choose"] = json.loads(choose.read_text("utf-8")) if choose.is_file() else {}
     placed(
         ROOM / "DETAILS.md",
         BEGIN,

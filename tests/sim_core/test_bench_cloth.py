@@ -28,7 +28,7 @@ def bench(monkeypatch):
 
 def test_the_readme_holds_what_was_measured(bench) -> None:
     readme = bench["readme_cloth"]
-    found = json.loads((ROOT / "docs/figures/cloth.json").read_text("utf-8"))
+    found = readme.figures()
     assert not found["quick"]
     text = (ROOT / "sim_core/cloth/DETAILS.md").read_text("utf-8")
     assert readme.tables(found) in text.split(readme.BEGIN)[1].split(readme.END)[0]
