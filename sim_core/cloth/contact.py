@@ -1,7 +1,8 @@
 """Contact with solids: vertices, edge midpoints and centroids stay outside, with Coulomb friction.
 
 A vertex nearer than the clearance r is moved back along the gradient n by its depth; its approach is taken
-away and the tangential velocity loses mu * depth / dt, which for a resting vertex is exactly mu g dt.
+away and the tangential velocity, seen from the surface, loses mu * depth / dt, which for a resting vertex is
+exactly mu g dt.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.collider import FASTEST, MOVING
-from sim_core.cloth.distance import signed_distance
+from sim_core.cloth.distance import carried, signed_distance
 
 LONGEST_SLEEP = 40  # substeps
 SETTLE = 6  # more looks at samples inside, at the end of a frame
@@ -20,20 +21,25 @@ SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
 @njit(cache=True, error_model="numpy")
-def _resolve(x, v, i, n, depth, speed, dt, friction, cap):
-    """Pushes vertex i out along n = (nx, ny, nz), at least as fast as the surface moves, and applies friction."""
+def _resolve(x, v, i, n, depth, speed, carry, dt, friction, cap):
+    """Pushes vertex i out along n = (nx, ny, nz), at least as fast as the surface moves, and applies friction.
+
+    carry: the surface's velocity, (x, y, z), of which what lies in the surface takes the vertex along.
+    """
     push = min(depth, cap)
     vn = v[i, 0] * n[0] + v[i, 1] * n[1] + v[i, 2] * n[2]
-    tx, ty, tz = v[i, 0] - vn * n[0], v[i, 1] - vn * n[1], v[i, 2] - vn * n[2]
+    cn = carry[0] * n[0] + carry[1] * n[1] + carry[2] * n[2]
+    cx, cy, cz = carry[0] - cn * n[0], carry[1] - cn * n[1], carry[2] - cn * n[2]
+    tx, ty, tz = v[i, 0] - vn * n[0] - cx, v[i, 1] - vn * n[1] - cy, v[i, 2] - vn * n[2] - cz
     slide = math.sqrt(tx * tx + ty * ty + tz * tz)
     lost = 0.0
     if slide > 0.0:
         lost = min(1.0, friction * push / (dt * slide))
     vn = max(vn, speed)
     for c in range(3):
-        t = tx if c == 0 else (ty if c == 1 else tz)
+        t, along = (tx, cx) if c == 0 else ((ty, cy) if c == 1 else (tz, cz))
         x[i, c] += push * n[c] - lost * t * dt
-        v[i, c] = vn * n[c] + (1.0 - lost) * t
+        v[i, c] = vn * n[c] + (1.0 - lost) * t + along
 
 
 @njit(cache=True, error_model="numpy")
@@ -41,7 +47,8 @@ def _meet(packed, x, v, i, clearance, dt, friction, cap):
     """Resolves vertex i; returns how far outside the clearance it was [m]."""
     d, nx, ny, nz, speed = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
     if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
-        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, dt, friction, cap)
+        carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
+        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, carry, dt, friction, cap)
     return d - clearance
 
 

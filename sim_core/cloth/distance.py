@@ -154,6 +154,21 @@ def signed_distance(packed, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
+def carried(packed, x, y, z):
+    """Velocity [m/s] of the body's surface nearest to a point; 0 where it stands, or is known by its distance alone."""
+    if len(packed.ways) == 0:
+        return 0.0, 0.0, 0.0
+    row, (nx, ny, nz) = packed.data[0], packed.nearest.shape
+    i = int(_within((x - row[0]) / row[3], nx) + 0.5)
+    j = int(_within((y - row[1]) / row[3], ny) + 0.5)
+    k = int(_within((z - row[2]) / row[3], nz) + 0.5)
+    f, rate = packed.nearest[i, j, k], packed.blend[1]
+    if f < 0:
+        return 0.0, 0.0, 0.0
+    return rate * packed.ways[f, 0], rate * packed.ways[f, 1], rate * packed.ways[f, 2]
+
+
+@njit(cache=True, error_model="numpy")
 def distances(packed, points):
     """Signed distance (N,) at points (N, 3)."""
     out = np.zeros(len(points))

@@ -79,10 +79,21 @@ def field_of(
         finite("field: exact [m]", exact, least=0, most=FURTHEST)
     origin, shape = _grid(vertices if not hulls else np.concatenate([vertices, *hulls]), cell, band, box)
     exact = min(band, EXACT_CELLS * cell if exact is None else exact)
-    values = _signed(vertices, faces, origin, shape, cell, band, exact, far)
+    values, _ = _sampled(vertices, faces, origin, shape, cell, band, exact, far)
     for points in hulls:
-        np.minimum(values, _signed(*hull_mesh(points), origin, shape, cell, band, exact, far), out=values)
+        hull, _ = _sampled(*hull_mesh(points), origin, shape, cell, band, exact, far)
+        np.minimum(values, hull, out=values)
     return DistanceField(origin, cell, values)
+
+
+def field_and_faces(
+    vertices: np.ndarray, faces: np.ndarray, *, cell: float, band: float, box: Box
+) -> tuple[np.ndarray, np.ndarray]:
+    """Signed distance (nx, ny, nz) float32 within the band, and the face nearest to each node, int32 (-1 beyond)."""
+    vertices, faces = _checked(vertices, faces, cell, band)
+    origin, shape = _grid(vertices, cell, band, box)
+    exact = min(band, EXACT_CELLS * cell)
+    return _sampled(vertices, faces, origin, shape, cell, band, exact, False)
 
 
 def united(first: DistanceField, second: DistanceField, *, thicker: float = 0.0) -> DistanceField:
@@ -118,7 +129,7 @@ def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.ascontiguousarray(points[used], float), index.reshape(-1, 3).astype(np.int32)
 
 
-def _signed(
+def _sampled(
     vertices: np.ndarray,
     faces: np.ndarray,
     origin: np.ndarray,
@@ -127,8 +138,8 @@ def _signed(
     band: float,
     exact: float,
     far: bool,
-) -> np.ndarray:
-    """Signed distance (nx, ny, nz) float32 of one closed mesh."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Signed distance (nx, ny, nz) float32 of one closed mesh, and the faces nearest to the nodes of the band."""
     nearest = np.full(shape, -1, np.int32)
     distance = np.full(shape, np.inf, np.float32)
     splat(vertices, faces, origin, cell, min(exact, EXACT_CELLS * cell), distance, nearest)
@@ -139,7 +150,7 @@ def _signed(
         sweep(distance, nearest >= 0, cell)
     else:
         distance[nearest < 0] = band
-    return crossings(vertices, faces, origin, cell, distance)
+    return crossings(vertices, faces, origin, cell, distance), nearest
 
 
 def _grid(

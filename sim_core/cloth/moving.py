@@ -21,7 +21,9 @@ class MovingGrid:
 
     origin (3,), cell [m]; name identifies all poses (a hash of what they are made from) for checkpoints. Between two
     keys the distance is blended linearly, so a limb should move less than half its thickness from key to key.
-    Raises SimCoreError, naming the value, for what is no grid.
+    surface(k): the face nearest to each node (nx, ny, nz) int32, -1 for none, and the way (F, 3) [m] of each face from
+    key k to the next: friction is that against the moving surface. Without it the body is smooth to what it does along
+    itself: only what it does across itself moves the cloth. Raises SimCoreError, naming the value, for what is no grid.
     """
 
     origin: tuple[float, float, float]
@@ -29,6 +31,9 @@ class MovingGrid:
     count: int
     key: Callable[[int], np.ndarray] = field(repr=False)
     name: str = ""
+    surface: Callable[[int], tuple[np.ndarray, np.ndarray]] | None = field(
+        default=None, repr=False, compare=False
+    )
     _kept: dict[int, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
     _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
 
@@ -39,6 +44,8 @@ class MovingGrid:
         if self.key is None:
             raise SimCoreError("body.key: None – give a function of a key's number")
         called("body.key", self.key)
+        if self.surface is not None:
+            called("body.surface", self.surface)
         of_kind("body.name", self.name, str, "a text is meant")
 
     def packed(self, early: float, late: float) -> tuple[Packed, tuple[float, float]]:
@@ -79,9 +86,14 @@ class MovingGrid:
             raise SimCoreError(f"body: keys {first} and {second} have other nodes – all lie on one grid")
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
-        if kind == MOVING:
-            data[0, FASTEST] = self._motion(first, second)
-        return Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))
+        packed = Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))
+        if kind != MOVING:
+            return packed
+        data[0, FASTEST] = self._motion(first, second)
+        if self.surface is None:
+            return packed
+        nearest, ways = self.surface(first)
+        return packed._replace(nearest=nearest, ways=ways)
 
     def _motion(self, first: int, second: int) -> float:
         """The most that the distance changes anywhere between two kept keys [m]."""
@@ -101,7 +113,7 @@ def moving_mesh(
     is thinner than twice the way of one frame may be missed in between. Raises SimCoreError at once where the mesh is
     open, ill-wound or not finite, or is turned inside out in any frame, and says where.
     """
-    from sim_core.cloth.field import checked_cell, field_of, inside_out
+    from sim_core.cloth.field import checked_cell, field_and_faces, inside_out
 
     frames = np.array(numeric("moving mesh: positions", positions, "expected (T, V, 3)"), float, order="C")
     if frames.ndim != 3 or frames.shape[2] != 3 or not len(frames):
@@ -114,12 +126,23 @@ def moving_mesh(
     low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
     digest = hashlib.sha256(frames.tobytes() + faces.tobytes()).hexdigest()[:16]
 
+    sampled: dict[int, np.ndarray] = {}  # the nearest faces of the keys made last
+
     def key(k: int) -> np.ndarray:
-        return field_of(frames[k], faces, cell=cell, band=band, box=(low, high), far=False).values
+        values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
+        for old in [j for j in sampled if abs(j - k) > 1]:
+            del sampled[old]
+        sampled[k] = nearest
+        return values
+
+    def surface(k: int) -> tuple[np.ndarray, np.ndarray]:
+        if k not in sampled:
+            key(k)
+        return sampled[k], np.ascontiguousarray((frames[k + 1] - frames[k])[faces].mean(1))
 
     first, origin = key(0), (float(low[0]), float(low[1]), float(low[2]))
     for number, vertices in enumerate(frames[1:], 1):  # the first is looked at with its field
         if inside_out(vertices, faces):
             raise SimCoreError(f"moving mesh: frame {number} is turned inside out – mend it")
-    name = f"mesh {digest} cell {cell} band {band}"
-    return MovingGrid(origin, cell, len(frames), key, name, {0: first})
+    name = f"mesh {digest} cell {cell} band {band}, carries"
+    return MovingGrid(origin, cell, len(frames), key, name, surface, {0: first})

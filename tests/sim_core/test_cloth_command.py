@@ -223,9 +223,12 @@ def test_a_limb_is_closed_and_of_its_size() -> None:
     assert off[exact.distance(points) > 0].max() < 0.003
 
 
-@pytest.mark.parametrize(("case", "frames", "way"), [(1, 51, (-0.01, 0.052, 0.0)), (2, 44, (0.0, 0.1, 0.0))])
+LIMB_WAYS = [(1, 51, (-0.0165, 0.0506, 0.0)), (2, 44, (0.0, 0.1, 0.0)), (3, 44, (0.0, 0.0, 0.05))]
+
+
+@pytest.mark.parametrize(("case", "frames", "way"), LIMB_WAYS)
 def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tuple[float, ...]) -> None:
-    """Still from 0.8 to 1 s, raised as far as it goes at the end; edges short beside the arm, so friction holds."""
+    """Still from 0.8 to 1 s, furthest at the end; edges short beside the arm, so friction holds: as if it were stiff."""
     made, film = scene("limb", case, vertices=1200, frames=frames), []
     body, limit = made.collider, 0.003
     assert isinstance(body, MovingGrid)
@@ -239,7 +242,7 @@ def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tupl
     )  # what a film shows is what carries
     carried = away[24] < 1.5 * limit
     assert carried.sum() > 50
-    assert (film[-1] - film[24])[carried].mean(0) == pytest.approx(way, abs=0.005)
+    assert (film[-1] - film[24])[carried].mean(0) == pytest.approx(way, abs=0.004)
 
 
 def test_what_a_scene_does_not_have_is_named() -> None:
