@@ -228,7 +228,7 @@ LIMB_WAYS = [(1, 51, (-0.0165, 0.0506, 0.0)), (2, 44, (0.0, 0.1, 0.0)), (3, 44, 
 
 @pytest.mark.parametrize(("case", "frames", "way"), LIMB_WAYS)
 def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tuple[float, ...]) -> None:
-    """Still from 0.8 to 1 s, furthest at the end; edges short beside the arm, so friction holds: as if it were stiff."""
+    """Still from 0.8 to 1 s, furthest at the end; edges short beside the arm, so friction holds it as a stiff one."""
     made, film = scene("limb", case, vertices=1200, frames=frames), []
     body, limit = made.collider, 0.003
     assert isinstance(body, MovingGrid)
