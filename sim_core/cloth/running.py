@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -44,6 +44,18 @@ _KINDS = {  # of what a run may be given, and the remedy
     "pace": (Pace, 'a Pace is meant, such as Pace("single", 0.9)'),
     "collider": (Solid | MovingGrid, "give a Solid, or moving_mesh() of a closed mesh"),
 }
+
+
+class _Step(NamedTuple):
+    """What a frame is done with: the longest step [s], least stiffness damping [s] and the usual step [s].
+
+    The usual step is what the cloth alone would take. Layers repel with the force they have at it: an impulse for each
+    step would throw the harder, the shorter haste, air or a second try make the steps.
+    """
+
+    longest: float
+    guard: float
+    usual: float
 
 
 class Run:
@@ -198,6 +210,21 @@ class Run:
         late = attempt == 1 or (attempt == 0 and count > MOST_SUBSTEPS)
         return late and self.integrator == "auto" and self.engine.shell.thickness == 0.0
 
+    def _paced(
+        self, state: RunState, under: Conditions, pins: tuple[int, ...], begin: tuple[np.ndarray, np.ndarray]
+    ) -> _Step:
+        """The step of a frame that begins so; the state's mode changes."""
+        engine, pace = self.engine, self.pace
+        first = state.mode.shape != begin[0].shape
+        mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
+        stable = engine.step(pins, begin[0], mode, first=first)
+        guard = pace.guard(stable, engine.bend_omega2)
+        if guard > self.sheet.material.stiffness_damping:
+            stable = stable_with(stable, guard)
+        state.mode = mode
+        bounds = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
+        return _Step(min(stable, bounds / pace.courant), guard, FRAME / self._count(stable))
+
     def _explicit(
         self,
         state: RunState,
@@ -205,32 +232,18 @@ class Run:
         pins: tuple[int, ...],
         begin: tuple[np.ndarray, np.ndarray],
     ) -> tuple[np.ndarray, np.ndarray, int, float]:
-        """Positions, velocities (3, V), steps and usual step [s] of one frame; safety, mode and counters change.
-
-        The usual step is that of the cloth alone. Layers repel with the force they have at it: an impulse for each
-        step would throw the harder, the shorter the steps of a second try are.
-        """
-        engine, pace, step, guard = self.engine, self.pace, 0.0, 0.0
-        usual = 0.0
-        if not self.fixed:
-            first = state.mode.shape != begin[0].shape
-            mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
-            step = engine.step(pins, begin[0], mode, first=first)
-            guard = pace.guard(step, engine.bend_omega2)
-            if guard > self.sheet.material.stiffness_damping:
-                step = stable_with(step, guard)
-            usual = FRAME / self._count(step)
-            layers = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
-            step = min(step, layers / pace.courant)
-            state.mode = mode
-        longest = np.inf
+        """Positions, velocities (3, V), steps and usual step [s] of one frame; safety, mode and counters change."""
+        engine, longest = self.engine, np.inf
+        if self.fixed:
+            x, v = begin[0].copy(), begin[1].copy()
+            engine.advance(under, pins, x, v, state.last_step, self.fixed)
+            return x, v, self.fixed, 0.0
+        step, guard, usual = self._paced(state, under, pins, begin)
         for attempt in range(MAX_HALVINGS):
-            count = self.fixed or self._count(state.safety * step)
+            count = self._count(state.safety * step)
             if count <= MOST_SUBSTEPS:
                 x, v = begin[0].copy(), begin[1].copy()
                 engine.advance(under, pins, x, v, state.last_step, count, guard, usual=usual)
-                if self.fixed:
-                    return x, v, count, usual
                 good = engine.health.good(under, begin, (x, v))
                 if not good and not under.quiet and np.isfinite(x).all():
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
@@ -241,7 +254,7 @@ class Run:
                     if FRAME / count <= LATE * late:
                         state.safety = min(1.0, state.safety * 1.1)
                         return x, v, count, usual
-                    step = min(step, late / pace.courant)  # it became faster than layers can bear on the way
+                    step = min(step, late / self.pace.courant)  # faster on the way than layers can bear
                     engine.forget()
                     continue
                 engine.forget()
