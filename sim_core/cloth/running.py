@@ -49,8 +49,8 @@ _KINDS = {  # of what a run may be given, and the remedy
 class _Step(NamedTuple):
     """What a frame is done with: the longest step [s], least stiffness damping [s] and the usual step [s].
 
-    The usual step is what the cloth alone would take. Layers repel with the force they have at it: an impulse for each
-    step would throw the harder, the shorter haste, air or a second try make the steps.
+    The usual step is that of a first try. Layers repel with the force they have at it, however short the steps of a
+    later one are: an impulse for each step would throw the harder, the shorter they are.
     """
 
     longest: float
@@ -223,7 +223,8 @@ class Run:
             stable = stable_with(stable, guard)
         state.mode = mode
         bounds = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
-        return _Step(min(stable, bounds / pace.courant), guard, FRAME / self._count(stable))
+        longest = min(stable, bounds / pace.courant)
+        return _Step(longest, guard, FRAME / self._count(longest))
 
     def _explicit(
         self,
