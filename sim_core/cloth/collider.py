@@ -17,14 +17,15 @@ _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the 
 MOST_NODES = 2e8  # of a grid
 _NO_GRID = np.zeros((2, 2, 2), np.float32)
 _AT_REST = np.zeros(2)
-_NO_FACES, _NO_WAYS = np.full((1, 1, 1), -1, np.int32), np.zeros((0, 3))
+_NO_FACES, _NO_CORNERS = np.full((1, 1, 1), -1, np.int32), np.zeros((0, 3, 3))
 
 
 class Packed(NamedTuple):
     """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid, float32.
 
     A moving grid lies between `grid` and `later`: blend (2,) is how far, 0..1, and how fast [1/s]. Where its surface is
-    known, nearest (nx, ny, nz) is the face next to each node (-1: none) and ways (F, 3) [m] what each goes in between.
+    known, nearest (nx, ny, nz) is the face next to each node (-1: none), corners (F, 3, 3) [m] are those of the faces
+    and ways (F, 3, 3) [m] where these go in between.
     """
 
     kind: np.ndarray
@@ -33,7 +34,8 @@ class Packed(NamedTuple):
     later: np.ndarray = _NO_GRID
     blend: np.ndarray = _AT_REST
     nearest: np.ndarray = _NO_FACES
-    ways: np.ndarray = _NO_WAYS
+    corners: np.ndarray = _NO_CORNERS
+    ways: np.ndarray = _NO_CORNERS
 
 
 def _vector(name: str, value: object) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING
+from sim_core.cloth.pairs import triangle_weights
 
 
 @njit(cache=True, error_model="numpy")
@@ -162,10 +163,21 @@ def carried(packed, x, y, z):
     i = int(_within((x - row[0]) / row[3], nx) + 0.5)
     j = int(_within((y - row[1]) / row[3], ny) + 0.5)
     k = int(_within((z - row[2]) / row[3], nz) + 0.5)
-    f, rate = packed.nearest[i, j, k], packed.blend[1]
+    f, rate, s = packed.nearest[i, j, k], packed.blend[1], packed.blend[0]
     if f < 0:
         return 0.0, 0.0, 0.0
-    return rate * packed.ways[f, 0], rate * packed.ways[f, 1], rate * packed.ways[f, 2]
+    at, ways = packed.corners[f], packed.ways[f]
+    a, b, c = triangle_weights(
+        (x, y, z),
+        (at[0, 0] + s * ways[0, 0], at[0, 1] + s * ways[0, 1], at[0, 2] + s * ways[0, 2]),
+        (at[1, 0] + s * ways[1, 0], at[1, 1] + s * ways[1, 1], at[1, 2] + s * ways[1, 2]),
+        (at[2, 0] + s * ways[2, 0], at[2, 1] + s * ways[2, 1], at[2, 2] + s * ways[2, 2]),
+    )
+    return (
+        rate * (a * ways[0, 0] + b * ways[1, 0] + c * ways[2, 0]),
+        rate * (a * ways[0, 1] + b * ways[1, 1] + c * ways[2, 1]),
+        rate * (a * ways[0, 2] + b * ways[1, 2] + c * ways[2, 2]),
+    )
 
 
 @njit(cache=True, error_model="numpy")

@@ -161,6 +161,8 @@ def _checked_targets(targets: np.ndarray | None, held: tuple[int, ...]) -> tuple
     places = points("targets", targets)
     if len(places) != len(held):
         raise SimCoreError(f"targets: shape {places.shape} – one finite place for each of {len(held)} pins")
+    if len(set(held)) < len(held):
+        raise SimCoreError("pins: one of them is there twice – lead each to one place")
     return np.array(held, np.int64), places
 
 

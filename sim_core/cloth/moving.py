@@ -9,10 +9,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sim_core.cloth.collider import FASTEST, GRID, MOVING, GridSdf, Packed, nodes
-from sim_core.cloth.given import FURTHEST, called, finite, numeric, of_kind, triangles, triple, whole
+from sim_core.cloth.given import FURTHEST, called, finite, numeric, of_kind, told, triangles, triple, whole
 from sim_core.errors import SimCoreError
 
 _WIDTH = 20
+Worn = tuple[
+    np.ndarray, np.ndarray
+]  # by the nodes of a grid: nearest faces (nx, ny, nz) int32 and corners (F, 3, 3)
 
 
 @dataclass(frozen=True)
@@ -21,9 +24,10 @@ class MovingGrid:
 
     origin (3,), cell [m]; name identifies all poses (a hash of what they are made from) for checkpoints. Between two
     keys the distance is blended linearly, so a limb should move less than half its thickness from key to key.
-    surface(k): the face nearest to each node (nx, ny, nz) int32, -1 for none, and the way (F, 3) [m] of each face from
-    key k to the next: friction is that against the moving surface. Without it the body is smooth to what it does along
-    itself: only what it does across itself moves the cloth. Raises SimCoreError, naming the value, for what is no grid.
+    surface(k): the face nearest to each node (nx, ny, nz), -1 for none, and the corners of the faces (F, 3, 3) [m] in
+    pose k, of which `name` tells as well. With it friction acts against the moving surface; without it a body pushes
+    cloth by what it does across itself, and holds it back as if it stood still along itself.
+    Raises SimCoreError, naming the value, for what is no grid.
     """
 
     origin: tuple[float, float, float]
@@ -31,10 +35,9 @@ class MovingGrid:
     count: int
     key: Callable[[int], np.ndarray] = field(repr=False)
     name: str = ""
-    surface: Callable[[int], tuple[np.ndarray, np.ndarray]] | None = field(
-        default=None, repr=False, compare=False
-    )
+    surface: Callable[[int], Worn] | None = field(default=None, repr=False, compare=False)
     _kept: dict[int, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
+    _worn: dict[int, Worn] = field(default_factory=dict, repr=False, compare=False)
     _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -92,8 +95,15 @@ class MovingGrid:
         data[0, FASTEST] = self._motion(first, second)
         if self.surface is None:
             return packed
-        nearest, ways = self.surface(first)
-        return packed._replace(nearest=nearest, ways=ways)
+        for k in [k for k in self._worn if k not in (first, second)]:
+            del self._worn[k]
+        for k in (first, second):
+            if k not in self._worn:
+                self._worn[k] = _worn(f"body: surface {k}", self.surface(k), self._kept[k].shape)
+        (nearest, corners), (_, later) = self._worn[first], self._worn[second]
+        if corners.shape != later.shape:
+            raise SimCoreError(f"body: surfaces {first} and {second} have other faces – all are of one mesh")
+        return packed._replace(nearest=nearest, corners=corners, ways=later - corners)
 
     def _motion(self, first: int, second: int) -> float:
         """The most that the distance changes anywhere between two kept keys [m]."""
@@ -103,15 +113,32 @@ class MovingGrid:
         return self._most[first, second]
 
 
+def _worn(name: str, value: object, shape: tuple[int, ...]) -> Worn:
+    """What surface(k) gave, of a grid of this shape; raises SimCoreError for what is none."""
+    remedy = f"give the nearest face of each of {shape} nodes, or -1, and the corners (F, 3, 3) of all faces"
+    if not isinstance(value, tuple | list) or len(value) != 2:
+        raise SimCoreError(f"{name}: {told(value)} – {remedy}")
+    nearest, corners = (
+        numeric(f"{name}: {what}", v, remedy) for what, v in zip(("faces", "corners"), value, strict=True)
+    )
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not (np.abs(corners) <= FURTHEST).all():
+        raise SimCoreError(f"{name}: corners {corners.shape}, or not finite – {remedy}")
+    whole_numbers = nearest.shape == shape and nearest.dtype.kind in "iu"
+    if not whole_numbers or nearest.min() < -1 or nearest.max() >= len(corners):
+        raise SimCoreError(f"{name}: faces {nearest.shape}, or numbers of none – {remedy}")
+    return np.ascontiguousarray(nearest, np.int32), np.ascontiguousarray(corners, float)
+
+
 def moving_mesh(
     positions: np.ndarray, faces: np.ndarray, *, cell: float = 0.008, band: float = 0.04
 ) -> MovingGrid:
     """A body given by its vertices frame by frame, as what cloth lies on: one key for each frame.
 
     positions (T, V, 3) [m]; faces (F, 3) counter-clockwise from outside, closed; cell, band [m] of the distance
-    fields, which are made as the frames come. A phase with body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what
-    is thinner than twice the way of one frame may be missed in between. Raises SimCoreError at once where the mesh is
-    open, ill-wound or not finite, or is turned inside out in any frame, and says where.
+    fields, which are made as the frames come; the band grows with the longest way of a frame. A phase with
+    body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what is thinner than twice the way of one frame may be missed
+    in between. Raises SimCoreError at once where the mesh is open, ill-wound or not finite, or is turned inside out in
+    any frame, and says where.
     """
     from sim_core.cloth.field import checked_cell, field_and_faces, inside_out
 
@@ -123,22 +150,25 @@ def moving_mesh(
         raise SimCoreError(f"moving mesh: frame {wrong[0]} has vertices that are not finite – mend it")
     checked_cell("moving mesh", cell, band)
     faces = np.array(triangles("moving mesh: faces", faces, frames.shape[1]), np.int32, order="C")
+    # Where both distances are cut off at the band the body does not move; half its thickness is what it may go.
+    way = float(np.sqrt((np.diff(frames, axis=0) ** 2).sum(2)).max(initial=0.0))
+    band = max(band, min(way, 0.5 * float(np.ptp(frames, axis=1).min())) + 2 * cell)
     low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
     digest = hashlib.sha256(frames.tobytes() + faces.tobytes()).hexdigest()[:16]
 
-    sampled: dict[int, np.ndarray] = {}  # the nearest faces of the keys made last
+    near: dict[int, np.ndarray] = {}  # the nearest faces of the keys made last
 
     def key(k: int) -> np.ndarray:
         values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
-        for old in [j for j in sampled if abs(j - k) > 1]:
-            del sampled[old]
-        sampled[k] = nearest
+        for old in [j for j in near if abs(j - k) > 1]:
+            del near[old]
+        near[k] = nearest
         return values
 
-    def surface(k: int) -> tuple[np.ndarray, np.ndarray]:
-        if k not in sampled:
+    def surface(k: int) -> Worn:
+        if k not in near:
             key(k)
-        return sampled[k], np.ascontiguousarray((frames[k + 1] - frames[k])[faces].mean(1))
+        return near[k], frames[k][faces]
 
     first, origin = key(0), (float(low[0]), float(low[1]), float(low[2]))
     for number, vertices in enumerate(frames[1:], 1):  # the first is looked at with its field

@@ -238,7 +238,7 @@ class Run:
         if self.fixed:
             x, v = begin[0].copy(), begin[1].copy()
             engine.advance(under, pins, x, v, state.last_step, self.fixed)
-            return x, v, self.fixed, 0.0
+            return x, v, self.fixed, FRAME / self.fixed
         step, guard, usual = self._paced(state, under, pins, begin)
         for attempt in range(MAX_HALVINGS):
             count = self._count(state.safety * step)

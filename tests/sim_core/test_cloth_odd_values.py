@@ -169,6 +169,14 @@ def checked_grid(values: np.ndarray) -> Callable[[int], np.ndarray]:
     return lambda _: values
 
 
+TWO_KEYS: dict[str, Any] = {
+    "origin": (0, 0, 0),
+    "cell": 0.1,
+    "count": 2,
+    "key": checked_grid(np.ones((2, 2, 2))),
+}
+
+
 PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Air": (lambda **given: run(air=Air(**given)), AIR),
     "Air.at": (lambda **given: Air(**AIR).at(**given), {"seconds": 1.0}),
@@ -199,11 +207,19 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Material.of": (Material.of, {"parameters": WOVEN, "mass_damping": 0.5, "stiffness_damping": 0.0}),
     "MovingGrid": (
         moving,
-        {"origin": (0, 0, 0), "cell": 0.1, "count": 2, "key": checked_grid(np.ones((2, 2, 2))), "name": "a"},
+        TWO_KEYS | {"name": "a", "surface": None},
     ),
     "MovingGrid, its keys": (
         lambda key: moving(origin=(0, 0, 0), cell=0.1, count=2, key=checked_grid(key)),
         {"key": np.ones((2, 2, 2))},
+    ),
+    "MovingGrid, its surface": (
+        lambda **given: moving(**TWO_KEYS, surface=lambda _: tuple(given.values())),
+        {"nearest": np.zeros((2, 2, 2), np.int32), "corners": np.eye(3)[None]},
+    ),
+    "MovingGrid, its surface as a whole": (
+        lambda surface: moving(**TWO_KEYS, surface=lambda _: surface),
+        {"surface": (np.zeros((2, 2, 2), np.int32), np.eye(3)[None])},
     ),
     "Pace": (lambda **given: run(pace=Pace(**given)), {"precision": "single", "courant": 0.7}),
     "Phase": (lambda **given: run(phases=[Phase(**given)]), PHASE),
@@ -223,7 +239,7 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "scene": (scene, SCENE),
 }
 MADE = {"Certificate", "Choice", "DistanceField", "Drape"}  # by the room itself, for its callers to read
-CALLBACKS = ("key", "progress", "on_frame")
+CALLBACKS = ("key", "progress", "on_frame", "surface")
 SAID = {  # what an argument is also known by
     "name": ("scene",),
     "error_mm": ("error ",),
