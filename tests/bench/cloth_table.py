@@ -195,7 +195,7 @@ def check(seed: int) -> int:
 
 def checks() -> list[str]:
     """A line for every seed whose 20 scenes were checked."""
-    known = json.loads(CHECKED.read_text("utf-8")) if CHECKED.is_file() else {}
+    known = json.loads(CHECKED.read_text("utf-8"))
     return [
         f"- `--check --seed {seed}`: kept in {row['kept']} of {row['of']}; cost over the cheapest mesh that would do: "
         f"median {row['cost_ratio']['median']:.1f}, largest {row['cost_ratio']['largest']:.1f}"

@@ -193,9 +193,10 @@ def placed(path: Path, begin: str, end: str, text: str) -> None:
 def figures() -> dict:
     """What was measured: the bench's parts, and what `cloth_table.py --check` found, seed by seed."""
     folder = ROOT / "docs/figures"
-    found = json.loads((folder / "cloth.json").read_text("utf-8"))
-    choose = folder / "cloth-choose.json"
-    return found | {"choose": json.loads(choose.read_text("utf-8")) if choose.is_file() else {}}
+    found, choose = (
+        json.loads((folder / f"{name}.json").read_text("utf-8")) for name in ("cloth", "cloth-choose")
+    )
+    return found | {"choose": choose}
 
 
 def main() -> int:
