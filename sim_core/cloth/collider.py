@@ -20,6 +20,16 @@ _AT_REST = np.zeros(2)
 _NO_FACES, _NO_CORNERS = np.full((1, 1, 1), -1, np.int32), np.zeros((0, 3, 3))
 
 
+class Fields(NamedTuple):
+    """Of `Packed` what a distance is asked of: compiled calls hand every array on, and most calls ask no more."""
+
+    kind: np.ndarray
+    data: np.ndarray
+    grid: np.ndarray
+    later: np.ndarray
+    blend: np.ndarray
+
+
 class Packed(NamedTuple):
     """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid, float32.
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.collider import FASTEST, MOVING
-from sim_core.cloth.distance import carried, signed_distance
+from sim_core.cloth.distance import carried, fields_of, signed_distance
 
 LONGEST_SLEEP = 40  # substeps
 SETTLE = 6  # more looks at samples inside, at the end of a frame
@@ -43,9 +43,18 @@ def _resolve(x, v, i, n, depth, speed, carry, dt, friction, cap):
 
 
 @njit(cache=True, error_model="numpy")
-def _meet(packed, x, v, i, clearance, dt, friction, cap):
+def _meet(fields, x, v, i, clearance, dt, friction, cap):
     """Resolves vertex i; returns how far outside the clearance it was [m]."""
-    d, nx, ny, nz, speed = signed_distance(packed, x[i, 0], x[i, 1], x[i, 2])
+    d, nx, ny, nz, speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
+    if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
+        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, (0.0, 0.0, 0.0), dt, friction, cap)
+    return d - clearance
+
+
+@njit(cache=True, error_model="numpy")
+def _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap):
+    """`_meet` where the body's surface is known, and takes the vertex along."""
+    d, nx, ny, nz, speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
     if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
         carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
         _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, carry, dt, friction, cap)
@@ -55,24 +64,33 @@ def _meet(packed, x, v, i, clearance, dt, friction, cap):
 @njit(cache=True, error_model="numpy")
 def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, cap):
     """Resolves the vertices near[:, 0]; returns the deepest depth seen [m]."""
-    deepest = 0.0
+    deepest, fields = 0.0, fields_of(packed)
     for s in range(len(near)):
-        if inverse_mass[near[s, 0]] > 0.0:
-            deepest = max(deepest, -_meet(packed, x, v, near[s, 0], clearance, dt, friction, cap))
+        i = near[s, 0]
+        if inverse_mass[i] == 0.0:
+            continue
+        if len(packed.ways) > 0:
+            room = _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap)
+        else:
+            room = _meet(fields, x, v, i, clearance, dt, friction, cap)
+        deepest = max(deepest, -room)
     return deepest
 
 
 @njit(cache=True, error_model="numpy")
 def collide_due_vertices(packed, inverse_mass, x, v, samples, wake, step, clearance, dt, friction, cap):
     """As `collide_vertices`, for those whose wake (S,) is due: a vertex sleeps for as long as it cannot arrive."""
-    drift = drift_of(packed)
+    drift, fields = drift_of(packed), fields_of(packed)
     for s in range(len(samples)):
         if wake[s] > step:
             continue
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        room = _meet(packed, x, v, i, clearance, dt, friction, cap)
+        if len(packed.ways) > 0:
+            room = _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap)
+        else:
+            room = _meet(fields, x, v, i, clearance, dt, friction, cap)
         wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, dt)
 
 
@@ -91,12 +109,12 @@ def drift_of(packed):
 
 
 @njit(cache=True, error_model="numpy")
-def _way_of_corners(packed, x, sample, count):
+def _way_of_corners(fields, x, sample, count):
     """Which way out (unit, or 0) the corners know where a sample has none: in a lip thinner than a cell."""
     gx = gy = gz = 0.0
     for a in range(count):
         u = sample[a]
-        _, nx, ny, nz, _ = signed_distance(packed, x[u, 0], x[u, 1], x[u, 2])
+        _, nx, ny, nz, _ = signed_distance(fields, x[u, 0], x[u, 1], x[u, 2])
         gx, gy, gz = gx + nx, gy + ny, gz + nz
     size = math.sqrt(gx * gx + gy * gy + gz * gz)
     if size < 0.25:
@@ -105,7 +123,7 @@ def _way_of_corners(packed, x, sample, count):
 
 
 @njit(cache=True, error_model="numpy")
-def _meet_middle(packed, inverse_mass, x, v, sample, clearance, cap):
+def _meet_middle(fields, inverse_mass, x, v, sample, clearance, cap):
     """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
     i, j, k = sample[0], sample[1], sample[2]
     pair = i == k
@@ -114,11 +132,11 @@ def _meet_middle(packed, inverse_mass, x, v, sample, clearance, cap):
     px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
     py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
     pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
-    d, nx, ny, nz, _ = signed_distance(packed, px, py, pz)
+    d, nx, ny, nz, _ = signed_distance(fields, px, py, pz)
     if d >= clearance:
         return d - clearance
     if nx * nx + ny * ny + nz * nz < 0.5:
-        nx, ny, nz = _way_of_corners(packed, x, sample, count)
+        nx, ny, nz = _way_of_corners(fields, x, sample, count)
         if nx * nx + ny * ny + nz * nz < 0.5:
             return d - clearance
     push = min(clearance - d, cap) / (w * w * count)
@@ -145,18 +163,20 @@ def collide_samples(packed, inverse_mass, x, v, near, clearance, cap):
 
     A midpoint is stored as (i, j, i) and means weights 1/2, 1/2; a centroid as (i, j, k).
     """
+    fields = fields_of(packed)
     for s in range(len(near)):
-        _meet_middle(packed, inverse_mass, x, v, near[s], clearance, cap)
+        _meet_middle(fields, inverse_mass, x, v, near[s], clearance, cap)
 
 
 @njit(cache=True, error_model="numpy")
 def settle_samples(packed, inverse_mass, x, v, samples, wake, step, clearance, cap):
     """Goes again over the samples that were found inside in this step, until none is or SETTLE times."""
+    fields = fields_of(packed)
     for _ in range(SETTLE):
         inside = 0
         for s in range(len(samples)):
             if wake[s] == step + 1:
-                if _meet_middle(packed, inverse_mass, x, v, samples[s], clearance, cap) < 0.0:
+                if _meet_middle(fields, inverse_mass, x, v, samples[s], clearance, cap) < 0.0:
                     inside += 1
         if inside == 0:
             return
@@ -165,11 +185,11 @@ def settle_samples(packed, inverse_mass, x, v, samples, wake, step, clearance, c
 @njit(cache=True, error_model="numpy")
 def collide_due_samples(packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, cap):
     """As `collide_samples`, for those whose wake (S,) is due."""
-    drift = drift_of(packed)
+    drift, fields = drift_of(packed), fields_of(packed)
     for s in range(len(samples)):
         if wake[s] > step and not awake:
             continue
-        room = _meet_middle(packed, inverse_mass, x, v, samples[s], clearance, cap)
+        room = _meet_middle(fields, inverse_mass, x, v, samples[s], clearance, cap)
         fast = 0.0
         for a in range(3):
             u = samples[s, a]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING
+from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING, Fields
 from sim_core.cloth.pairs import triangle_weights
 
 
@@ -111,15 +111,21 @@ def _grid(r, grid, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
-def signed_distance(packed, x, y, z):
+def fields_of(packed):
+    """The `Fields` of a `Packed`."""
+    return Fields(packed.kind, packed.data, packed.grid, packed.later, packed.blend)
+
+
+@njit(cache=True, error_model="numpy")
+def signed_distance(fields, x, y, z):
     """Distance [m], unit gradient and the surface's speed along it [m/s] at a point.
 
     The gradient is 0 where a grid has none (medial axis). A moving grid is blended between two keys; its surface
     moves by what the distance loses.
     """
     best, bx, by, bz, speed = np.inf, 0.0, 1.0, 0.0, 0.0
-    for p in range(len(packed.kind)):
-        kind, row = packed.kind[p], packed.data[p]
+    for p in range(len(fields.kind)):
+        kind, row = fields.kind[p], fields.data[p]
         reach = best + row[19]
         if row[19] >= 0.0 and (x - row[16]) ** 2 + (y - row[17]) ** 2 + (z - row[18]) ** 2 > reach * abs(
             reach
@@ -136,11 +142,11 @@ def signed_distance(packed, x, y, z):
             gx, gy, gz = row[0], row[1], row[2]
             d = (x - row[3]) * gx + (y - row[4]) * gy + (z - row[5]) * gz
         else:
-            d, gx, gy, gz = _grid(row, packed.grid, x, y, z)
+            d, gx, gy, gz = _grid(row, fields.grid, x, y, z)
             if kind == MOVING:
-                e, hx, hy, hz = _grid(row, packed.later, x, y, z)
-                s = packed.blend[0]
-                w = -(e - d) * packed.blend[1]
+                e, hx, hy, hz = _grid(row, fields.later, x, y, z)
+                s = fields.blend[0]
+                w = -(e - d) * fields.blend[1]
                 d, gx = (1.0 - s) * d + s * e, (1.0 - s) * gx + s * hx
                 gy, gz = (1.0 - s) * gy + s * hy, (1.0 - s) * gz + s * hz
             size = math.sqrt(gx * gx + gy * gy + gz * gz)
@@ -156,9 +162,7 @@ def signed_distance(packed, x, y, z):
 
 @njit(cache=True, error_model="numpy")
 def carried(packed, x, y, z):
-    """Velocity [m/s] of the body's surface nearest to a point; 0 where it stands, or is known by its distance alone."""
-    if len(packed.ways) == 0:
-        return 0.0, 0.0, 0.0
+    """Velocity [m/s] of the body's surface nearest to a point; 0 far from it."""
     row, (nx, ny, nz) = packed.data[0], packed.nearest.shape
     i = int(_within((x - row[0]) / row[3], nx) + 0.5)
     j = int(_within((y - row[1]) / row[3], ny) + 0.5)
@@ -183,7 +187,7 @@ def carried(packed, x, y, z):
 @njit(cache=True, error_model="numpy")
 def distances(packed, points):
     """Signed distance (N,) at points (N, 3)."""
-    out = np.zeros(len(points))
+    out, fields = np.zeros(len(points)), fields_of(packed)
     for i in range(len(points)):
-        out[i] = signed_distance(packed, points[i, 0], points[i, 1], points[i, 2])[0]
+        out[i] = signed_distance(fields, points[i, 0], points[i, 1], points[i, 2])[0]
     return out
