@@ -42,21 +42,14 @@ def _resolve(x, v, i, n, depth, speed, carry, dt, friction, cap):
         v[i, c] = vn * n[c] + (1.0 - lost) * t + along
 
 
-@njit(cache=True, error_model="numpy")
-def _meet(fields, x, v, i, clearance, dt, friction, cap):
-    """Resolves vertex i; returns how far outside the clearance it was [m]."""
+@njit(error_model="numpy", inline="always")  # a call would hand on every array of both, for each vertex
+def _meet(packed, fields, x, v, i, clearance, dt, friction, cap):
+    """Resolves vertex i; returns how far outside the clearance it was [m]. fields: those of packed."""
     d, nx, ny, nz, speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
     if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
-        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, (0.0, 0.0, 0.0), dt, friction, cap)
-    return d - clearance
-
-
-@njit(cache=True, error_model="numpy")
-def _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap):
-    """`_meet` where the body's surface is known, and takes the vertex along."""
-    d, nx, ny, nz, speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
-    if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
-        carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
+        carry = (0.0, 0.0, 0.0)
+        if len(packed.ways) > 0:
+            carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
         _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, carry, dt, friction, cap)
     return d - clearance
 
@@ -69,10 +62,7 @@ def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, 
         i = near[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        if len(packed.ways) > 0:
-            room = _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap)
-        else:
-            room = _meet(fields, x, v, i, clearance, dt, friction, cap)
+        room = _meet(packed, fields, x, v, i, clearance, dt, friction, cap)
         deepest = max(deepest, -room)
     return deepest
 
@@ -87,10 +77,7 @@ def collide_due_vertices(packed, inverse_mass, x, v, samples, wake, step, cleara
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        if len(packed.ways) > 0:
-            room = _meet_carried(packed, fields, x, v, i, clearance, dt, friction, cap)
-        else:
-            room = _meet(fields, x, v, i, clearance, dt, friction, cap)
+        room = _meet(packed, fields, x, v, i, clearance, dt, friction, cap)
         wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, dt)
 
 

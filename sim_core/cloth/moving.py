@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,9 +14,8 @@ from sim_core.cloth.given import FURTHEST, called, finite, numeric, of_kind, tol
 from sim_core.errors import SimCoreError
 
 _WIDTH = 20
-Worn = tuple[
-    np.ndarray, np.ndarray
-]  # by the nodes of a grid: nearest faces (nx, ny, nz) int32 and corners (F, 3, 3)
+Made = TypeVar("Made")
+Worn = tuple[np.ndarray, np.ndarray]  # nearest faces (nx, ny, nz) int32, and the corners (F, 3, 3) of all
 
 
 @dataclass(frozen=True)
@@ -80,11 +80,7 @@ class MovingGrid:
         return GridSdf(self.origin, self.cell, self._kept[k] if k in self._kept else self.key(k))
 
     def _pack(self, kind: int, first: int, second: int) -> Packed:
-        for k in [k for k in self._kept if k not in (first, second)]:
-            del self._kept[k]
-        for k in (first, second):
-            if k not in self._kept:
-                self._kept[k] = nodes(f"body: key {k}", self.key(k))
+        _renew(self._kept, (first, second), lambda k: nodes(f"body: key {k}", self.key(k)))
         if self._kept[first].shape != self._kept[second].shape:
             raise SimCoreError(f"body: keys {first} and {second} have other nodes – all lie on one grid")
         data = np.zeros((1, _WIDTH))
@@ -93,13 +89,10 @@ class MovingGrid:
         if kind != MOVING:
             return packed
         data[0, FASTEST] = self._motion(first, second)
-        if self.surface is None:
+        surface, shape = self.surface, self._kept[first].shape
+        if surface is None:
             return packed
-        for k in [k for k in self._worn if k not in (first, second)]:
-            del self._worn[k]
-        for k in (first, second):
-            if k not in self._worn:
-                self._worn[k] = _worn(f"body: surface {k}", self.surface(k), self._kept[k].shape)
+        _renew(self._worn, (first, second), lambda k: _worn(f"body: surface {k}", surface(k), shape))
         (nearest, corners), (_, later) = self._worn[first], self._worn[second]
         if corners.shape != later.shape:
             raise SimCoreError(f"body: surfaces {first} and {second} have other faces – all are of one mesh")
@@ -111,6 +104,15 @@ class MovingGrid:
             change = self._kept[second] - self._kept[first]
             self._most[first, second] = float(max(change.max(), -change.min()))
         return self._most[first, second]
+
+
+def _renew(kept: dict[int, Made], keys: tuple[int, int], made: Callable[[int], Made]) -> None:
+    """Leaves these keys alone in what is kept, and makes those that are missing."""
+    for k in [k for k in kept if k not in keys]:
+        del kept[k]
+    for k in keys:
+        if k not in kept:
+            kept[k] = made(k)
 
 
 def _worn(name: str, value: object, shape: tuple[int, ...]) -> Worn:

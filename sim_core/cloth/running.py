@@ -49,8 +49,9 @@ _KINDS = {  # of what a run may be given, and the remedy
 class _Step(NamedTuple):
     """What a frame is done with: the longest step [s], least stiffness damping [s] and the usual step [s].
 
-    The usual step is that of a first try. Layers repel with the force they have at it, however short the steps of a
-    later one are: an impulse for each step would throw the harder, the shorter they are.
+    The usual step is that of a first try after frames that went well (safety 1). Layers repel with the force they have
+    at it, however short the steps of a later try are: an impulse for each step would throw the harder, the shorter
+    they are.
     """
 
     longest: float

@@ -167,10 +167,9 @@ def headline(found: dict) -> str:
     starts = ", ".join(f"{r['scene']} {r['wall_s']:.2f} s" for r in found["start"]["rows"])
     lines.append(f"| second start of `simcore cloth`, call to end | ≤ 2 s | {starts} |")
     kept = [f"{row['kept']} of {row['of']} (seed {seed})" for seed, row in found["choose"].items()]
-    if kept:
-        lines.append(
-            f"| `choose`: scenes the table has not seen, within the budget | ≥ 19 of 20 | {', '.join(kept)} |"
-        )
+    lines.append(
+        f"| `choose`: scenes the table has not seen, within the budget | ≥ 19 of 20 | {', '.join(kept)} |"
+    )
     return "\n".join(lines)
 
 
