@@ -42,5 +42,8 @@ def turn_slowly(stage: Stage, exhibit: str) -> None:
 
 @behaviour
 def play_clip(stage: Stage, exhibit: str) -> None:
-    """The exhibit's film starts, muted, when its close-up opens."""
+    """The exhibit's first film starts, muted, above its text when its close-up opens (page/ui/panel_media.js).
+
+    Whoever asked the system for less motion finds it there standing still, to be started by hand.
+    """
     stage.on_open(exhibit, {"play": True})

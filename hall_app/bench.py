@@ -1,4 +1,4 @@
-"""`hall bench`: walking, the page and its picture, measured in a checkout."""
+"""`hall bench`: walking, the page, its picture and a crowd, measured in a checkout."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from pathlib import Path
 
 __all__ = ["add_parser", "run"]
 
-PARTS = ("walking", "page", "look")
+PARTS = ("walking", "page", "look", "crowd")
 
 _EPILOG = """\
 walking  a million random moves among all obstacles, tested by an independent exact method; the clearance grid's
          time, bytes and error; the page's prediction against the server
 page     cold load, bytes, close-up and key-to-camera time in a real Chromium (needs the extra 'test')
+crowd    round trips, processor and memory of 100 visitors, wave after wave; what one attacker costs 30 others
 look     CPU time a picture of the same hall: light baked as shipped, one ambient light, viser's default environment
 
 Arguments after -- go to the part's own program, e.g.  hall bench walking -- --moves 100000"""
@@ -24,7 +25,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare `hall bench`."""
     parser = subparsers.add_parser(
         "bench",
-        help="measure walking and the page",
+        help="measure walking, the page and a crowd",
         description="Measure time and error together; prints tables, --json FILE writes the figures.",
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,

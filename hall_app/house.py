@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 import asyncio
-import math
-import multiprocessing
-import signal
+import functools
+import zlib
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Literal
 
-from .bake.places import key_now
+from .baking_queue import Bake
 from .beside import beside
-from .content.floor import foot_height
-from .content.glb import GlbError, read_glb
 from .content.loading import Content, Exhibit
 from .content.problems import Problem
 from .content.views import yaw_of
 from .content.walkable import walking_floor
-from .models import ExhibitModels, models_of
+from .figures import Drawn, drawn_exhibits
+from .floor_grid import grid_beside, ready_grid
+from .latest import Latest
+from .models import ExhibitModels
+from .places import Places
+from .preparing import ROOM
+from .room.key import room_key
+from .room.places import data_room
 from .room.showing import ShownRoom, shown_room, still_right
-from .scene.nodes import Figure, HallScene
+from .scene.nodes import HallScene
 from .stage import Actor, Stage
 from .visitors import Visitor, Visitors
-from .walking import Floor, Grid, Pose, WalkSession, cached_grid
+from .walking import Floor, Grid, Pose, WalkSession
 
 __all__ = ["House"]
 
@@ -43,17 +45,22 @@ class House:
     progress: Callable[[float, str], None] | None = None
     scene: HallScene = field(default_factory=HallScene)
     visitors: Visitors = field(default_factory=Visitors)
-    unbaked: tuple[Problem, ...] = ()
+    places: Places = field(default_factory=Places)
     survey_problems: Callable[[], Iterable[Any]] = tuple
+    survey_asks: Callable[[str], bool] = bool  # whether the questionnaire of that id has anything to ask here
 
     def __post_init__(self) -> None:
         self.stage = Stage(self.scene, self.visitors)
         self.floor: Floor = walking_floor(self.content.plan, self.content.exhibits)
-        self.grid: Grid = cached_grid(self.floor, self._grids, progress=self.progress)
-        self._models: dict[str, ExhibitModels] = {}
-        self._failed: dict[str, Problem] = {}
-        self._show_room(shown_room(self.content, self.data))
-        self._show()
+        self._take_grid(ready_grid(self.floor, self._grids, self.start, progress=self.progress))
+        self._grid_to_come: Latest[Grid] = Latest()
+        self._room_to_come: Latest[ShownRoom] = Latest()
+        self._failed: dict[str, Problem] = {}  # key of a bake -> why it failed
+        self._pending: frozenset[str] = frozenset()  # names of the bakes that are to come
+        self._drawings = 0  # how often what is shown has changed
+        self.room: ShownRoom = shown_room(self.content, self.data)
+        self._draw_room()
+        self._show(drawn_exhibits(self.content, self.data), room_key(self.content, self.data))
 
     @property
     def _grids(self) -> Path:
@@ -73,39 +80,94 @@ class House:
             self.stage.clicked(visitor, exhibit)
 
     def close(self) -> None:
+        self._grid_to_come.drop()
+        self._room_to_come.drop()
         self.scene.stop()
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is wrong with the content now."""
+        """What is wrong with the content now. Asks the survey, which looks at its files and its store."""
         asked = (Problem(p.file, p.key, p.what, p.fix) for p in self.survey_problems())
-        return (*self.content.problems, *self.unbaked, *self.room_problems, *asked)
+        return (*self.own_problems, *asked)
+
+    @property
+    def own_problems(self) -> tuple[Problem, ...]:
+        """What is wrong with the content, the survey's aside."""
+        return (*self.content.problems, *self.unbaked, *self.room_problems, *self._given_up)
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        """What answers about the hall depend on, the survey's part aside: equal states, equal answers."""
+        return (self._drawings, self.content.revision, self._pending, self._grid_name, self.own_problems)
+
+    @property
+    def _given_up(self) -> tuple[Problem, ...]:
+        """What of the content's last change could not be finished beside, though it was begun twice."""
+        slow = (("the ways through the changed hall", self._grid_to_come), ("the room", self._room_to_come))
+        return tuple(
+            Problem(
+                "plan.toml",
+                "",
+                f"{what} could not be computed: {work.failure}",
+                "change any file to try again",
+            )
+            for what, work in slow
+            if work.failure is not None
+        )
+
+    @property
+    def unbaked(self) -> tuple[Problem, ...]:
+        """Garments that are not shown as they should be, and will not be without a curator's doing."""
+        return self._drawn.unreadable + tuple(
+            self._failed.get(self._drawn.keys[e.id] or "")
+            or Problem(e.toml, "garment", "has not been baked", "run hall build")
+            for e in self.content.exhibits
+            if e.file.garment is not None and (self.given_up(e) or self._lacking(e))
+        )
+
+    def _lacking(self, exhibit: Exhibit) -> bool:
+        return exhibit.id not in self._drawn.models and exhibit.id not in self._pending
+
+    @property
+    def preparing(self) -> tuple[str, ...]:
+        """The exhibits whose garments are being baked, or wait for it."""
+        return tuple(exhibit.id for exhibit in self.content.exhibits if exhibit.id in self._pending)
 
     @property
     def room_problems(self) -> tuple[Problem, ...]:
         """Why the room is shown without its light or its letters."""
-        found = [self._failed[self.room.key]] if self.room.key in self._failed else []
+        found = [self._failed[self._room_key]] if self._room_key in self._failed else []
         if self.room.lacking is not None:
             what, _, fix = self.room.lacking.partition(" – ")
             found = [Problem("plan.toml", "", f"the hall's boards are blank: {what}", fix)]
         if self.room.broken is not None:
             file, _, what = self.room.broken.partition(" ")
-            what = f"{what}: the room is shown evenly lit"
-            found.append(Problem(file, "", what, "run: hall build --room"))
+            how = "as it was before" if self.room.former else "evenly lit"
+            found.append(Problem(file, "", f"{what}: the room is shown {how}", "run: hall build --room"))
         return tuple(found)
 
-    def baked(self, exhibit: Exhibit, failure: str | None) -> None:
-        """A bake of the exhibit's garment ended; `failure` says why it did not succeed."""
-        key = key_now(self.content, exhibit)
-        if failure is not None and key is not None:
-            problem = Problem(
-                exhibit.toml, "garment", f"baking failed: {failure}", "correct pattern or weave"
-            )
-            self._failed[key] = problem
+    def expect(self, bakes: Iterable[Bake]) -> None:
+        """What is being baked, or waits for it: no problem, however long it takes and however it went before."""
+        bakes = tuple(bakes)
+        self._pending = frozenset(bake.name for bake in bakes)
+        for bake in bakes:
+            self._failed.pop(bake.key, None)
+
+    def baked(self, bake: Bake, failure: str | None) -> None:
+        """A bake ended; `failure` says why it did not succeed."""
+        exhibit = self.content.exhibit(bake.name)
+        if failure is None:
+            return
+        if bake.name == ROOM:
+            what, fix = f"its light could not be computed: {failure}", "run hall build --room"
+            self._failed[bake.key] = Problem("plan.toml", "", what, fix)
+        elif exhibit is not None:
+            what = f"baking failed: {failure}"
+            self._failed[bake.key] = Problem(exhibit.toml, "garment", what, "correct pattern or weave")
 
     def given_up(self, exhibit: Exhibit) -> bool:
         """True when baking these very inputs has failed before."""
-        return key_now(self.content, exhibit) in self._failed
+        return self._drawn.keys.get(exhibit.id) in self._failed
 
     @property
     def start(self) -> Pose:
@@ -115,118 +177,100 @@ class House:
 
     def models(self, exhibit: str) -> ExhibitModels | None:
         """What an exhibit is drawn with."""
-        return self._models.get(exhibit)
+        return self._drawn.models.get(exhibit)
 
     def bakes(self) -> dict[str, Path]:
         """Exhibit -> folder its baked media lie in."""
-        return {name: models.baked for name, models in self._models.items() if models.baked is not None}
+        return {name: models.baked for name, models in self._drawn.models.items() if models.baked is not None}
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Folders of the bakes on show, also where the data folder does not hold them."""
+        return (*self.bakes().values(), data_room(self.data, self.room.key))
 
     def shown(self) -> tuple[Exhibit, ...]:
         """The exhibits that stand in the hall."""
-        return tuple(exhibit for exhibit in self.content.exhibits if exhibit.id in self._models)
+        return tuple(exhibit for exhibit in self.content.exhibits if exhibit.id in self._drawn.models)
 
     async def replace(self, content: Content) -> None:
-        """Show changed content, without a restart; visitors stay where they are if they can."""
-        floor = walking_floor(content.plan, content.exhibits)
-        moved = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
-        grid = await self._bake_grid(floor) if moved else self.grid
+        """Show changed content, without a restart; visitors stay where they are if they can.
+
+        What takes seconds, the clearance grid of a changed floor and a room that is raised anew, follows by itself.
+        """
+        floor, drawn, key, right = await beside(self._read, content)
         self.content = content
-        if moved:
-            self.floor, self.grid = floor, grid
-            for visitor in self.visitors:
-                if visitor.walk.change_floor(floor, self.grid):
-                    visitor.say(visitor.walk.moved().message())
-        self._show()
-        news = {"t": "content", "revision": content.revision, "problems": len(self.problems)}
+        changed = (floor.outline, floor.solids) != (self.floor.outline, self.floor.solids)
+        if changed or self._grid_to_come.failure is not None:
+            self.floor = floor
+            self._grid_to_come.begin(functools.partial(grid_beside, floor, self._grids, self.start))
+            self._change_floor()  # exact obstacles at once; way-finding as soon as it is known
+        self._show(drawn, key)
         for visitor in self.visitors:
-            if visitor.opened is not None and visitor.opened not in self._models:
+            if visitor.opened is not None and self.models(visitor.opened) is None:
                 self.stage.close(visitor)
+        self._tell_news()
+        self._room_to_come.drop()
+        if not right:
+            self._room_to_come.begin(functools.partial(beside, shown_room, content, self.data, self.room))
+
+    def _read(self, content: Content) -> tuple[Floor, Drawn, str, bool]:
+        """What replace needs of the files, in a thread beside the loop: floor, exhibits, the room's key, and whether
+        the room that is shown is the right one."""
+        floor = walking_floor(content.plan, content.exhibits)
+        drawn = drawn_exhibits(content, self.data, self._drawn.models, self.scene.figures())
+        right = still_right(self.room, content, self.data)
+        return floor, drawn, room_key(content, self.data), right
+
+    def catch_up(self) -> None:
+        """Show what has been finished since the content was replaced. Raises what kept it from being finished."""
+        # One after the other: what the one raises must not cost what the other has finished.
+        if (grid := self._grid_to_come.take()) is not None:
+            self._take_grid(grid)
+            self._change_floor()
+            self._tell_news()  # the page's grid has another address now
+        if (room := self._room_to_come.take()) is not None:
+            self._show_room(room)
+
+    def _take_grid(self, grid: Grid) -> None:
+        self.grid = grid
+        self._grid_name = f"{zlib.crc32(grid.to_bytes()):08x}"
+
+    def _tell_news(self) -> None:
+        news = {"t": "content", "revision": self.content.revision, "problems": len(self.problems)}
+        for visitor in self.visitors:
             visitor.say(news)
-        if not still_right(self.room, content, self.data):  # a second or two: the last to change
-            self._show_room(await beside(shown_room, content, self.data))
+
+    def _change_floor(self) -> None:
+        for visitor in self.visitors:
+            if visitor.walk.change_floor(self.floor, self.grid):
+                visitor.say(visitor.walk.moved().message())
 
     def _show_room(self, room: ShownRoom) -> None:
+        same = room.glb == self.room.glb
         self.room = room
-        self.scene.show_room(room.glb)
-        self.scene.show_environment(room.environment)
+        self._drawings += 1
+        if not same:
+            self._draw_room()
+
+    def _draw_room(self) -> None:
+        self.scene.show_room(self.room.glb)
+        self.scene.show_environment(self.room.environment)
 
     def room_unlit(self) -> bool:
         """True while the room's light has still to be computed from the content as it is now."""
-        return not self.room.baked and self.room.lacking is None and self.room.key not in self._failed
+        right = self.room.baked and not self.room.former
+        return not right and self.room.lacking is None and self._room_key not in self._failed
 
-    def room_baked(self, key: str, failure: str | None) -> None:
-        """A bake of the room of that key ended; `failure` says why it did not succeed."""
-        if failure is not None:
-            what, fix = f"its light could not be computed: {failure}", "run hall build --room"
-            self._failed[key] = Problem("plan.toml", "", what, fix)
-
-    async def _bake_grid(self, floor: Floor) -> Grid:
-        """The clearance grid of a changed floor, baked in a process of its own."""
-        loop = asyncio.get_running_loop()
-        # Ctrl-C is ours to answer; the worker would print its own account of it.
-        ignore = {"initializer": signal.signal, "initargs": (signal.SIGINT, signal.SIG_IGN)}
-        pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"), **ignore)
-        try:
-            return await loop.run_in_executor(pool, cached_grid, floor, self._grids)
-        except asyncio.CancelledError:
-            for worker in multiprocessing.active_children():
-                worker.terminate()
-            raise
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-
-    def _show(self) -> None:
-        """Draw the exhibits; one whose garment is not baked yet is left out and named."""
-        found = {e.id: models_of(self.content, e, self.data) for e in self.content.exhibits}
-        self._models = {name: models for name, models in found.items() if models is not None}
-        figures, unreadable = self._figures_now()
-        self.unbaked = unreadable + tuple(
-            self._failed.get(key_now(self.content, e) or "")
-            or Problem(e.toml, "garment", "has not been baked", "run hall build")
-            for e in self.content.exhibits
-            if e.file.garment is not None and (e.id not in self._models or self.given_up(e))
-        )
+    def _show(self, drawn: Drawn, room: str) -> None:
+        """Draw the exhibits. room: key of the room of the content as it is now."""
+        self._drawn, self._room_key = drawn, room
+        self._drawings += 1
         shown = self.shown()
-        self.scene.show(figures, frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours))
+        self.scene.show(drawn.figures, frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours))
         start = self.start
         self.scene.place_camera(start.x, start.z, start.yaw, start.eye)
         self.stage.play(
             tuple(Actor(e.id, e.file.place.x, e.file.place.z, tuple(e.file.behaviours)) for e in shown)
-        )
-
-    def _figures_now(self) -> tuple[tuple[Figure, ...], tuple[Problem, ...]]:
-        """The exhibits as drawn; one whose models cannot be read keeps its last good ones, or is left out."""
-        figures, problems = [], []
-        for exhibit in self.shown():
-            try:
-                figure = self._figure(exhibit)
-            except (GlbError, OSError) as error:
-                models = self._models[exhibit.id]
-                fix = error.fix if isinstance(error, GlbError) else "check the file"
-                problems.append(
-                    Problem(exhibit.toml, "models", f"{models.close.name}, {models.hall.name}: {error}", fix)
-                )
-                figure = self.scene.figure(exhibit.id)
-            if figure is None:
-                del self._models[exhibit.id]
-            else:
-                figures.append(figure)
-        return tuple(figures), tuple(problems)
-
-    def _figure(self, exhibit: Exhibit) -> Figure:
-        models, place = self._models[exhibit.id], exhibit.file.place
-        read_glb(models.hall)  # a browser would only show a hole
-        low, high = models.bounds()
-        return Figure(
-            id=exhibit.id,
-            hall=models.hall.read_bytes(),
-            close=models.close.read_bytes,
-            x=place.x,
-            y=foot_height(self.content.plan, exhibit.file),
-            z=place.z,
-            facing=place.facing,
-            centre=(low[1] + high[1]) / 2,
-            radius=0.5 * math.dist(low, high),
         )
 
     # Visitors.
@@ -246,7 +290,7 @@ class House:
     def walk_json(self) -> dict[str, Any]:
         """What the page needs for walking."""
         body = self.grid.body
-        grid = {"url": f"/grid.bin?v={self.content.revision}", **self.grid.meta()}
+        grid = {"url": f"/grid.bin?v={self._grid_name}", **self.grid.meta()}
         return {"mode": self.walk_mode, **walk_constants(body.radius, body.skin), "grid": grid}
 
 

@@ -25,16 +25,23 @@ class ExhibitModels:
         info = read_glb(self.close)
         return info.low, info.high
 
+    def whole(self) -> bool:
+        """Whether both files are (still) there."""
+        return self.hall.is_file() and self.close.is_file()
 
-def models_of(content: Content, exhibit: Exhibit, data: Path | None) -> ExhibitModels | None:
+
+def models_of(
+    content: Content, exhibit: Exhibit, data: Path | None, *, stale: bool = True
+) -> ExhibitModels | None:
     """What to draw `exhibit` with, or None while its garment has not been baked.
 
-    data: the data folder, where a bake of its own may lie; None looks beside the exhibit alone.
+    data: the data folder, where a bake of its own may lie; None looks beside the exhibit alone. stale: whether a bake
+    of earlier inputs will do.
     """
     if exhibit.file.garment is None:
         hall, close = exhibit.model_path("hall"), exhibit.model_path("close")
         return ExhibitModels(hall, close or hall, None) if hall is not None else None
-    folder = bake_folder(content, exhibit, data)
+    folder = bake_folder(content, exhibit, data, stale=stale)
     if folder is None:
         return None
     return ExhibitModels(folder / "hall.glb", folder / "close.glb", folder)

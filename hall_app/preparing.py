@@ -1,22 +1,26 @@
-"""Baking from the server's side: what needs it, and a child process that does it."""
+"""Baking from the server's side: what of the content needs it, and a child process that does it."""
 
 from __future__ import annotations
 
 import contextlib
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 from pathlib import Path
-from types import TracebackType
 
-from .bake.places import bake_folder, key_now
+from .bake.places import bake_folder, bake_work, data_bake, key_now, read_record
+from .baking_queue import Bake
 from .content.loading import Content, Exhibit
 from .ending import undisturbed
 
-__all__ = ["Preparation", "stale_garments"]
+__all__ = ["ROOM", "Preparation", "bake_places", "forsake", "stale_garments", "wanted_bakes"]
+
+ROOM = "the room's light"  # the name of its bake; no exhibit is called so
+_NICE = 10  # how far a bake stands back for who serves visitors
 
 
 def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
@@ -30,11 +34,46 @@ def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
     )
 
 
-class Preparation:
-    """One `hall build` in a process of its own; ends with the block that holds it."""
+def wanted_bakes(content: Content, data: Path, *, light: bool) -> tuple[Bake, ...]:
+    """Every bake that the content lacks as it is now; light: the room's as well.
 
-    def __init__(self, content: Path, data: Path, *what: str) -> None:
-        """what: options of `hall build`, such as "--exhibit", "pibo" or "--room"."""
+    Reads and hashes files, some 5 ms of them: to be called beside the event loop.
+    """
+    from .room.key import room_key
+    from .room.places import room_folder
+
+    keys = ((exhibit.id, key_now(content, exhibit)) for exhibit in stale_garments(content, data))
+    garments = tuple(Bake(name, key) for name, key in keys if key is not None)
+    if not light or room_folder(content, data) is not None:
+        return garments
+    # Garments cast shadows: the light of one baked before them would be that of another hall.
+    return (*garments, Bake(ROOM, room_key(content, data), patient=True))
+
+
+def bake_places(bake: Bake, data: Path) -> tuple[Path, Path]:
+    """Where a bake keeps its state while it is under way, and where what it makes is kept."""
+    from .room.places import data_room, room_work
+
+    if bake.name == ROOM:
+        return room_work(data, bake.key), data_room(data, bake.key)
+    return bake_work(data, bake.name, bake.key), data_bake(data, bake.name, bake.key)
+
+
+def forsake(bake: Bake, data: Path) -> None:
+    """Remove what a bake that was ended has left: its state, and files in its place that make no whole bake."""
+    from .room.places import room_record
+
+    work, target = bake_places(bake, data)
+    shutil.rmtree(work, ignore_errors=True)
+    if (room_record if bake.name == ROOM else read_record)(target) is None:
+        shutil.rmtree(target, ignore_errors=True)
+
+
+class Preparation:
+    """One `hall build` in a process of its own, until `end`."""
+
+    def __init__(self, content: Path, data: Path, bake: Bake) -> None:
+        what = ("--room",) if bake.name == ROOM else ("--exhibit", bake.name)
         command = [sys.executable, "-m", "hall_app", "build", "--content", str(content), "--data", str(data)]
         self._line = "starting …"
         self._errors: list[str] = []
@@ -55,8 +94,9 @@ class Preparation:
                 )
                 for reader in self._readers:
                     reader.start()
+            _stand_back(self._process.pid)
         except KeyboardInterrupt:  # came meanwhile
-            self._end()
+            self.end()
             raise
 
     def _read_progress(self) -> None:
@@ -88,15 +128,7 @@ class Preparation:
             return "done"
         return self._errors[-1] if self._errors else f"ended with status {self.returncode}"
 
-    def __enter__(self) -> Preparation:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._end()
-
-    def _end(self) -> None:
+    def end(self) -> None:
         """End the build with all it started: its film is drawn by processes that hold the same pipes.
 
         What it has done is kept by its own files, whole ones or none, so it needs no time to say good-bye.
@@ -109,3 +141,12 @@ class Preparation:
             reader.join(1)
             if pipe is not None and not reader.is_alive():  # closing waits for who reads
                 pipe.close()
+
+
+def _stand_back(leader: int) -> None:
+    """Let a session of processes run only where others leave it time. Best effort: not every system can."""
+    with contextlib.suppress(OSError, AttributeError):
+        os.setpriority(os.PRIO_PGRP, leader, _NICE)
+    # Linux shares the time among sessions first, so that niceness alone tells only within one.
+    with contextlib.suppress(OSError):
+        Path(f"/proc/{leader}/autogroup").write_text(str(_NICE))

@@ -1,4 +1,4 @@
-"""`hall serve`: prepare what is missing, open the hall, follow the curator's edits, leave nothing behind."""
+"""`hall serve`: open the hall, follow the curator's edits, bake what they ask for, leave nothing behind."""
 
 from __future__ import annotations
 
@@ -6,23 +6,26 @@ import argparse
 import asyncio
 import contextlib
 import signal
-import socket
 import sys
-import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .beside import beside
-from .content.loading import Content, Exhibit, load
+from .baking_queue import BakingQueue
+from .content.loading import Content, load
 from .content.lookup import content_folder
 from .content.problems import ContentError
+from .data_folder import make_data_folder
+from .descriptors import connections, raise_limit, shortage
 from .ending import at_once
-from .preparing import Preparation, stale_garments
+from .listening import add_limits, check_port, port, server
+from .memory import settle
+from .places import Places
+from .preparing import Preparation, forsake, wanted_bakes
 from .progress_line import ProgressLine
+from .server.addresses import Addresses
 
 if TYPE_CHECKING:
-    import uvicorn
     from fastapi import FastAPI
 
     from survey import Clip
@@ -31,11 +34,17 @@ if TYPE_CHECKING:
 
 __all__ = ["add_parser", "run"]
 
-_POLL = 1.0  # [s] between two looks at the content folder
+_POLL = 1.0  # [s] between two looks at the content folder, and at what is being baked
+
+OFFERS: frozenset[str] = frozenset()  # pages of the platform beside the hall: what needs one is not asked yet
+
+_TOLD = ProgressLine()  # whatever this command says goes through it, so that no line runs into another
 
 _EPILOG = """\
 The hall needs no network, no database server and no torch. Answers, accounts of baking and caches go to --data.
-A change in the content folder shows on reloading the page; a faulty file keeps its last good version on show.
+A change in the content folder shows within two seconds; a faulty file keeps its last good version on show. What has
+to be baked for it, a garment or the room's light, is baked beside, one after the other: the last model and the last
+light stay on show until then, and an exhibit that was never baked appears when it is.
 Ctrl-C ends everything. Exit status: 0 ended by the user, 1 no hall (the message names the file), 2 wrong arguments."""
 
 
@@ -48,7 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--port", type=_port, default=8000, help="port of the page (default 8000)")
+    parser.add_argument("--port", type=port, default=8000, help="port of the page (default 8000)")
     parser.add_argument(
         "--host", default="127.0.0.1", help="address to listen on (default 127.0.0.1: this machine alone)"
     )
@@ -72,6 +81,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_false",
         help="where the room's light has not been computed for this plan, leave it even",
     )
+    add_limits(parser)
     parser.set_defaults(run=run)
 
 
@@ -81,14 +91,17 @@ def run(arguments: argparse.Namespace) -> int:
         content = _prepared(arguments)
         if content is None:
             return 1
-        stale = stale_garments(content, arguments.data)
     for sign in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(sign, _end)  # a closed terminal or a service manager ends a bake as Ctrl-C does
     with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C ends the hall at any time, and is no failure
-        _bake_missing(content, arguments.data, stale)
         with at_once():
-            server = _server(_open(content, arguments), arguments)
-        server.run()
+            addresses = Addresses()
+            limit = raise_limit()
+            if short := shortage(limit, arguments.visitors):
+                _say(short)
+            app = _open(content, arguments, addresses)
+            listening = server(app, arguments, addresses, connections(limit, arguments.visitors))
+        listening.run()
     return 0
 
 
@@ -100,94 +113,83 @@ def _prepared(arguments: argparse.Namespace) -> Content | None:
         for problem in error.problems:
             print(f"hall serve: {problem}", file=sys.stderr)
         return None
-    _check_port(arguments.host, arguments.port)
-    try:
-        arguments.data.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OSError(
-            f"--data {arguments.data}: {error.strerror} – choose a folder that can be written"
-        ) from error
+    check_port(arguments.host, arguments.port)
+    make_data_folder(arguments.data)
     _say(f"Content  {content.folder}")
     for problem in content.problems:
         _say(f"  left out: {problem}")
     return content
 
 
-def _server(app: FastAPI, arguments: argparse.Namespace) -> uvicorn.Server:
-    import uvicorn
-
-    config = uvicorn.Config(
-        app,
-        host=arguments.host,
-        port=arguments.port,
-        log_level="warning",
-        access_log=False,
-        loop="asyncio",  # the loop viser runs on as well
-        ws="websockets-sansio",
-        ws_max_size=1 << 26,
-        timeout_graceful_shutdown=2,
-    )
-    return uvicorn.Server(config)
-
-
 def _end(number: int, frame: object) -> None:
     raise KeyboardInterrupt
 
 
-def _port(text: str) -> int:
-    number = int(text)
-    if not 1 <= number <= 65535:
-        raise argparse.ArgumentTypeError(f"{number} is no port – give 1 to 65535")
-    return number
-
-
-def _check_port(host: str, port: int) -> None:
-    """Say at once that the port is taken, before anything is prepared."""
-    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except OSError as error:
-            raise OSError(
-                f"cannot listen on {host}:{port} ({error.strerror}) – choose another with --port"
-            ) from error
-
-
-def _open(content: Content, arguments: argparse.Namespace) -> FastAPI:
+def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
     from survey import mount
 
     from .house import House
     from .server.app import create_app
 
     _say("Opening the hall …")
-    progress = ProgressLine()
 
     def show(fraction: float, label: str) -> None:
-        progress.tell(f"Preparing {label} {fraction:4.0%}", done=fraction >= 1)
+        _TOLD.tell(f"Preparing {label} {fraction:4.0%}", done=fraction >= 1)
 
-    house = House(content, arguments.data, walk_mode=arguments.walk, progress=show)
+    places = Places(arguments.visitors)
+    house = House(content, arguments.data, walk_mode=arguments.walk, progress=show, places=places)
+    house.expect(wanted_bakes(content, arguments.data, light=arguments.light))
 
-    @contextlib.asynccontextmanager
-    async def living(app: FastAPI) -> AsyncIterator[None]:
-        house.attach(asyncio.get_running_loop())
-        following = asyncio.create_task(_follow_edits(house, arguments.light))
-        _greet(house, arguments)
-        try:
-            yield
-        finally:
-            following.cancel()
-            await asyncio.gather(following, return_exceptions=True)
-            survey.close()
-            house.close()
-
-    app = create_app(house, lifespan=living)
-    survey = mount(
-        app, content=content.folder, data=arguments.data, problems=[], clip_of=lambda key: _film(house, key)
+    app = create_app(
+        house, addresses=addresses, lifespan=lambda _: _living(house, arguments, lambda: survey.close())
     )
-    house.survey_problems = lambda: survey.problems
+    survey = mount(
+        app,
+        content=content.folder,
+        data=arguments.data,
+        problems=[],
+        clip_of=lambda key: _film(house, key),
+        offers=OFFERS,
+        home=lambda language, exhibit: f"/?lang={language}" + (f"&exhibit={exhibit}" if exhibit else ""),
+        proxies=arguments.proxy,
+    )
+    house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     for problem in survey.problems:
         _say(f"  left out: {problem}")
+    for hint in survey.hints:
+        _say(f"  hint: {hint}")
     return app
+
+
+@contextlib.asynccontextmanager
+async def _living(
+    house: House, arguments: argparse.Namespace, close: Callable[[], None]
+) -> AsyncIterator[None]:
+    """The hall while it is open: it follows the content and bakes. close: what else ends with it."""
+    from .following import Following
+
+    loop = asyncio.get_running_loop()
+    # The server knows two signals; the third, of a closed terminal, ends it in the same way.
+    loop.add_signal_handler(signal.SIGHUP, signal.raise_signal, signal.SIGTERM)
+    house.attach(loop)
+    settle()
+    queue = BakingQueue(
+        lambda bake: Preparation(house.content.folder, house.data, bake),
+        lambda bake: forsake(bake, house.data),
+        lambda name, line, last: _TOLD.tell(f"Preparing {name}: {line}", done=last),
+    )
+    _greet(house, arguments)
+    look = Following(house, queue, light=arguments.light, say=_say).look
+    following = asyncio.create_task(_for_ever(_POLL, look, "following edits"))
+    try:
+        yield
+    finally:
+        following.cancel()
+        await asyncio.gather(following, return_exceptions=True)
+        queue.close()
+        close()
+        house.close()
+        _TOLD.end()
 
 
 def _film(house: House, key: str) -> Clip | None:
@@ -212,84 +214,28 @@ def _greet(house: House, arguments: argparse.Namespace) -> None:
         _say(f"  left out: {problem}")
     shown = f"[{arguments.host}]" if ":" in arguments.host else arguments.host
     _say(f"{exhibits}, {wrong} problem{'' if wrong == 1 else 's'}")
-    if not house.room.baked:
+    for name in house.preparing:
+        _say(f"  to come: {name}, when its garment is baked")
+    if house.room.former or not house.room.baked:
+        how = "with that of an earlier state" if house.room.former else "evenly lit"
         later = "" if arguments.light and house.room_unlit() else " (hall build --room computes it)"
-        _say(f"The room's light is not computed for this plan: it is shown evenly lit{later}")
+        _say(f"The room's light is not computed for this plan: it is shown {how}{later}")
     _say(f"Open     http://{shown}:{arguments.port}   (Ctrl-C ends)")
-
-
-def _bake_missing(content: Content, data: Path, stale: Sequence[Exhibit]) -> None:
-    """Bake garments that have no bake yet, in a process of their own, before the doors open."""
-    progress = ProgressLine()
-    for exhibit in stale:
-        try:
-            with Preparation(content.folder, data, "--exhibit", exhibit.id) as preparation:
-                while preparation.poll() is None:
-                    progress.tell(f"Preparing {exhibit.id}: {preparation.line()}")
-                    time.sleep(0.3)
-            progress.tell(f"Preparing {exhibit.id}: {preparation.outcome()}", done=True)
-        finally:
-            progress.end()
-
-
-async def _follow_edits(house: House, light: bool) -> None:
-    """Show edits within a second or two; bake changed garments and the room beside the serving process."""
-    from .content.reload import Watcher
-
-    watcher = Watcher(house.content.folder, house.content)
-
-    async def look() -> None:
-        content = await beside(watcher.poll)
-        if content is not None:
-            before = set(house.problems)
-            await house.replace(content)
-            for problem in house.problems:
-                if problem not in before:
-                    _say(f"Problem: {problem}")
-        for exhibit in stale_garments(house.content, house.data):
-            if not house.given_up(exhibit):
-                await _bake_beside(house, exhibit)
-        if light and house.room_unlit():
-            await _light_beside(house)
-
-    await _for_ever(_POLL, look, "following edits")
 
 
 async def _for_ever(period: float, act: Callable[[], Awaitable[None]], what: str) -> None:
     """Act every `period` seconds; an error is told once and does not end it."""
     told = ""
     while True:
-        await asyncio.sleep(period)
         try:
             await act()
         except Exception as error:
             if str(error) != told:
                 told = str(error)
                 _say(f"Problem while {what}: {' '.join(told.split())} – the hall goes on as it was")
-
-
-async def _bake_beside(house: House, exhibit: Exhibit) -> None:
-    house.baked(exhibit, await _built(house, exhibit.id, "--exhibit", exhibit.id))
-    await house.replace(house.content)
-
-
-async def _light_beside(house: House) -> None:
-    """Compute the light of a room that was raised flat; it is shown as soon as it is there."""
-    key = house.room.key
-    house.room_baked(key, await _built(house, "the room's light", "--room"))
-    await house.replace(house.content)
-
-
-async def _built(house: House, name: str, *what: str) -> str | None:
-    """Run one build in a process of its own; why it failed, or None."""
-    with Preparation(house.content.folder, house.data, *what) as preparation:
-        _say(f"Preparing {name} …")
-        while preparation.poll() is None:
-            await asyncio.sleep(0.5)
-    outcome = preparation.outcome()
-    _say(f"Preparing {name}: {outcome}")
-    return None if preparation.returncode == 0 else outcome
+        await asyncio.sleep(period)
 
 
 def _say(text: str) -> None:
+    _TOLD.end()
     print(text, flush=True)

@@ -13,6 +13,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+# [s] after which a hall hangs: one that opens may have kernels to compile, on a machine that has much else to do.
+OPENING, ENDING = 600, 60
+
 
 @dataclass(frozen=True)
 class RunningHall:
@@ -40,16 +43,18 @@ def running_hall(
     content: Path,
     work: Path,
     *options: str,
-    patience: float = 120,
+    patience: float = OPENING,
     program: Sequence[str] = (sys.executable, "-m", "hall_app"),
     env: Mapping[str, str] | None = None,
     light: bool = False,
+    port: int | None = None,
 ) -> Iterator[RunningHall]:
     """Start it, wait until it answers, end it with Ctrl-C's signal; `program` in place of `hall`, more `env`.
 
-    light: whether to compute the light of a room that is not baked, minutes of work.
+    light: whether to compute the light of a room that is not baked, minutes of work; port: a free one when None.
     """
-    port, data, log = free_port(), work / "data", work / "serve.log"
+    port = port or free_port()
+    data, log = work / "data", work / "serve.log"
     work.mkdir(parents=True, exist_ok=True)
     command = [
         *program,
@@ -76,7 +81,7 @@ def running_hall(
         finally:
             process.send_signal(signal.SIGINT)
             try:
-                process.wait(15)
+                process.wait(ENDING)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()

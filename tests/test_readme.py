@@ -20,7 +20,14 @@ def front(monkeypatch):
 
 def test_every_figure_of_the_front_page_is_the_last_one_measured(front) -> None:
     """All but the robe's rows, which are measured again from the models (`hall check --garments`)."""
-    rows = front.walking() + front.page() + front.look() + front.mesh_figures.summary() + front.room()
+    rows = (
+        front.walking()
+        + front.crowd()
+        + front.page()
+        + front.look()
+        + front.mesh_figures.summary()
+        + front.room()
+    )
     for exhibit, name in (("beizi", "beizi"), ("pibo-figure", "pibo over a robe"), ("pibo", "scarf")):
         rows += front.garment(exhibit, name)
     text = (ROOT / "README.md").read_text("utf-8")

@@ -11,7 +11,8 @@ from pathlib import Path
 
 from ..content.loading import Content, Exhibit, load
 from ..content.lookup import content_folder
-from .places import bake_fault, baked_here, data_bake, read_record
+from ..data_folder import make_data_folder
+from .places import bake_fault, bake_work, baked_here, data_bake, read_record
 
 __all__ = ["add_parser", "run"]
 
@@ -90,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _build_room(content: Content, arguments: argparse.Namespace) -> None:
     """The room, if the plan or what is written in it changed."""
     from ..room.key import room_key
-    from ..room.places import data_room, room_here, room_record
+    from ..room.places import data_room, room_here, room_record, room_work
 
     key = room_key(content, arguments.data)
     target = data_room(arguments.data, key) if arguments.into_data else room_here(content.folder)
@@ -100,7 +101,8 @@ def _build_room(content: Content, arguments: argparse.Namespace) -> None:
         return
     from ..room.bake import bake_room
 
-    work = arguments.data / "bake-work" / f"room-{key}"
+    make_data_folder(arguments.data)
+    work = room_work(arguments.data, key)
     with _progress(arguments.json, "room") as progress:
         record = bake_room(content, key=key, target=target, work=work, data=arguments.data, progress=progress)
     size = f"{record['triangles']} triangles, {record['bytes'] / 1e6:.2f} MB"
@@ -130,7 +132,8 @@ def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
 def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
     from .bake import bake_garment
 
-    work = arguments.data / "bake-work" / f"{exhibit.id}-{key}"
+    make_data_folder(arguments.data)
+    work = bake_work(arguments.data, exhibit.id, key)
     with _progress(arguments.json, exhibit.id) as progress:
         return bake_garment(
             content, exhibit, key=key, target=target, work=work, progress=progress, film=not arguments.no_film

@@ -7,10 +7,12 @@ import json
 
 from ..content.loading import Content, Exhibit
 
-__all__ = ["BAKE_VERSION", "bake_key"]
+__all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key"]
 
 # Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
 BAKE_VERSION = 7
+
+KEY_DIGITS = 16
 
 
 def bake_key(content: Content, exhibit: Exhibit) -> str:
@@ -28,4 +30,4 @@ def bake_key(content: Content, exhibit: Exhibit) -> str:
     ):
         digest.update(f"\0{path}\0".encode())
         digest.update((content.folder / path).read_bytes())
-    return digest.hexdigest()[:16]
+    return digest.hexdigest()[:KEY_DIGITS]

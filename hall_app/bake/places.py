@@ -8,13 +8,14 @@ from typing import Any
 
 from ..content.loading import Content, Exhibit
 from ..sealing import Fault, seal_fault
-from .key import bake_key
+from .key import KEY_DIGITS, bake_key
 
 __all__ = [
     "NEEDED",
     "RECORD",
     "bake_fault",
     "bake_folder",
+    "bake_work",
     "baked_here",
     "data_bake",
     "key_now",
@@ -51,6 +52,11 @@ def data_bake(data: Path, exhibit: str, key: str) -> Path:
     return data / "bakes" / f"{exhibit}-{key}"
 
 
+def bake_work(data: Path, exhibit: str, key: str) -> Path:
+    """The folder in which a bake that is under way keeps its state; gone once it has succeeded."""
+    return data / "bake-work" / f"{exhibit}-{key}"
+
+
 def key_now(content: Content, exhibit: Exhibit) -> str | None:
     """The key of a bake of the exhibit's inputs as they are now, None while one of them cannot be read."""
     try:
@@ -64,14 +70,27 @@ def bake_folder(content: Content, exhibit: Exhibit, data: Path | None, *, stale:
 
     data: the data folder, None to look beside the exhibit alone.
     """
-    here = baked_here(exhibit)
-    record = read_record(here)
-    key = key_now(content, exhibit)
-    if key is None:
-        return here if stale and record is not None else None
-    if record is not None and record.get("key") == key:
-        return here
-    fresh = data_bake(data, exhibit.id, key) if data is not None else None
-    if fresh is not None and read_record(fresh) is not None:
-        return fresh
-    return here if stale and record is not None else None
+    here, key = baked_here(exhibit), key_now(content, exhibit)
+    if key is not None:
+        for folder in (here, data_bake(data, exhibit.id, key)) if data is not None else (here,):
+            record = read_record(folder)
+            if record is not None and record.get("key") == key:
+                return folder
+    if not stale:
+        return None
+    last = [folder for folder in (here, *_own_bakes(exhibit, data)) if read_record(folder) is not None]
+    return max(last, key=_made, default=None)
+
+
+def _own_bakes(exhibit: Exhibit, data: Path | None) -> list[Path]:
+    """What the server has baked for the exhibit, of whatever inputs."""
+    pattern = f"{exhibit.id}-{'[0-9a-f]' * KEY_DIGITS}"
+    return [] if data is None else sorted(data_bake(data, "", "").parent.glob(pattern))
+
+
+def _made(folder: Path) -> int:
+    """When the bake's record, its last file, was written [ns]."""
+    try:
+        return (folder / RECORD).stat().st_mtime_ns
+    except OSError:
+        return 0

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .checks import CHECKS
+from .checks.questionnaires import unstated
 from .loading import Content, load, load_exhibit_problems
 from .problems import ContentError, Problem
 
-__all__ = ["check"]
+__all__ = ["check", "hints"]
 
 
 def check(folder: Path) -> list[Problem]:
@@ -23,6 +24,11 @@ def check(folder: Path) -> list[Problem]:
     for look in CHECKS:
         found += _looked(look, content)
     return list(dict.fromkeys(found))
+
+
+def hints(folder: Path) -> list[Problem]:
+    """What is not wrong, but should be done before the hall opens to visitors."""
+    return unstated(folder)
 
 
 def _looked(look: Callable[[Content], list[Problem]], content: Content) -> list[Problem]:

@@ -17,7 +17,7 @@ Look through a content folder: form of the TOML files, files named and present, 
 of media, media and models (readable, in metres, within budget), exhibits inside the hall and reachable on
 foot, openings and signs held by walls, licences, questionnaires, weaves, patterns, bakes and the room (files
 as they were baked), unused files. One line a problem: file, key, what is
-wrong, how to put it right.
+wrong, how to put it right. A hint is no problem: something to do before visitors come.
 
 With --garments instead: what every baked garment was measured to be, measured again from its files where that
 is cheap; marked ! where it breaks a limit or where record and files disagree.
@@ -48,9 +48,10 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check the folder and write the result: 0 no problem, 1 problems."""
-    from .check import check
+    from .check import check, hints
 
     problems: list[Problem]
+    advice: list[Problem] = []
     folder: Path | None = args.folder or args.content
     try:
         folder = content_folder(folder)
@@ -60,15 +61,23 @@ def run(args: argparse.Namespace) -> int:
             text, status = garments_checked(folder, as_json=args.json)
             sys.stdout.write(text)
             return status
-        problems = check(folder)
+        problems, advice = check(folder), hints(folder)
     except ContentError as error:
         problems = list(error.problems)
     if args.json:
-        result = {"folder": str(folder or ""), "problems": [problem.as_json() for problem in problems]}
+        result = {
+            "folder": str(folder or ""),
+            "problems": [problem.as_json() for problem in problems],
+            "hints": [hint.as_json() for hint in advice],
+        }
         sys.stdout.write(json.dumps(result, ensure_ascii=False, indent=1) + "\n")
     else:
-        for problem in problems:
-            sys.stdout.write(f"{problem}\n")
-        count = "1 problem" if len(problems) == 1 else f"{len(problems)} problems"
-        sys.stdout.write(f"{folder or 'no content folder'}: {count}\n")
+        for line in (*problems, *(f"hint: {hint}" for hint in advice)):
+            sys.stdout.write(f"{line}\n")
+        counts = [_counted(len(problems), "problem"), *([_counted(len(advice), "hint")] if advice else [])]
+        sys.stdout.write(f"{folder or 'no content folder'}: {', '.join(counts)}\n")
     return 1 if problems else 0
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"

@@ -15,6 +15,7 @@ from markdown_it.token import Token
 
 SCHEME = re.compile(r"^[a-z][a-z0-9+.-]*:", re.IGNORECASE)
 Address = Callable[[str], str | None]
+Draw = Callable[[str, str], str]
 
 
 def link_allowed(url: str) -> bool:
@@ -40,6 +41,10 @@ def _image(_self: RendererHTML, tokens: Sequence[Token], index: int, _options: A
     address = env["picture"](_path_of(token))
     if address is None:
         return words  # only the exhibit's own pictures are shown: the hall asks no other server
+    return env["draw"](address, words)
+
+
+def _plainly(address: str, words: str) -> str:
     return f'<img src="{escape(address)}" alt="{words}" loading="lazy">'
 
 
@@ -55,9 +60,30 @@ def _path_of(token: Token) -> str:
     return unquote(str(token.attrGet("src") or "").partition("?")[0])
 
 
-def html_of(markdown: str, picture: Address) -> str:
-    """HTML of a curator's text. `picture(path)` gives a picture's address, or None to show its words only."""
-    return _parser().render(markdown, {"picture": picture})
+def html_of(markdown: str, picture: Address, *, draw: Draw = _plainly, top: int | None = None) -> str:
+    """HTML of a curator's text. `picture(path)` gives a picture's address, or None to show its words only.
+
+    draw(address, words): the HTML of a picture, its words escaped already. top: level of the text's own first
+    headings, for a page in which it stands beneath others; None leaves levels as they were written.
+    """
+    env = {"picture": picture, "draw": draw}
+    tokens = _parser().parse(markdown, env)
+    if top is not None:
+        _set_beneath(tokens, top)
+    return _parser().renderer.render(tokens, _parser().options, env)
+
+
+def _set_beneath(tokens: Sequence[Token], top: int) -> None:
+    """Number the headings from `top` on without a gap, whatever levels the curator chose."""
+    above: list[int] = []
+    for token in tokens:
+        if token.type == "heading_open":
+            written = int(token.tag[1:])
+            while above and above[-1] >= written:
+                above.pop()
+            above.append(written)
+        if token.type in ("heading_open", "heading_close"):
+            token.tag = f"h{min(top + len(above) - 1, 6)}"
 
 
 def pictures_in(markdown: str) -> Iterator[str]:

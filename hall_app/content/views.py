@@ -107,13 +107,14 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "x": file.place.x,
         "z": file.place.z,
         "facing": file.place.facing,
-        "thumbnail": _thumbnail(exhibit, baked),
+        "thumbnail": thumbnail(exhibit, baked),
         "behaviours": list(file.behaviours),
         "caption": file.caption.as_json() if file.caption else None,
     }
 
 
-def _thumbnail(exhibit: Exhibit, baked: Path | None) -> str | None:
+def thumbnail(exhibit: Exhibit, baked: Path | None) -> str | None:
+    """Address of the picture that stands for the exhibit in lists."""
     pictures = [path for medium in exhibit.file.media if medium.kind == "picture" for path in medium.sources]
     for path in [exhibit.file.thumbnail, *pictures]:
         if path and (address := _url(exhibit, path, baked)):

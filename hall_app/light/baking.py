@@ -65,7 +65,7 @@ def bake_light(
     progress: Progress | None = None,
     checkpoint: Path | None = None,
 ) -> LightMap:
-    """The light on every chart, the same bits for the same input and seed, whatever the number of cores.
+    """The light on every chart, on one machine the same bits for the same input and seed on any number of cores.
 
     rays: per texel and pass; the first pass finds direct light, each further one adds a bounce; fill_light: added
     everywhere, for the bounces left out; lamp_share: points drawn on lamps per ray (0: none); filtered: smooth noise;

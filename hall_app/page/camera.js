@@ -82,6 +82,12 @@ export function dolly(metres) { mutable()?.cameraControl?.dolly(metres, false); 
 
 const halfTan = (degrees) => Math.tan((degrees * Math.PI) / 360);
 
+/** Come nearer or go farther by a factor of the distance. */
+export function zoom(factor) {
+  const control = mutable()?.cameraControl;
+  if (control) control.dollyTo(control.distance * factor, false);
+}
+
 /** An upright phone would see a slot of the hall: give it more height. `near`: a close-up, which has its own distance. */
 export function fitLens(near = false) {
   const camera = mutable()?.camera, canvas = mutable()?.canvas;
@@ -102,6 +108,12 @@ export function fieldOfView() { return ((mutable()?.camera?.fov ?? 58) * Math.PI
 export function displayed() {
   const camera = mutable()?.camera;
   return camera ? fromThree([camera.position.x, camera.position.y, camera.position.z]) : null;
+}
+
+/** Whether the picture is seen from above (x, z) [m], to a millimetre. */
+export function standsAt(x, z) {
+  const place = displayed();
+  return place === null || Math.hypot(place[0] - x, place[2] - z) < 1e-3;
 }
 
 /** Move the picture's middle into what panel at the right, bar on top, sheet or hints at the bottom [px] leave free. */

@@ -7,7 +7,7 @@ const TURN = 0.12; // [rad] a key press
 const STEP = 0.08; // of the exhibit's size, a key press
 
 export function createCloseup(ui) {
-  let studio = null, drawnAt = null;
+  let studio = null, drawnAt = null, fitted = 1;
   const root = document.documentElement;
 
   // The model comes over viser's socket: two frames after its meshes stand in the scene it has been drawn.
@@ -31,17 +31,33 @@ export function createCloseup(ui) {
     return (1.02 * radius) / (Math.tan(camera.fieldOfView() / 2) * free);
   }
 
+  /** The distance [m] that fits, and gestures that stay around it. */
+  function reach() {
+    fitted = fitting(studio.radius);
+    camera.orbitGestures(studio.radius * 0.1, Math.max(studio.radius * 5, 1.5 * fitted));
+    return fitted;
+  }
+
+  /** Another window, or a folded panel: the exhibit stays turned and as near as the visitor has it, in what is free now. */
+  function reframe() {
+    if (!studio) return;
+    const before = fitted;
+    camera.zoom(reach() / before);
+    camera.leaveRoom(ui.visible);
+  }
+
   function place() {
     const { x, y, z, radius } = studio;
     camera.fitLens(true);
-    const distance = fitting(radius);
-    camera.orbitGestures(radius * 0.1, Math.max(radius * 5, 1.5 * distance));
+    const distance = reach();
     camera.lookAt([x + distance * 0.25, y + radius * 0.15, z + distance * 0.97], [x, y, z]);
     camera.leaveRoom(ui.visible);
   }
 
   addEventListener("keydown", (event) => {
     if (!studio || event.target.closest?.("input, textarea, [role=tablist], video, audio, dialog[open]")) return;
+    const reading = event.target.closest?.("[role=tabpanel]") && ["ArrowUp", "ArrowDown"].includes(event.code);
+    if (reading) return;
     const act = {
       ArrowLeft: () => camera.orbit(-TURN, 0), ArrowRight: () => camera.orbit(TURN, 0),
       ArrowUp: () => camera.orbit(0, -TURN), ArrowDown: () => camera.orbit(0, TURN),
@@ -54,7 +70,8 @@ export function createCloseup(ui) {
     event.stopImmediatePropagation();
     act();
   }, true);
-  addEventListener("resize", () => { if (studio) place(); });
+  addEventListener("resize", reframe);
+  ui.whenCovered(reframe);
 
   return {
     drawnAt: () => drawnAt,

@@ -1,16 +1,21 @@
-// Looking: left drag or one finger turns the head, the middle button raises or lowers the eye.
+// Looking: left drag or one finger turns the head, as keys do (head.js); the middle button raises or lowers the eye.
 
 import { clampPitch } from "./camera.js";
+import { Head } from "./head.js";
 
 const RADIANS_PER_PIXEL = 0.0042;
 const METRES_PER_PIXEL = 0.004;
 
-/** `gaze` holds yaw, pitch [rad] and eye [m]; `active()` says whether dragging looks around, `onTurn()` hears of it. */
+/** -> {gaze, head}: yaw, pitch [rad] and eye [m], and what turns them by keys; `active()` says whether dragging looks
+ *  around, `onTurn()` hears of it. */
 export function createGaze(surface, eye, active, onTurn) {
   const gaze = { yaw: 0, pitch: 0, eye: eye.default };
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const head = new Head(gaze, () => calm.matches);
   let drag = null;
 
   function turn(dx, dy) {
+    head.levelling = false;
     gaze.yaw -= dx * RADIANS_PER_PIXEL;
     gaze.pitch = clampPitch(gaze.pitch - dy * RADIANS_PER_PIXEL);
   }
@@ -41,5 +46,5 @@ export function createGaze(surface, eye, active, onTurn) {
   // The middle button would start the browser's own scrolling.
   surface.addEventListener("mousedown", (event) => { if (event.button === 1) event.preventDefault(); }, true);
 
-  return { gaze };
+  return { gaze, head };
 }

@@ -1,15 +1,17 @@
-// The page: loads the scene's description, waits for viser to draw it, then lets the visitor in.
+// The page: builds the overlay from the scene's description, waits for viser to draw it, then lets the visitor in.
 
 import { createBeat } from "./beat.js";
 import * as camera from "./camera.js";
+import { createConnection } from "./connection.js";
 import { framesDrawn, hooksPresent, requestRender } from "./hooks.js";
-import { chosenLanguage, fetchJson, loadClearance, loadHall, until, webglWorks } from "./loading.js";
+import { LOAD_PATIENCE, loadClearance, loadHall, until, webglWorks } from "./loading.js";
 import { createQuality } from "./quality.js";
 import { remember } from "./ui/words.js";
 import { createUi } from "./ui/ui.js";
 import { createVisit } from "./visit.js";
 
 const HOOK_PATIENCE = 8000; // [ms] before the page hands the camera to the server
+const DRAW_ON = 5000; // [ms] at a time, while the hall's nodes come
 const FIRST_LOOK = 2500; // [ms] the finished hall is drawn on end, to see what the machine bears
 
 let ui = null;
@@ -20,47 +22,57 @@ function createActions(parts) {
     enter: () => parts.visit.enter(),
     open: (id) => parts.visit.open(id),
     close: () => parts.visit.close(),
+    opened: () => parts.visit?.opened() ?? null,
     goTo: (...there) => parts.visit.goTo(...there),
     move: (forward, right) => parts.visit.move(forward, right),
-    setLang(next) {
-      remember("hall.lang", next);
-      document.documentElement.lang = next;
-    },
+    setLang: (next) => remember("hall.lang", next),
     setQuality: (choice) => parts.quality?.choose(choice),
   };
 }
 
 async function start() {
-  const [scene, texts] = await Promise.all([fetchJson("/api/scene"), fetchJson("/api/texts")]);
-  const lang = chosenLanguage(scene), parts = { visit: null, quality: null };
-  document.documentElement.lang = lang;
+  const { door } = window.HALL; // it has been fetching since the first paint
+  const [scene, texts] = await Promise.all([door.scene, door.texts]);
+  const { lang } = door, parts = { visit: null, quality: null };
   ui = createUi({ root: document.body, scene, texts, lang, actions: createActions(parts) });
   if (!webglWorks()) {
     ui.fail("webgl");
     return;
   }
-  ui.progress(0.05, "loading_hall");
   ui.problems(scene.problems);
   const [hooks, grid] = await Promise.all([
-    window.HALL?.withoutHooks ? null : until(hooksPresent, HOOK_PATIENCE),
+    window.HALL.withoutHooks ? null : door.viewer.then(() => until(hooksPresent, HOOK_PATIENCE)),
     loadClearance(scene.walk),
   ]);
   const display = hooks ? "page" : "viser";
   const beat = createBeat((now) => frame(parts, now));
-  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake });
+  const connection = createConnection({ view: window.HALL.view, tell: ui.connection, late: () => ui.fail("load") });
+  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk });
   if (hooks) parts.quality = createQuality(() => {
     ui.quality(parts.quality);
     requestRender();
     beat.wake();
   });
   ui.quality(parts.quality);
-  beat.wake(120000);
-  if (hooks) await loadHall(scene, ui.progress);
+  await door.models;
+  await stand(scene, hooks, connection, beat);
   beat.rest();
   parts.visit.settle();
   if (parts.quality?.choice === "auto") firstLook(beat);
   ui.ready();
   publish(parts, display);
+}
+
+/** Until the hall stands and the visitor is inside. What takes too long is said, and may still come. */
+async function stand(scene, hooks, connection, beat) {
+  function progress(fraction) {
+    window.HALL.door.progress("drawing", fraction);
+    if (!connection.held()) beat.wake(DRAW_ON); // in the queue there is nothing to draw
+  }
+  const arrives = hooks
+    ? () => loadHall(scene, progress, connection)
+    : () => until(connection.inside, LOAD_PATIENCE, connection);
+  while (!(await arrives())) ui.fail("load");
 }
 
 /** Everything that must stand before viser draws; a fault of the picture's quality leaves the hall flat, but whole. */
@@ -87,9 +99,9 @@ function firstLook(beat) {
 
 /** What tests and curious visitors may use: to read, and to go where the minimap goes. */
 function publish({ visit, quality }, display) {
-  const { goTo, pose, mode, disagreement, opened, near, closeupAt } = visit;
+  const { goTo, pose, mode, ahead, disagreement, opened, near, closeupAt } = visit;
   window.hall = Object.freeze({
-    goTo, pose, mode, disagreement, opened, near, closeupAt,
+    goTo, pose, mode, ahead, disagreement, opened, near, closeupAt,
     displayed: camera.displayed,
     display: () => display,
     quality: () => (quality ? { choice: quality.choice, level: quality.level } : null),
@@ -101,7 +113,5 @@ function publish({ visit, quality }, display) {
 
 start().catch((error) => {
   console.error(error);
-  if (ui) ui.fail("load");
-  else document.body.insertAdjacentHTML("beforeend",
-    '<p class="hall-failed" role="alert">展厅无法打开，请刷新页面。<br>The hall could not be opened. Please reload the page.</p>');
+  (ui ?? window.HALL.door).fail("load");
 });

@@ -27,13 +27,14 @@ export function meshesOf(name) {
   return found;
 }
 
-export function drawnOnce() {
-  const info = window.__viserTestpoints?.rendererInfo;
-  return Boolean(info && info.render.calls > 0 && info.render.triangles > 0);
-}
+// What the renderer has drawn. three.js counts anew, in a new object, when a lost context comes back, and viser's test
+// points keep the old one: they are asked only until there is a renderer.
+const drawn = () => (renderer()?.info ?? window.__viserTestpoints?.rendererInfo)?.render;
 
-/** Pictures drawn so far. */
-export function framesDrawn() { return window.__viserTestpoints?.rendererInfo?.render?.frame ?? 0; }
+export function drawnOnce() { return Boolean(drawn()?.calls > 0 && drawn().triangles > 0); }
+
+/** Pictures drawn so far, since the context last came back. */
+export function framesDrawn() { return drawn()?.frame ?? 0; }
 
 export function requestRender() { viser()?.requestRender?.(); }
 

@@ -87,6 +87,23 @@ export function sharpen(meshes, wanted, blend = true) {
   if (changed) requestRender();
 }
 
+const HALF_FLOAT = 1016; // three.js
+
+/**
+ * viser's client decodes its environment map into a render target: it lives on the graphics card alone, and a lost
+ * context would take it away for good. With its pixels in memory three.js can send it there again, as every texture.
+ */
+function keepPixels(texture) {
+  const target = texture.renderTarget, gl = renderer();
+  if (!texture.isRenderTargetTexture || !target || texture.type !== HALF_FLOAT || gl.getContext().isContextLost()) return;
+  const { width, height } = target;
+  const data = new Uint16Array(4 * width * height);
+  gl.readRenderTargetPixels(target, 0, 0, width, height, data);
+  texture.source.data = { data, width, height };
+  texture.isRenderTargetTexture = false;
+  texture.isDataTexture = true;
+}
+
 let kept = null; // the environment map while it is taken off
 let skies = [];
 
@@ -97,6 +114,7 @@ let skies = [];
 export function reflect(on) {
   const scene = viser()?.scene;
   if (!scene) return;
+  if (scene.environment) keepPixels(scene.environment);
   let changed = true;
   if (!on && scene.environment) {
     kept = scene.environment;

@@ -1,34 +1,27 @@
 // What the page needs before a visitor can enter: descriptions, the clearance grid, viser's hooks, the drawn hall.
 
-import { drawnOnce, meshesOf } from "./hooks.js";
-import { recall } from "./ui/words.js";
+import { drawnOnce, framesDrawn, meshesOf } from "./hooks.js";
 import { loadGrid } from "./walkmath.js";
 
-const LOAD_PATIENCE = 120000; // [ms]
+export const LOAD_PATIENCE = 120000; // [ms]
 
-export const fetchJson = async (url) => {
-  const answer = await fetch(url, { cache: "no-cache" });
+/** signal: ends the waiting, of an AbortController. */
+export const fetchJson = async (url, signal) => {
+  const answer = await fetch(url, { cache: "no-cache", signal });
   if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
   return answer.json();
 };
 
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** The first truthy value of `test()`, null after `patience` [ms]. */
-export async function until(test, patience, every = 50) {
-  for (const end = performance.now() + patience; performance.now() < end; await pause(every)) {
+/** The first truthy value of `test()`, null after `patience` [ms], which does not run while `held()`. */
+export async function until(test, patience, { every = 50, held = () => false } = {}) {
+  for (let end = performance.now() + patience; performance.now() < end; await pause(every)) {
     const value = test();
     if (value) return value;
+    if (held()) end = performance.now() + patience;
   }
   return null;
-}
-
-/** The address' language, the remembered one, the browser's or the hall's. */
-export function chosenLanguage(scene) {
-  const asked = new URLSearchParams(location.search).get("lang") ?? recall("hall.lang");
-  if (asked === "zh" || asked === "en") return asked;
-  const own = navigator.language.slice(0, 2);
-  return own === "zh" || own === "en" ? own : (scene.language ?? "en");
 }
 
 /** The grid the page predicts its way on, null where the server has to walk. */
@@ -48,11 +41,17 @@ export function webglWorks() {
   return Boolean(document.createElement("canvas").getContext("webgl2"));
 }
 
-/** Wait until every node of the hall has been drawn; tells `progress(fraction, text)`. */
-export async function loadHall(scene, progress) {
-  await until(() => {
+/**
+ * Wait until the visitor is inside, every node of the hall is there and a picture of them all has been drawn; tells
+ * `progress(fraction)`. False where that took too long; waiting in the queue does not count.
+ */
+export async function loadHall(scene, progress, { inside, held }) {
+  let complete = null; // pictures drawn when the last node had come; the one under way may lack it
+  const stands = await until(() => {
     const left = scene.nodes.filter((name) => meshesOf(name).length === 0).length;
-    progress(0.1 + 0.85 * (1 - left / scene.nodes.length), "loading_models");
-    return left === 0 && drawnOnce();
-  }, LOAD_PATIENCE);
+    progress(1 - left / scene.nodes.length);
+    if (left === 0) complete ??= framesDrawn();
+    return left === 0 && drawnOnce() && framesDrawn() > complete + 1 && inside();
+  }, LOAD_PATIENCE, { held });
+  return stands !== null;
 }

@@ -10,16 +10,18 @@ const LOOK_EVERY = 1000; // [ms]
 /** createMark(display, onNew) -> {find()}; onNew(mark) when the page has become another client. */
 export function createMark(display, onNew) {
   const read = () => (display === "page" ? clientMark() : document.querySelector("[data-hall-client]")?.dataset.hallClient);
-  let mark = null;
+  let mark = null, told = false;
   setInterval(() => {
     const now = read();
-    if (!mark || !now || now === mark) return;
+    if (!told || !now || now === mark) return;
     mark = now;
     onNew(mark);
   }, LOOK_EVERY);
   return {
+    /** The mark, null where the scene takes too long: onNew tells it later. */
     async find() {
       mark = await until(read, PATIENCE);
+      told = true;
       return mark;
     },
   };

@@ -1,19 +1,27 @@
 // Walking: the page predicts on the clearance grid, the server simulates every input again and is the authority.
 // Without page hooks or grid (or with `hall serve --walk server`) the server walks and the page shows what it says.
 
-import { Predictor } from "./walkmath.js";
+import { PACE, Prediction } from "./prediction.js";
 
 const SEND_EVERY = 1 / 30; // [s]
 const RETRY_AFTER = 1000; // [ms]
-const RETRY_WHEN_FULL = 5000; // [ms]
+const RETRY_AS = { full: 5000, refused: 60000 }; // [ms]
+const CLOSED = { 1013: "full", 1008: "refused" };
+const MARK_PATIENCE = 3000; // [ms] the hello does not wait longer: where the hall is full, viser's view comes after it
+const PAGE = Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("."); // known again after a line that died
+const REPEAT = 0.2; // [s] after which held keys are told again where the server walks: its answer is a sign of life
+const clock = () => performance.now() / 1000; // [s]
 
-/** `on` receives moved(pose), open(message), closed(), near(message), content(message), connection(state), heard(). */
-export function createWalk({ scene, grid, display, mark, on }) {
+/**
+ * at: {x, z} [m] to come in at, null for the entrance. `on` receives moved(pose), open(message), closed(),
+ * near(message), content(message), connection(state, place), heard().
+ */
+export function createWalk({ scene, grid, display, mark, at, on }) {
   const pose = { x: scene.start.x, z: scene.start.z };
   const options = { speed: scene.walk.speed, radius: scene.walk.radius, skin: scene.walk.skin, maxDt: scene.walk.max_dt };
-  let socket = null, mode = "server", predictor = null;
-  let sequence = 0, outgoing = [];
-  let arrived = false, sinceSent = 0, lastKeys = "", greeted = false;
+  let socket = null, mode = "server", prediction = null;
+  let held = new Held();
+  let arrived = false, sinceSent = 0, walking = false, greeted = false, asked = false, waiting = false, introduced = false;
 
   function send(message) {
     const ready = socket?.readyState === WebSocket.OPEN && (greeted || message.t === "hello");
@@ -27,26 +35,31 @@ export function createWalk({ scene, grid, display, mark, on }) {
   }
 
   const receive = {
+    queue: (message) => on.connection("queue", message.place),
     hi(message) {
       greeted = true;
+      if (!introduced) introduce(socket);
       on.connection("open");
+      waiting = false;
       mode = message.mode;
-      lastKeys = "";
       place(message);
-      sequence = 0;
-      outgoing = [];
-      predictor = mode === "predict" && grid ? new Predictor(grid, { ...options, x: message.x, z: message.z }) : null;
+      held = new Held();
+      prediction = mode === "predict" && grid ? new Prediction(grid, { ...options, x: message.x, z: message.z }, clock()) : null;
       on.moved({ ...message, first: !arrived });
       arrived = true;
     },
     moved(message) {
-      predictor?.teleport(message.x, message.z);
+      prediction?.moved(message.x, message.z);
       place(message);
       on.moved(message);
     },
     pose(message) {
-      if (predictor) predictor.acknowledge(message.seq, message.x, message.z);
-      else place(message);
+      if (prediction) prediction.answer(message.seq, message.x, message.z, clock());
+      else {
+        held.answer(message.seq);
+        place(message);
+      }
+      tellWaiting();
     },
     open: (message) => on.open(message),
     closed: (message) => on.closed(message),
@@ -57,11 +70,15 @@ export function createWalk({ scene, grid, display, mark, on }) {
   function connect() {
     const address = new URL("/walk", location.href);
     address.protocol = address.protocol.replace("http", "ws");
-    socket = new WebSocket(address);
+    const own = (socket = new WebSocket(address));
     socket.onopen = async () => {
-      const client = await mark();
+      const late = new Promise((done) => setTimeout(done, MARK_PATIENCE, null));
+      const client = await Promise.race([mark(), late]);
+      if (own !== socket) return;
+      introduced = client !== null;
       const able = grid && display === "page" ? "predict" : "server";
-      send({ t: "hello", client, display, able, at: arrived ? { x: pose.x, z: pose.z } : null });
+      asked = true;
+      send({ t: "hello", page: PAGE, client, display, able, at: arrived ? { x: pose.x, z: pose.z } : at });
     };
     socket.onmessage = (event) => {
       const message = JSON.parse(event.data);
@@ -69,50 +86,105 @@ export function createWalk({ scene, grid, display, mark, on }) {
       receive[message.t]?.(message);
     };
     socket.onclose = (event) => {
-      greeted = false;
-      const full = event.code === 1013;
-      on.connection(full ? "full" : "lost");
-      setTimeout(connect, full ? RETRY_WHEN_FULL : RETRY_AFTER);
+      greeted = asked = false;
+      const state = event.reason === "away" ? "away" : CLOSED[event.code] ?? "lost";
+      on.connection(state);
+      if (state === "away") comeBack();
+      else setTimeout(connect, RETRY_AS[state] ?? RETRY_AFTER);
     };
   }
 
-  /** Walk `dt` [s] in the page; long frames go in pieces the server takes. */
-  function predict(dt, forward, right, yaw, eye) {
-    const moving = forward !== 0 || right !== 0;
-    if (!moving && !predictor.pending.length && !predictor.settling) return;
-    for (let left = dt; left > 1e-6; left -= options.maxDt) {
-      const part = Math.min(left, options.maxDt);
-      sequence += 1;
-      place(predictor.push({ seq: sequence, dt: part, forward, right, yaw, eye }));
-      if (moving) outgoing.push([sequence, part, forward, right, yaw, eye]);
-      else predictor.skip(sequence);
-    }
+  /** The place was given to somebody who waited: ask for one again at the first sign that somebody is here. */
+  function comeBack() {
+    const signs = ["keydown", "pointerdown"];
+    const back = () => {
+      for (const sign of signs) removeEventListener(sign, back, true);
+      connect();
+    };
+    for (const sign of signs) addEventListener(sign, back, true);
+  }
+
+  /** Tell which of viser's clients this page is, once it is one: to whom waited in the queue the view opens late. */
+  async function introduce(own) {
+    const here = () => own === socket && own.readyState === WebSocket.OPEN;
+    let client = null;
+    while (!client && here()) client = await mark();
+    if (client && here()) send({ t: "client", client });
+  }
+
+  /** Tell the visitor that the hall does not answer, and that it does again. */
+  function tellWaiting() {
+    const now = greeted && (prediction ?? held).waiting;
+    if (now === waiting) return;
+    waiting = now;
+    if (greeted) on.connection(waiting ? "waiting" : "open");
   }
 
   /** One displayed frame: `dt` [s], intent in -1..1, heading [rad], eye height [m]. */
   function frame(dt, forward, right, yaw, eye) {
-    if (predictor) predict(dt, forward, right, yaw, eye);
+    const moving = forward !== 0 || right !== 0;
+    // Once the server has been asked for a new walk from here, here is where it begins.
+    if (prediction && !(asked && !greeted)) place(prediction.walk(dt, forward, right, yaw, eye, clock()));
+    else held.live(dt);
+    tellWaiting();
+    const stopped = walking && !moving; // the last step waits for no other
+    walking = moving;
     sinceSent += dt;
-    if (sinceSent < SEND_EVERY) return;
-    sinceSent = 0;
-    if (!predictor) hold(forward, right, yaw, eye);
-    else if (outgoing.length) send({ t: "in", in: outgoing.splice(0) });
+    if (sinceSent >= SEND_EVERY || stopped) tell(forward, right, yaw, eye);
   }
 
-  /** The server walks: tell it what is held, when that changes. */
-  function hold(forward, right, yaw, eye) {
-    const keys = JSON.stringify([forward, right, +yaw.toFixed(4), +eye.toFixed(3)]);
-    if (keys === lastKeys) return;
-    lastKeys = keys;
-    send({ t: "keys", forward, right, yaw, eye });
+  function tell(forward, right, yaw, eye) {
+    sinceSent = 0;
+    if (!greeted) return;
+    if (prediction) {
+      const inputs = prediction.take();
+      if (inputs.length) send({ t: "in", in: inputs });
+    } else if (held.change(forward, right, yaw, eye)) send({ t: "keys", forward, right, yaw, eye });
   }
 
   connect();
   return {
     pose,
     frame,
+    /** Nothing is held any more, and no frame will say so: tell the server now. */
+    stand(yaw, eye) { tell(0, 0, yaw, eye); },
     send,
+    /** The floor has changed; without a grid of it the old one serves, and the server corrects. */
+    change(next) {
+      grid = next ?? grid;
+      if (prediction) prediction.predictor.grid = grid;
+    },
     get mode() { return mode; },
-    get disagreement() { return predictor?.worst ?? 0; }, // [m] largest so far between display and server
+    get ahead() { return prediction?.ahead ?? 0; }, // [s] of walking shown that the server has not answered yet
+    get disagreement() { return prediction?.predictor.worst ?? 0; }, // [m] largest so far between display and server
   };
+}
+
+/** The server walks: what it was told to be held, and whether it answers. */
+class Held {
+  #told = ""; #numbered = 0; #answered = 0; #since = 0; #silent = 0;
+
+  live(dt) {
+    this.#since += dt;
+    if (this.#numbered > this.#answered) this.#silent += dt;
+  }
+
+  /** Whether these keys are to be told: they are others, or it is time for a sign of life while they walk. */
+  change(forward, right, yaw, eye) {
+    const keys = JSON.stringify([forward, right, +yaw.toFixed(4), +eye.toFixed(3)]);
+    const walks = forward !== 0 || right !== 0;
+    if (keys === this.#told && !(walks && this.#since >= REPEAT)) return false;
+    this.#told = keys;
+    this.#since = 0;
+    this.#numbered += 1;
+    return true;
+  }
+
+  answer(seq) {
+    if (seq <= this.#answered) return;
+    this.#answered = seq;
+    this.#silent = 0;
+  }
+
+  get waiting() { return this.#silent >= PACE.patience; }
 }

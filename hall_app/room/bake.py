@@ -15,9 +15,10 @@ from ..sealing import FILES, seal, text_of
 from .charts import surfaces
 from .drawn import room_glb
 from .environment import environment_jpeg, seen
+from .key import built_key
 from .lamps import spots_of
 from .occluders import exhibit_solids
-from .places import ENVIRONMENT, GLB, RECORD
+from .places import BUILT, ENVIRONMENT, GLB, RECORD
 from .raising import raise_room
 
 __all__ = ["bake_room"]
@@ -63,6 +64,7 @@ def bake_room(
     (out / ENVIRONMENT).write_bytes(environment_jpeg(seen(content.plan, walls, light)))
     record = {
         "key": key,
+        BUILT: built_key(content.plan),
         "triangles": room.triangles,
         "bytes": len(data_glb),
         "seconds": round(time.perf_counter() - began, 1),

@@ -9,9 +9,10 @@ from typing import Any
 
 from ..content.files import digest
 from ..content.loading import Content, Exhibit
+from ..content.plan_file import PlanFile
 from ..models import models_of
 
-__all__ = ["ROOM_VERSION", "room_key"]
+__all__ = ["ROOM_VERSION", "built_key", "room_key"]
 
 # Raise it whenever geometry, textures, lettering or light change what a bake looks like.
 ROOM_VERSION = 1
@@ -30,6 +31,27 @@ def room_key(content: Content, data: Path | None = None) -> str:
         "labels": {exhibit.id: _label(exhibit) for exhibit in content.exhibits},
         "models": {exhibit.id: _model(content, exhibit, data) for exhibit in content.exhibits},
     }
+    return _hash(inputs)
+
+
+def built_key(plan: PlanFile) -> str:
+    """16 hex digits over all that is built after the plan, whatever is written on it.
+
+    Two rooms of one key differ in letters, in the exhibits' spots and shadows, and in nothing that a visitor could
+    walk into: the one may stand in for the other.
+    """
+    built = plan.model_dump(
+        mode="json",
+        exclude={
+            "sign": {"__all__": {"text"}},
+            "bay": {"__all__": {"name"}},
+            "solid": {"__all__": {"label"}},
+        },
+    )
+    return _hash({"version": ROOM_VERSION, "plan": built})
+
+
+def _hash(inputs: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(inputs, sort_keys=True).encode()).hexdigest()[:16]
 
 

@@ -8,21 +8,25 @@ from typing import Any
 
 from ..content.loading import Content
 from ..sealing import Fault, seal_fault
-from .key import room_key
+from .key import built_key, room_key
 
 __all__ = [
+    "BUILT",
     "ENVIRONMENT",
     "GLB",
     "RECORD",
     "broken_room",
     "data_room",
+    "former_room",
     "room_fault",
     "room_folder",
     "room_here",
     "room_record",
+    "room_work",
 ]
 
 GLB, ENVIRONMENT, RECORD = "room.glb", "environment.jpg", "room.json"
+BUILT = "built"  # the record's key: built_key of the plan it was raised from
 
 
 def room_here(content: Path) -> Path:
@@ -33,6 +37,11 @@ def room_here(content: Path) -> Path:
 def data_room(data: Path, key: str) -> Path:
     """The folder in which the server keeps a baked room of its own."""
     return data / f"room-{key}"
+
+
+def room_work(data: Path, key: str) -> Path:
+    """The folder in which a bake that is under way keeps its state; gone once it has succeeded."""
+    return data / "bake-work" / f"room-{key}"
 
 
 def room_record(folder: Path) -> dict[str, Any] | None:
@@ -55,6 +64,14 @@ def room_folder(content: Content, data: Path) -> Path | None:
         if record is not None and record.get("key") == key:
             return folder
     return None
+
+
+def former_room(content: Content, data: Path) -> Path | None:
+    """The last room that was baked from what the plan builds now, though with other letters, places or models."""
+    built = built_key(content.plan)
+    folders = (room_here(content.folder), *sorted(data.glob(data_room(data, "*").name)))
+    fitting = [folder for folder in folders if (room_record(folder) or {}).get(BUILT) == built]
+    return max(fitting, key=lambda folder: (folder / RECORD).stat().st_mtime_ns, default=None)
 
 
 def broken_room(content: Content, data: Path) -> str | None:

@@ -1,16 +1,16 @@
-"""The room the server shows now: the baked one if it fits the plan, else one raised at once."""
+"""The room the server shows now: the baked one if it fits the content, else the last one, else one raised at once."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..content.loading import Content
 from .drawn import room_glb
 from .environment import environment_jpeg, painted
-from .key import room_key
+from .key import built_key, room_key
 from .lettering import MissingFontError
-from .places import ENVIRONMENT, GLB, broken_room, room_folder
+from .places import ENVIRONMENT, GLB, broken_room, former_room, room_folder
 from .raising import raise_room
 
 __all__ = ["ShownRoom", "shown_room", "still_right"]
@@ -18,14 +18,17 @@ __all__ = ["ShownRoom", "shown_room", "still_right"]
 
 @dataclass(frozen=True)
 class ShownRoom:
-    """key: of the content it shows; glb, environment: files' bytes; baked: False for a room without light of its own;
-    lacking: what this machine could not do, in words, or None; broken: the file that keeps a baked room from being
-    shown and what is wrong with it, or None."""
+    """key: of the content it was made for, which it may no longer fit in its letters (`former`); built: of what
+    the plan builds; glb, environment: files' bytes; baked: False for a room without light of its own; former: baked
+    for an earlier state of the content; lacking: what this machine could not do, in words, or None; broken: the file
+    that keeps a baked room from being shown and what is wrong with it, or None."""
 
     key: str
+    built: str
     glb: bytes
     environment: bytes
     baked: bool
+    former: bool = False
     lacking: str | None = None
     broken: str | None = None
 
@@ -35,11 +38,22 @@ def still_right(room: ShownRoom, content: Content, data: Path) -> bool:
     return room.key == room_key(content, data) and room.baked == (room_folder(content, data) is not None)
 
 
-def shown_room(content: Content, data: Path) -> ShownRoom:
-    """Read the baked room of the content as it is now, or raise an evenly lit one, which takes a second or two."""
-    key, folder = room_key(content, data), room_folder(content, data)
+def shown_room(content: Content, data: Path, last: ShownRoom | None = None) -> ShownRoom:
+    """Read the baked room of the content as it is now, or what stands in for it until it is baked.
+
+    last: what is shown now. A room that has been lit stays where no wall, opening or piece of furniture changed: its
+    letters and spots are those of an earlier state, but it tells no lie about where one can walk. Else an evenly lit
+    one is raised, which takes a second or two.
+    """
+    key, built, folder = room_key(content, data), built_key(content.plan), room_folder(content, data)
     if folder is not None:
-        return ShownRoom(key, (folder / GLB).read_bytes(), (folder / ENVIRONMENT).read_bytes(), True)
+        return ShownRoom(key, built, (folder / GLB).read_bytes(), (folder / ENVIRONMENT).read_bytes(), True)
+    broken = broken_room(content, data)
+    if last is not None and last.baked and last.built == built:
+        return replace(last, former=True, broken=broken)
+    if (folder := former_room(content, data)) is not None:
+        picture = (folder / ENVIRONMENT).read_bytes()
+        return ShownRoom("", built, (folder / GLB).read_bytes(), picture, True, former=True, broken=broken)
     lacking = None
     try:
         room = raise_room(content.plan, content.hall.title, content.exhibits)
@@ -47,5 +61,5 @@ def shown_room(content: Content, data: Path) -> ShownRoom:
         room = raise_room(content.plan, content.hall.title, content.exhibits, blank=True)
         lacking = str(error)
     return ShownRoom(
-        key, room_glb(room), environment_jpeg(painted()), False, lacking, broken_room(content, data)
+        key, built, room_glb(room), environment_jpeg(painted()), False, lacking=lacking, broken=broken
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..room.studio import studio_glb
 from ..visitors import Marks, Visitor
+from .pieces import Pieces
 
 if TYPE_CHECKING:
     import viser
@@ -64,6 +65,9 @@ class HallScene:
         rich.get_console().quiet = True
         self.server: viser.ViserServer = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
         self.port: int = self.server.get_port()
+        self.pieces = Pieces()
+        # A few nodes a message: the page draws the first while it fetches and reads the others.
+        self.server._websock_server.get_message_buffer().max_window_size = 8
         self.marks = Marks()
         self._handles: dict[str, viser.GlbHandle] = {}
         self._figures: dict[str, Figure] = {}
@@ -105,10 +109,10 @@ class HallScene:
 
     def show_room(self, glb: bytes) -> None:
         """Draw (again) the room, and the studio of close-ups."""
-        self.server.scene.add_glb("/room", glb, cast_shadow=False, receive_shadow=False)
-        self.server.scene.add_glb(
-            "/studio", studio_glb(), position=STUDIO, cast_shadow=False, receive_shadow=False
-        )
+        add, show = self.server.scene.add_glb, self.pieces.show
+        add("/room", show("/room", glb), cast_shadow=False, receive_shadow=False)
+        studio = show("/studio", studio_glb())
+        add("/studio", studio, position=STUDIO, cast_shadow=False, receive_shadow=False)
 
     def show_environment(self, jpeg: bytes | None) -> None:
         """What silk and metal reflect: a plain equirectangular JPEG of the room; None: nothing.
@@ -117,10 +121,13 @@ class HallScene:
         """
         from viser import _messages
 
+        if jpeg is None:
+            self.pieces.hide("environment")
+        picture = None if jpeg is None else self.pieces.show("environment", jpeg)
         upright = (1.0, 0.0, 0.0, 0.0)
         self.server.scene._websock_interface.queue_message(
             _messages.EnvironmentMapMessage(
-                hdri_data=jpeg,
+                hdri_data=picture,
                 background=False,
                 background_blurriness=0.0,
                 background_intensity=1.0,
@@ -139,6 +146,7 @@ class HallScene:
         """Draw these exhibits; what is unchanged stays as it is."""
         for gone in set(self._figures) - {figure.id for figure in figures}:
             self._handles.pop(gone).remove()
+            self.pieces.hide(node_name(gone))
             del self._figures[gone]
         for figure in figures:
             known = self._figures.get(figure.id)
@@ -150,9 +158,9 @@ class HallScene:
             handle.wxyz = about_y(math.radians(figure.facing))
 
     def _add(self, figure: Figure, clickable: frozenset[str]) -> None:
-        handle = self.server.scene.add_glb(
-            node_name(figure.id), figure.hall, cast_shadow=False, receive_shadow=False
-        )
+        node = node_name(figure.id)
+        model = self.pieces.show(node, figure.hall)
+        handle = self.server.scene.add_glb(node, model, cast_shadow=False, receive_shadow=False)
         self._handles[figure.id] = handle
         if figure.id in clickable:
             handle.on_click(lambda event, exhibit=figure.id: self._clicked(event, exhibit))
@@ -165,9 +173,9 @@ class HallScene:
         """Call `act(viser client id, exhibit id)`, on one of viser's threads."""
         self._on_click = act
 
-    def figure(self, exhibit: str) -> Figure | None:
-        """How an exhibit is drawn now."""
-        return self._figures.get(exhibit)
+    def figures(self) -> dict[str, Figure]:
+        """How the exhibits are drawn now, by their ids."""
+        return dict(self._figures)
 
     def nodes(self) -> list[str]:
         """Names of all nodes a page waits for."""
@@ -183,9 +191,8 @@ class HallScene:
         figure = self._figures[exhibit]
         client = self.server.get_clients().get(visitor.client) if visitor.client is not None else None
         if client is not None:
-            client.scene.add_glb(
-                "/closeup", figure.close(), position=STUDIO, cast_shadow=False, receive_shadow=False
-            )
+            model = self.pieces.stand_in(figure.close())
+            client.scene.add_glb("/closeup", model, position=STUDIO, cast_shadow=False, receive_shadow=False)
             client.flush()
         x, y, z = STUDIO
         studio = {"x": x, "y": y + figure.centre, "z": z, "radius": figure.radius}

@@ -1,87 +1,166 @@
-"""The page: viser's own client with our style and script in its head."""
+"""The page at `/`: the door, painted before anything else is fetched, and the names of all that follows."""
 
-import html
+from __future__ import annotations
+
+import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
-from importlib.metadata import version
-from pathlib import Path
+from hashlib import sha256
+from html import escape
+from string import Template
+from typing import Any
 
-__all__ = ["PAGE_FOLDER", "VISER_VERSION", "hall_page", "content_security_policy"]
+from ..content.hall_file import HallFile
+from .static import AHEAD, REST, SCRIPT, PageFiles
+from .viser_client import viser_client
 
-PAGE_FOLDER = Path(__file__).parent.parent / "page"
+__all__ = ["ICON", "content_security_policy", "door_page"]
 
-# The page reads viser's internals (window.__viserMutable and friends), which are no public API.
-VISER_VERSION = "1.1.1"
+# The hall's seal; without it a browser asks for /favicon.ico.
+ICON = (
+    "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E"
+    "%3Crect width='32' height='32' rx='4' fill='%239e2b25'/%3E"
+    "%3Cpath d='M5 5h22v22H5zM12 5v7H5M12 12h8M20 5v15h7M12 12v15M12 20h8' fill='none' stroke='%23f6f1e6'"
+    " stroke-width='1.6'/%3E%3C/svg%3E"
+)
 
-_HEAD = """
-<link rel="stylesheet" href="/static/hall.css?v={stamp}">
-<script>window.HALL={settings};</script>
-<script>{first}</script>
-<script type="module" src="/static/hall.js?v={stamp}"></script>
-<noscript><p><a href="/catalogue">{noscript}</a></p></noscript>
-"""
-
-
-# Before viser's script, so that a frame's first callback runs ours ahead of its renderer: what the page sets is
-# drawn in the same frame and not in the next one, which costs a software renderer a tenth of a second.
-_FIRST = r"""
-{
-  const request = window.requestAnimationFrame.bind(window);
-  let latest = -1;
-  window.requestAnimationFrame = (callback) => request((now) => {
-    if (now !== latest) { latest = now; window.HALL.beforeFrame?.(now); }
-    callback(now);
-  });
-  // viser draws a picture every second whether or not something moved; the page says when that may be left out.
-  const repeat = window.setInterval.bind(window);
-  const heartbeat = (act, every) => every === 1000 && /^\(\)=>\w+\(\)$/.test(String(act).replace(/\s/g, ""));
-  window.setInterval = (act, every, ...rest) =>
-    repeat(heartbeat(act, every) ? () => { if (!window.HALL.mayRest?.()) act(); } : act, every, ...rest);
-  // viser makes a sorter for Gaussian splats at once. It wants eval, which our policy forbids; the hall has no splats.
-  const ask = window.fetch.bind(window);
-  window.fetch = (what, ...rest) =>
-    String(what).startsWith("data:application/wasm") ? new Promise(() => {}) : ask(what, ...rest);
-}
-"""
+LANGUAGES = {"zh": "zh-Hans", "en": "en"}
 
 
-@lru_cache(maxsize=1)
-def _client() -> tuple[str, str]:
-    """viser's page, cut before the end of its outer head; the rest is a packed loader.
+def door_page(
+    files: PageFiles,
+    hall: HallFile,
+    *,
+    exhibits: int,
+    pack: tuple[str, int],
+    still: bytes | None,
+    without_hooks: bool = False,
+) -> str:
+    """The page's HTML. What curators wrote is escaped.
 
-    Raises RuntimeError when another version of viser is installed.
+    exhibits: how many are shown; pack: name and bytes of the scene's pack (pieces.py), packed or, before it is,
+    guessed; still: JPEG behind the words.
     """
-    import viser
-
-    installed = version("viser")
-    if installed != VISER_VERSION:
-        raise RuntimeError(f"viser {installed} is installed, the page is made for viser=={VISER_VERSION}")
-    page = Path(viser.__file__).parent / "client" / "build" / "index.html"
-    head, tail = page.read_text("utf-8").split("</head>", 1)
-    return head, tail
-
-
-def hall_page(title: str, stamp: str, *, language: str, settings: Mapping[str, object]) -> str:
-    """The page's HTML; `title` is escaped, `settings` reaches the script as `window.HALL`."""
-    head, tail = _client()
-    head = head.replace("<title>Viser</title>", f"<title>{html.escape(title)}</title>")
-    head = head.replace('<html lang="en">', f'<html lang="{html.escape(language)}">')
-    # "<" would end the script element from inside a string.
-    literal = json.dumps(settings, ensure_ascii=True).replace("<", "\\u003c")
-    noscript = "展品目录 · Catalogue of the exhibits"
-    return (
-        head + _HEAD.format(stamp=stamp, settings=literal, first=_FIRST, noscript=noscript) + "</head>" + tail
+    texts = files.texts
+    both = _Both(texts)
+    lead = both(lambda lang, t: " · ".join(filter(None, (_of(hall.subtitle, lang), _count(t, exhibits)))))
+    about = both(lambda lang, t: _of(hall.about, lang) or t["enter"]["about"])
+    settings = _settings(files, hall, texts, pack) | {"withoutHooks": without_hooks}
+    own = hall.language
+    return Template(files.sources["door.html"]).substitute(
+        tag=LANGUAGES[own],
+        icon=ICON,
+        title=escape(_of(hall.title, own)),
+        description=escape(_of(hall.about, own) or _of(hall.title, own)),
+        style=files.first_style,
+        still=_background(still) if still else "",
+        titles=both(lambda lang, t: _of(hall.title, lang)),
+        second=both(lambda lang, t: _of(hall.title, _other(lang)), words_of=_other),
+        lead=lead,
+        about=about,
+        noscript=both(lambda lang, t: t["noscript"]["text"]),
+        preparing=both(lambda lang, t: t["enter"]["preparing"]),
+        failed=both(lambda lang, t: t["fail"]["title"]),
+        retry=both(lambda lang, t: t["enter"]["retry"]),
+        enter=both(lambda lang, t: t["enter"]["button"]),
+        catalogue=both(lambda lang, t: t["enter"]["catalogue"]),
+        music=both(lambda lang, t: t["enter"]["music"]),
+        silent="" if hall.music else " hidden",
+        progress=escape(texts[own]["enter"]["progress"]),
+        language=escape(texts[own]["bar"]["language"]),
+        settings=_literal(settings),
+        door=files.sources["door.js"],
     )
 
 
-def content_security_policy() -> str:
-    """Nothing from elsewhere; viser needs its inline loader, its worker and WebAssembly."""
+def _background(jpeg: bytes) -> str:
+    data = base64.b64encode(jpeg).decode()
+    return f" style=\"background-image: url('data:image/jpeg;base64,{data}')\""
+
+
+class _Both:
+    """Text in both languages; style shows the one of the document (ui/enter.css)."""
+
+    def __init__(self, texts: Mapping[str, Any]) -> None:
+        self.texts = texts
+
+    def __call__(
+        self, say: Callable[[str, Mapping[str, Any]], str], words_of: Callable[[str], str] = lambda lang: lang
+    ) -> str:
+        return "".join(
+            f'<span data-in="{lang}" lang="{LANGUAGES[words_of(lang)]}">{escape(say(lang, self.texts[lang]))}</span>'
+            for lang in LANGUAGES
+        )
+
+
+def _other(lang: str) -> str:
+    return "en" if lang == "zh" else "zh"
+
+
+def _of(text: Any, lang: str) -> str:
+    return getattr(text, lang) if text else ""
+
+
+def _count(texts: Mapping[str, Any], number: int) -> str:
+    return texts["count"]["exhibit_one" if number == 1 else "exhibit_other"].replace("{n}", str(number))
+
+
+def _settings(
+    files: PageFiles, hall: HallFile, texts: Mapping[str, Any], pack: tuple[str, int]
+) -> dict[str, Any]:
+    """What page/door.js needs: addresses, and how many bytes each will be about, so that progress is true."""
+    client = viser_client()
+    name, weight = pack
+    viser = f"/viser/{client.script.digest}"
+    return {
+        "language": hall.language,
+        "title": {lang: _of(hall.title, lang) for lang in LANGUAGES},
+        "texts": {
+            lang: {
+                "tag": tag,
+                "language": texts[lang]["bar"]["language"],
+                "progress": texts[lang]["enter"]["progress"],
+                "loading": texts[lang]["progress"],
+                "fail": texts[lang]["fail"],
+            }
+            for lang, tag in LANGUAGES.items()
+        },
+        "files": {
+            "viewer": {
+                "script": f"{viser}/viser.js",
+                "style": f"{viser}/viser.css",
+                "decoder": f"{viser}/zstd.wasm",
+                "bytes": len(client.script.body),
+                "weight": len(client.script.body) // 4,  # a script packs to a quarter
+            },
+            "models": {"pack": f"/scene/packs/{name}", "piece": "/scene/pieces/", "weight": weight},
+            "ahead": f"/static/{files.stamp}/{AHEAD}",
+            "page": f"/static/{files.stamp}/{SCRIPT}",
+            "rest": f"/static/{files.stamp}/{REST}",
+        },
+    }
+
+
+def _literal(value: object) -> str:
+    """JSON for inside a script element: "<" would end it from inside a string."""
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+@lru_cache(maxsize=2)
+def _hash(script: str) -> str:
+    return "'sha256-" + base64.b64encode(sha256(script.encode()).digest()).decode() + "'"
+
+
+def content_security_policy(files: PageFiles) -> str:
+    """Nothing from elsewhere, and of what stands in the page only the door's script.
+
+    viser needs its workers, WebAssembly and styles of its own."""
     return "; ".join(
         (
             "default-src 'self'",
-            "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob: data:",
-            "worker-src 'self' blob: data:",
+            f"script-src 'self' {_hash(files.sources['door.js'])} 'wasm-unsafe-eval'",
+            "worker-src 'self' blob:",
             "style-src 'self' 'unsafe-inline'",
             "img-src 'self' blob: data:",
             "media-src 'self' blob:",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import gzip
 import hashlib
 import json
+import math
 import os
 import tempfile
 from collections.abc import Callable
@@ -30,6 +30,40 @@ Progress = Callable[[float, str], None]
 
 class UnreachableError(ValueError):
     """No place where the visitor could stand: one line with the remedy."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Samples of a grid that belong together, and the nearest of them to any sample: found in a millisecond's part.
+
+    mask: (nz, nx) bool. nearest: (2, nz, nx) int16, row and column.
+    """
+
+    grid: Grid
+    mask: np.ndarray
+    nearest: np.ndarray
+
+    def spot(self, x: float, z: float) -> tuple[float, float]:
+        """The sample of `mask` nearest to (x, z) [m], within a cell: the best one named by the samples around."""
+        grid = self.grid
+        (nz, nx), column, row = self.mask.shape, (x - grid.x0) / grid.cell, (z - grid.z0) / grid.cell
+        found = []
+        for r in {_within(row, nz), _within(row + 1, nz)}:
+            for c in {_within(column, nx), _within(column + 1, nx)}:
+                iz, ix = self.nearest[:, r, c]
+                found.append((float(grid.x0 + ix * grid.cell), float(grid.z0 + iz * grid.cell)))
+        return min(found, key=lambda spot: math.hypot(spot[0] - x, spot[1] - z))
+
+    def beside(self, x: float, z: float) -> bool:
+        """True if a sample of `mask` is a corner of the cell around (x, z) [m] or beside it."""
+        ix, iz = int((x - self.grid.x0) // self.grid.cell), int((z - self.grid.z0) // self.grid.cell)
+        rows, columns = slice(max(iz - 1, 0), max(iz + 3, 0)), slice(max(ix - 1, 0), max(ix + 3, 0))
+        return bool(self.mask[rows, columns].any())
+
+
+def _within(index: float, count: int) -> int:
+    """The whole number below, inside 0..count-1."""
+    return int(min(max(index, 0), count - 1))
 
 
 @dataclass(frozen=True)
@@ -72,37 +106,30 @@ class Grid:
         return self.samples.astype("<i2").tobytes()
 
     @cached_property
-    def _packed(self) -> bytes:
-        return gzip.compress(self.to_bytes(), 6)
+    def _reaches(self) -> dict[int, Reach]:
+        return {}
 
-    def packed(self) -> bytes:
-        """to_bytes() under gzip; packed once, not for every visitor."""
-        return self._packed
+    def _reach_of(self, label: int, mask: np.ndarray) -> Reach:
+        if label not in self._reaches:
+            nearest = ndimage.distance_transform_edt(~mask, return_distances=False, return_indices=True)
+            self._reaches[label] = Reach(self, mask, np.asarray(nearest).astype(np.int16))
+        return self._reaches[label]
 
-    def nearest_free(self, x: float, z: float, mask: np.ndarray | None = None) -> tuple[float, float]:
-        """The sample nearest to (x, z) [m] where the body can stand; `mask` (nz, nx) bool narrows the choice.
-
-        Raises UnreachableError if there is none.
-        """
-        choice = self.free if mask is None else self.free & mask
-        iz, ix = np.nonzero(choice)
-        if not len(ix):
+    def nearest_free(self, x: float, z: float) -> tuple[float, float]:
+        """The sample nearest to (x, z) [m] where the body can stand. Raises UnreachableError if there is none."""
+        if not self.free.any():
             raise UnreachableError(f"no free spot near ({x:g}, {z:g}) – the floor is full, move a solid")
-        xs, zs = self.x0 + ix * self.cell, self.z0 + iz * self.cell
-        best = int(np.argmin((xs - x) ** 2 + (zs - z) ** 2))
-        return float(xs[best]), float(zs[best])
+        return self._reach_of(0, self.free).spot(x, z)
 
-    def reachable(self, start: tuple[float, float]) -> np.ndarray:
-        """(nz, nx) bool: samples that can be reached on foot from the free spot nearest to start."""
+    def reach(self, start: tuple[float, float]) -> Reach:
+        """What can be reached on foot from the free spot nearest to start (x, z) [m].
+
+        Some 20 ms for the first who asks, nothing for the others: all visitors share it. Raises UnreachableError.
+        """
         x, z = self.nearest_free(*start)
-        label = self._labels[round((z - self.z0) / self.cell), round((x - self.x0) / self.cell)]
-        return self._labels == label
-
-    def near(self, x: float, z: float, mask: np.ndarray) -> bool:
-        """True if a sample of `mask` (nz, nx) bool is a corner of the cell around (x, z) [m] or beside it."""
-        ix, iz = int((x - self.x0) // self.cell), int((z - self.z0) // self.cell)
-        rows, columns = slice(max(iz - 1, 0), max(iz + 3, 0)), slice(max(ix - 1, 0), max(ix + 3, 0))
-        return bool(mask[rows, columns].any())
+        label = int(self._labels[round((z - self.z0) / self.cell), round((x - self.x0) / self.cell)])
+        known = self._reaches.get(label)
+        return known or self._reach_of(label, self._labels == label)
 
 
 def flood(grid: Grid, start: tuple[float, float]) -> np.ndarray:
@@ -111,7 +138,7 @@ def flood(grid: Grid, start: tuple[float, float]) -> np.ndarray:
     Neighbouring free samples, diagonals included, are nearer than Body.leap: the step between them is safe.
     A gap may be missed if it is less than a cell wider than the body and its skin (0.62 + 0.04 m).
     """
-    return grid.reachable(start)
+    return grid.reach(start).mask
 
 
 def bake(floor: Floor, *, body: Body = BODY, cell: float = CELL, progress: Progress | None = None) -> Grid:

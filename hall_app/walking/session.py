@@ -9,10 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-import numpy as np
-
 from .body import BODY, Body, world_of
-from .grid import Grid, UnreachableError
+from .grid import Grid, Reach, UnreachableError
 from .mover import SPEED, Keys, Pose, step
 from .solids import Floor
 
@@ -20,7 +18,11 @@ Mode = Literal["predict", "server"]
 
 MAX_INPUT_DT = 0.25  # [s] the page cuts longer frames into several inputs
 BUCKET = 1.0  # [s] of walking a page may deliver late at once (a busy network); more would be a speed hack
-ARREARS = 0.5  # [s] the server makes up for at once when it walks itself
+ARREARS = (
+    0.1  # [s] the server makes up for when it walks itself; a visitor whom it left standing longer was still
+)
+HOLD = 0.45  # [s] that keys count as held where the server walks: a page that says nothing has stood still itself
+MOST_TICKS = 2  # at once, 5 cm: what is made up for is walked, not leapt
 REFILL = 1.02  # clocks of page and server differ a little; 2 % faster is no advantage
 EYE_MIN, EYE_MAX = 0.8, 2.4  # [m]
 TICK = 1 / 60  # [s] integration step in server mode
@@ -77,7 +79,8 @@ class WalkSession:
         self._body, self._speed = body, speed
         self._held = Keys()
         self._seq = 0
-        self._budget, self._seen, self._walked_until = BUCKET, now, now
+        self._budget, self._seen = BUCKET, now
+        self._walked_until = self._held_until = now
         self._start = start
         self.pose = start
         self.change_floor(floor, grid)
@@ -116,28 +119,32 @@ class WalkSession:
         return self.reply(refused)
 
     def keys(self, forward: Any, right: Any, yaw: Any, eye: Any, now: float) -> WalkReply:
-        """Server mode: hold these keys from now on (walks the old ones up to now first)."""
+        """Server mode: hold these keys for HOLD (walks the old ones up to now first, or forgets it)."""
         reply = self.tick(now)
+        self._walked_until = max(self._walked_until, now - TICK)  # many that come at once make up for it once
         parsed = _parse([self._seq + 1, TICK, forward, right, yaw, eye])
         if parsed is None:
             return replace(reply, refused=1)
         self._seq, _, self._held, yaw, eye = parsed
+        self._held_until = now + HOLD
         self.pose = replace(self.pose, yaw=yaw, eye=eye)
         return self.reply()
 
     def tick(self, now: float) -> WalkReply:
-        """Server mode: walk the held keys up to `now`, 1/60 s at a time, at most half a second of arrears."""
+        """Server mode: walk the held keys towards `now`, 1/60 s at a time, at most MOST_TICKS."""
         self._walked_until = max(self._walked_until, now - ARREARS)
-        while now - self._walked_until >= TICK - 1e-9:
+        for _ in range(MOST_TICKS):
+            if now - self._walked_until < TICK - 1e-9:
+                break
             self._walked_until += TICK
-            if self.mode == "server":
+            if self.mode == "server" and self._walked_until <= self._held_until:
                 self._walk(self._held, TICK)
         return self.reply()
 
     def goto(self, x: Any, z: Any) -> Moved:
         """Teleport to the reachable free spot nearest to (x, z) [m]; what is no number changes nothing."""
-        if _number(x) and _number(z) and self._reachable.any():
-            x, z = self._grid.nearest_free(float(x), float(z), self._reachable)
+        if _number(x) and _number(z) and self._reach is not None:
+            x, z = self._reach.spot(float(x), float(z))
             self.pose = replace(self.pose, x=x, z=z)
         return self.moved()
 
@@ -147,16 +154,16 @@ class WalkSession:
 
     def change_floor(self, floor: Floor, grid: Grid) -> bool:
         """Take over a changed plan; True if the visitor had to move to the nearest reachable free spot."""
-        self._floor, self._grid = floor, grid
+        self._floor = floor
         try:
-            self._reachable: np.ndarray = grid.reachable((self._start.x, self._start.z))
+            self._reach: Reach | None = grid.reach((self._start.x, self._start.z))
         except UnreachableError:  # a plan without a free spot: nobody walks until it is mended
-            self._reachable = np.zeros_like(grid.free)
+            self._reach = None
             return False
         room = world_of(floor, self._body).clearance(self.pose.x, self.pose.z)
-        if room >= self._body.skin / 2 and grid.near(self.pose.x, self.pose.z, self._reachable):
+        if room >= self._body.skin / 2 and self._reach.beside(self.pose.x, self.pose.z):
             return False
-        x, z = grid.nearest_free(self.pose.x, self.pose.z, self._reachable)
+        x, z = self._reach.spot(self.pose.x, self.pose.z)
         self.pose = replace(self.pose, x=x, z=z)
         return True
 

@@ -6,6 +6,8 @@ growth    Every engine triangulates the same filtered points of three outlines; 
           Error: |area - polygon area| / polygon area, zero-area triangles, and outline steps that are no mesh edge,
           after dropping what lies outside (Qhull fills the convex hull; the dropping is not timed).
 panels    Outline in, checked mesh out, beside gmsh's Frontal-Delaunay on the same outline steps.
+growing   Stars, combs, spirals and clusters of holes of ever more points, and small holes at long edges: time by the
+          number of vertices, angles below 30 degrees, and counts beside Triangle's (`mesh_growing.py`).
 cloth     How far the sheet that hangs by one edge is from the converged one, by the edge length of its mesh.
 
 Triangle and gmsh are no dependencies: `--peers` makes an environment of their own from tests/bench/peers.txt (in
@@ -25,7 +27,7 @@ from typing import Any
 
 import numpy as np
 from mesh_cases import PANELS, PointSet, edge_for, errors, shape
-from mesh_figures import added, exponent
+from mesh_figures import added, exponent, growing_exponents
 from peers import Peers, peer_python
 from scipy.spatial import Delaunay
 
@@ -209,7 +211,7 @@ def main() -> int:
         metavar="FOLDER",
         help="with Triangle and gmsh",
     )
-    parser.add_argument("--only", choices=("growth", "panels", "cloth"), help="one part")
+    parser.add_argument("--only", choices=("growth", "panels", "growing", "cloth"), help="one part")
     parser.add_argument("--panel", choices=tuple(PANELS), help="one outline")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
     parser.add_argument(
@@ -233,6 +235,13 @@ def main() -> int:
         print(f"time grows as points to the power {exponent(figures['growth'])}; {figures['memory']}")
     if args.only in (None, "panels"):
         figures["panels"] = panels(sizes, names, peers)
+    if args.only in (None, "growing"):
+        from mesh_growing import SIZES as GROWING
+        from mesh_growing import grading, growing
+
+        figures["growing"] = growing(GROWING["quick" if args.quick else "usual"], peers)
+        figures["grading"] = grading([100] if args.quick else [100, 400, 1600], peers)
+        print(f"time grows as vertices to the power {growing_exponents(figures['growing'])}")
     if args.only in (None, "cloth"):
         from mesh_cloth import hanging
 

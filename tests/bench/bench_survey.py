@@ -32,7 +32,8 @@ from survey import read_questionnaire  # noqa: E402
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 URL = "/api/v1/questionnaires/garment/submissions"
 LEAST_PER_SECOND, MOST_P99_MS = 1000, 100
-PARTS = ("load", "order", "kills", "full", "conformity")
+MOST_ANALYSIS_S = 5.0  # of 100,000 answers, from the store to the summary
+PARTS = ("load", "order", "kills", "full", "exports", "conformity")
 
 
 def load(work: Path, clients: int, seconds: float, rounds: int) -> dict:
@@ -189,6 +190,13 @@ def full(work: Path) -> dict:
     }
 
 
+def exports(work: Path, answers: int, seconds: float) -> dict:
+    """Submissions and readings of results while every format is exported without a pause; then the analysis alone."""
+    from survey_exports import exported
+
+    return exported(work, answers, seconds)
+
+
 def conformity(work: Path, examples: int) -> dict:
     """schemathesis, all checks, fixed seed, on the document and on the one written out for a questionnaire."""
     from survey_conformity import conform
@@ -215,12 +223,29 @@ def failed(found: dict) -> list[str]:
             for k in ("lost", "partial", "doubled_or_unknown")
             if found["kills"][k]
         ]
+    bad += failed_exports(found.get("exports"))
     if found.get("full", {}).get("statuses", [503]) != [503]:
         bad.append(f"full: statuses {found['full']['statuses']}")
     if "full" in found and found["full"]["taken_after"] != found["full"]["refused"]:
         bad.append("full: the service did not recover")
     if found.get("conformity", {}).get("failures"):
         bad.append("conformity: the API breaks its description")
+    return bad
+
+
+def failed_exports(found: dict | None) -> list[str]:
+    if found is None:
+        return []
+    bad = [
+        f"exports: p99 of {what} {found[what]['p99_ms']:.0f} ms, not {MOST_P99_MS}"
+        for what in ("submissions", "results")
+        if found[what]["p99_ms"] > MOST_P99_MS
+    ]
+    for how, spent in found["analysis_s"].items():
+        if spent > MOST_ANALYSIS_S:
+            bad.append(f"exports: analysis by {how} {spent:.1f} s, not {MOST_ANALYSIS_S:.0f}")
+    if found["unexpected"]:
+        bad.append(f"exports: statuses {found['unexpected']}")
     return bad
 
 
@@ -231,6 +256,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=8.0, help="of load")
     parser.add_argument("--rounds", type=int, default=5, help="of load; the median counts")
     parser.add_argument("--kills", type=int, default=50)
+    parser.add_argument("--answers", type=int, default=100_000, help="stored while exports are made")
     parser.add_argument("--examples", type=int, default=200, help="schemathesis examples an operation")
     parser.add_argument("--json", type=Path, default=ROOT / "docs" / "figures" / "survey_service.json")
     args = parser.parse_args()
@@ -239,6 +265,7 @@ def main() -> int:
         "order": order,
         "kills": lambda work: kills(work, args.kills),
         "full": full,
+        "exports": lambda work: exports(work, args.answers, args.seconds),
         "conformity": lambda work: conformity(work, args.examples),
     }
     found = {}

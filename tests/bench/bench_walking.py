@@ -1,11 +1,14 @@
 """Walking: time and error together.
 
-    python tests/bench/bench_walking.py [--moves 1000000] [--seed 1] [--content FOLDER] [--json FILE]
+    python tests/bench/bench_walking.py [--moves 1000000] [--seed 1] [--walks 60] [--content FOLDER] [--json FILE]
 
 1. Random moves (all keys, any yaw, dt up to 5 s) among the solids of the shipped plan and of a dense synthetic
    floor; every pose after a move is tested by shapely against the exact polygons, without FCL.
 2. The clearance grid for several cell sizes: bytes, seconds, error of the page's clearance, and how far the
    page's prediction strays from the server when W is held against corners and rounds (needs Chromium).
+3. Free walks: random keys and turns in a real browser in a real hall, quiet and beside a process that spins on each
+   core, 0 and 80 ms away: display against server for the same input (what an answer corrects) and at the same
+   moment (what has not been answered yet, at most the page's horizon of walking).
 """
 
 from __future__ import annotations
@@ -27,6 +30,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2]))
 import shapely  # noqa: E402
 from bench.browser import NoBrowserError, open_browser  # noqa: E402
+from bench.free_walk import measure_all  # noqa: E402
 from walk_moves import FLOOR, dense_floor, random_walk, room  # noqa: E402
 from walk_page import Page, hold  # noqa: E402
 
@@ -146,6 +150,9 @@ def main() -> int:
     parser.add_argument("--moves", type=int, default=1_000_000, help="random moves in all (default 10^6)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--holds", type=int, default=150, help="held walks per cell size (default 150)")
+    parser.add_argument(
+        "--walks", type=float, default=60.0, help="seconds of each free walk (default 60, 0 none)"
+    )
     parser.add_argument("--content", type=Path, help="content folder (default ./assets)")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     args = parser.parse_args()
@@ -161,16 +168,23 @@ def main() -> int:
         "one 60 Hz input, CPU:", ", ".join(f"{name} {value:.0f} µs" for name, value in frames.items()), "\n"
     )
     grids: list[dict[str, Any]] = []
+    walks: list[dict[str, Any]] = []
     try:
         with open_browser() as browser:
             tab = browser.new_page()
             grids = [measure_grid(tab, cell, args.holds) for cell in (0.1, 0.05, 0.04, 1 / 32, 0.025)]
-        print(f"clearance grid (shipped: cell {CELL} m)")
-        print(table(grids))
+            print(f"clearance grid (shipped: cell {CELL} m)")
+            print(table(grids), "\n")
+            if args.walks > 0:
+                walks = measure_all(browser, args.walks, args.seed)
+                print("free walks by random keys and turns, display against server")
+                print(table(walks))
     except NoBrowserError as error:
-        print(f"grid errors not measured: {error}")
+        print(f"grid errors and free walks not measured: {error}")
     if args.json:
-        args.json.write_text(json.dumps({"moves": moves, "frame_us": frames, "grids": grids}, indent=1))
+        args.json.write_text(
+            json.dumps({"moves": moves, "frame_us": frames, "grids": grids, "walks": walks}, indent=1)
+        )
     return 1 if any(row["penetrations"] for row in moves) else 0
 
 

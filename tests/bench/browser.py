@@ -2,7 +2,8 @@
 
 import contextlib
 import shutil
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 
 FLAGS = [
     "--no-sandbox",
@@ -65,3 +66,24 @@ def pose(page) -> dict:
 def displayed(page) -> list[float]:
     """Where the picture is really seen from [m]."""
     return page.evaluate("() => hall.displayed()")
+
+
+def soon(page, holds: Callable[[], object], patience: float = 30.0) -> None:
+    """Wait until `holds()` is true: what a page does late, on a machine that has much else to do, it still does."""
+    end = time.monotonic() + patience
+    while not holds():
+        assert time.monotonic() < end, f"not within {patience:.0f} s"
+        page.wait_for_timeout(50)
+
+
+# Nothing fades or slides any more; what turns for ever does not count.
+STILL = """
+() => document.getAnimations().every(
+    (a) => a.playState !== "running" || a.effect.getComputedTiming().endTime === Infinity)
+"""
+
+
+def settled(page) -> None:
+    """Wait until what a click, a key or a resize began has come to its end."""
+    page.wait_for_timeout(450)
+    page.wait_for_function(STILL, timeout=PATIENCE)

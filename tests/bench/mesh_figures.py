@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ["added", "exponent", "summary"]
+__all__ = ["added", "exponent", "growing_exponents", "summary"]
 
 ROOT = Path(__file__).parents[2]
 FIGURES, POLYGONS = ROOT / "docs/figures/mesh.json", ROOT / "docs/figures/mesh-polygons.json"
@@ -28,6 +28,18 @@ def added(old: dict, new: dict) -> dict:
         kept = {(r["panel"], way * r[size], r["engine"]): r for r in [*old.get(part, []), *new.get(part, [])]}
         if kept:
             found[part] = [kept[key] for key in sorted(kept)]
+    return found
+
+
+def growing_exponents(rows: list[dict]) -> dict[str, float]:
+    """Per growing shape and kind the slope of log seconds against log vertices."""
+    found = {}
+    for shape in sorted({row["shape"] for row in rows}):
+        for kind in ("fair", "best"):
+            own = [r for r in rows if r["shape"] == shape and r["engine"] == kind]
+            if len(own) > 1:
+                n, t = (np.log([r[key] for r in own]) for key in ("vertices", "seconds"))
+                found[f"{shape}, {kind}"] = float(np.polyfit(n, t, 1)[0])
     return found
 
 
@@ -89,6 +101,7 @@ def summary() -> list[tuple[str, str, str]]:
             COMMAND,
         )
     )
+    made += _growing_summary(found)
     if POLYGONS.is_file():  # minutes of their own
         polygons = json.loads(POLYGONS.read_text("utf-8"))
         count, holes, bad = (polygons[key] for key in ("polygons", "with_holes", "bad"))
@@ -96,6 +109,31 @@ def summary() -> list[tuple[str, str, str]]:
         made.append(
             ("random polygons, exact Delaunay check", text, f"`python tests/mesh_polygons.py {count}`")
         )
+    return made
+
+
+def _growing_summary(found: dict) -> list[tuple[str, str, str]]:
+    """Rows for shapes that grow and for small holes, where they were measured."""
+    if not found.get("growing"):
+        return []
+    command = "`simcore bench mesh -- --only growing --peers`"
+    powers = [v for kind, v in growing_exponents(found["growing"]).items() if kind.endswith("fair")]
+    most = max(r["points"] for r in found["growing"])
+    star = [r for r in found["growing"] if r["shape"] == "star" and r["engine"] == "fair"]
+    ten = next((f"; a star of 10,000: {r['seconds']:.1f} s" for r in star if r["points"] == 10_000), "")
+    name = f"stars, combs, spirals, clusters of up to {most:,} points: time by the vertices"
+    made = [(name, f"n^{_range(powers, 2)}{ten}", command)]
+    for own in (r for r in found["grading"] if r["engine"] == "best"):
+        beside = next(
+            (
+                f"; Triangle `pq30` on the same steps {r['vertices']:,}, {r['min_angle_deg']:.1f}°"
+                for r in found["grading"]
+                if r["shape"] == own["shape"] and r.get("outline") == "best's outline"
+            ),
+            "",
+        )
+        text = f"{own['min_angle_deg']:.1f}°, {own['vertices']:,} vertices{beside}"
+        made.append((f"{own['shape']} at edges of 50 mm, `best`: smallest angle", text, command))
     return made
 
 

@@ -1,7 +1,8 @@
 """Triangle and gmsh, each timed in its own call. Runs in the peers' environment and imports nothing of the project.
 
 Reads one JSON object a line: {"engine", "given": npz, "made": npz}; answers {"seconds": …}.
-Triangle `p`: constrained Delaunay triangulation of given points and outline steps (the same work as growth).
+Triangle `p`: constrained Delaunay triangulation of given points and outline steps (the same work as growth); or with
+other switches.
 gmsh: Frontal-Delaunay on a given outline whose steps it must keep, one thread; `generate(2)` alone is timed.
 """
 
@@ -19,7 +20,7 @@ def triangle(given):
     if len(given["inside_holes"]):
         shape["holes"] = given["inside_holes"]
     begin = perf_counter()
-    made = engine.triangulate(shape, "pQ")
+    made = engine.triangulate(shape, str(given["switches"]) if "switches" in given else "pQ")
     return perf_counter() - begin, made["vertices"], made["triangles"]
 
 

@@ -1,6 +1,7 @@
 """The README's table of figures, written from what the benches and the bake measured; nothing is typed in.
 
 hall bench walking -- --json docs/figures/walking.json
+hall bench crowd -- --json docs/figures/crowd.json --beside CHECKOUT_OF_47c1f8d
 hall bench page -- --json docs/figures/page.json
 hall bench look -- --json docs/figures/look.json
 simcore bench mesh -- --peers --large --json docs/figures/mesh.json
@@ -38,6 +39,51 @@ def walking() -> list[tuple[str, str, str]]:
     miss = f"median {grid['miss_median_mm']:.2f}, largest {grid['miss_max_mm']:.1f} mm"
     text = f"{miss}; into solids {grid['intrusion_mm']:g} mm"
     rows.append(("display against server, 150 held walks at corners, rounds and wall ends", text, command))
+    return rows + [free_walk(row) for row in found["walks"]]
+
+
+def free_walk(row: dict) -> tuple[str, str, str]:
+    what = f"free walk by random keys, {row['walked_m']:.0f} m, {row['round_trip_ms']:.0f} ms away, {row['beside']}"
+    miss = f"same input: median {row['miss_median_mm']:.2f}, largest {row['miss_largest_mm']:.1f} mm"
+    ahead = f"not answered yet: median {row['apart_median_mm']:.0f}, largest {row['apart_largest_mm']:.0f} mm"
+    return what, f"{miss}; {ahead}", "`hall bench walking`"
+
+
+def crowd() -> list[tuple[str, str, str]]:
+    found, command = read("crowd"), "`hall bench crowd`"
+    here, before = found["here"], found.get("beside")
+    waves = here["waves"]
+
+    def worst(rows: list[dict], what: str, quantile: str) -> float:
+        return max(row[what][quantile] for row in rows)
+
+    def longer(rows: list[dict], what: str) -> tuple[float, str]:
+        return max(
+            (row[f"{what}_longer_ms"], row["kind"]) for row in rows if row[f"{what}_longer_ms"] is not None
+        )
+
+    many = f"{found['visitors']} visitors in one process on one core, worst of {len(waves)} waves"
+    rows = [
+        (
+            f"{many}: from input to answer",
+            f"p50 {worst(waves, 'walk_ms', 'p50'):.1f}, p95 {worst(waves, 'walk_ms', 'p95'):.1f} ms; while they "
+            f"all join within 2 s p95 {worst(waves, 'joining_walk_ms', 'p95'):.0f} ms",
+            command,
+        ),
+        (
+            f"{many}: core and memory",
+            f"{max(row['cpu_share'] for row in waves):.0%}; {max(row['most_mb'] for row in waves):.0f} MB, "
+            f"{waves[-1]['after_mb']:.0f} MB when they have left",
+            command,
+        ),
+    ]
+    for what, name in (("walk", "input to answer"), ("get", "a plain request")):
+        more, kind = longer(here["attacks"], what)
+        text = f"{more:.1f} ms (`{kind}`, worst of {len(here['attacks'])} kinds)"
+        if before:
+            past, kind = longer(before["attacks"], what)
+            text += f"; before there were budgets {past:,.0f} ms (`{kind}`)"
+        rows.append((f"{name} of 30 others beside one attacker at full speed, p95 longer by", text, command))
     return rows
 
 
@@ -57,6 +103,9 @@ def page() -> list[tuple[str, str, str]]:
         ("a frame while walking", spread(found["frame_ms"], "ms", 0), command),
         ("key to camera", spread(found["key_to_camera_ms"], "ms", 0), command),
     ]
+    for line in [found["slow"]["here"]] if "slow" in found else []:
+        rows.append(("the door can be read, 1.6 Mbit/s and 300 ms", spread(line["door_s"], "s"), command))
+        rows.append(("one may enter, 1.6 Mbit/s and 300 ms", spread(line["ready_s"], "s"), command))
     for exhibit, row in found["closeup_s"].items():
         rows.append((f"close-up of {exhibit} after the click", spread(row, "s"), command))
     return rows
@@ -169,7 +218,7 @@ def robe() -> list[tuple[str, str, str]]:
 
 
 def main() -> int:
-    rows = walking() + page() + look() + mesh_figures.summary() + room()
+    rows = walking() + crowd() + page() + look() + mesh_figures.summary() + room()
     rows += garment("beizi", "beizi") + garment("pibo-figure", "pibo over a robe") + robe()
     rows += garment("pibo", "scarf")
     lines = ["| What | Measured | Command |", "|---|---|---|"]

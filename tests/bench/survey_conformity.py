@@ -21,9 +21,10 @@ CONFIG = """\
 [checks]
 positive_data_acceptance.expected-statuses = ["2xx", "401", "403", "404", "409", "410"]
 
-# A good question to answers that cannot be analysed, or an item to drop that there is not: 422 with the reason.
+# A good question to answers that cannot be analysed, an item to drop that there is not, or fewer answers than are to
+# share what is told of a visitor: 422 with the reason.
 [[operations]]
-include-path-regex = "/analysis$"
+include-path-regex = "/(analysis|export/.*)$"
 checks.positive_data_acceptance.expected-statuses = ["2xx", "401", "403", "404", "422"]
 """
 

@@ -34,12 +34,12 @@ def submission(questionnaire) -> dict:
 class Service:
     """Started and answering. `before`: words in front of the command, such as strace's."""
 
-    def __init__(self, data: Path, *, before: tuple[str, ...] = ()) -> None:
+    def __init__(self, data: Path, *, before: tuple[str, ...] = (), content: Path = ASSETS) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.port = probe.getsockname()[1]
         command = [*before, sys.executable, "-m", "survey.cli", "serve", "--rate", "0"]
-        command += ["--port", str(self.port), "--content", str(ASSETS), "--data", str(data)]
+        command += ["--port", str(self.port), "--content", str(content), "--data", str(data)]
         environment = os.environ | {"PYTHONPATH": str(ROOT)}
         self.process = subprocess.Popen(
             command, stdout=subprocess.DEVNULL, cwd=ROOT, env=environment, start_new_session=True

@@ -1,15 +1,19 @@
 """What a visitor really sees while walking: the displayed camera at every frame, and what the server said."""
 
 from dataclasses import dataclass
+from time import perf_counter
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+PATIENCE = 30_000  # [ms]
+
 LISTEN = """
 () => {
   const Real = window.WebSocket;
   window.__said = [];
+  window.__moved = 0;
   window.WebSocket = class extends Real {
     constructor(...args) {
       super(...args);
@@ -17,6 +21,7 @@ LISTEN = """
       this.addEventListener("message", (event) => {
         const message = JSON.parse(event.data);
         if (message.t === "pose") window.__said.push([performance.now(), message.x, message.z]);
+        if (message.t === "moved") window.__moved += 1;
       });
     }
   };
@@ -30,7 +35,8 @@ RECORD = """
   const look = (now) => {
     if (!window.__recording) return;
     const [x, y, z] = hall.displayed();
-    window.__track.push([now, x, y, z]);
+    const at = hall.pose();
+    window.__track.push([now, x, y, z, at.x, at.z]);
     requestAnimationFrame(look);
   };
   requestAnimationFrame(look);
@@ -48,12 +54,13 @@ LATENCY = """
     if (event.code !== "KeyW" || event.repeat || !window.hall) return;
     const before = hall.displayed();
     const channel = new MessageChannel();
-    const ask = () => requestAnimationFrame(() => channel.port2.postMessage(0));
+    let frames = 0;
+    const ask = () => requestAnimationFrame(() => { frames += 1; channel.port2.postMessage(0); });
     channel.port1.onmessage = () => {
       const [x, , z] = hall.displayed();
       if (Math.hypot(x - before[0], z - before[2]) > 1e-4) {
-        window.__latency.push(performance.now() - event.timeStamp);
-      } else if (performance.now() - event.timeStamp < 3000) ask();
+        window.__latency.push([performance.now() - event.timeStamp, frames]);
+      } else if (performance.now() - event.timeStamp < 60000) ask();
     };
     ask();
   }, true);
@@ -120,6 +127,8 @@ def walk(page, *, hold: float, keys: tuple[str, ...] = ("KeyW",), settle: float 
     for key in keys:
         page.keyboard.up(key)
     page.wait_for_timeout(1000 * settle)
+    # The server's last word is its word on the last step, however long a busy machine takes to bring it.
+    page.wait_for_function("() => hall.ahead() === 0")
     said, worst = page.evaluate("() => [window.__said, hall.disagreement()]")
     end = page.evaluate("() => { window.__recording = false; return hall.displayed(); }")
     values = np.asarray(track, float)
@@ -128,18 +137,36 @@ def walk(page, *, hold: float, keys: tuple[str, ...] = ("KeyW",), settle: float 
     return Track(times, shown, np.asarray(said, float).reshape(-1, 3), worst)
 
 
+# The server's word has come (a page that is watched counts them), and the visitor stands there, within a cell of the
+# walking grid.
+ARRIVED = """
+([x, z, moved]) => {
+  const pose = hall.pose();
+  return Math.hypot(pose.x - x, pose.z - z) < 0.05 && (moved === null || window.__moved > moved);
+}
+"""
+
+
 def place(page, x: float, z: float, yaw: float) -> None:
     """Stand at (x, z) [m] looking along yaw [rad]: the minimap's way there, then the head is turned by dragging."""
-    page.evaluate("([x, z, yaw]) => hall.goTo(x, z, yaw)", [x, z, yaw])
+    moved = page.evaluate(
+        "([x, z, yaw]) => { hall.goTo(x, z, yaw); return window.__moved ?? null; }", [x, z, yaw]
+    )
+    page.wait_for_function(ARRIVED, arg=[x, z, moved], timeout=PATIENCE)
     page.wait_for_timeout(400)
 
 
-def latencies(page, presses: int = 12) -> list[float]:
-    """Milliseconds from key to camera, one a press."""
+def latencies(page, presses: int = 12) -> tuple[list[float], list[int]]:
+    """From key to camera, one a press: milliseconds, and the frames drawn until one shows it."""
     page.evaluate("() => { window.__latency.length = 0; }")
-    for _ in range(presses):
+    for number in range(presses):
+        began = perf_counter()
         page.keyboard.down("KeyW")
-        page.wait_for_timeout(180)
+        page.wait_for_function("(number) => window.__latency.length > number", arg=number, timeout=PATIENCE)
         page.keyboard.up("KeyW")
+        page.keyboard.down("KeyS")  # and back: a slow machine holds keys for long, and there is a wall ahead
+        page.wait_for_timeout(1000 * (perf_counter() - began))
+        page.keyboard.up("KeyS")
         page.wait_for_timeout(120)
-    return page.evaluate("() => window.__latency")
+    found = page.evaluate("() => window.__latency")
+    return [ms for ms, _ in found], [frames for _, frames in found]

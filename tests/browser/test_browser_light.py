@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench.browser import enter
+from bench.browser import enter, soon
 from bench.track import place
 from bench.wire import wire
 from PIL import Image
@@ -170,13 +170,17 @@ def test_textures_are_sharpened(page):
     for level, wanted in [("low", 1), ("medium", 4), ("high", 8)]:
         page.evaluate("(level) => hall.setQuality(level)", level)
         page.evaluate("() => window.__viserMutable.requestRender()")
-        page.wait_for_timeout(600)
         most = page.evaluate(
             "() => window.__viserMutable.scene.__r3f.root.getState().gl.capabilities.getMaxAnisotropy()"
         )
-        found = page.evaluate(ROOM)
-        assert found.pop("lightmap")["anisotropy"] == 1  # light is smooth: one look-up will do
-        assert {mesh["anisotropy"] for mesh in found.values()} == {min(wanted, most)}
+        sharp = {min(wanted, most)}
+
+        def sharpened(sharp: set[int] = sharp) -> bool:
+            found = page.evaluate(ROOM)
+            assert found.pop("lightmap")["anisotropy"] == 1  # light is smooth: one look-up will do
+            return {mesh["anisotropy"] for mesh in found.values()} == sharp
+
+        soon(page, sharpened)
 
 
 def test_without_hooks_the_hall_is_flat_but_whole(line, chromium):

@@ -1,7 +1,7 @@
 """The overlay: readable, large enough to touch, nothing over anything else, still for whoever asked for less motion."""
 
 import pytest
-from bench.browser import CHOOSE, displayed, enter, pose
+from bench.browser import CHOOSE, displayed, enter, pose, settled, soon
 from bench.readable import CROWDED, TARGETS, faint_texts
 from bench.track import place
 
@@ -38,7 +38,7 @@ def speak(page, lang: str) -> None:
 
 def sound(page, what: str) -> list[str]:
     """What is wrong with what is now to be seen."""
-    page.wait_for_timeout(450)
+    settled(page)
     crowded = page.evaluate(CROWDED)
     small = [t for t in page.evaluate(TARGETS) if t["width"] < 43.9 or t["height"] < 43.9]
     wrong = [f"{what}: over {pair}" for pair in crowded["over"]]
@@ -165,7 +165,7 @@ def test_motion_is_reduced_on_request(plain_hall, chromium, motion):
     page.click("[data-testid=list]")
     page.click("[data-testid=list-item-box]")
     page.locator("[data-testid=panel]").wait_for()
-    page.wait_for_timeout(100)
+    page.wait_for_function("() => hall.displayed()[0] > 400", timeout=60_000)
     there = displayed(page)
     page.wait_for_timeout(600)
     assert displayed(page) == pytest.approx(there, abs=1e-6)
@@ -208,6 +208,13 @@ def test_garment_stays_in_the_free_part(plain_hall, chromium, width, height):
     page.locator("html[data-closeup=drawn]").wait_for(state="attached", timeout=60_000)
     page.wait_for_timeout(500)
 
+    def stands() -> bool:
+        """The picture has the window's size, and a second look finds the garment where it was."""
+        before = page.evaluate(PROJECTED, "/closeup")
+        page.wait_for_timeout(300)
+        full = page.evaluate("() => window.__viserMutable.canvas.clientWidth === innerWidth")
+        return full and page.evaluate(PROJECTED, "/closeup") == before
+
     def check() -> None:
         x, y = page.evaluate(PROJECTED, "/closeup")
         panel = page.locator("[data-testid=panel]").bounding_box()
@@ -225,11 +232,11 @@ def test_garment_stays_in_the_free_part(plain_hall, chromium, width, height):
     page.set_viewport_size({"width": width - 60, "height": height - 40})
     width, height = width - 60, height - 40
     page.wait_for_timeout(900)
+    soon(page, stands)
     check()
     page.keyboard.press("Escape")
     page.locator("[data-testid=panel]").wait_for(state="hidden")
-    page.wait_for_timeout(300)
-    assert not page.evaluate("() => window.__viserMutable.camera.view?.enabled")
+    soon(page, lambda: not page.evaluate("() => window.__viserMutable.camera.view?.enabled"))
     page.set_viewport_size({"width": width, "height": height - 30})
     page.wait_for_timeout(600)
     assert not page.evaluate("() => window.__viserMutable.camera.view?.enabled")
@@ -243,14 +250,14 @@ def test_clicks_follow_a_moved_view(plain_hall, chromium):
     straight = page.evaluate(PROJECTED, "/exhibits/box")
     page.evaluate("""() => { const m = window.__viserMutable;
         m.camera.setViewOffset(innerWidth, innerHeight, -220, 60, innerWidth, innerHeight); m.requestRender(); }""")
-    page.wait_for_timeout(500)
+    there = pytest.approx([straight[0] + 220, straight[1] - 60], abs=2)
+    soon(page, lambda: page.evaluate(PROJECTED, "/exhibits/box") == there)
     moved = page.evaluate(PROJECTED, "/exhibits/box")
-    assert moved == pytest.approx([straight[0] + 220, straight[1] - 60], abs=2)
     page.mouse.click(straight[0], straight[1] - 150)  # where its upper part was
     page.wait_for_timeout(700)
     assert page.evaluate("() => hall.opened()") is None
     assert pose(page)["z"] == pytest.approx(5.2, abs=0.3)
     page.mouse.click(moved[0], moved[1] - 150)  # where it is seen
-    page.locator("[data-testid=panel]").wait_for(timeout=10_000)
+    page.locator("[data-testid=panel]").wait_for(timeout=60_000)
     assert page.evaluate("() => hall.opened()") == "box"
     page.close()

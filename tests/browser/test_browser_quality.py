@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from bench.browser import enter
+from bench.browser import enter, soon
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 
@@ -98,14 +98,12 @@ def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
     context = chromium.new_context(viewport={"width": 360, "height": 640}, device_scale_factor=ratio)
     page = context.new_page()
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
-    got = []
-    for level in ("low", "medium", "high"):
+    drawn = "() => window.__viserMutable.canvas.width / innerWidth"
+    for level, asked in zip(("low", "medium", "high"), wanted, strict=True):
         page.click("[data-testid=settings]")
         page.click(f"[data-testid=quality-{level}]")
         page.keyboard.press("Escape")
-        page.wait_for_timeout(500)
-        got.append(page.evaluate("() => window.__viserMutable.canvas.width / innerWidth"))
-    assert got == pytest.approx(wanted, abs=0.01)
+        soon(page, lambda asked=asked: page.evaluate(drawn) == pytest.approx(asked, abs=0.01))
     context.close()
 
 
@@ -137,12 +135,19 @@ def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
 def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     page = chromium.new_page(viewport={"width": 480, "height": 270})
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
-    page.wait_for_timeout(5000)  # the first look at the machine's speed
-    before = page.evaluate("() => hall.framesDrawn()")
+    drawn = "() => hall.framesDrawn()"
+
+    def calm() -> bool:
+        before = page.evaluate(drawn)
+        page.wait_for_timeout(2000)
+        return page.evaluate(drawn) == before
+
+    page.wait_for_timeout(5000)
+    soon(page, calm, patience=120)  # the first look at the machine's speed is over
+    before = page.evaluate(drawn)
     page.wait_for_timeout(6000)
-    assert page.evaluate("() => hall.framesDrawn()") - before <= 1
+    assert page.evaluate(drawn) - before <= 1
     page.keyboard.down("KeyW")
-    page.wait_for_timeout(600)
+    soon(page, lambda: page.evaluate(drawn) - before > 5)
     page.keyboard.up("KeyW")
-    assert page.evaluate("() => hall.framesDrawn()") - before > 5
     page.close()

@@ -4,7 +4,7 @@ import math
 import statistics
 
 import pytest
-from bench.browser import displayed, enter, pose
+from bench.browser import displayed, enter, pose, soon
 from bench.track import latencies, place, solids_of_scene, walk, watch
 from bench.wire import wire
 from plain_hall import write_plain_hall
@@ -62,9 +62,10 @@ def test_round_stand(visit, aside):
 
 def test_key_to_camera(visit):
     place(visit, 0.0, 5.0, 0.0)
-    found = latencies(visit)
-    assert len(found) >= 10
-    assert statistics.median(found) <= 50
+    _, frames = latencies(visit)
+    assert len(frames) >= 10
+    # At once, however long a frame takes on this machine; bench_page has the milliseconds.
+    assert statistics.median(frames) <= 2
 
 
 @pytest.mark.parametrize(
@@ -116,8 +117,7 @@ def test_looking_and_eye_height(visit):
     mouse.up(button="middle")
     raised = pose(visit)
     assert raised["eye"] > before["eye"] + 0.2
-    visit.wait_for_timeout(200)
-    assert displayed(visit)[1] == pytest.approx(raised["eye"], abs=1e-3)
+    soon(visit, lambda: displayed(visit)[1] == pytest.approx(raised["eye"], abs=1e-3))
 
 
 def test_minimap_goes_there(visit):
@@ -126,10 +126,7 @@ def test_minimap_goes_there(visit):
         visit.click("[data-testid=minimap-toggle]")
     box = plan.bounding_box()
     visit.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.8)
-    visit.wait_for_timeout(500)
-    where = pose(visit)
-    assert where["x"] < -2
-    assert where["z"] > 2
+    soon(visit, lambda: pose(visit)["x"] < -2 and pose(visit)["z"] > 2)
 
 
 @pytest.mark.parametrize("why", ["forced", "no-hooks", "no-grid"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -281,6 +282,23 @@ def test_command(house: Path, capsys: pytest.CaptureFixture[str]):
     written = capsys.readouterr().out.splitlines()
     assert len(written) == 3
     assert written[-1].endswith(": 2 problems")
+
+
+def test_what_is_not_stated_yet_is_a_hint_and_no_failure(house: Path, capsys: pytest.CaptureFixture[str]):
+    (house / "questionnaires").mkdir(exist_ok=True)
+    shutil.copy(ASSETS / "questionnaires/garment.toml", house / "questionnaires")
+    shutil.copy(ASSETS / "controller.toml", house)
+    assert run(str(house)) == 0
+    hint, last = capsys.readouterr().out.splitlines()
+    assert hint.startswith("hint: controller.toml: controller.name, ")
+    assert last.endswith(": 0 problems, 1 hint")
+    assert run("--json", str(house)) == 0
+    assert [one["file"] for one in json.loads(capsys.readouterr().out)["hints"]] == ["controller.toml"]
+    (house / "controller.toml").write_text("[controller]\nphone = '1'\n", "utf-8")
+    assert run(str(house)) == 1
+    fault, last = capsys.readouterr().out.splitlines()
+    assert fault.startswith("controller.toml: controller.phone: unknown key")
+    assert last.endswith(": 1 problem")
 
 
 def test_command_json(house: Path, capsys: pytest.CaptureFixture[str]):

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from build_processes import builds_of, processes, with_scarf
 from plain_hall import write_plain_hall
 from running_hall import free_port
 
@@ -21,33 +22,7 @@ from hall_app.bake.places import bake_folder
 from hall_app.content import load
 from hall_app.preparing import stale_garments
 
-ASSETS = Path(__file__).parents[2] / "assets"
-PATIENCE = 12.0  # [s] of a machine that has much else to do
-
-SCARF = """
-title = { zh = "帔", en = "Scarf" }
-place = { x = -2.5, z = 3.0 }
-body = { shape = "round", radius = 0.4 }
-licence = "CC0-1.0"
-[garment]
-pattern = "patterns/pibo.toml"
-weave = "weaves/gauze.toml"
-recipe = "scarf_on_stand"
-"""
-
-
-def with_scarf(folder: Path) -> Path:
-    """A plain hall with a garment that has not been baked."""
-    write_plain_hall(folder)
-    for name in ("patterns/pibo.toml", "weaves/gauze.toml"):
-        (folder / name).parent.mkdir()
-        (folder / name).write_bytes((ASSETS / name).read_bytes())
-    home = folder / "exhibits/scarf"
-    home.mkdir()
-    (home / "exhibit.toml").write_text(SCARF, "utf-8")
-    for name in ("text.zh.md", "text.en.md"):
-        (home / name).write_text("A scarf.", "utf-8")
-    return folder
+PATIENCE = 60.0  # [s] of a machine that has much else to do
 
 
 class Serving:
@@ -64,7 +39,7 @@ class Serving:
     def said(self) -> str:
         return self.log.read_text("utf-8")
 
-    def until(self, test: Callable[[], object], patience: float = 90.0) -> None:
+    def until(self, test: Callable[[], object], patience: float = 400.0) -> None:
         end = time.monotonic() + patience
         while not test():
             assert self.process.poll() is None, self.said()
@@ -73,24 +48,7 @@ class Serving:
 
     def builds(self) -> set[int]:
         """Processes of all builds it has started: each is a session of its own."""
-        children = {pid for pid, (parent, _) in processes().items() if parent == self.process.pid}
-        return {pid for pid, (_, session) in processes().items() if session in children}
-
-
-def processes() -> dict[int, tuple[int, int]]:
-    """Process -> (parent, session) of all that live."""
-    found = {}
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                state, parent, _, session = (
-                    (entry / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[:4]
-                )
-            except OSError:
-                continue
-            if state not in "ZX":
-                found[int(entry.name)] = (int(parent), int(session))
-    return found
+        return builds_of(self.process.pid)
 
 
 @contextmanager

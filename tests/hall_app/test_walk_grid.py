@@ -77,7 +77,7 @@ def test_nearest_free_spot():
     grid = bake(DIVIDED)
     x, z = grid.nearest_free(1.0, 1.5)
     assert BODY.skin <= room(np.array([[x, z]]), DIVIDED)[0] < 0.05
-    assert grid.nearest_free(3.9, 1.5, flood(grid, (0.5, 0.5)))[0] < 2
+    assert grid.reach((0.5, 0.5)).spot(3.9, 1.5)[0] < 2
     with pytest.raises(UnreachableError, match="move a solid"):
         bake(Floor(ROOM, (Prism(((-1, -1), (5, -1), (5, 4), (-1, 4))),))).nearest_free(1, 1)
 

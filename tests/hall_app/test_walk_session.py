@@ -1,5 +1,6 @@
 """The authority: what a page may say, how fast it may walk, where it may go."""
 
+import itertools
 import json
 import math
 
@@ -20,7 +21,7 @@ from hall_app.walking import (
     step,
     wall,
 )
-from hall_app.walking.session import ARREARS, BUCKET
+from hall_app.walking.session import ARREARS, BUCKET, HOLD
 
 FLOOR = Floor(((0, 0), (10, 0), (10, 6), (0, 6)), (wall((5, 0), (5, 6), 0.1), Round(2, 2, 0.4)))
 GRID = bake(FLOOR, cell=0.05)
@@ -128,6 +129,8 @@ def test_server_mode_walks_held_keys_at_sixty_hertz():
     assert walk.keys(1, 0, math.pi / 2, 1.6, now=1.0).refused == 0
     for k in range(1, 16):
         reply = walk.tick(1.0 + k / 30)
+        if k % 6 == 0:  # as a page repeats them
+            assert walk.keys(1, 0, math.pi / 2, 1.6, now=1.0 + k / 30).refused == 0
     assert START.x - reply.x == pytest.approx(SPEED * 0.5, abs=SPEED / 60 + 1e-9)
     walk.keys(0, 0, math.pi / 2, 1.6, now=1.5)
     still = walk.tick(1.5).x
@@ -136,10 +139,32 @@ def test_server_mode_walks_held_keys_at_sixty_hertz():
     assert walk.keys(None, 0, 0, 1.6, now=3.0).refused == 1
 
 
-def test_server_mode_catches_up_half_a_second_at_most():
+def test_server_mode_lets_go_of_keys_that_are_not_repeated():
+    """A page whose own thread stands still says neither that a key is held nor that it came up."""
+    walk = session(mode="server")
+    walk.keys(1, 0, math.pi / 2, 1.6, now=1.0)
+    for k in range(1, 181):
+        reply = walk.tick(1.0 + k / 60)
+    assert START.x - reply.x == pytest.approx(SPEED * HOLD, abs=SPEED / 60 + 1e-9)
+
+
+def test_server_mode_does_not_leap_after_a_stall():
+    """A late tick is made up for in small steps; what the server slept through nobody walked."""
     walk = session(mode="server")
     walk.keys(1, 0, math.pi / 2, 1.6, now=0.0)
-    assert START.x - walk.tick(100.0).x <= SPEED * ARREARS + SPEED / 60
+    places = [START.x] + [walk.tick(100.0).x for _ in range(200)]
+    assert max(a - b for a, b in itertools.pairwise(places)) <= SPEED * 2 / 60 + 1e-9
+    assert START.x - places[-1] <= SPEED * ARREARS + SPEED / 60
+    assert SPEED * (ARREARS + 2 / 60) < 0.25
+
+
+def test_server_mode_makes_up_for_a_burst_of_keys_once():
+    """What was held through a stall, told many times, arrives at once."""
+    walk = session(mode="server")
+    walk.keys(1, 0, math.pi / 2, 1.6, now=0.0)
+    for _ in range(20):
+        walk.keys(1, 0, math.pi / 2, 1.6, now=4.0)
+    assert START.x - walk.pose.x <= SPEED * 3 / 60 + 1e-9
 
 
 def test_goto_finds_the_nearest_reachable_spot():

@@ -1,8 +1,9 @@
-"""Shared by tests and bench: the page's walkmath.js run in Chromium, against the server's session."""
+"""Shared by tests and bench: the page's own walking scripts run in Chromium, against the server's session."""
 
 from __future__ import annotations
 
 import base64
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,10 @@ import numpy as np
 
 from hall_app.walking import Floor, Grid, Keys, Pose, WalkSession
 
-WALKMATH = Path(__file__).parents[2] / "hall_app" / "page" / "walkmath.js"
+PAGE = Path(__file__).parents[2] / "hall_app" / "page"
+WALKMATH = PAGE / "walkmath.js"
+PREDICTION = PAGE / "prediction.js"
+HEAD = PAGE / "head.js"
 
 FORWARD = Keys(1, 0)
 
@@ -70,6 +74,42 @@ class Page:
         data = base64.b64encode(self.grid.to_bytes()).decode()
         job = {"name": name, **values}
         return self.tab.evaluate(SCRIPT, [WALKMATH.read_text("utf-8"), data, self.grid.meta(), job])
+
+
+# Many pages at once, each with a prediction of its own; every call is one frame of each.
+CROWD = """
+async ([walkmath, prediction, bytes, meta, starts]) => {
+  const load = (source) => URL.createObjectURL(new Blob([source], {type: "text/javascript"}));
+  const address = load(walkmath);
+  const walk = await import(address);
+  const {Prediction, PACE} = await import(load(prediction.replace("./walkmath.js", address)));
+  const raw = Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0));
+  const grid = walk.loadGrid(raw.buffer, meta);
+  const crowd = starts.map(([x, z]) => new Prediction(grid, {x, z}, 0));
+  window.crowdStep = (frames) => JSON.stringify(JSON.parse(frames).map(([answers, dt, forward, right, yaw, now], k) => {
+    const page = crowd[k];
+    for (const [seq, x, z, at] of answers) page.answer(seq, x, z, at);
+    const {x, z} = page.walk(dt, forward, right, yaw, 1.6, now);
+    return [x, z, page.take(), page.waiting, page.predictor.worst];
+  }));
+  return PACE;
+}
+"""
+
+
+class Crowd:
+    """Pages with prediction.js, one for each start (x, z) [m]; `pace` are the script's constants."""
+
+    def __init__(self, tab: Any, grid: Grid, starts: list[tuple[float, float]]) -> None:
+        self.tab = tab
+        data = base64.b64encode(grid.to_bytes()).decode()
+        sources = [path.read_text("utf-8") for path in (WALKMATH, PREDICTION)]
+        self.pace = tab.evaluate(CROWD, [*sources, data, grid.meta(), starts])
+
+    def step(self, frames: list[list[Any]]) -> list[list[Any]]:
+        """[answers [seq, x, z, at], dt, forward, right, yaw, now] of each -> [x, z, inputs to send, waiting, worst]."""
+        # As text: the browser's driver takes longer over a list than both sides take to walk.
+        return json.loads(self.tab.evaluate("(frames) => crowdStep(frames)", json.dumps(frames)))
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from survey.content import FOLDER, QuestionnaireFolder
+from survey.privacy.controller import read_controller
 
 from ..loading import Content
 from ..problems import Problem
 
 
 def questionnaire_problems(content: Content) -> list[Problem]:
-    """Faulty questionnaire files, and names of questionnaires that are not there."""
+    """Faulty questionnaire files, faults in who answers for them, and names of questionnaires that are not there."""
     asked = QuestionnaireFolder(content.folder)
-    found = [Problem(fault.file, fault.key, fault.what, fault.fix) for fault in asked.problems]
+    faults = (*asked.problems, *read_controller(content.folder).faults)
+    found = [Problem(fault.file, fault.key, fault.what, fault.fix) for fault in faults]
     there = {path.stem for path in (content.folder / FOLDER).glob("*.toml")}  # a faulty one has its own line
     named = [("hall.toml", content.hall.questionnaire)]
     named += [(exhibit.toml, exhibit.file.questionnaire) for exhibit in content.exhibits]
@@ -22,3 +26,10 @@ def questionnaire_problems(content: Content) -> list[Problem]:
         what, fix = f"there is no questionnaire {name[:60]!r}", f"write one of {FOLDER}/: {known}"
         found.append(Problem(toml, "questionnaire", what, fix))
     return found
+
+
+def unstated(folder: Path) -> list[Problem]:
+    """Who answers for the questionnaires, where the folder asks any and does not say; no fault of the folder."""
+    if not any((folder / FOLDER).glob("*.toml")):
+        return []
+    return [Problem(gap.file, gap.key, gap.what, gap.fix) for gap in read_controller(folder).gaps]

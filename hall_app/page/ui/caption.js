@@ -28,7 +28,7 @@ export function createCaption({ words, scene, onOpen }) {
     title.textContent = words.pick(exhibit.title);
     line.textContent = words.pick(exhibit.caption);
     setAttribute(line, "hidden", !line.textContent);
-    how.textContent = words.t(touched ? "caption.tap" : shown() === beside ? "caption.closer" : "caption.click");
+    how.textContent = words.t(touched ? "caption.tap" : "caption.closer");
   }
 
   words.follow(render);
@@ -42,7 +42,7 @@ export function createCaption({ words, scene, onOpen }) {
     hover: set((id) => (under = id)),
     touch: set(() => (touched = true)),
     updateScene: set((next) => (current = next)),
-    /** The exhibit that Enter opens. */
-    id: () => beside,
+    /** The exhibit it names, which Enter opens. */
+    id: shown,
   };
 }

@@ -11,7 +11,7 @@ export function createDialog({ words, titleKey, testid, kind = "" }) {
     el("button", { type: "button", class: "icon-button", testid: `${testid}-close` }, icon("close")),
     "dialog.close",
   );
-  const head = el("header", { class: "dialog-head" }, title, shut);
+  const head = el("div", { class: "dialog-head" }, title, shut);
   const body = el("div", { class: "dialog-body" });
   const element = el(
     "dialog",

@@ -34,7 +34,6 @@ export function createExhibitsList({ words, scene, onOpen, onGo }) {
         type: "button",
         class: "exhibit",
         testid: `list-item-${exhibit.id}`,
-        "aria-label": words.t("list.open", { title }),
       },
       thumbnail(exhibit),
       el(

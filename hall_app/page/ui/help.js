@@ -10,7 +10,12 @@ const SECTIONS = {
     [["S", "↓"], "backward"],
     [["A", "←"], "left"],
     [["D", "→"], "right"],
+    [["Q", "Shift ←"], "turn_left"],
+    [["E", "Shift →"], "turn_right"],
+    [["Home"], "level"],
     [["Enter"], "open"],
+    [["←", "→"], "turn"],
+    [["+", "−"], "nearer"],
     [["Esc"], "back"],
     [["?"], "show_help"],
   ],
@@ -24,6 +29,9 @@ const SECTIONS = {
     [["{stick_key}"], "stick"],
     [["{swipe_key}"], "look"],
     [["{tap_key}"], "click"],
+    [["{map_tap_key}"], "map"],
+    [["{turn_key}"], "turn"],
+    [["{pinch_key}"], "nearer"],
   ],
 };
 

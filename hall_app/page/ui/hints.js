@@ -6,7 +6,7 @@ import { el } from "./elements.js";
 const HINTS = {
   walk: [
     [["W", "A", "S", "D"], "walk"],
-    [["{drag}"], "look"],
+    [["{drag}", "Q", "E"], "look"],
     [["{open_key}"], "open"],
   ],
   touch: [

@@ -20,7 +20,11 @@ export function createToasts() {
   return { element, toast };
 }
 
-/** createConnection({words, onRestored}) -> {element, set(state)}; state: "open", "lost" (being tried again) or "full". */
+/**
+ * createConnection({words, onRestored}) -> {element, set(state, place)}; state: "open", "waiting" (for an answer),
+ * "lost" (being tried again), "queue" (at `place`), "full" (the queue too), "refused" (this page asked too much) or
+ * "away" (for so long that the place went to somebody who waited).
+ */
 export function createConnection({ words, onRestored }) {
   const said = el("span");
   const reload = words.text(el("button", { type: "button", class: "link-button" }), "connection.reload");
@@ -32,7 +36,8 @@ export function createConnection({ words, onRestored }) {
     reload,
   );
   let state = "open";
-  let stage = "open"; // what is shown: open, reconnecting, lost, full
+  let stage = "open"; // what is shown: open, waiting, reconnecting, lost, queue, full, refused, away
+  let place = 0;
   let timers = [];
 
   function show(next) {
@@ -41,21 +46,23 @@ export function createConnection({ words, onRestored }) {
   }
 
   function render() {
-    if (stage !== "open") said.textContent = words.t(`connection.${stage}`);
+    if (stage !== "open") said.textContent = words.t(`connection.${stage}`, { place });
     setAttribute(reload, "hidden", stage !== "lost");
     element.dataset.state = stage;
     setAttribute(element, "hidden", stage === "open");
   }
 
-  function set(next) {
-    if (next === state) return;
+  function set(next, at = 0) {
+    if (next === state && at === place) return;
     const shown = stage !== "open";
+    const gone = shown && stage !== "waiting" && stage !== "queue";
     state = next;
+    place = at;
     timers.forEach(clearTimeout);
     timers = [];
     if (next !== "lost") show(next);
     else timers = [setTimeout(show, shown ? 0 : PATIENCE, "reconnecting"), setTimeout(show, DESPAIR, "lost")];
-    if (next === "open" && shown) onRestored();
+    if (next === "open" && gone) onRestored();
   }
 
   words.follow(render);

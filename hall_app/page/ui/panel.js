@@ -3,18 +3,21 @@
 import { el, setAttribute } from "./elements.js";
 import { icon } from "./icons.js";
 import { createDataPage } from "./panel_data.js";
-import { createMediaPage } from "./panel_media.js";
+import { createClip, createMediaPage } from "./panel_media.js";
 import { createPicturesPage } from "./panel_pictures.js";
 import { createTabs } from "./tabs.js";
 
-/** The one door for HTML: the server has sanitised the curator's text. */
-function createTextPage(words) {
+/** The one door for HTML: the server has sanitised the curator's text. Above it runs the film of "play_clip". */
+function createTextPage(words, onSounding) {
   const element = el("div", { class: "prose", testid: "exhibit-text" });
+  const clip = createClip(words, onSounding);
   let shown = null;
   return {
-    element,
+    element: el("div", {}, clip.element, element),
     filled: () => true,
+    play: clip.play,
     render(detail) {
+      clip.render(detail);
       const html = words.pick(detail.text);
       if (html === shown) return;
       shown = html;
@@ -22,13 +25,13 @@ function createTextPage(words) {
       if (html) element.innerHTML = html;
       else element.replaceChildren(el("p", { class: "quiet", text: words.t("panel.no_text") }));
     },
-    silence() {},
+    silence: clip.silence,
   };
 }
 
 function createPages(words, { onEnlarge, onSounding }) {
   return {
-    intro: createTextPage(words),
+    intro: createTextPage(words, onSounding),
     pictures: createPicturesPage(words, onEnlarge),
     film: createMediaPage(words, "video", onSounding),
     sound: createMediaPage(words, "audio", onSounding),
@@ -36,14 +39,61 @@ function createPages(words, { onEnlarge, onSounding }) {
   };
 }
 
-/** createPanel({words, onClose, onSurvey, onEnlarge, onSounding}) -> {element, show, update, hide, answered, detail} */
-export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding }) {
+const SWIPE = 28; // [px] a thumb has to move the sheet's head
+
+/** On small windows the panel is a sheet whose head alone can stay; `turn(folded)` by button, tap or swipe. */
+function createFold(words, turn) {
+  let folded = false;
+  const button = words.label(
+    el(
+      "button",
+      { type: "button", class: "icon-button panel-fold", testid: "panel-fold", "aria-controls": "panel-content" },
+      icon("fold"),
+    ),
+    "panel.details",
+  );
+  const show = () => button.setAttribute("aria-expanded", String(!folded));
+  function set(next) {
+    folded = next;
+    show();
+    turn(folded);
+  }
+  button.addEventListener("click", () => set(!folded));
+
+  /** The head can be pushed up and down by a thumb; whoever only taps it turns it over. */
+  function grip(head) {
+    const taken = (event) => button.offsetParent && !event.target.closest("button");
+    let from = null;
+    let pushed = false;
+    head.addEventListener("pointerdown", (event) => {
+      pushed = false;
+      from = taken(event) ? event.clientY : null;
+      if (from !== null) head.setPointerCapture(event.pointerId);
+    });
+    head.addEventListener("pointerup", (event) => {
+      const moved = from === null ? 0 : event.clientY - from;
+      from = null;
+      pushed = Math.abs(moved) > SWIPE;
+      if (pushed) set(moved > 0);
+    });
+    // Not as soon as the finger leaves: the click that follows would fall on whatever has come to lie under it.
+    head.addEventListener("click", (event) => taken(event) && !pushed && set(!folded));
+    head.addEventListener("pointercancel", () => (from = null));
+  }
+
+  show();
+  return { button, grip, set };
+}
+
+/** createPanel({words, onClose, onSurvey, onEnlarge, onSounding, onFold}) -> {element, show, update, hide, answered, detail} */
+export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding, onFold }) {
   let detail = null;
   let returnTo = null;
   let watcher = null;
   const answered = new Set();
   const title = el("h2", { id: "panel-title", class: "panel-title", tabindex: -1 });
   const second = el("p", { class: "panel-second" });
+  const line = el("p", { class: "panel-line" });
   const shut = el(
     "button",
     { type: "button", class: "icon-button", testid: "panel-close", on: { click: () => onClose() } },
@@ -62,22 +112,40 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding })
     "button",
     { type: "button", class: "button quiet-button", testid: "panel-back", on: { click: () => onClose() } },
     words.text(el("span"), "panel.back"),
-    el("kbd", { text: "Esc" }),
+    el("kbd", { text: "Esc", "aria-hidden": "true" }),
   );
-  const element = el(
-    "aside",
-    { class: "panel paper", testid: "panel", role: "dialog", "aria-labelledby": "panel-title", hidden: true },
-    el("header", { class: "panel-head" }, el("div", {}, title, second), shut),
+  const head = el("div", { class: "panel-head" });
+  const content = el(
+    "div",
+    { id: "panel-content", class: "panel-content" },
     tabs.list,
     tabs.body,
-    el("footer", { class: "panel-foot" }, survey, back),
+    el("div", { class: "panel-foot" }, survey, back),
   );
+  const element = el(
+    "div",
+    { class: "panel paper", testid: "panel", role: "dialog", "aria-labelledby": "panel-title", hidden: true },
+    head,
+    content,
+  );
+  const fold = createFold(words, (folded) => {
+    element.classList.toggle("is-folded", folded);
+    if (folded) silence();
+    onFold(folded);
+  });
+  head.append(el("div", { class: "panel-names" }, title, second, line), fold.button, shut);
+  fold.grip(head);
+
+  function silence() {
+    for (const page of Object.values(pages)) page.silence();
+  }
 
   function render() {
     if (!detail) return;
     title.textContent = words.pick(detail.title);
     second.textContent = words.pick(detail.title, words.other);
     second.lang = words.other;
+    line.textContent = words.pick(detail.caption) || words.pick(detail.title, words.other);
     tabs.render(detail);
     setAttribute(survey, "hidden", !detail.questionnaire);
     const done = answered.has(detail.id);
@@ -85,17 +153,21 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding })
     survey.classList.toggle("is-done", done);
   }
 
-  /** options.play starts the exhibit's film at once (behaviour "play_clip"). */
+  /** options.play: the exhibit's film starts, muted, above the text (behaviour "play_clip"). */
   function show(next, { play = false } = {}) {
     const other = detail?.id !== next.id;
     if (!detail) returnTo = document.activeElement;
-    if (other) tabs.reset();
+    if (other) {
+      tabs.reset();
+      fold.set(false);
+    }
     detail = next;
     render();
     element.hidden = false;
     watch();
-    if (other) title.focus({ preventScroll: true });
-    if (play && pages.film.play()) tabs.select("film");
+    if (!other) return;
+    title.focus({ preventScroll: true });
+    pages.intro.play(play);
   }
 
   /** Chromium keeps every key inside a film's own controls; what it asks to close it lets know (as a back gesture). */
@@ -115,7 +187,7 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding })
     // A hidden button keeps the focus until the next frame: let go of it now.
     const inside = element.contains(document.activeElement);
     if (inside) document.activeElement.blur();
-    for (const page of Object.values(pages)) page.silence();
+    silence();
     element.hidden = true;
     detail = null;
     if (inside && returnTo?.isConnected) returnTo.focus({ preventScroll: true });

@@ -18,8 +18,9 @@ function player(kind, item, onSounding) {
   media.addEventListener("play", () => {
     for (const other of document.querySelectorAll("#hall-ui video, #hall-ui audio"))
       if (other !== media) other.pause();
-    onSounding(true);
+    onSounding(!media.muted);
   });
+  media.addEventListener("volumechange", () => media.paused || onSounding(!media.muted));
   for (const end of ["pause", "ended", "emptied"]) media.addEventListener(end, () => onSounding(false));
   return media;
 }
@@ -81,13 +82,40 @@ export function createMediaPage(words, kind, onSounding) {
     for (const { media } of items) media.pause();
   }
 
-  /** Starts the first medium; false when there is none. A refusal by the browser leaves it ready to be started by hand. */
-  function play() {
-    if (!items.length) return false;
-    items[0].media.muted = true; // the hall's music goes on, and browsers let a silent film start
-    items[0].media.play().catch(() => {});
-    return true;
+  return { element, render, silence, filled: () => items.length > 0 };
+}
+
+/**
+ * The exhibit's first film above its text, muted: {element, render(detail), play(wanted), silence}. play(true) shows
+ * and starts it; for whoever asked the system for less motion it stands still until it is started by hand.
+ */
+export function createClip(words, onSounding) {
+  const element = el("div", { class: "clip", testid: "clip", hidden: true });
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  let signature = "";
+  let media = null;
+
+  function render(detail) {
+    const film = detail.media.find((item) => item.kind === "video");
+    const next = film ? signatureOf([film]) : "";
+    if (next !== signature) {
+      media?.pause();
+      media = film ? player("video", film, onSounding) : null;
+      element.replaceChildren(...(media ? [media] : []));
+      // What this browser cannot play is told on the film's own page.
+      media?.lastElementChild?.addEventListener("error", () => (element.hidden = true));
+    }
+    signature = next;
+    media?.setAttribute("aria-label", words.pick(film.alt) || words.pick(film.caption));
   }
 
-  return { element, render, silence, play, filled: () => items.length > 0 };
+  function play(wanted) {
+    setAttribute(element, "hidden", !wanted || !media);
+    if (element.hidden) return;
+    media.muted = true; // the hall's music goes on, and browsers let a silent film start
+    media.currentTime = 0;
+    if (!calm.matches) media.play().catch(() => {}); // a refusal leaves it ready to be started by hand
+  }
+
+  return { element, render, play, silence: () => media?.pause() };
 }

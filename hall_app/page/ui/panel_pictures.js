@@ -56,7 +56,7 @@ export function createPicturesPage(words, onEnlarge) {
   return { element, render, filled: () => figures.length > 0, silence() {} };
 }
 
-/** createViewer({words}) -> {element, open(pictures, index)} */
+/** createViewer({words}) -> {element, open(pictures, index), close} */
 export function createViewer({ words }) {
   let pictures = [];
   let at = 0;
@@ -97,6 +97,7 @@ export function createViewer({ words }) {
   words.follow(render);
   return {
     element: dialog.element,
+    close: dialog.close,
     open(next, index) {
       [pictures, at] = [next, index];
       render();

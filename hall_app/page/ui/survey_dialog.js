@@ -25,8 +25,8 @@ export function createSurveyDialog({ words, onSubmitted }) {
 
   addEventListener("message", (event) => {
     if (event.origin !== location.origin || event.source !== frame?.contentWindow) return;
-    // A frame keeps its keys to itself, so the form passes Esc on.
-    if (event.data?.type === "survey-escape") dialog.close();
+    // A frame keeps its keys to itself, so the form passes Esc on; its thanks lead back by closing the window.
+    if (event.data?.type === "survey-escape" || event.data?.type === "survey-close") dialog.close();
     if (event.data?.type !== "survey-submitted") return;
     asked = { ...asked, done: true };
     onSubmitted(asked.exhibit);

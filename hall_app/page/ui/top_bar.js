@@ -16,13 +16,13 @@ export function sealCharacter(title) {
 export function createBrand({ words, scene }) {
   let current = scene;
   const seal = el("span", { class: "seal", "aria-hidden": "true", lang: "zh" });
-  const name = el("span", { class: "brand-name" });
-  const second = el("span", { class: "brand-second" });
+  const name = el("h1", { class: "brand-name" }); // once the Enter screen's own has gone
+  const second = el("p", { class: "brand-second" });
   const element = el(
     "div",
     { class: "brand glass", testid: "brand" },
     seal,
-    el("span", { class: "brand-text" }, name, second),
+    el("div", { class: "brand-text" }, name, second),
   );
   const render = () => {
     seal.textContent = sealCharacter(current.title);
@@ -99,7 +99,6 @@ export function createTools({ words, music, scene, onList, onHelp, onSurvey, onS
   const survey = one("survey", onSurvey, "hall-survey");
   const settings = one("settings", onSettings);
   const help = one("help", onHelp);
-  survey.classList.add("wide-only");
   const element = el("nav", { class: "tools glass" }, list, musicTool(words, music), survey, settings, help);
   words.follow(() => element.setAttribute("aria-label", words.t("bar.tools")));
   const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);

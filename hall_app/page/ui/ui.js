@@ -1,7 +1,9 @@
 // The overlay over the hall: builds its parts, keeps language, exhibit and connection in step between them.
 
+import { watchContext } from "../context.js";
 import { LEVELS } from "../judge.js";
 import { createCaption } from "./caption.js";
+import { createCurtain } from "./curtain.js";
 import { el, ownsEnter } from "./elements.js";
 import { createEnter } from "./enter.js";
 import { createExhibitsList } from "./exhibits_list.js";
@@ -20,13 +22,13 @@ import { createWords } from "./words.js";
 
 // As judge.js has them, and the one that leaves it to the judge.
 const CHOICES = ["auto", ...LEVELS];
-const SHEET = "(max-width: 720px)"; // the panel lies at the bottom instead of standing at the right
+const NARROW = "(max-width: 720px)"; // the open plan covers the way one wants to walk
 
 /**
  * createUi({root, scene, texts, lang, actions}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * actions: enter(), open(id), close(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
+ * actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
  */
 export function createUi({ root, scene, texts, lang, actions }) {
   const words = createWords(texts, lang);
@@ -44,7 +46,7 @@ export function createUi({ root, scene, texts, lang, actions }) {
 }
 
 function createParts({ words, scene, actions }) {
-  const parts = { words, scene };
+  const parts = { words, scene, covers: new Set() };
   const music = createMusic(scene);
   const titleOf = (id) => words.pick(parts.scene.exhibits.find((exhibit) => exhibit.id === id)?.title);
   const choose = (next) => {
@@ -53,8 +55,9 @@ function createParts({ words, scene, actions }) {
   const hallSurvey = () => parts.survey.open(parts.scene.questionnaire, null);
   const goTo = (...there) => {
     if (parts.panel.detail()) actions.close();
-    if (matchMedia(SHEET).matches) parts.minimap.fold(true);
+    if (matchMedia(NARROW).matches) parts.minimap.fold(true);
     actions.goTo(...there);
+    focusStage(parts.stage); // Enter means the caption there, not the dot or the list once more
   };
   return Object.assign(parts, {
     music,
@@ -82,7 +85,9 @@ function createParts({ words, scene, actions }) {
       onSurvey: (detail) => parts.survey.open(detail.questionnaire, detail.id),
       onEnlarge: (pictures, index) => parts.viewer.open(pictures, index),
       onSounding: (sounding) => music.duck(sounding),
+      onFold: (folded) => foldPanel(parts, folded),
     }),
+    curtain: createCurtain({ words }),
     viewer: createViewer({ words }),
     survey: createSurveyDialog({
       words,
@@ -119,6 +124,7 @@ function arrange(parts) {
     connection,
     problems,
     voice,
+    curtain,
   } = parts;
   enter.actions.append(languages);
   const dialogs = [parts.list, parts.settings, parts.help, parts.viewer, parts.survey].map(({ element }) => element);
@@ -135,17 +141,31 @@ function arrange(parts) {
     el("div", { class: "middle" }, problems.element, caption.element, hints.element),
   );
   const chrome = el("div", { class: "chrome", inert: true }, top, low, panel.element);
-  const notices = el("div", { class: "announcements" }, connection.element, toasts.element, voice.element);
-  return el("div", { id: "hall-ui", class: "is-outside" }, stage, chrome, enter.element, notices, ...dialogs);
+  const notices = el("div", { class: "announcements" }, connection.element, curtain.note, toasts.element, voice.element);
+  const around = [curtain.ground, stage, chrome, enter.element, notices];
+  // Who hears the page read meets viser's picture as the stage, which answers to keys; what is drawn has no words.
+  document.getElementById("root")?.setAttribute("aria-hidden", "true");
+  return el("main", { id: "hall-ui", class: "is-outside" }, ...around, ...dialogs);
 }
 
 function followLanguage(words, parts, overlay) {
   words.follow(() => {
     document.documentElement.lang = words.lang === "zh" ? "zh-Hans" : "en";
-    document.title = words.pick(parts.scene.title);
+    showTitle(parts);
     overlay.lang = document.documentElement.lang;
+    overlay.setAttribute("aria-label", words.pick(parts.scene.title));
     parts.stage.setAttribute("aria-label", words.t("stage.label"));
   });
+}
+
+/** The tab, the history and whoever hands the link on read which exhibit is open. */
+function showTitle({ words, scene, panel }) {
+  document.title = [panel.detail()?.title, scene.title].filter(Boolean).map((title) => words.pick(title)).join(" · ");
+}
+
+function foldPanel({ stage, covers }, folded) {
+  stage.parentElement.classList.toggle("has-folded-panel", folded);
+  for (const listener of covers) listener();
 }
 
 function enterHall(parts, actions) {
@@ -176,11 +196,11 @@ function listenToKeys(parts, actions) {
     const inside = parts.stage.parentElement.classList.contains("is-outside");
     if (inside || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
     if (document.querySelector("dialog[open]")) return;
-    if (event.key === "Escape" && parts.panel.detail()) actions.close();
+    if (event.key === "Escape" && actions.opened()) actions.close();
     else if (
       event.key === "Enter" &&
       parts.caption.id() &&
-      !parts.panel.detail() &&
+      !actions.opened() &&
       !ownsEnter(event.target)
     ) {
       event.preventDefault();
@@ -195,9 +215,10 @@ function face(parts, overlay, words) {
   const closeup = (open) => {
     overlay.classList.toggle("has-panel", open);
     hints.closeup(open);
+    showTitle(parts);
   };
+  watchContext(parts.curtain.set);
   return Object.freeze({
-    progress: enter.progress,
     ready: enter.ready,
     fail: enter.fail,
     pose(pose) {
@@ -211,12 +232,17 @@ function face(parts, overlay, words) {
     },
     hideExhibit() {
       if (!panel.detail()) return;
+      // Going back in the browser's history also leaves what was opened from the panel.
+      for (const window of [parts.viewer, parts.survey]) window.close();
       panel.hide();
       closeup(false);
       if (document.activeElement === document.body) focusStage(parts.stage);
       voice.say(words.t("stage.closed"));
     },
-    updateExhibit: panel.update,
+    updateExhibit(detail) {
+      panel.update(detail);
+      showTitle(parts);
+    },
     near(id) {
       caption.near(id);
       minimap.mark(id);
@@ -231,8 +257,12 @@ function face(parts, overlay, words) {
       const { activeElement } = document;
       if (activeElement !== parts.stage && overlay.contains(activeElement)) focusStage(parts.stage);
     },
-    toast: parts.toasts.toast,
-    connection: parts.connection.set,
+    unknownExhibit: () => parts.toasts.toast(words.t("link.unknown")),
+    unreadExhibit: () => parts.toasts.toast(words.t("link.unread")),
+    connection(state, place) {
+      enter.wait(state, place);
+      parts.connection.set(state, place);
+    },
     quality: parts.settings.quality,
     problems: parts.problems.set,
     updateScene(scene) {
@@ -248,22 +278,23 @@ function face(parts, overlay, words) {
         parts.music,
       ])
         part.updateScene(scene);
-      document.title = words.pick(scene.title);
+      showTitle(parts);
     },
-    setLang: words.setLang,
     get lang() {
       return words.lang;
     },
+    /** Calls `listener` when the panel is folded or unfolded. */
+    whenCovered: (listener) => parts.covers.add(listener),
     /** What covers the picture [px]: the panel's width at the right, bar on top, sheet or hints at the bottom. */
     get visible() {
-      const { offsetLeft, offsetHeight } = panel.element; // layout, not the sliding picture of it
+      const { offsetLeft, offsetWidth, offsetHeight } = panel.element; // layout, not the sliding picture of it
       if (!panel.detail()) return { panel: 0, bottom: 0, top: 0 };
       const bar = overlay.querySelector(".top");
       const top = bar.offsetTop + bar.offsetHeight;
-      if (matchMedia(SHEET).matches) return { panel: 0, bottom: offsetHeight, top };
+      if (offsetWidth > 0.9 * overlay.clientWidth) return { panel: 0, bottom: offsetHeight, top };
       const low = overlay.querySelector(".low");
-      const bottom = overlay.clientHeight - low.offsetTop - low.offsetHeight + hints.element.offsetHeight;
-      return { panel: overlay.clientWidth - offsetLeft, bottom, top };
+      const hinted = low.offsetHeight && overlay.clientHeight - low.offsetTop - low.offsetHeight + hints.element.offsetHeight;
+      return { panel: overlay.clientWidth - offsetLeft, bottom: hinted, top };
     },
   });
 }

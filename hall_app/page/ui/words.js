@@ -2,22 +2,9 @@
 
 export const LANGUAGES = ["zh", "en"];
 
-/** localStorage may be forbidden (private windows, embedded pages); the hall then forgets, but works. */
-export function recall(key) {
-  try {
-    return localStorage.getItem(key);
-  } catch {
-    return null;
-  }
-}
-
-export function remember(key, value) {
-  try {
-    localStorage.setItem(key, String(value));
-  } catch {
-    // forgetting is fine
-  }
-}
+/** What the visitor chose, kept in the browser as far as it allows (door.js). */
+export const recall = (key) => window.HALL.memory.recall(key);
+export const remember = (key, value) => window.HALL.memory.remember(key, value);
 
 /** texts: {zh: {group: {key: text}}, en: …} -> the words object every part of the overlay receives. */
 export function createWords(texts, lang) {
@@ -28,9 +15,9 @@ export function createWords(texts, lang) {
       return words.lang === "zh" ? "en" : "zh";
     },
     /** The text of "group.key" with {name} filled in; an unknown key shows itself, so that it is noticed. */
-    t(key, values = {}) {
+    t(key, values = {}, lang = words.lang) {
       const [group, name] = key.split(".");
-      const entry = name === undefined ? texts[words.lang]?.[group] : texts[words.lang]?.[group]?.[name];
+      const entry = name === undefined ? texts[lang]?.[group] : texts[lang]?.[group]?.[name];
       if (typeof entry !== "string") return key;
       return entry.replace(/\{(\w+)\}/g, (hole, field) => values[field] ?? hole);
     },

@@ -1,0 +1,40 @@
+"""The catalogue in a browser: clean to axe, and whole on a phone."""
+
+import pytest
+from bench.axe import violations
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+
+SHOWN = "() => document.querySelectorAll('img').forEach((one) => { one.loading = 'eager'; })"
+SMALL = """
+() => [...document.querySelectorAll(".doors a, .contents a, .ways a, summary, article a.plate")]
+  .map((one) => [one.textContent.trim(), one.getBoundingClientRect()])
+  .filter(([, box]) => box.height < 43.9 || box.width < 43.9).map(([text]) => text)
+"""
+
+
+@pytest.mark.parametrize("width", [320, 768, 1280])
+@pytest.mark.parametrize("lang", ["zh", "en"])
+def test_the_catalogue_is_clean_and_fits(shipped_hall, chromium, lang, width):
+    page = chromium.new_page(viewport={"width": width, "height": 700})
+    page.goto(f"{shipped_hall.url}/catalogue?lang={lang}")
+    page.evaluate(SHOWN)
+    page.wait_for_load_state("networkidle")
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate(SMALL) == []
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    assert page.evaluate("location.hash") == "#exhibits"
+    page.close()
+
+
+def test_a_picture_leads_to_the_large_one_and_print_leaves_the_doors_out(shipped_hall, chromium):
+    page = chromium.new_page(viewport={"width": 800, "height": 600})
+    page.goto(f"{shipped_hall.url}/catalogue?lang=en")
+    plate = page.locator("article a.plate").first
+    assert plate.get_attribute("href").startswith("/media/")
+    page.emulate_media(media="print")
+    assert not page.locator(".doors").is_visible()
+    assert page.locator("article h2").first.is_visible()
+    page.close()

@@ -1,0 +1,198 @@
+"""Looks at the content folder and at what is baked: nothing is lost when one fails, nothing is kept for good."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import time
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+from build_processes import with_scarf
+from content_house import edit, make_house
+from stored_room import store_room
+
+from hall_app import following
+from hall_app.bake.places import data_bake
+from hall_app.baking_queue import Bake, BakingQueue
+from hall_app.content import load
+from hall_app.following import Following
+from hall_app.house import House
+from hall_app.preparing import ROOM
+from hall_app.room.key import built_key, room_key
+from hall_app.room.places import data_room
+from hall_app.tidying import tidy
+
+SHIPPED = Path(__file__).parents[2] / "assets/exhibits/pibo/baked"
+NEWEST = 3  # of a kind are kept
+
+
+def alone(work: Coroutine[Any, Any, None]) -> None:
+    """asyncio.run in a thread of its own: a browser test before may have left its loop in the main thread."""
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(asyncio.run, work).result()
+
+
+def store_bake(data: Path, name: str, key: str) -> Path:
+    target = shutil.copytree(SHIPPED, data_bake(data, name, key))
+    (target / "bake.json").write_text(json.dumps({"key": key}), "utf-8")
+    return target
+
+
+class Build:
+    """A garment's bake that is done at once."""
+
+    def __init__(self, data: Path, bake: Bake) -> None:
+        store_bake(data, bake.name, bake.key)
+
+    def poll(self) -> int | None:
+        return 0
+
+    def line(self) -> str:
+        return ""
+
+    def outcome(self) -> str:
+        return "done"
+
+    def end(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("where", ["wanted_bakes", "replace"])
+def test_a_finished_bake_is_owed_until_it_is_shown(tmp_path: Path, monkeypatch, where: str):
+    content = load(with_scarf(tmp_path / "content"))
+    house = House(content, tmp_path / "data")
+    queue = BakingQueue(lambda bake: Build(house.data, bake))
+    follow = Following(house, queue, light=False, say=lambda line: None)
+    owner = following if where == "wanted_bakes" else house
+    whole = getattr(owner, where)
+
+    def fail(*given: Any, **named: Any) -> None:
+        raise OSError("too many open files")
+
+    async def story() -> None:
+        await follow.look()
+        assert queue.running is not None
+        monkeypatch.setattr(owner, where, fail)
+        with pytest.raises(OSError, match="too many"):
+            await follow.look()
+        assert queue.running is None, "that it ended is told once"
+        monkeypatch.setattr(owner, where, whole)
+        await follow.look()
+        assert house.models("scarf") is not None
+
+    try:
+        alone(story())
+    finally:
+        house.close()
+
+
+def test_an_edit_whose_showing_failed_is_shown_at_the_next_look(tmp_path: Path, monkeypatch):
+    folder = make_house(tmp_path / "content")
+    house = House(load(folder), tmp_path / "data")
+    said: list[str] = []
+    queue = BakingQueue(lambda bake: Build(house.data, bake))
+    follow = Following(house, queue, light=False, say=said.append)
+    show = house._show
+
+    def fail(*given: Any) -> None:
+        raise OSError("too many open files")
+
+    async def story() -> None:
+        edit(folder / "exhibits/chest/exhibit.toml", "radius = 0.4", 'radius = "wide"')
+        edit(folder / "hall.toml", "z = 3.0", "z = 2.5")
+        monkeypatch.setattr(house, "_show", fail)
+        with pytest.raises(OSError, match="too many"):
+            await follow.look()
+        shown: list[object] = []
+        monkeypatch.setattr(house, "_show", lambda *given: (shown.append(given), show(*given)))
+        await follow.look()
+        assert shown
+        assert any("radius" in line for line in said), "and what is wrong with it is told"
+        await follow.look()
+        assert len(shown) == 1
+
+    try:
+        alone(story())
+    finally:
+        house.close()
+
+
+def aged(folder: Path, seconds: float) -> Path:
+    """As if nothing in the folder had been written for that long."""
+    then = time.time() - seconds
+    for path in (*folder.rglob("*"), folder):
+        os.utime(path, (then, then))
+    return folder
+
+
+def test_the_newest_few_of_a_kind_are_kept_and_whatever_is_shown_or_wanted(tmp_path: Path):
+    folder, data = make_house(tmp_path / "content"), tmp_path / "data"
+    content = load(folder)
+    rooms = [
+        aged(store_room(data_room(data, f"{age:016x}"), f"{age:016x}"), 100 * age) for age in range(1, 9)
+    ]
+    robes = [aged(store_bake(data, "robe", f"{age:016x}"), 100 * age) for age in range(1, 9)]
+    scarf = aged(store_bake(data, "scarf", "f" * 16), 10_000)
+    letters = data_room(data, "e" * 16)
+    aged(store_room(letters, "e" * 16, built=built_key(content.plan)), 10_000)
+    works = {
+        name: data / "bake-work" / name for name in (f"robe-{7:016x}", "robe-" + "a" * 16, "room-" + "b" * 16)
+    }
+    for work in works.values():
+        work.mkdir(parents=True)
+        aged(work, 86_400)
+    fresh = data / "bake-work" / ("robe-" + "c" * 16)
+    fresh.mkdir()
+    strange = [data / "room-of-mine", data / "grids", data / "bakes/robe"]
+    for path in strange:
+        path.mkdir()
+    wanted = [Bake("robe", f"{7:016x}"), Bake(ROOM, f"{7:016x}", patient=True)]
+    tidy(content, data, shown=[robes[5], rooms[4]], wanted=wanted)
+    assert [path.is_dir() for path in robes] == [True] * NEWEST + [False, False, True, True, False]
+    assert [path.is_dir() for path in rooms] == [True] * NEWEST + [False, True, False, True, False]
+    assert scarf.is_dir(), "one is no few"
+    assert letters.is_dir(), "what a hall that opens now would be lit with"
+    assert [path.is_dir() for path in works.values()] == [True, False, False]
+    assert fresh.is_dir(), "it may be another program's, under way"
+    assert all(path.is_dir() for path in strange)
+
+
+def test_the_room_and_the_garments_of_the_content_as_it_is_are_kept(tmp_path: Path):
+    folder, data = make_house(tmp_path / "content"), tmp_path / "data"
+    content = load(folder)
+    now = aged(store_room(data_room(data, room_key(content, data)), room_key(content, data)), 10_000)
+    for age in range(1, 6):
+        aged(store_room(data_room(data, f"{age:016x}"), f"{age:016x}"), 100 * age)
+    tidy(content, data, shown=[], wanted=[])
+    assert now.is_dir()
+    assert len(list(data.glob("room-*"))) == NEWEST + 1
+
+
+def test_a_data_folder_that_is_edited_on_and_on_does_not_grow(tmp_path: Path):
+    folder = with_scarf(tmp_path / "content")
+    toml = folder / "exhibits/scarf/exhibit.toml"
+    house = House(load(folder), tmp_path / "data")
+    queue = BakingQueue(lambda bake: Build(house.data, bake))
+    follow = Following(house, queue, light=False, say=lambda line: None)
+    edit(toml, "[garment]", "[garment]\nseed = 100")
+
+    async def story() -> None:
+        for seed in range(100, 100 + 2 * NEWEST):
+            edit(toml, f"seed = {seed}", f"seed = {seed + 1}")
+            for _ in range(3):
+                await follow.look()
+            models = house.models("scarf")
+            assert models is not None
+            assert models.whole()
+        assert len(list((house.data / "bakes").iterdir())) <= NEWEST + 1
+
+    try:
+        alone(story())
+    finally:
+        house.close()
