@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import uuid
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_args
@@ -14,9 +14,13 @@ from survey.errors import AnswerError
 from survey.questionnaire import Item, Language, Questionnaire
 from survey.slug import is_slug
 
-__all__ = ["TEXT_LIMIT", "Answer"]
+__all__ = ["TEXT_LIMIT", "Answer", "ever_asked"]
 
 TEXT_LIMIT = 2000  # characters of one suggestion
+
+_NOBODY = (str(uuid.UUID(int=0)), str(uuid.UUID(int=2**128 - 1)))  # RFC 9562 sets both apart
+
+_FRESH = "make a fresh one, such as 0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
 
 _REQUIRED = ("id", "version", "language", "consent", "scores")
 _OPTIONAL = ("suggestions", "exhibit")
@@ -27,7 +31,8 @@ class Answer:
     """What one visitor answered.
 
     id: UUID made by the visitor's browser; it is the key against duplicates and the withdrawal code.
-    scores: (item, point) in the order of the questionnaire; point 1 … points, or None for "not seen".
+    scores: (item, point) in the order of the questionnaire; point 1 … points, or None for "not seen"; an item that
+    was not asked is not among them.
     suggestions: (module, text) where something was written. exhibit: at which exhibit it was asked, or None.
     """
 
@@ -65,6 +70,12 @@ class Answer:
         )
 
 
+def ever_asked(questionnaire: Questionnaire, answers: Iterable[Answer]) -> Questionnaire:
+    """What of the questionnaire was asked in any of the answers; all of it where there are none."""
+    items = {item for answer in answers for item, _ in answer.scores}
+    return questionnaire.asked(items) if items else questionnaire
+
+
 def _check_keys(data: dict[str, Any]) -> None:
     for key in data:
         if key not in _REQUIRED and key not in _OPTIONAL:
@@ -75,15 +86,16 @@ def _check_keys(data: dict[str, Any]) -> None:
 
 
 def submission_id(value: object) -> str:
-    """A UUID in its usual spelling, lower case. Raises AnswerError."""
+    """A UUID in its usual spelling, lower case; neither of all zeros nor of all ones. Raises AnswerError."""
     try:
         known = str(uuid.UUID(value)) if isinstance(value, str) else None
     except ValueError:
         known = None
     if known is None or not isinstance(value, str) or known != value.lower():
-        raise AnswerError(
-            "id", "not a UUID", "make a fresh one, such as 0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
-        )
+        raise AnswerError("id", "not a UUID", _FRESH)
+    if known in _NOBODY:
+        # It is the withdrawal code, and this one everybody knows.
+        raise AnswerError("id", "the UUID of all zeros or all ones is nobody's", _FRESH)
     return known
 
 

@@ -7,7 +7,22 @@ import os
 import sys
 from collections.abc import Sequence
 
-from survey.commands import analyse, backup, bench, export, freeze, grim, purge, serve, token
+from survey.commands import (
+    analyse,
+    audit,
+    backup,
+    bench,
+    compare,
+    confirm,
+    export,
+    freeze,
+    grim,
+    plan,
+    privacy,
+    purge,
+    serve,
+    token,
+)
 from survey.errors import SurveyError
 
 __all__ = ["main"]
@@ -26,13 +41,21 @@ examples:
   survey analyse a.csv                               every numeric column is an item
   survey analyse --questionnaire garment --json      straight from the data folder
   survey analyse --demo likert-20 --drop static --report out   a report of a synthetic sample
+  survey confirm --questionnaire garment --drop static         do the answers agree with the modules?
+  survey compare --questionnaire garment --by language         two groups, item by item
+  survey plan difference --effect 0.5                          how many answers a study needs
   survey token --label "Dr Lin"                      access to rows, suggestions and analysis over HTTP
+  survey purge                                       erases what has been kept long enough, after asking
+  survey audit                                       what was handed out, withdrawn and erased
   survey freeze garment                              from now on these answers cannot be withdrawn
+  survey privacy --language en --out privacy.html    the record of processing
   survey backup 2026-05-01.sqlite                    a copy while the service runs
 
 exit status: 0 done, 1 the work failed, 2 wrong arguments"""
 
-_COMMANDS = (serve, export, analyse, grim, token, freeze, purge, backup, bench)
+_COMMANDS = (
+    serve, export, analyse, confirm, compare, plan, grim, token, freeze, purge, audit, privacy, backup, bench,
+)  # fmt: skip
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

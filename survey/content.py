@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from survey.errors import ContentMissing, Problem, QuestionnaireError
 from survey.questionnaire import Questionnaire
 
-__all__ = ["QuestionnaireFolder", "content_folder", "read_questionnaire"]
+__all__ = ["QuestionnaireFolder", "content_folder", "problem_of", "read_questionnaire"]
 
 FOLDER = "questionnaires"
 
@@ -60,14 +60,14 @@ def read_questionnaire(path: Path) -> Questionnaire:
     try:
         questionnaire = Questionnaire.model_validate(data)
     except ValidationError as error:
-        raise QuestionnaireError(tuple(_problem(file, entry) for entry in error.errors())) from None
+        raise QuestionnaireError(tuple(problem_of(file, entry) for entry in error.errors())) from None
     if questionnaire.id != path.stem:
         what = f"{questionnaire.id!r} is not the file's name"
         raise QuestionnaireError((Problem(file, "id", what, f'write id = "{path.stem}" or rename the file'),))
     return questionnaire
 
 
-def _problem(file: str, entry: Mapping) -> Problem:
+def problem_of(file: str, entry: Mapping) -> Problem:
     """One pydantic error as a problem with a remedy."""
     key = ".".join(str(part) for part in entry["loc"])
     kind, value = entry["type"], repr(entry.get("input"))[:60]

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable, Collection
 from datetime import date
 from functools import cached_property
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
 
@@ -15,10 +16,15 @@ from survey.slug import COLUMN_KEY, SLUG
 __all__ = [
     "LANGUAGES",
     "META_COLUMNS",
+    "NEEDS",
+    "NOT_ASKED",
+    "UNASKED",
     "UNSEEN",
     "Item",
     "Language",
     "Module",
+    "Need",
+    "Offers",
     "Questionnaire",
     "Text",
     "suggestion_column",
@@ -33,6 +39,16 @@ META_COLUMNS = ("submission", "version", "language", "exhibit", "received")
 UNSEEN = (
     9  # "not seen" where a file needs a number for it: above every scale, which have at most seven points
 )
+
+UNASKED = 8  # "not asked" where a file needs a number for it: the place had nothing of what the item is about
+NOT_ASKED = (
+    "."  # the same in a table of text, as statistics programs write what is missing; "not seen" is empty
+)
+
+# Parts of a platform that a place may have or not have yet.
+Need = Literal["culture", "research", "activities", "visit", "user-centre", "office"]
+NEEDS: tuple[str, ...] = get_args(Need)
+Offers = frozenset[str] | None  # what of them a place has; None: whatever is asked about, everything is asked
 
 SUGGESTION = "suggestion_"
 
@@ -70,15 +86,23 @@ class Scale(_Part):
 
 
 class Dimension(_Part):
-    """A side from which every module is judged; with dimensions, a module's items are made from them."""
+    """A side from which every module is judged; with dimensions, a module's items are made from them.
+
+    reverse: as an item's, for all items made from it.
+    """
 
     id: Key
     label: Text
     hint: Text | None = None
+    reverse: bool = False
 
 
 class Item(_Part):
-    """One question. `tags` mark groups that an analysis may drop together, such as "static"."""
+    """One question. `tags` mark groups that an analysis may drop together, such as "static".
+
+    needs: what the place must have for it to be asked, None: nothing. reverse: whether it is worded the other way
+    round, so that an analysis turns its scores; what is stored, exported and shown stays as it was answered.
+    """
 
     id: Key
     label: Text
@@ -86,15 +110,18 @@ class Item(_Part):
     tags: list[Key] = []
     required: bool = True
     dimension: Key | None = None
+    needs: Need | None = None
+    reverse: bool = False
 
 
 class Module(_Part):
-    """Items that stand together, with one free field for suggestions."""
+    """Items that stand together, with one free field for suggestions. needs: as an item's, for all of them."""
 
     id: Key
     title: Text
     intro: Text | None = None
     suggestion: Text | None = None
+    needs: Need | None = None
     items: list[Item] = Field(default=[], alias="item")
 
 
@@ -139,7 +166,13 @@ class Questionnaire(_Part):
         if not self.dimensions:
             return tuple(module.items)
         return tuple(
-            Item(id=f"{module.id}_{side.id}", label=side.label, hint=side.hint, dimension=side.id)
+            Item(
+                id=f"{module.id}_{side.id}",
+                label=side.label,
+                hint=side.hint,
+                dimension=side.id,
+                reverse=side.reverse,
+            )
             for side in self.dimensions
         )
 
@@ -147,6 +180,39 @@ class Questionnaire(_Part):
     def items(self) -> tuple[Item, ...]:
         """All items in the order in which they are asked."""
         return tuple(item for module in self.modules for item in self.items_of(module))
+
+    def asking(self, offers: Offers) -> Questionnaire:
+        """What is asked of it in a place that offers just this; without any items where nothing of it is there.
+
+        The version that is frozen, and that says which items there are, is the whole one.
+        """
+        if offers is None:
+            return self
+        if offers not in self.narrowed:
+            self.narrowed[offers] = self._part(lambda part, _: part.needs is None or part.needs in offers)
+        return self.narrowed[offers]
+
+    def asked(self, items: Collection[str]) -> Questionnaire:
+        """What of it was asked where these items were asked."""
+        return self._part(lambda _, ids: any(item in items for item in ids))
+
+    def _part(self, kept: Callable[[Item | Module, tuple[str, ...]], bool]) -> Questionnaire:
+        """Of modules and items that `kept` (part, ids of its items) admits."""
+        modules = []
+        for module in self.modules:
+            ids = tuple(item.id for item in self.items_of(module))
+            items = [item for item in module.items if kept(item, (item.id,))]
+            if kept(module, ids) and (items or self.dimensions):
+                modules.append(module.model_copy(update={"items": items}))
+        part = self.model_copy(update={"modules": modules})
+        for name in ("items", "digest", "narrowed"):  # a copy takes along what was computed of the whole
+            vars(part).pop(name, None)
+        return part
+
+    @cached_property
+    def narrowed(self) -> dict[frozenset[str], Questionnaire]:
+        """What `asking` has given, kept: it is asked for with every submission."""
+        return {}
 
     @property
     def item_ids(self) -> tuple[str, ...]:
@@ -161,11 +227,26 @@ class Questionnaire(_Part):
         """Ids of the items that carry a tag."""
         return tuple(item.id for item in self.items if tag in item.tags)
 
-    def document(self) -> dict[str, object]:
+    @property
+    def reverse_keyed(self) -> tuple[str, ...]:
+        """Ids of the items that are worded the other way round."""
+        return tuple(item.id for item in self.items if item.reverse)
+
+    def document(self) -> dict[str, Any]:
         """The version as plain data with the keys of its file, as the store freezes it."""
         document = self.model_dump(mode="json", by_alias=True)
         if self.retain_until is None:  # versions frozen before this key existed keep their digest
             del document["retain_until"]
+        for module in document["module"]:
+            for part in (module, *module["item"]):
+                if part["needs"] is None:  # as above
+                    del part["needs"]
+        for part in (
+            *document["dimension"],
+            *(item for module in document["module"] for item in module["item"]),
+        ):
+            if not part["reverse"]:  # as above
+                del part["reverse"]
         return document
 
     @cached_property

@@ -6,18 +6,18 @@ import csv
 import io
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.answer import Answer
+from survey.columns import Choice, no_items
 from survey.errors import SurveyError
-from survey.questionnaire import META_COLUMNS, SUGGESTION, Questionnaire, suggestion_column
+from survey.questionnaire import META_COLUMNS, NOT_ASKED, SUGGESTION, Questionnaire, suggestion_column
 
-__all__ = ["SECONDS", "ScoreTable", "read_scores", "scores_of"]
+__all__ = ["SECONDS", "ScoreTable", "read_column", "read_scores"]
 
 SYNTHETIC = "synthetic-"  # how the ids begin in a sample that nobody answered
 SECONDS = "seconds"  # column of the time an answer took
@@ -35,6 +35,9 @@ class ScoreTable:
 
     suggestions: (module, text) as they were written. source: where it all comes from, for a heading.
     synthetic: whether nobody gave these answers. beside: a sentence on answers to other versions, may be empty.
+    unasked: in how many answers an item of the questionnaire was not asked; one that was asked in none is not in items.
+    aside: column of a foreign table → why it was taken for no item ("name", "scale" or "text").
+    labels: of stored answers, "language" and "exhibit" → (n,) of each, "" for none; empty where not asked for.
     """
 
     scores: NDArray[np.float64]
@@ -45,39 +48,62 @@ class ScoreTable:
     source: str = ""
     synthetic: bool = False
     beside: str = ""
+    unasked: Mapping[str, int] = field(default_factory=dict)
+    aside: Mapping[str, str] = field(default_factory=dict)
+    labels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
-def read_scores(path: Path, questionnaire: Questionnaire | None = None) -> ScoreTable:
-    """A CSV file's scores: the questionnaire's items, or without one every column that holds numbers.
+def read_scores(
+    path: Path, questionnaire: Questionnaire | None = None, choice: Choice | None = None
+) -> ScoreTable:
+    """A CSV file's scores: the questionnaire's items, or without one every column of numbers that looks like an item.
 
-    Raises SurveyError naming file, line and column.
+    choice: which columns of a table without a questionnaire are items. Raises SurveyError naming file, line, column;
+    of an infinite score NotFinite, which is one.
     """
     header, body = _lines(path)
-    items = None if questionnaire is None else questionnaire.item_ids
+    chosen = choice or Choice()
+    chosen.check(header, path)
+    unasked: dict[str, int] = {}
+    if questionnaire is not None:
+        unasked = _unasked(questionnaire, header, body)
+        left = [item for item in questionnaire.item_ids if unasked.get(item, 0) < len(body)]
+        questionnaire = questionnaire.asked(left) if left else questionnaire
+    items = chosen.items or None if questionnaire is None else questionnaire.item_ids
     columns = _columns(path, header, body, items)
     scores = np.array([_numbers(path, line, columns, row) for row, line in body], dtype=np.float64)
+    scores, aside = scores.reshape(len(body), len(columns)), {}
+    if items is None:
+        aside = no_items({name: scores[:, at] for at, (name, _) in enumerate(columns)}, chosen.keep)
+        scores = scores[:, [name not in aside for name, _ in columns]]
+        columns = [(name, at) for name, at in columns if name not in aside]
+        items_here = {name for name, _ in columns}
+        aside |= {name: "text" for name in header if _foreign(name) and name not in items_here | aside.keys()}
+    _see_that_all_are_finite(path, body, columns, scores)
     seconds = None
     if SECONDS in header and SECONDS not in dict(columns):
         at = [(SECONDS, header.index(SECONDS))]
         seconds = np.array([_numbers(path, line, at, row)[0] for row, line in body], dtype=np.float64)
-    table = ScoreTable(
-        scores.reshape(len(body), len(columns)), tuple(name for name, _ in columns), seconds, source=path.name
-    )
+    table = ScoreTable(scores, tuple(name for name, _ in columns), seconds, source=path.name, aside=aside)
     return replace(
         table,
         questionnaire=questionnaire,
         suggestions=_written(header, body, questionnaire),
         synthetic=_synthetic(header, body),
+        unasked=unasked,
     )
 
 
-def scores_of(answers: Sequence[Answer], items: Sequence[str]) -> NDArray[np.float64]:
-    """Scores (n, p) of answers, NaN for "not seen"."""
-    rows = [dict(answer.scores) for answer in answers]
-    table = [
-        [math.nan if (score := row.get(item)) is None else float(score) for item in items] for row in rows
-    ]
-    return np.array(table, dtype=np.float64).reshape(len(rows), len(items))
+def read_column(path: Path, name: str) -> tuple[str, ...]:
+    """What stands in a column of a CSV file, answer by answer, "" where nothing does.
+
+    Raises SurveyError where there is no such column.
+    """
+    header, body = _lines(path)
+    if name not in header:
+        raise SurveyError(f"{path}: no column {name!r} – its columns are {', '.join(header)[:300]}")
+    at = header.index(name)
+    return tuple("" if (cell := line[at].strip()) in MISSING else cell for _, line in body)
 
 
 def _lines(path: Path) -> tuple[list[str], Lines]:
@@ -137,15 +163,32 @@ def _columns(
                 f"{path}: no column {missing[0]!r} – the questionnaire asks it; add it or name another"
             )
         return [(item, header.index(item)) for item in items]
-    apart = {*META_COLUMNS, SECONDS}
-    found = [
-        (name, at)
-        for at, name in enumerate(header)
-        if name and name not in apart and not name.startswith(SUGGESTION) and _meant(body, at)
-    ]
+    found = [(name, at) for at, name in enumerate(header) if _foreign(name) and _meant(body, at)]
     if not found:
         raise SurveyError(f"{path}: no column of numbers – name the items in the first line")
     return found
+
+
+def _foreign(name: str) -> bool:
+    """Whether a column has a name, and none that our own export gives to what is no item."""
+    return bool(name) and name not in (*META_COLUMNS, SECONDS) and not name.startswith(SUGGESTION)
+
+
+def _unasked(questionnaire: Questionnaire, header: list[str], body: Lines) -> dict[str, int]:
+    """Item → answers in which it was not asked: its column is not there, or holds our mark for that.
+
+    Only of items that a place may be without; the column of any other must be there.
+    """
+    counts = {}
+    for module in questionnaire.modules:
+        for item in questionnaire.items_of(module):
+            if not (item.needs or module.needs):
+                continue
+            at = header.index(item.id) if item.id in header else None
+            gone = len(body) if at is None else sum(line[at].strip() == NOT_ASKED for _, line in body)
+            if gone:
+                counts[item.id] = gone
+    return counts
 
 
 def _meant(body: Lines, at: int) -> bool:
@@ -180,6 +223,19 @@ def _number(path: Path, cell: str, name: str, line: int) -> float:
     if not _is_number(cell):
         raise SurveyError(f"{path}: line {line}, {name}: {cell[:30]!r} is no number – correct it")
     return float(cell)
+
+
+def _see_that_all_are_finite(
+    path: Path, body: Lines, columns: list[tuple[str, int]], scores: NDArray[np.float64]
+) -> None:
+    """Raises NotFinite naming the first cell such as "inf" or 1e999 in a column that counts."""
+    found = np.argwhere(np.isinf(scores))
+    if len(found):
+        from survey.analysis.errors import NotFinite
+
+        (line, cells), (name, at) = body[found[0, 0]], columns[found[0, 1]]
+        where = f"{path}: line {line}, {name}"
+        raise NotFinite(f"{where}: {cells[at].strip()[:30]!r} is infinite – correct it", (name,))
 
 
 def _synthetic(header: list[str], body: Lines) -> bool:

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import gc
 import socket
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from survey.errors import Problem, SurveyError
 from survey.mounting import Mounted, mount
+from survey.questionnaire import Offers
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
 __all__ = ["serve", "survey_app"]
 
+PARTING = 3  # seconds that requests under way have left when the service is ended
+
 
 def survey_app(
-    content: Path, data: Path | str, per_minute: int | None = None
+    content: Path,
+    data: Path | str,
+    per_minute: int | None = None,
+    offers: Offers = None,
+    proxies: Sequence[str] = (),
 ) -> tuple[FastAPI, Mounted, list[Problem]]:
     """An app with the API, the form pages and nothing else; the problems of left-out questionnaires."""
     from fastapi import FastAPI
@@ -35,7 +42,15 @@ def survey_app(
         title="Survey", lifespan=life, docs_url=None, redoc_url=None, openapi_url="/api/v1/openapi.json"
     )
     problems: list[Problem] = []
-    mounted = mount(app, content=content, data=data, problems=problems, per_minute=per_minute)
+    mounted = mount(
+        app,
+        content=content,
+        data=data,
+        problems=problems,
+        per_minute=per_minute,
+        offers=offers,
+        proxies=proxies,
+    )
 
     @app.get("/", include_in_schema=False)
     def home() -> RedirectResponse:
@@ -44,8 +59,11 @@ def survey_app(
     return app, mounted, problems
 
 
-def serve(app: FastAPI, host: str, port: int) -> None:
-    """Serve until interrupted. Raises SurveyError when the port is taken."""
+def serve(app: FastAPI, host: str, port: int, proxies: Sequence[str] = ()) -> None:
+    """Serve until interrupted. Raises SurveyError when the port is taken.
+
+    proxies: addresses whose X-Forwarded-For is believed; nobody's otherwise, not even this machine's.
+    """
     import uvicorn
 
     with socket.socket() as probe:
@@ -60,5 +78,7 @@ def serve(app: FastAPI, host: str, port: int) -> None:
     # everybody up.
     gc.collect()
     gc.freeze()
+    trusting = {"proxy_headers": bool(proxies), "forwarded_allow_ips": list(proxies)}
     # No access log: it would keep the visitors' addresses, which we promise not to.
-    uvicorn.run(app, host=host, port=port, log_level="warning", access_log=False)
+    told = {"log_level": "warning", "access_log": False, "timeout_graceful_shutdown": PARTING}
+    uvicorn.run(app, host=host, port=port, **told, **trusting)

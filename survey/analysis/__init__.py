@@ -31,6 +31,7 @@ from survey.analysis.pipeline import Analysis, Settings, analyse
 from survey.analysis.polychoric import polychoric
 from survey.analysis.reliability import Reliability, reliability, reliability_of
 from survey.analysis.retention import Average, Parallel, minimum_average_partial, parallel_analysis
+from survey.analysis.scales import Group, Scale
 from survey.analysis.summary import summary
 from survey.analysis.varimax import varimax
 
@@ -48,6 +49,7 @@ __all__ = [
     "CrossCheckFailed",
     "DependentItems",
     "GapsLeft",
+    "Group",
     "LoneItem",
     "NoComponents",
     "NotAMean",
@@ -57,6 +59,7 @@ __all__ = [
     "Omega",
     "Parallel",
     "Reliability",
+    "Scale",
     "Settings",
     "TooFewItems",
     "TooFewRows",

@@ -1,4 +1,10 @@
-"""Percentile intervals from resampled answers (Efron 1979): means, α, eigenvalues and loadings."""
+"""Percentile intervals from resampled answers (Efron 1979): means, α, eigenvalues and loadings.
+
+No resampled table is ever made. A resample says how often each answer is drawn, and all figures follow from the sums of
+the scores and of their products, weighted by these counts: for many resamples at once one matrix product. The counts
+are drawn block by block of answers, first how many fall into each block, then which of its answers: the distribution
+is that of drawing from all answers exactly, and a block's counts and products stay in the cache.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +18,12 @@ from survey.analysis.components import Components
 
 __all__ = ["Bootstrap", "bootstrap"]
 
-BATCH = 4_000_000  # scores resampled at once
+BATCH = 4_000_000  # scores resampled at once, where the answers are few
+RESAMPLES = 250  # at least so many at once: fewer make the products of the scores anew too often
+BLOCK = 4096  # answers at once
+SINGLE = 2.0**24  # whole numbers below it are exact in single precision
+STILL = 1e-12  # a variance that counts as none
+CELLS = 2_000_000  # numbers of one block: counts, or products of scores
 
 
 @dataclass(frozen=True)
@@ -51,18 +62,25 @@ def bootstrap(
     towards `components`' by Procrustes, orthogonal or oblique as they are (Milan and Whittaker 1995), since neither
     order nor sign nor turn is comparable otherwise.
     """
-    n = len(table)
     means, alphas, values, loadings, used = [], [], [], [], 0
-    whole = np.isfinite(table[:, factored]).all(axis=1)
+    there = np.isfinite(table)
+    whole = there[:, factored].all(axis=1)
     complete = table[whole][:, factored]
+    related = len(complete) > 1 and complete.shape[1] > 1
+    # Without a gap one resample serves both; with gaps the whole answers are resampled for themselves.
+    together = related and bool(there.all())
     for size in _batches(draws, table):
-        rows = rng.integers(0, n, size=(size, n))
-        means.append(_means(table, rows))
-        if len(complete) > 1 and complete.shape[1] > 1:
-            if len(complete) < n:
-                rows = rng.integers(0, len(complete), size=(size, len(complete)))
-            covariance = _covariances(complete, rows)
-            good = (np.diagonal(covariance, axis1=1, axis2=2) > 1e-12).all(axis=1)
+        covariance = None
+        if together:
+            found, covariance = _moments(table, size, rng)
+            means.append(found)
+            covariance = covariance[:, factored][:, :, factored]
+        else:
+            means.append(_means(table, there, size, rng))
+            if related:
+                covariance = _moments(complete, size, rng)[1]
+        if covariance is not None:
+            good = (np.diagonal(covariance, axis1=1, axis2=2) > STILL).all(axis=1)
             used += int(good.sum())
             covariance = covariance[good]
             alphas.append(_alphas(covariance))
@@ -79,22 +97,82 @@ def bootstrap(
     )  # fmt: skip
 
 
-def _means(table: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(draws, p) from how often each answer was drawn; NaN where none of the drawn ones has the item."""
-    n = len(table)
-    # One histogram over all samples: sample × answer → how often.
-    flat = (rows + n * np.arange(len(rows))[:, None]).ravel()
-    weight = np.bincount(flat, minlength=n * len(rows)).reshape(len(rows), n).astype(np.float64)
-    there = np.isfinite(table)
-    answered = weight @ there
-    total = weight @ np.where(there, table, 0.0)
+def _means(
+    table: NDArray[np.float64], there: NDArray[np.bool_], draws: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """(draws, p); NaN where none of the drawn answers has the item."""
+    p = table.shape[1]
+
+    def columns(rows: slice) -> NDArray[np.float64]:
+        return np.hstack([there[rows].astype(np.float64), np.where(there[rows], table[rows], 0.0)])
+
+    sums = _sums(columns, 2 * p, _largest(np.where(there, table, 1.0)), len(table), draws, rng)
+    answered, total = sums[:, :p], sums[:, p:]
     return np.where(answered > 0, total / np.maximum(answered, 1), np.nan)
 
 
-def _covariances(table: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    sample = (table - table.mean(axis=0))[rows]
-    sample -= sample.mean(axis=1, keepdims=True)
-    return sample.transpose(0, 2, 1) @ sample / (len(table) - 1)
+def _moments(
+    table: NDArray[np.float64], draws: int, rng: np.random.Generator
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Means (draws, p) and covariances (draws, p, p) of resampled complete scores (n, p)."""
+    n, p = table.shape
+    # Centred, so that the square of a mean takes no digits from a variance; whole scores stay whole.
+    middle = table.mean(axis=0)
+    if np.isfinite(_largest(table)):
+        middle = np.rint(middle)
+    centred = table - middle
+    first, second = np.triu_indices(p)
+
+    def columns(rows: slice) -> NDArray[np.float64]:
+        some = centred[rows]
+        return np.hstack([some, some[:, first] * some[:, second]])
+
+    largest = _largest(centred)
+    sums = _sums(columns, p + len(first), max(largest, largest**2), n, draws, rng)
+    shift, square = sums[:, :p] / n, sums[:, p:] / n
+    shared = square - shift[:, first] * shift[:, second]
+    # What is left of an item that stands still is the rounding of its squares.
+    shared[:, first == second] *= shared[:, first == second] > STILL * square[:, first == second]
+    both = np.zeros((p, p), dtype=np.int64)
+    both[first, second] = both[second, first] = np.arange(len(first))
+    return middle + shift, shared[:, both] * (n / (n - 1))
+
+
+def _sums(
+    columns: Callable[[slice], NDArray[np.float64]],
+    width: int,
+    largest: float,
+    n: int,
+    draws: int,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """(draws, width) sums of `columns` (rows → (rows, width)) over n answers drawn from n with replacement.
+
+    largest: see `_largest`, of the columns. Whole numbers are added in single precision where that is exact.
+    """
+    step = max(1, min(BLOCK, CELLS // max(draws, width)))
+    starts = range(0, n, step)
+    lengths = np.array([min(step, n - start) for start in starts])
+    shares = rng.multinomial(n, lengths / n, size=draws)
+    sums = np.zeros((draws, width))
+    for start, length, share in zip(starts, lengths, shares.T, strict=True):
+        precision = np.float32 if largest * share.max() < SINGLE else np.float64
+        weights = _counts(share, length, rng).astype(precision)
+        sums += weights @ columns(slice(start, start + length)).astype(precision, copy=False)
+    return sums
+
+
+def _largest(table: NDArray[np.float64]) -> float:
+    """The largest absolute value; infinite where not all are whole numbers."""
+    return float(np.abs(table).max()) if (table == np.rint(table)).all() else np.inf
+
+
+def _counts(share: NDArray[np.int64], length: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """(draws, length) how often each answer of a block is drawn, `share` (draws,) answers in each resample."""
+    draws = len(share)
+    cell = np.repeat(np.arange(draws) * length, share)
+    cell += rng.integers(0, length, size=len(cell), dtype=np.uint16)
+    return np.bincount(cell, minlength=draws * length).reshape(draws, length)
 
 
 def _alphas(covariance: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -144,5 +222,5 @@ def _quantiles(drawn: NDArray[np.float64], edges: list[float]) -> NDArray[np.flo
 
 
 def _batches(draws: int, table: NDArray[np.float64]) -> list[int]:
-    most = max(1, BATCH // max(table.size, 1))
+    most = max(RESAMPLES, BATCH // max(table.size, table.shape[1] ** 2, 1))
     return [min(most, draws - done) for done in range(0, draws, most)]

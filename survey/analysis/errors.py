@@ -9,19 +9,24 @@ from survey.errors import SurveyError
 __all__ = [
     "AllEqual",
     "AnalysisError",
+    "BadModel",
     "ConstantItem",
     "CrossCheckFailed",
     "DependentItems",
     "GapsLeft",
+    "GroupTooSmall",
     "LoneItem",
     "NoComponents",
     "NotAMean",
     "NotConverged",
     "NotFinite",
+    "NotIdentified",
     "NotPositiveDefinite",
+    "OutOfReach",
     "TooFewItems",
     "TooFewRows",
     "TooManyScores",
+    "UnknownGroup",
     "UnknownItem",
     "WrongShape",
 ]
@@ -134,3 +139,33 @@ class NotAMean(AnalysisError):
     """A text that is no printed mean, or counts that no mean is made of."""
 
     code = "not_a_mean"
+
+
+class BadModel(AnalysisError):
+    """A text that is no measurement model."""
+
+    code = "bad_model"
+
+
+class NotIdentified(AnalysisError):
+    """A model whose parameters no data could tell apart."""
+
+    code = "not_identified"
+
+
+class GroupTooSmall(AnalysisError):
+    """A group of too few answers: its figures would tell of persons, and nothing of a difference."""
+
+    code = "group_too_small"
+
+
+class UnknownGroup(AnalysisError):
+    """A grouping that does not come to two groups, or names one that there is not."""
+
+    code = "unknown_group"
+
+
+class OutOfReach(AnalysisError):
+    """A plan that no number of answers fulfils, or figures that it cannot be made of."""
+
+    code = "out_of_reach"

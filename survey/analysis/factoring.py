@@ -13,13 +13,14 @@ from survey.analysis.adequacy import Adequacy, adequacy, adequacy_of
 from survey.analysis.components import Components, Rotation, eigenvalues, kaiser_count, principal_components
 from survey.analysis.correlation import Correlation, correlate, correlate_pairwise, covariance_pairwise
 from survey.analysis.errors import AnalysisError, GapsLeft, NoComponents
+from survey.analysis.likely import correlate_likely
 from survey.analysis.omega import HEYWOOD, Omega, omega_of
 from survey.analysis.polychoric import polychoric
 from survey.analysis.preparation import Note, Prepared, named
 from survey.analysis.reliability import Reliability, reliability, reliability_of
 from survey.analysis.retention import Average, Parallel, minimum_average_partial, parallel_analysis
 
-__all__ = ["Factored", "Method", "correlation_of", "factor", "step"]
+__all__ = ["Factored", "Method", "correlation_of", "covariance_of", "factor", "step"]
 
 Method = Literal["pearson", "polychoric"]
 Factors = int | Literal["kaiser", "parallel"]
@@ -39,6 +40,7 @@ class Factored:
     omega: Omega | None = None
     parallel: Parallel | None = None
     average: Average | None = None
+    correlation: Correlation | None = None
 
 
 def factor(
@@ -56,17 +58,16 @@ def factor(
     if p < 2:
         notes.append(Note("too_few_items", names, "fewer than two items are left; nothing to factor", {}))
         return Factored(n, names)
-    found = step(notes, lambda: correlation_of(table, names, method, pairwise=ready.pairwise))
+    found = step(notes, lambda: correlation_of(table, names, method, ready))
     if found is not None:
         n = found.n
     pearson = found if method == "pearson" else None
     alpha = step(notes, lambda: _alpha(table, names, pearson, ready.pairwise))
-    _negative(found, names, notes)
     if n <= p:
         text = f"{n} answers for {p} items: no KMO, Bartlett or components"
         notes.append(Note("too_few_rows", (), text, {"n": n, "p": p}))
     if found is None or n <= p:
-        return Factored(n, names, reliability=alpha)
+        return Factored(n, names, reliability=alpha, correlation=found)
     if n == p + 1:
         text = f"{n} answers for {p} items: KMO, Bartlett and the components mean next to nothing here"
         notes.append(Note("barely_enough_rows", (), text, {"n": n, "p": p}))
@@ -89,17 +90,25 @@ def factor(
         )
     average = minimum_average_partial(found.r)
     _disagreement(found, parallel, average, notes)
-    return Factored(n, names, eigenvalues(found.r), fit, components, alpha, omega, parallel, average)
+    return Factored(n, names, eigenvalues(found.r), fit, components, alpha, omega, parallel, average, found)
 
 
 def _alpha(
     table: NDArray[np.float64], names: tuple[str, ...], pearson: Correlation | None, pairwise: bool
 ) -> Reliability:
-    """Of the raw scores, whatever kind of correlation is factored. pearson: theirs, where it is known already."""
     if not pairwise:
         return reliability(table, names)
+    return reliability_of(covariance_of(table, names, pearson, pairwise=True), names)
+
+
+def covariance_of(
+    table: NDArray[np.float64], names: tuple[str, ...], pearson: Correlation | None, *, pairwise: bool
+) -> NDArray[np.float64]:
+    """(p, p) of the raw scores, whatever correlation is factored. pearson: theirs, where it is known already."""
+    if not pairwise:
+        return np.atleast_2d(np.cov(table, rowvar=False))
     own = correlate_pairwise(table, names) if pearson is None else pearson
-    return reliability_of(covariance_pairwise(table, own), names)
+    return covariance_pairwise(table, own)
 
 
 def _components(
@@ -124,15 +133,6 @@ def _components(
     return components
 
 
-def _negative(found: Correlation | None, names: tuple[str, ...], notes: list[Note]) -> None:
-    if found is None:
-        return
-    rest = found.r.sum(axis=0) - 1.0
-    if (rest < -1e-9).any() and rest.sum() > 0:
-        text = "runs against the other items; if it is worded the other way round, turn its scores before α and ω"
-        notes.append(Note("reversed_item", named(names, rest < -1e-9), text, {}))
-
-
 def _disagreement(found: Correlation, parallel: Parallel | None, average: Average, notes: list[Note]) -> None:
     kaiser = kaiser_count(eigenvalues(found.r))
     counts = {"Kaiser": kaiser, "MAP": average.kept}
@@ -147,16 +147,18 @@ def _disagreement(found: Correlation, parallel: Parallel | None, average: Averag
 
 
 def correlation_of(
-    table: NDArray[np.float64], names: tuple[str, ...], method: Method, *, pairwise: bool
+    table: NDArray[np.float64], names: tuple[str, ...], method: Method, ready: Prepared
 ) -> Correlation:
-    """The matrix of the chosen kind, of scores (n, p)."""
+    """The matrix of the chosen kind, of scores (n, p); ready: how gaps are to be taken."""
     if method == "polychoric":
         if np.isnan(table).any():
             raise GapsLeft(
                 "polychoric correlations need whole answers – leave out those with gaps (listwise)"
             )
         return polychoric(table, names)
-    return correlate_pairwise(table, names) if pairwise else correlate(table, names)
+    if ready.likely:
+        return correlate_likely(table, names)
+    return correlate_pairwise(table, names) if ready.pairwise else correlate(table, names)
 
 
 def step(notes: list[Note], compute: Callable[[], Part]) -> Part | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Literal
 
@@ -14,24 +14,39 @@ from survey.analysis.adequacy import Adequacy
 from survey.analysis.bootstrap import Bootstrap, bootstrap
 from survey.analysis.components import Components, Rotation
 from survey.analysis.correlation import Correlation
-from survey.analysis.factoring import Factored, Method, correlation_of, factor, step
+from survey.analysis.factoring import Factored, Method, correlation_of, covariance_of, factor, step
 from survey.analysis.omega import Omega
-from survey.analysis.preparation import Flags, Note, Prepared, flagged, named, prepare
+from survey.analysis.preparation import (
+    Flags,
+    Note,
+    Prepared,
+    asking,
+    flagged,
+    left_out,
+    likely_gaps,
+    named,
+    prepare,
+)
 from survey.analysis.reliability import Reliability
 from survey.analysis.retention import Average, Parallel
 from survey.analysis.scale import off_scale
+from survey.analysis.scales import Group, Scale, grouped, running_against, scales_of
+from survey.analysis.turning import Turned, turned
 
 __all__ = ["Analysis", "Missing", "Settings", "analyse"]
 
 PAIR_R, PAIR_P = 0.93, 0.01  # the paper's second pair stands at exactly .930, so r ≥ .93 at three decimals
 SMALL = 50
 
-Missing = Literal["listwise", "pairwise"]
+Missing = Literal["listwise", "pairwise", "fiml"]
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How to analyse. factors: a number, "kaiser" or "parallel"; bootstrap, draws: 0 leaves that step out."""
+    """How to analyse. factors: a number, "kaiser" or "parallel"; bootstrap, draws: 0 leaves that step out.
+
+    reverse: items whose scores are turned to low + high − score before everything else.
+    """
 
     drop: tuple[str, ...] = ()
     factors: int | Literal["kaiser", "parallel"] = "kaiser"
@@ -41,6 +56,7 @@ class Settings:
     bootstrap: int = 0
     draws: int = 1000
     seed: int = 0
+    reverse: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -49,7 +65,8 @@ class Analysis:
 
     mean, sd, answered: (p,) over all items, from every score that is there. correlation: (p, p) over all items, NaN
     in the rows of one that does not vary. The rest over the items `factored`, from n answers; eigenvalues: (p,)
-    largest first, also where no component can be kept. table: (n, p) as given.
+    largest first, also where no component can be kept. table: (n, p) as given, but for the scores that are `turned`.
+    scales: of the components kept, then of the groups that the questionnaire states.
     """
 
     n: int
@@ -72,6 +89,8 @@ class Analysis:
     notes: tuple[Note, ...]
     settings: Settings
     table: NDArray[np.float64]
+    turned: Turned
+    scales: tuple[Scale, ...]
 
 
 def analyse(
@@ -82,23 +101,33 @@ def analyse(
     drop: Sequence[str] = (),
     seconds: ArrayLike | None = None,
     points: int | None = None,
+    unasked: Mapping[str, int] | None = None,
+    groups: Sequence[Group] = (),
+    aside: Mapping[str, str] | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> Analysis:
     """Run the whole procedure on scores (n, p); NaN is a missing score.
 
     settings: see `Settings`; drop: shorthand for settings.drop. seconds: (n,) spent on each answer, NaN unknown.
     points: of the scale 1, 2, …; a score beside it becomes a note. None: any number is a score.
+    unasked: in how many answers an item was not asked, here named that the analysis may tell of it.
+    groups: items that the questionnaire states to belong together. aside: column of the table → why it is no item.
     progress: called with the number of resamples just done.
     Raises NotFinite for infinite scores or an item without any, TooFewRows below two usable answers, AllEqual when
-    nothing varies, UnknownItem in `drop`. What stops a single step only (a constant item,
+    nothing varies, UnknownItem in `drop` or `reverse`. What stops a single step only (a constant item,
     dependent items, n ≤ p) becomes a note and leaves that step None.
     """
     chosen = settings or Settings(drop=tuple(drop))
-    ready, notes = prepare(scores, items, chosen.drop, pairwise=chosen.missing == "pairwise")
+    ready, notes = prepare(scores, items, chosen.drop, pairwise=chosen.missing != "listwise")
+    if chosen.missing == "fiml":
+        ready, notes = replace(ready, likely=True), [likely_gaps(note) for note in notes]
     if points is not None:
         notes = off_scale(ready.table, ready.names, points) + notes
+    notes = left_out(aside or {}) + asking(unasked or {}, ready.names, len(ready.table)) + notes
+    ready, reversed_items = turned(ready, chosen.reverse, points, notes)
     correlation = _all_correlations(ready, chosen, notes)
     part = factor(ready, chosen.method, chosen.factors, chosen.rotation, chosen.draws, chosen.seed, notes)
+    scales = _scales(ready, part, chosen, groups, notes)
     resampled = _resampled(ready, part, chosen, notes, progress)
     _banner(part, resampled, notes)
     flags, more = flagged(ready.table, seconds)
@@ -107,6 +136,7 @@ def analyse(
         part.n, ready.names, ready.dropped, mean, sd, answered, correlation, part.names,
         part.eigenvalues, part.adequacy, part.components, part.reliability, part.omega, part.parallel, part.average,
         resampled, flags, (*notes, *more), chosen, ready.table,
+        reversed_items, scales,
     )  # fmt: skip
 
 
@@ -120,11 +150,26 @@ def _descriptives(table: NDArray[np.float64]) -> tuple[NDArray, NDArray, NDArray
     return mean, np.where(answered > 1, np.sqrt(variance), np.nan), answered
 
 
+def _scales(
+    ready: Prepared, part: Factored, chosen: Settings, stated: Sequence[Group], notes: list[Note]
+) -> tuple[Scale, ...]:
+    """Each component's and each stated group's reliability, and a note on items that point the other way."""
+    if len(part.names) < 2:
+        return ()
+    pearson = part.correlation if chosen.method == "pearson" else None
+    table = ready.rows_of(ready.factored)
+    groups = grouped(part.names, part.components, stated)
+    if part.correlation is not None:
+        notes += running_against(groups, part.names, part.correlation.r, part.components)
+    covariance = step(notes, lambda: covariance_of(table, part.names, pearson, pairwise=ready.pairwise))
+    return () if covariance is None else scales_of(groups, part.names, covariance, part.correlation, notes)
+
+
 def _all_correlations(ready: Prepared, chosen: Settings, notes: list[Note]) -> Correlation | None:
     """Over all items, as Fig. 6 prints them before any is dropped."""
     names = named(ready.names, ready.correlated)
     table = ready.rows_of(ready.correlated)
-    found = step(notes, lambda: correlation_of(table, names, chosen.method, pairwise=ready.pairwise))
+    found = step(notes, lambda: correlation_of(table, names, chosen.method, ready))
     if found is None:
         return None
     notes += _close_pairs(found, names, ready.dropped)

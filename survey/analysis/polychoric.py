@@ -7,6 +7,7 @@ stay empty (psych's correct = 0). All pairs are solved together, so 25 items tak
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,12 +17,26 @@ from survey.analysis.checks import finite_scores, require_varying
 from survey.analysis.correlation import Correlation, two_tailed
 from survey.analysis.errors import TooManyScores
 
-__all__ = ["CATEGORIES", "binormal", "polychoric"]
+__all__ = ["CATEGORIES", "Ordered", "binormal", "density", "ordered", "polychoric", "solved_tables"]
 
 CATEGORIES = 10  # more than these is no scale of answers
 LIMIT = 0.9995  # |ρ| where the search ends; a perfect table has no maximum within
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(64)
 INFINITY = 40.0  # [standard deviations], beyond the reach of a float64 tail
+
+
+@dataclass(frozen=True)
+class Ordered:
+    """Complete scores as categories. codes (n, p) from 0 on; levels: the scores behind them, by item.
+
+    cuts: (p, c + 1) thresholds between ±INFINITY, +INFINITY where an item has fewer categories than the most, c.
+    counts: (m, c, c) of each pair in the order of np.tril_indices(p, -1).
+    """
+
+    codes: NDArray[np.int64]
+    levels: tuple[NDArray[np.float64], ...]
+    cuts: NDArray[np.float64]
+    counts: NDArray[np.float64]
 
 
 def polychoric(scores: ArrayLike, items: Sequence[str] | None = None) -> Correlation:
@@ -30,21 +45,33 @@ def polychoric(scores: ArrayLike, items: Sequence[str] | None = None) -> Correla
     The matrix need not be positive definite. Raises TooManyScores for an item with more than ten categories and
     what `correlate` raises.
     """
+    found = ordered(scores, items)
+    n, p = found.codes.shape
+    rows, cols = np.tril_indices(p, -1)
+    r = np.eye(p)
+    r[rows, cols] = r[cols, rows] = solved_tables(found.counts, found.cuts[rows], found.cuts[cols])
+    answers = np.full((p, p), n, dtype=np.int64)
+    return Correlation(r, two_tailed(r, answers), answers)
+
+
+def ordered(scores: ArrayLike, items: Sequence[str] | None = None) -> Ordered:
+    """Categories of complete scores (n, p), their thresholds, the tables of all pairs. Raises as `polychoric`."""
     table, names = finite_scores(scores, items, rows=3)
     require_varying(table, names)
-    codes, thresholds = [], []
+    codes, levels, thresholds = [], [], []
     for name, column in zip(names, table.T, strict=True):
-        levels, code = np.unique(column, return_inverse=True)
-        if len(levels) > CATEGORIES:
+        own, code = np.unique(column, return_inverse=True)
+        if len(own) > CATEGORIES:
             raise TooManyScores(
-                f"{name}: {len(levels)} different scores – polychoric correlation takes up to {CATEGORIES};"
+                f"{name}: {len(own)} different scores – polychoric correlation takes up to {CATEGORIES};"
                 " use Pearson's",
                 (name,),
             )
         codes.append(code)
+        levels.append(own)
         thresholds.append(ndtri(np.cumsum(np.bincount(code))[:-1] / len(table)))
-    n, p = table.shape
-    most = max(len(cuts) for cuts in thresholds) + 1
+    p = table.shape[1]
+    most = max(len(own) for own in levels)
     rows, cols = np.tril_indices(p, -1)
     counts = np.zeros((len(rows), most, most))
     for pair, (i, j) in enumerate(zip(rows, cols, strict=True)):
@@ -54,10 +81,7 @@ def polychoric(scores: ArrayLike, items: Sequence[str] | None = None) -> Correla
     cuts[:, 0] = -INFINITY
     for item, own in enumerate(thresholds):
         cuts[item, 1 : len(own) + 1] = own
-    r = np.eye(p)
-    r[rows, cols] = r[cols, rows] = _solve(counts, cuts[rows], cuts[cols])
-    answers = np.full((p, p), n, dtype=np.int64)
-    return Correlation(r, two_tailed(r, answers), answers)
+    return Ordered(np.array(codes).T, tuple(levels), cuts, counts)
 
 
 def binormal(h: NDArray[np.float64], k: NDArray[np.float64], rho: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -75,12 +99,13 @@ def binormal(h: NDArray[np.float64], k: NDArray[np.float64], rho: NDArray[np.flo
     return ndtr(h[..., 0]) * ndtr(k[..., 0]) + area
 
 
-def _density(h: NDArray[np.float64], k: NDArray[np.float64], rho: NDArray[np.float64]) -> NDArray[np.float64]:
+def density(h: NDArray[np.float64], k: NDArray[np.float64], rho: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of a standard normal pair with correlation rho at (h, k); shapes broadcast."""
     rest = 1.0 - rho**2
     return np.exp(-(h**2 + k**2 - 2.0 * rho * h * k) / (2.0 * rest)) / (2.0 * np.pi * np.sqrt(rest))
 
 
-def _solve(
+def solved_tables(
     counts: NDArray[np.float64], across: NDArray[np.float64], down: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """ρ (m,) of greatest likelihood of m tables; the slope falls from + to −, so its zero is bracketed and halved."""
@@ -108,7 +133,7 @@ def _slope(
     h, k, at = across[:, :, None], down[:, None, :], rho[:, None, None]
     h, k, at = np.broadcast_arrays(h, k, at)
     cells = _cells(binormal(h, k, at))
-    rise = _cells(_density(h, k, at))
+    rise = _cells(density(h, k, at))
     probable = np.maximum(cells, 1e-300)
     slope = np.where(counts > 0, counts * rise / probable, 0.0).sum(axis=(1, 2))
     total = counts.sum(axis=(1, 2))

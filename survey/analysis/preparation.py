@@ -12,7 +12,7 @@ from survey.analysis.checks import any_row, constant_columns, finite_scores
 from survey.analysis.errors import AllEqual, NotFinite, TooFewItems, TooFewRows, UnknownItem
 from survey.analysis.flags import duplicates, hasty, straight_liners
 
-__all__ = ["Flags", "Note", "Prepared", "flagged", "named", "prepare"]
+__all__ = ["Flags", "Note", "Prepared", "asking", "flagged", "left_out", "likely_gaps", "named", "prepare"]
 
 SHOWN = 12  # numbers of answers that a note spells out
 LARGEST, SMALLEST = 1e100, 1e-100  # squares and their sums beyond leave what a float64 holds
@@ -44,7 +44,10 @@ class Flags:
 
 @dataclass(frozen=True)
 class Prepared:
-    """table: (n, p) as given. correlated, factored: (p,) items that vary, and of these the ones not dropped."""
+    """table: (n, p) as given. correlated, factored: (p,) items that vary, and of these the ones not dropped.
+
+    pairwise: answers with gaps count with what they have; likely: by the correlations of greatest likelihood.
+    """
 
     table: NDArray[np.float64]
     names: tuple[str, ...]
@@ -52,6 +55,7 @@ class Prepared:
     correlated: NDArray[np.bool_]
     factored: NDArray[np.bool_]
     pairwise: bool
+    likely: bool = False
 
     def rows_of(self, items: NDArray[np.bool_]) -> NDArray[np.float64]:
         """Scores of some items: of complete answers, or with pairwise deletion of all that have any."""
@@ -95,6 +99,49 @@ def prepare(
             Note("dropped", dropped, "left out by choice of KMO, Bartlett, components and reliability", {})
         )
     return Prepared(table, names, dropped, varying, varying & wanted, pairwise), notes
+
+
+def asking(unasked: Mapping[str, int], names: Sequence[str], n: int) -> list[Note]:
+    """What was not asked in any of the n answers, and what in some of them. unasked: item -> in how many it was not."""
+    nowhere = tuple(item for item in unasked if item not in names)
+    partly = tuple(item for item in unasked if item in names)
+    notes = []
+    if nowhere:
+        text = "asked in no answer (no column, or the mark for it throughout) and left out"
+        notes.append(Note("not_asked", nowhere, text, {}))
+    if partly:
+        least = n - max(unasked[item] for item in partly)
+        text = f"not asked in all {n} answers, in {least} at least; where it was not, there is a gap"
+        notes.append(Note("partly_asked", partly, text, {"all": n, "least": least}))
+    return notes
+
+
+def left_out(aside: Mapping[str, str]) -> list[Note]:
+    """What of a foreign table was taken for no item. aside: column → "name", "scale" or "text", why."""
+    said = {
+        "name": "not taken for items, by what they are called",
+        "scale": "not taken for items: most of their values lie beyond the scale of the others",
+        "text": "not taken for items: they hold no numbers",
+    }
+    notes = []
+    for why, text in said.items():
+        columns = tuple(column for column, reason in aside.items() if reason == why)
+        if columns:
+            keep = (
+                ""
+                if why == "text"
+                else f"; --keep {','.join(columns)} keeps them, --items names all that count"
+            )
+            notes.append(
+                Note(
+                    "no_item",
+                    columns,
+                    text + keep,
+                    {"columns": ",".join(columns)},
+                    "" if why == "name" else why,
+                )
+            )
+    return notes
 
 
 def _missing(
@@ -172,6 +219,18 @@ def _numbers(rows: NDArray[np.int64]) -> str:
 def _counted(rows: NDArray[np.int64]) -> dict[str, object]:
     shown = ", ".join(str(row + 1) for row in rows[:SHOWN])
     return {"count": len(rows), "rows": shown + (" …" if len(rows) > SHOWN else "")}
+
+
+def likely_gaps(note: Note) -> Note:
+    """What the note on gaps says where the correlations are those of greatest likelihood; others as they are."""
+    if note.code != "missing" or note.told is None:
+        return note
+    text = (
+        "{gaps} gaps; the correlations are those that all scores make likeliest (EM). Right where gaps depend on"
+        " nothing but what was answered; tests count the answers that have both items, and alpha and omega"
+        " take each item's own standard deviation"
+    )
+    return Note("missing", note.items, text.format(**note.told), note.told, "em")
 
 
 def named(names: Sequence[str], flags: NDArray[np.bool_]) -> tuple[str, ...]:

@@ -112,11 +112,22 @@ def _reliability(found: dict[str, Any]) -> Iterator[str]:
     if interval:
         text += f" (95 % bootstrap {interval['low']:.3f} to {interval['high']:.3f})"
     yield text + (f", McDonald's ω {found['omega']:.3f}" if found["omega"] is not None else "")
-    if found["alpha_if_deleted"]:
-        wide = _width(list(found["alpha_if_deleted"]))
-        yield "α without the item"
-        for item, value in found["alpha_if_deleted"].items():
-            yield f"{item:{wide}}{_cell(value)}"
+    wide = _width([*found["item_total"], *(name for scale in found["scales"] for name in _named(scale))])
+    yield f"{'':{wide}}{'α':>8}{'ω':>8}{'r item-total':>14}{'α without':>11}"
+    yield from _items("all items", found, wide)
+    for scale in found["scales"]:
+        yield from _items(_named(scale)[0], scale, wide)
+
+
+def _named(scale: dict[str, Any]) -> list[str]:
+    return [scale["key"] if scale["kind"] == "component" else f"{scale['kind']} {scale['key']}"]
+
+
+def _items(title: str, scale: dict[str, Any], wide: int) -> Iterator[str]:
+    yield f"{title:{wide}}{_cell(scale['alpha'])}{_cell(scale['omega'])}"
+    for item, r in (scale["item_total"] or {}).items():
+        without = (scale["alpha_if_deleted"] or {}).get(item)
+        yield f"  {item:{wide - 2}}{'':16}{_cell(r, 14)}{_cell(without, 11)}"
 
 
 def _notes(found: dict[str, Any]) -> Iterator[str]:

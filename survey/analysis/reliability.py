@@ -1,4 +1,4 @@
-"""Cronbach's α (Cronbach 1951) and α without each item."""
+"""Cronbach's α (Cronbach 1951), α without each item, and each item's correlation with the rest."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ STILL = 1e-12  # a variance of the sums below this share of the items' variances
 class Reliability:
     """alpha: raw; standardised: from the mean correlation; if_deleted: (p,) raw α without each item, or None.
 
+    item_total: (p,) corrected, the correlation of an item with the sum of the others (r.drop in R's psych).
     standardised is None where an item is constant, if_deleted where only two items are left; an entry of
-    if_deleted is NaN where the sums of the others do not vary.
+    if_deleted or item_total is NaN where the item or the sums of the others do not vary.
     """
 
     alpha: float
     standardised: float | None
     if_deleted: NDArray[np.float64] | None
+    item_total: NDArray[np.float64]
 
 
 def reliability(scores: ArrayLike, items: Sequence[str] | None = None) -> Reliability:
@@ -48,8 +50,9 @@ def reliability_of(covariance: NDArray[np.float64], names: Sequence[str]) -> Rel
     if np.isnan(alpha):
         raise AllEqual("the sums of the answers do not vary – α is undefined", names)
     deleted = None
+    shared = covariance.sum(axis=0) - variances  # covariance of each item with the sum of the others
+    rest = covariance.sum() - 2.0 * shared - variances
     if p > 2:
-        rest = covariance.sum() - 2.0 * covariance.sum(axis=0) + variances
         deleted = _alpha(variances.sum() - variances, rest, p - 1)
     standardised = None
     if (variances > 0.0).all():
@@ -57,7 +60,15 @@ def reliability_of(covariance: NDArray[np.float64], names: Sequence[str]) -> Rel
         total = (covariance / np.outer(deviation, deviation)).sum()
         value = float(_alpha(np.array([float(p)]), np.array([total]), p)[0])
         standardised = None if np.isnan(value) else value
-    return Reliability(alpha, standardised, deleted)
+    return Reliability(alpha, standardised, deleted, _correlated(shared, variances, rest))
+
+
+def _correlated(
+    shared: NDArray[np.float64], own: NDArray[np.float64], rest: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Correlations from covariances and the two variances, all (p,); NaN where one of the two is none."""
+    still = (own <= 0.0) | (rest <= STILL * own.sum())
+    return np.where(still, np.nan, shared / np.sqrt(np.where(still, 1.0, own * rest)))
 
 
 def _alpha(parts: NDArray[np.float64], total: NDArray[np.float64], p: int) -> NDArray[np.float64]:

@@ -12,12 +12,14 @@ from survey.analysis.bootstrap import Bootstrap
 from survey.analysis.components import Components
 from survey.analysis.pipeline import Analysis
 from survey.analysis.retention import Average, Parallel
+from survey.analysis.scales import Scale
 
 __all__ = ["KEYS", "column_names", "descriptives", "number", "summary"]
 
 KEYS = (
     "n", "items", "dropped", "correlation", "p", "kmo", "kmo_per_item", "bartlett", "eigenvalues", "variance",
-    "loadings", "rotation", "alpha", "alpha_if_deleted", "omega", "parallel", "map", "bootstrap", "warnings",
+    "loadings", "rotation", "alpha", "alpha_if_deleted", "item_total", "omega", "scales", "reversed", "parallel", "map",
+    "bootstrap", "warnings",
 )  # fmt: skip
 
 
@@ -35,7 +37,10 @@ def summary(analysis: Analysis) -> dict[str, Any]:
         **_components(analysis),
         "alpha": None if alpha is None else alpha.alpha,
         "alpha_if_deleted": None if deleted is None else _by_item(kept, deleted),
+        "item_total": None if alpha is None else _by_item(kept, alpha.item_total),
         "omega": None if analysis.omega is None else analysis.omega.omega,
+        "scales": [_scale(scale) for scale in analysis.scales],
+        "reversed": list(analysis.turned.items),
         "parallel": None if analysis.parallel is None else _parallel(analysis.parallel),
         "map": None if analysis.average is None else _map(analysis.average),
         "bootstrap": None if analysis.bootstrap is None else _bootstrap(analysis, analysis.bootstrap),
@@ -49,6 +54,22 @@ def descriptives(analysis: Analysis) -> list[dict[str, Any]]:
     """Per item: how many answered, mean and standard deviation."""
     rows = zip(analysis.items, analysis.answered, analysis.mean, analysis.sd, strict=True)
     return [{"item": a, "answered": int(b), "mean": number(c), "sd": number(d)} for a, b, c, d in rows]
+
+
+def _scale(scale: Scale) -> dict[str, Any]:
+    alpha = scale.reliability
+    deleted = None if alpha is None else alpha.if_deleted
+    return {
+        "kind": scale.kind,
+        "key": scale.key,
+        "items": list(scale.items),
+        "n": scale.n,
+        "alpha": None if alpha is None else alpha.alpha,
+        "alpha_standardised": None if alpha is None else alpha.standardised,
+        "omega": None if scale.omega is None else scale.omega.omega,
+        "item_total": None if alpha is None else _by_item(scale.items, alpha.item_total),
+        "alpha_if_deleted": None if deleted is None else _by_item(scale.items, deleted),
+    }
 
 
 def _adequacy(items: Sequence[str], fit: Adequacy | None) -> dict[str, Any]:

@@ -12,11 +12,11 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.answer import TEXT_LIMIT
-from survey.api.schema import UUID_PATTERN
+from survey.api.schema import NO_CODE, UUID_PATTERN
 from survey.errors import AnswerError, StoreError
 from survey.slug import SLUG
 
-__all__ = ["ExplainingRoute", "PlainRoute", "Receipt", "Refusal", "Submission", "refused"]
+__all__ = ["ExplainingRoute", "PlainRoute", "Receipt", "Refusal", "Submission", "Withdrawal", "refused"]
 
 RETRY_SECONDS = 5
 
@@ -39,6 +39,13 @@ class Receipt(BaseModel):
     version: int
 
 
+class Withdrawal(BaseModel):
+    """The answer is deleted, and where its last bytes can still be read until nobody reads the database."""
+
+    id: str
+    remains: str
+
+
 class Submission(BaseModel):
     """What to send. This model documents; the questionnaire itself decides which items and points exist."""
 
@@ -46,7 +53,7 @@ class Submission(BaseModel):
 
     id: str = Field(
         pattern=UUID_PATTERN,
-        json_schema_extra={"format": "uuid"},
+        json_schema_extra={"format": "uuid", "not": NO_CODE},
         description="made by the sender; repeat it to retry",
     )
     version: int = Field(ge=1)
@@ -80,6 +87,16 @@ def _explained(error: RequestValidationError) -> AnswerError:
     return AnswerError(field, str(first["msg"]).lower(), f"correct {field}")
 
 
+def _unavailable(error: StoreError, *, reading: bool) -> JSONResponse:
+    """503. reading: nothing was sent that could have been stored, so the error's own remedy is told."""
+    problem, remedy = error.problem, "nothing was stored; send the same again later"
+    if reading:
+        problem, _, own = problem.partition(" – ")
+        remedy = own or "ask again later"
+    body = {"field": "", "problem": problem, "remedy": remedy}
+    return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})
+
+
 class ExplainingRoute(APIRoute):
     """A route that answers every foreseeable failure with a Refusal, so that any app can mount the router."""
 
@@ -94,12 +111,7 @@ class ExplainingRoute(APIRoute):
             except RequestValidationError as error:
                 return refused(_explained(error))
             except StoreError as error:
-                body = {
-                    "field": "",
-                    "problem": error.problem,
-                    "remedy": "nothing was stored; send the same again later",
-                }
-                return JSONResponse(body, 503, {"Retry-After": str(RETRY_SECONDS)})
+                return _unavailable(error, reading=request.method in ("GET", "HEAD"))
 
         return explaining
 

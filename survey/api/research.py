@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response, Security
+from fastapi.concurrency import run_in_threadpool
 from fastapi.security import HTTPBearer
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.api.finding import Questionnaires, find_version
+from survey.api.guard import journal, token_guard
+from survey.api.jobs import Jobs
 from survey.api.replies import ExplainingRoute
-from survey.errors import AnswerError
-from survey.export import exported, file_name
+from survey.export import file_name
 from survey.questionnaire import Questionnaire
-from survey.store import Store, Stored
+from survey.store import Store
 
 __all__ = ["add_research"]
 
@@ -44,11 +46,25 @@ class Asked(BaseModel):
     version: int | None = Field(None, ge=1, le=10_000, description="the current one when left out")
 
 
+class Exported(Asked):
+    """Of which version, and how many answers must share what is told of a visitor."""
+
+    k: int | None = Field(
+        None, ge=2, le=1000, description="coarsen times, exhibits, languages until k answers share them all"
+    )
+
+
 class Wanted(Asked):
     """How to analyse, as `survey analyse` takes it."""
 
     drop: str = Field(
         "none", max_length=2000, pattern=r"^[^\x00]*$", description="none, a tag such as static, or ITEM,ITEM"
+    )
+    reverse: str = Field(
+        "",
+        max_length=2000,
+        pattern=r"^[^\x00]*$",
+        description="ITEM,ITEM turned as well as those that the questionnaire says; none: none at all",
     )
     rotation: Literal["varimax", "oblimin", "none"] = "varimax"
     factors: str = Field("kaiser", pattern=r"^(kaiser|parallel|[1-9][0-9]?)$", description="or a number")
@@ -58,30 +74,33 @@ class Wanted(Asked):
     seed: int = Field(0, ge=0, lt=2**31, description="of everything random")
 
 
-def add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires) -> None:
-    """The guarded routes."""
+def add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires, jobs: Jobs) -> None:
+    """The guarded routes. Whatever reads all answers is done by a process of its own."""
     # Declared beside the store, so that a route of this group cannot be written without its guard.
     research = APIRouter(
-        route_class=ExplainingRoute, dependencies=[Security(_BEARER), Depends(_token_guard(store))]
+        route_class=ExplainingRoute, dependencies=[Security(_BEARER), Depends(token_guard(store))]
     )
 
-    def stored(key: str, asked: Asked) -> tuple[Questionnaire, tuple[Stored, ...]]:
-        questionnaire = find_version(questionnaires, store, key, asked.version)
-        return questionnaire, store.rows(questionnaire)
+    note = journal(store)
 
-    @research.get("/questionnaires/{key}/rows", summary="All answers (token)")
-    def rows(key: str, asked: Annotated[Asked, Query()], response: Response) -> list[dict[str, Any]]:
-        response.headers.update(_PRIVATE)
-        return [_row(row) for row in stored(key, asked)[1]]
+    def found(key: str, asked: Asked) -> Questionnaire:
+        store.alive()  # the process would take a database that another was put in the place of
+        return find_version(questionnaires, store, key, asked.version)
 
-    @research.get("/questionnaires/{key}/suggestions", summary="All suggestions (token)")
-    def suggestions(key: str, asked: Annotated[Asked, Query()], response: Response) -> list[dict[str, Any]]:
-        response.headers.update(_PRIVATE)
-        return [
-            {"submission": row.answer.id, "language": row.answer.language, "module": module, "text": text}
-            for row in stored(key, asked)[1]
-            for module, text in row.answer.suggestions
-        ]
+    async def made(request: Request, key: str, task: str, asked: Asked) -> Response:
+        """One of the tasks without a file's name."""
+        questionnaire = await run_in_threadpool(found, key, asked)
+        job = {"task": task, "questionnaire": questionnaire.document(), "settings": asked.model_dump()}
+        noted = partial(note, request, questionnaire, task, None)
+        return await jobs.response(request, job, "application/json", _PRIVATE, noted)
+
+    @research.get("/questionnaires/{key}/rows", summary="All answers (token)", **_json("array"))
+    async def rows(request: Request, key: str, asked: Annotated[Asked, Query()]) -> Response:
+        return await made(request, key, "rows", asked)
+
+    @research.get("/questionnaires/{key}/suggestions", summary="All suggestions (token)", **_json("array"))
+    async def suggestions(request: Request, key: str, asked: Annotated[Asked, Query()]) -> Response:
+        return await made(request, key, "suggestions", asked)
 
     @research.get(
         "/questionnaires/{key}/export/{kind}",
@@ -89,70 +108,32 @@ def add_research(routes: APIRouter, store: Store, questionnaires: Questionnaires
         response_class=Response,
         responses=_FILE,
     )
-    def export(key: str, kind: Format, asked: Annotated[Asked, Query()]) -> Response:
-        questionnaire, found = stored(key, asked)
-        name = file_name(kind, questionnaire)
+    async def export(
+        request: Request, key: str, kind: Format, asked: Annotated[Exported, Query()]
+    ) -> Response:
+        questionnaire = await run_in_threadpool(found, key, asked)
+        name = file_name(kind, questionnaire, asked.k)
         headers = {"Content-Disposition": f'attachment; filename="{name}"'} | _PRIVATE
-        return Response(exported(kind, questionnaire, found), media_type=_MEDIA[kind], headers=headers)
+        job = {"task": kind, "questionnaire": questionnaire.document(), "k": asked.k}
+        noted = partial(note, request, questionnaire, kind, asked.k)
+        return await jobs.response(request, job, _MEDIA[kind], headers, noted)
 
-    @research.get("/questionnaires/{key}/analysis", summary="The analysis, as survey analyse --json (token)")
-    def analysis(key: str, wanted: Annotated[Wanted, Query()], response: Response) -> dict[str, Any]:
+    @research.get(
+        "/questionnaires/{key}/analysis",
+        summary="The analysis, as survey analyse --json (token)",
+        **_json("object"),
+    )
+    async def analysis(request: Request, key: str, wanted: Annotated[Wanted, Query()]) -> Response:
         """Answers that cannot be analysed are a 422 that says why: too few, all the same, an unknown item …"""
-        response.headers.update(_PRIVATE)
-        return _analysed(*stored(key, wanted), wanted)
+        return await made(request, key, "analysis", wanted)
 
     routes.include_router(research)
 
 
-def _analysed(questionnaire: Questionnaire, found: tuple[Stored, ...], wanted: Wanted) -> dict[str, Any]:
-    # numpy, scipy and factor_analyzer are loaded when the first analysis is asked for.
-    from survey.analysis import analyse
-    from survey.analysis.errors import AnalysisError
-    from survey.analysis.pipeline import Settings
-    from survey.analysis.summary import summary
-    from survey.working import dropped, scores_table
-
-    table = scores_table(questionnaire, found)
-    settings = Settings(
-        drop=dropped(wanted.drop, questionnaire),
-        factors=_factors(wanted.factors),
-        rotation=wanted.rotation,
-        missing=wanted.missing,
-        method=wanted.correlation,
-        bootstrap=wanted.bootstrap,
-        seed=wanted.seed,
-    )
-    try:
-        return summary(analyse(table.scores, table.items, settings=settings))
-    except AnalysisError as error:
-        problem, _, remedy = str(error).partition(" – ")
-        raise AnswerError(error.code, problem, remedy or "see survey/README.md", status=422) from None
-
-
-def _factors(text: str) -> int | Literal["kaiser", "parallel"]:
-    if text.isdecimal():
-        return int(text)
-    return "parallel" if text == "parallel" else "kaiser"
-
-
-def _token_guard(store: Store) -> Callable[[Request], None]:
-    def guard(request: Request) -> None:
-        kind, _, secret = request.headers.get("authorization", "").partition(" ")
-        if kind.lower() != "bearer" or not store.tokens.admits(secret.strip()):
-            remedy = "send Authorization: Bearer TOKEN; `survey token` makes one"
-            raise AnswerError("authorization", "no valid token", remedy, status=401)
-
-    return guard
-
-
-def _row(row: Stored) -> dict[str, Any]:
-    answer = row.answer
+def _json(kind: str) -> dict[str, Any]:
+    """How a route says that it answers with a JSON array or object that FastAPI need not look through."""
+    content = {"application/json": {"schema": {"type": kind}}}
     return {
-        "submission": answer.id,
-        "version": answer.version,
-        "language": answer.language,
-        "exhibit": answer.exhibit,
-        "received": row.received.isoformat(),
-        "scores": dict(answer.scores),
-        "suggestions": dict(answer.suggestions),
+        "response_class": Response,
+        "responses": {200: {"content": content, "description": "Successful Response"}},
     }

@@ -8,9 +8,12 @@ from survey.answer import TEXT_LIMIT
 from survey.questionnaire import LANGUAGES, Questionnaire
 from survey.slug import SLUG
 
-__all__ = ["UUID_PATTERN", "submission_schema"]
+__all__ = ["NO_CODE", "UUID_PATTERN", "submission_schema"]
 
 UUID_PATTERN = "^[0-9a-fA-F]{8}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{4}-[0-9a-fA-F]{12}$"
+
+# The two that RFC 9562 sets apart: they are somebody's by accident, and everybody could withdraw under them.
+NO_CODE: dict[str, Any] = {"pattern": "^([0-]{36}|[fF-]{36})$"}
 
 
 def submission_schema(questionnaire: Questionnaire) -> dict[str, Any]:
@@ -29,7 +32,7 @@ def submission_schema(questionnaire: Questionnaire) -> dict[str, Any]:
         "additionalProperties": False,
         "required": ["id", "version", "language", "consent", "scores"],
         "properties": {
-            "id": {"type": "string", "format": "uuid", "pattern": UUID_PATTERN},
+            "id": {"type": "string", "format": "uuid", "pattern": UUID_PATTERN, "not": NO_CODE},
             "version": {"const": questionnaire.version, "type": "integer"},
             "language": {"enum": list(LANGUAGES)},
             "consent": {"const": True},

@@ -5,13 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from survey.commands.options import add_content, add_store, declare, positive, where
+from survey.commands.beyond import Beyond, beyond_asked
+from survey.commands.options import declare, where
+from survey.commands.progress import counted
+from survey.commands.sources import ALL, add_sources, list_demonstrations, points_of, table_asked
 
 if TYPE_CHECKING:
+    from survey.analysis.errors import AnalysisError
     from survey.analysis.pipeline import Analysis, Settings
     from survey.reading import ScoreTable
 
@@ -20,11 +24,18 @@ __all__ = ["add"]
 _MORE = """\
 The procedure of the paper: means, Pearson correlations with stars, pairs too close to keep both, KMO, Bartlett's
 test, components with an eigenvalue above 1, Kaiser-normalised varimax, Cronbach's alpha. Beside it what the paper
-lacks: parallel analysis, MAP, omega, bootstrap intervals, answers worth a second look. What cannot be computed is
-left out and explained; nothing is deleted.
+lacks: parallel analysis, MAP, omega, bootstrap intervals, answers worth a second look; alpha, omega, item-total
+correlations and alpha without each item for every component, module and dimension. What cannot be computed is left
+out and explained; nothing is deleted.
 
-Items are the questionnaire's, or without --questionnaire every column of numbers. An empty cell or NA is a missing
-score; a column `seconds` holds the time each answer took."""
+Items are the questionnaire's, or without --questionnaire every column of numbers but those that look like age,
+gender, a date or the like; these are named in a note, --keep keeps them. An empty cell or NA is a missing score; a
+column `seconds` holds the time each answer took. Items that are worded the other way round (reverse = true in the
+questionnaire's file, or --reverse) are turned before everything else; others that seem to be are named, never turned.
+
+  survey analyse answers.csv --reverse A1,C4,C5 --points 6 --report out
+  survey analyse --questionnaire garment --drop static --report out
+  survey analyse --demo                           the synthetic samples that there are"""
 
 
 def _count(text: str) -> int:
@@ -44,24 +55,13 @@ def _factors(text: str) -> int | str:
 def add(commands) -> argparse.ArgumentParser:
     """Declare the command."""
     command = declare(commands, "analyse", _run, "analyse the answers to one questionnaire", _MORE)
-    command.add_argument(
-        "file", nargs="?", type=Path, metavar="FILE.csv", help="a table; default: the stored answers"
-    )
+    add_sources(command)
     add = command.add_argument
-    add("--questionnaire", metavar="ID", help="whose items to analyse (needed without FILE.csv)")
-    add("--version", type=positive, metavar="N", help="an earlier version (default: the file's)")
-    add("--demo", metavar="NAME", help="a synthetic sample instead of answers: --demo list names them")
-    add(
-        "--drop",
-        default="none",
-        metavar="WHAT",
-        help='items to leave out: "none", a tag ("static"), or ITEM,ITEM …',
-    )
     add("--rotation", choices=["varimax", "oblimin", "none"], default="varimax", help="default: varimax")
     text = "how many components: N, kaiser (eigenvalue above 1) or parallel (default: kaiser)"
     add("--factors", type=_factors, default="kaiser", metavar="N", help=text)
-    text = "answers with gaps: leave out whole, or only where both items are needed (default: listwise)"
-    add("--missing", choices=["listwise", "pairwise"], default="listwise", help=text)
+    text = "answers with gaps: left out whole, only where both items are needed, or all taken by EM (default: listwise)"
+    add("--missing", choices=["listwise", "pairwise", "fiml"], default="listwise", help=text)
     add("--correlation", choices=["pearson", "polychoric"], default="pearson", help="default: pearson")
     add(
         "--bootstrap",
@@ -73,96 +73,93 @@ def add(commands) -> argparse.ArgumentParser:
     text = "random samples of the parallel analysis, 0: none (default: 1000)"
     add("--parallel", type=_count, default=1000, metavar="N", help=text)
     add("--seed", type=_count, default=0, metavar="N", help="of everything random (default: 0)")
+    text = "test stated factors as well (survey confirm): modules, explored, or a model's text (default: modules)"
+    add("--confirm", nargs="?", const="modules", metavar="MODEL", help=text)
+    add("--estimator", choices=["ml", "dwls"], default="ml", help="of --confirm (default: ml)")
+    add("--compare", metavar="COLUMN", help="compare two groups as well: see survey compare --help")
     add("--report", type=Path, metavar="DIR", help="write report.html, tables and figures into this folder")
     add("--json", action="store_true", help="everything, machine-readable")
-    command.set_defaults(parser=command)
-    add_content(command)
-    add_store(command)
     return command
 
 
 def _run(args: argparse.Namespace) -> int:
     # With --json an analysis that cannot be is told as {"error": …} as well.
-    from survey.analysis.errors import AnalysisError
+    from survey.analysis.errors import AnalysisError, TooFewRows
     from survey.analysis.printed import printed
     from survey.analysis.summary import descriptives, summary
-    from survey.working import load_scores
 
-    if args.demo == "list":
-        return _list_demonstrations()
-    if args.file is None and args.questionnaire is None and args.demo is None:
-        args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers, or a --demo")
+    if args.demo == ALL:
+        return list_demonstrations()
     if args.factors == "parallel" and not args.parallel:
         args.parser.error("--factors parallel needs the samples that --parallel 0 leaves out")
-    if args.demo is not None:
-        table = _demonstration(args)
-    else:
-        table = load_scores(args.file, where(args), args.content, args.questionnaire, args.version)
-    if table.beside:
-        print(f"survey: {args.questionnaire}: {table.beside}", file=sys.stderr)
     try:
+        # What visitors wrote stands in the report only.
+        table = table_asked(args, texts=args.report is not None, labels=args.compare is not None)
         analysis = _analysed(table, args)
+        beyond = beyond_asked(args, table)
     except AnalysisError as error:
         if args.json:
             told = {"error": {"code": error.code, "items": list(error.items), "message": str(error)}}
             print(json.dumps(told, ensure_ascii=False))
+        elif isinstance(error, TooFewRows) and _shows_the_way(args):
+            return _report_of_the_sample(args, error)
         raise
     found = summary(analysis)
     if args.report is not None:
-        _write_report(args, table, analysis)
+        _write_report(args, table, analysis, beyond)
     if args.json:
+        found |= beyond.summary
         print(json.dumps(found, ensure_ascii=False, allow_nan=False, indent=1))
     else:
-        print(printed(found, descriptives(analysis)))
+        print("\n\n".join([printed(found, descriptives(analysis)), *beyond.printed]))
     return 0
 
 
-def _list_demonstrations() -> int:
-    from survey.demonstration import SAMPLES
+def _shows_the_way(args: argparse.Namespace) -> bool:
+    """Whether a report is asked for of the stored answers to the questionnaire that the synthetic sample is of, and
+    nothing in it that a sample has not."""
+    from survey.demonstration.indicators import questionnaire_id
 
-    for name, (_, english) in SAMPLES.items():
-        print(f"{name:18}{english}")
+    stored = args.file is None and args.questionnaire == questionnaire_id()
+    return stored and args.report is not None and args.compare is None
+
+
+def _report_of_the_sample(args: argparse.Namespace, error: AnalysisError) -> int:
+    """Too few have answered: the report shows the way of the indicators all the same, and whose scores these are."""
+    from survey.demonstration.indicators import sample_name
+    from survey.working import sample_scores
+
+    problem = str(error).partition(" – ")[0]
+    print(f"survey: {args.questionnaire}: {problem}; the report is of the synthetic sample {sample_name()}",
+          file=sys.stderr)  # fmt: skip
+    table = sample_scores(sample_name(), args.content)
+    _write_report(args, table, _analysed(table, args), beyond_asked(args, table))
     return 0
-
-
-def _demonstration(args: argparse.Namespace) -> ScoreTable:
-    from survey.demonstration import SAMPLES, sample_file
-    from survey.reading import read_scores
-    from survey.working import find_questionnaire_file
-
-    if args.file is not None:
-        args.parser.error("give a FILE.csv or a --demo, not both")
-    if args.demo not in SAMPLES:
-        args.parser.error(f"--demo: {args.demo!r} is none of {', '.join(SAMPLES)}")
-    table = read_scores(sample_file(args.demo), find_questionnaire_file(args.content, "garment"))
-    return replace(table, source=args.demo)
 
 
 def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
     from survey.analysis import analyse
+    from survey.working import stated_groups
 
     settings = _settings(args, table)
-    # The synthetic samples have no scale to keep to: exact moments make broken scores.
-    asked = None if table.synthetic else table.questionnaire
-    points = None if asked is None else asked.points
-    if settings.bootstrap * table.scores.size < 50_000_000 or not sys.stderr.isatty():
-        return analyse(table.scores, table.items, settings=settings, seconds=table.seconds, points=points)
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("bootstrap", total=settings.bootstrap)
-        return analyse(
-            table.scores,
-            table.items,
-            settings=settings,
-            seconds=table.seconds,
-            points=points,
-            progress=lambda done: bar.advance(task, done),
-        )
+    run = partial(
+        analyse,
+        table.scores,
+        table.items,
+        settings=settings,
+        seconds=table.seconds,
+        points=points_of(table, args),
+        unasked=table.unasked,
+        groups=stated_groups(table.questionnaire),
+        aside=table.aside,
+    )
+    if settings.bootstrap * table.scores.size < 50_000_000:
+        return run()
+    with counted("bootstrap", settings.bootstrap) as progress:
+        return run(progress=progress)
 
 
-def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysis) -> None:
+def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysis, beyond: Beyond) -> None:
     from survey.report import Part, write_report
     from survey.working import other_roles
 
@@ -170,13 +167,13 @@ def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysi
     if args.file is None and table.questionnaire is not None and table.questionnaire.dimensions:
         found = other_roles(where(args), args.content, table.questionnaire)
         beside = [Part(other, other.questionnaire) for other in found if other.questionnaire is not None]
-    page = write_report(args.report, table, analysis, beside)
+    page = write_report(args.report, table, analysis, beside, beyond.chapters)
     print(f"survey: {page}", file=sys.stderr)
 
 
 def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:
     from survey.analysis.pipeline import Settings
-    from survey.working import dropped
+    from survey.working import dropped, reverse_keyed
 
     return Settings(
         drop=dropped(args.drop, table.questionnaire),
@@ -187,4 +184,5 @@ def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:
         bootstrap=args.bootstrap,
         draws=args.parallel,
         seed=args.seed,
+        reverse=reverse_keyed(args.reverse, table),
     )

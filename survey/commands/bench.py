@@ -12,14 +12,22 @@ from survey.commands.options import declare
 
 __all__ = ["add"]
 
-PARTS = {"service": "bench_survey.py", "analysis": "bench_survey_analysis.py", "r": "bench_survey_r.py"}
+PARTS = {
+    "service": "bench_survey.py",
+    "analysis": "bench_survey_analysis.py",
+    "r": "bench_survey_r.py",
+    "lavaan": "bench_survey_lavaan.py",
+}
 
 _MORE = """\
 service   submissions a second over HTTP at 16 clients with every answer on the disk before it is acknowledged, a bare
           write-and-sync loop beside it, the order of sync and acknowledgement as strace sees it, 50 kills in
-          mid-write, a full disk, and schemathesis on the API's description
+          mid-write, a full disk, what visitors wait while 100,000 answers are exported and how long their analysis
+          takes, and schemathesis on the API's description
 analysis  time and error of the statistics beside factor_analyzer
-r         every figure beside R's psych on six data sets; left out, saying so, where there is no Rscript with psych
+r         every figure beside R's psych on six data sets, the scales of its bfi through `survey analyse` too; left out,
+          saying so, where there is no Rscript with psych
+lavaan    every figure of the confirmatory factor analysis beside R's lavaan; left out in the same way
 
 Each writes its figures into docs/figures and ends with status 1 where one misses what is asked for. Needs the extra
 'test'; works in a checkout."""

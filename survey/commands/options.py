@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import ipaddress
 from pathlib import Path
 
-__all__ = ["add_content", "add_store", "declare", "existing_store", "positive", "where"]
+__all__ = ["add_content", "add_proxy", "add_store", "declare", "existing_store", "positive", "where"]
 
 
 def declare(commands, name: str, run, about: str, more: str = "") -> argparse.ArgumentParser:
@@ -25,6 +26,19 @@ def add_content(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--content", type=Path, metavar="DIR", help="content folder (default: ./assets, else ours)"
     )
+
+
+def add_proxy(command: argparse.ArgumentParser, what: str) -> None:
+    """--proxy: `what` is whose word is believed on where visitors come from."""
+    text = f"{what}, whose X-Forwarded-For is believed; may be given several times"
+    command.add_argument("--proxy", action="append", type=_address, default=[], metavar="ADDRESS", help=text)
+
+
+def _address(text: str) -> str:
+    try:
+        return str(ipaddress.ip_address(text))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text[:50]!r} is no address – give one such as 10.0.0.2") from None
 
 
 def add_store(command: argparse.ArgumentParser) -> None:
@@ -48,7 +62,7 @@ def where(args: argparse.Namespace) -> Path | str:
 
 def positive(text: str) -> int:
     """Type of an argument: a whole number from 1 on, as a database can hold it."""
-    if not text.isdecimal() or len(text) > 10 or not 0 < int(text) < 2**31:
+    if not (text.isascii() and text.isdecimal()) or len(text) > 10 or not 0 < int(text) < 2**31:
         raise argparse.ArgumentTypeError(f"{text[:20]!r} is no number from 1 on")
     return int(text)
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 
-from survey.commands.options import add_content, add_store, declare, where
+from survey.commands.options import add_content, add_proxy, add_store, declare, where
+from survey.questionnaire import NEEDS
 
 __all__ = ["add"]
 
 _MORE = (
-    "Without the hall: forms at /questionnaires, the API at /api/v1, its description at /api/v1/openapi.json."
+    "Without the hall: forms at /questionnaires, the API at /api/v1, its description at /api/v1/openapi.json, "
+    "the record of processing at /privacy."
 )
 
 
@@ -21,6 +23,13 @@ def add(commands) -> argparse.ArgumentParser:
     command.add_argument("--port", type=_port, default=8001, help="port to listen on (default: 8001)")
     text = "new answers a minute from one address; 0: any number (default: 300)"
     command.add_argument("--rate", type=_rate, metavar="N", help=text)
+    text = (
+        "what the place has, of "
+        + ", ".join(NEEDS)
+        + ", separated by commas, or none: what needs another is not asked (default: ask everything)"
+    )
+    command.add_argument("--offers", type=_offers, metavar="PARTS", help=text)
+    add_proxy(command, "a proxy in front")
     add_content(command)
     add_store(command)
     return command
@@ -40,15 +49,22 @@ def _rate(text: str) -> int:
     return int(text)
 
 
+def _offers(text: str) -> frozenset[str]:
+    parts = frozenset() if text == "none" else frozenset(part.strip() for part in text.split(","))
+    for part in sorted(parts - set(NEEDS)):
+        raise argparse.ArgumentTypeError(f"{part[:20]!r} is none of {', '.join(NEEDS)} – or write none")
+    return parts
+
+
 def _run(args: argparse.Namespace) -> int:
     from survey.content import content_folder
     from survey.serving import serve, survey_app
 
     content = content_folder(args.content)
-    app, mounted, problems = survey_app(content, where(args), args.rate)
-    for problem in problems:
+    app, mounted, problems = survey_app(content, where(args), args.rate, args.offers, args.proxy)
+    for problem in (*problems, *mounted.hints):
         print(f"survey: {problem}", file=sys.stderr)
     print(f"content {content}: {len(mounted.questionnaires)} questionnaires, {len(problems)} problems")
     print(f"http://{args.host}:{args.port}/questionnaires", flush=True)
-    serve(app, args.host, args.port)
+    serve(app, args.host, args.port, args.proxy)
     return 0

@@ -1,21 +1,24 @@
 """The paper's Table 3 and a population that has it: correlations with its loadings and the printed KMO and χ².
 
-Nothing here uses `survey.analysis`, so the samples owe nothing to what they test.
+Nothing here uses `survey.analysis`, so the samples owe nothing to what they test. All of it is the same on every
+machine to rounding.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, least_squares
+from scipy.optimize import brentq
 
 __all__ = [
     "ALPHA",
     "CHI2",
     "CLOSE",
     "KMO",
+    "LOG_DET",
     "N",
     "TABLE_3",
     "TABLE_3_ITEMS",
@@ -37,6 +40,8 @@ TABLE_3 = np.array([
 # The two items that the paper drops, each with its twin and their correlation.
 CLOSE = (("static_overall", "silhouette", 0.968), ("static_drape", "dynamic_drape", 0.930))
 N, KMO, CHI2, ALPHA = 20, 0.824, 167.23, 0.911
+LOG_DET = -CHI2 / (N - 1 - (2 * len(TABLE_3) + 5) / 6)  # ln det R of the ten, from the printed χ²
+POPULATION = Path(__file__).parent / "population.csv"
 
 
 def kmo_of(r: NDArray[np.float64]) -> float:
@@ -51,31 +56,11 @@ def kmo_of(r: NDArray[np.float64]) -> float:
 def correlation_of_ten() -> NDArray[np.float64]:
     """R (10, 10) with Table 3's loadings as its first three components' space, and the printed KMO and χ².
 
-    R = ΛΛᵀ + Q L Lᵀ Qᵀ with Q a basis of Λ's orthogonal complement and L lower triangular (28 numbers), solved
-    for a unit diagonal, KMO and determinant from a seeded start. Raises ArithmeticError where that fails.
+    These are 12 conditions on 28 numbers, so there is not one such R but a family of sixteen dimensions, in which a
+    solver ends where its machine's rounding leads it, up to 3e-6 apart. The member that the samples come from is
+    therefore data, `population.csv`; `recipe.solved_population` is how it was found.
     """
-    p = len(TABLE_3)
-    basis = np.linalg.svd(TABLE_3)[0][:, 3:]
-    lower = np.tril_indices(p - 3)
-    log_det = -CHI2 / (N - 1 - (2 * p + 5) / 6)
-
-    def matrix(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
-        root = np.zeros((p - 3, p - 3))
-        root[lower] = numbers
-        return TABLE_3 @ TABLE_3.T + basis @ root @ root.T @ basis.T
-
-    def misfit(numbers: NDArray[np.float64]) -> list[float]:
-        r = matrix(numbers)
-        return [*(np.diag(r) - 1.0), kmo_of(r) - KMO, np.linalg.slogdet(r)[1] - log_det]
-
-    start = np.random.default_rng(7).normal(scale=0.3, size=len(lower[0]))
-    start[lower[0] == lower[1]] = 0.45
-    found = least_squares(misfit, start, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=4000)
-    if found.cost > 1e-20:
-        raise ArithmeticError(f"no such correlation matrix: residual {found.cost:.3g}")
-    r = matrix(found.x)
-    np.fill_diagonal(r, 1.0)
-    return r
+    return np.loadtxt(POPULATION, delimiter=",", skiprows=1, encoding="utf-8")
 
 
 def correlation_of_twelve() -> NDArray[np.float64]:
@@ -99,5 +84,6 @@ def deviations() -> NDArray[np.float64]:
         c = r * np.outer(sd, sd)
         return float(p / (p - 1) * (1 - np.trace(c) / c.sum()) - ALPHA)
 
-    size = brentq(excess, 0.0, 2.0)
+    # To rounding: brentq's own 2e-12 would leave the last digits to the machine.
+    size = brentq(excess, 0.0, 2.0, xtol=1e-15)
     return np.concatenate([np.exp(float(size) * tilt), [1.0, 1.0]])  # type: ignore[arg-type]

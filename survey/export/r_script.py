@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from survey.export.cells import safe_cell
 
@@ -23,6 +23,9 @@ answers <- read.csv(file, fileEncoding = "UTF-8-BOM", na.strings = c("", "NA", "
 guarded <- c(@GUARDED@)
 scores <- as.matrix(answers[, ifelse(items %in% names(answers), items, guarded)])
 colnames(scores) <- items
+# Items worded the other way round are turned before everything else
+reversed <- c(@REVERSED@)
+if (length(reversed) > 0) scores[, reversed] <- @TURN@ - scores[, reversed]
 kept <- setdiff(items, dropped)
 usable <- if ("@MISSING@" == "listwise") complete.cases(scores[, kept]) else rowSums(!is.na(scores[, kept])) > 0
 x <- scores[usable, kept]
@@ -34,7 +37,8 @@ all_items <- corr.test(scores, use = way, adjust = "none", ci = FALSE)
 print(round(all_items$r, 3))
 
 # KMO and Bartlett
-r <- if ("@METHOD@" == "polychoric") polychoric(x, correct = 0, global = FALSE)$rho else cor(x, use = "pairwise")
+r <- if ("@METHOD@" == "polychoric") polychoric(x, correct = 0, global = FALSE)$rho else
+  if ("@MISSING@" == "fiml") corFiml(x) else cor(x, use = "pairwise")
 n <- if ("@MISSING@" == "listwise") nrow(x) else min(pairwiseCount(x))
 kmo <- KMO(r)
 bartlett <- cortest.bartlett(r, n = n)
@@ -63,11 +67,40 @@ print(round(loadings, 3))
 # Reliability, and how many components chance would keep
 reliable <- suppressWarnings(alpha(as.data.frame(x), check.keys = FALSE))
 cat(sprintf("Cronbach's alpha %.3f\n", reliable$total$raw_alpha))
+
+# Scale by scale: the items of each component, then of each module. McDonald's omega is that of one factor by maximum
+# likelihood, common variance over that of the model; psych's omega() takes standardised items and minres instead.
+omega_of <- function(items) {
+  if (length(items) < 3) return(NA)
+  part <- r[items, items]
+  one <- tryCatch(factanal(covmat = part, factors = 1, n.obs = n, control = list(nstart = 5, opt = list(factr = 1e3))),
+                  error = function(e) NULL)
+  if (is.null(one)) return(NA)
+  spread <- apply(x[, items], 2, sd, na.rm = TRUE)
+  common <- sum(one$loadings[, 1] * spread)^2
+  common / (common + sum(one$uniquenesses * spread^2))
+}
+home <- max.col(abs(loadings), ties.method = "first")
+scales <- lapply(seq_len(keep), function(at) kept[home == at])
+names(scales) <- paste0("component_", seq_len(keep))
+scales <- c(scales, lapply(list(@SCALES@), intersect, kept))
+reliabilities <- list()
+for (name in names(scales)) {
+  items_here <- scales[[name]]
+  if (length(items_here) < 2) next
+  one <- suppressWarnings(alpha(as.data.frame(x[, items_here]), check.keys = FALSE, use = "pairwise"))
+  omega_here <- omega_of(items_here)
+  cat(sprintf("\n%s: alpha %.3f, omega %.3f\n", name, one$total$raw_alpha, omega_here))
+  print(round(data.frame(item_total = one$item.stats$r.drop,
+    alpha_without = if (length(items_here) > 2) one$alpha.drop$raw_alpha else NA, row.names = items_here), 3))
+  reliabilities[[name]] <- list(items = items_here, alpha = one$total$raw_alpha, omega = omega_here,
+    item_total = one$item.stats$r.drop)
+}
 chance <- fa.parallel(r, n.obs = n, fa = "pc", n.iter = 100, quant = .95, plot = FALSE)
 
 if (length(given) > 1)
   writeLines(jsonlite::toJSON(list(n = n, kmo = kmo$MSA, chi2 = bartlett$chisq, eigenvalues = values,
-    alpha = reliable$total$raw_alpha, items = kept, loadings = unname(loadings)),
+    alpha = reliable$total$raw_alpha, items = kept, loadings = unname(loadings), scales = reliabilities),
     digits = NA, auto_unbox = TRUE), given[2])
 """
 
@@ -82,8 +115,14 @@ def write_r(
     factors: int | str = "kaiser",
     missing: str = "listwise",
     method: str = "pearson",
+    reverse: Sequence[str] = (),
+    turn: float = 0.0,
+    scales: Mapping[str, Sequence[str]] | None = None,
 ) -> str:
-    """The script's text. file: the CSV that it reads by default. Arguments as `survey analyse` takes them."""
+    """The script's text. file: the CSV that it reads by default. Arguments as `survey analyse` takes them.
+
+    turn: lowest + highest point, what a reversed score is taken from. scales: name → items stated to belong together.
+    """
     if isinstance(factors, int):
         keep = str(factors)
     elif factors == "kaiser":
@@ -93,6 +132,8 @@ def write_r(
     filled = {
         "NAME": name, "FILE": file, "ITEMS": _strings(items), "GUARDED": _strings(map(safe_cell, items)),
         "DROPPED": _strings(dropped), "MISSING": missing, "METHOD": method, "ROTATION": rotation, "KEEP": keep,
+        "REVERSED": _strings(reverse), "TURN": f"{turn:.17g}",
+        "SCALES": ", ".join(f"{_strings([name])} = c({_strings(items)})" for name, items in (scales or {}).items()),
     }  # fmt: skip
     # All at once: a column's name that looks like one of our marks stays as it is.
     return re.sub(r"@([A-Z]+)@", lambda mark: filled[mark[1]], _SCRIPT)

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, BinaryIO
 
 from survey.export.cells import safe_cell
 from survey.export.codebook import write_codebook
-from survey.export.csv_file import columns, records
-from survey.questionnaire import Questionnaire
-from survey.store import Stored
+from survey.export.sheet import Sheet
 
-__all__ = ["write_xlsx"]
+__all__ = ["put_xlsx"]
 
 
-def write_xlsx(questionnaire: Questionnaire, rows: Iterable[Stored]) -> bytes:
-    """The file's bytes. Texts are stored as texts, and guarded as in CSV, since a workbook is often saved as one."""
+def put_xlsx(sheet: Sheet, out: BinaryIO, folder: Path) -> None:
+    """Write the workbook; out must be seekable. folder: where its parts wait on the disk, row after row.
+
+    Texts are stored as texts, and guarded as in CSV, since a workbook is often saved as one.
+    """
     import xlsxwriter
+    from xlsxwriter.exceptions import FileCreateError
 
-    out = io.BytesIO()
     options = {
-        "in_memory": True,
+        "constant_memory": True,
+        "tmpdir": str(folder),
         "strings_to_formulas": False,
         "strings_to_urls": False,
         "strings_to_numbers": False,
@@ -29,23 +32,29 @@ def write_xlsx(questionnaire: Questionnaire, rows: Iterable[Stored]) -> bytes:
     book = xlsxwriter.Workbook(out, options)
     bold = book.add_format({"bold": True, "bottom": 1})
     answers = book.add_worksheet("answers")
-    head = columns(questionnaire)
-    answers.write_row(0, 0, head, bold)
     answers.freeze_panes(1, 1)
     answers.set_column(0, 0, 38)
-    answers.set_column(1, len(head) - 1, 14)
-    for at, record in enumerate(records(questionnaire, rows), 1):
+    answers.set_column(1, len(sheet.columns) - 1, 14)
+    for column, name in enumerate(sheet.columns):
+        answers.write_string(0, column, name, bold)
+    _fill(answers, sheet)
+    codebook = book.add_worksheet("codebook")
+    codebook.set_column(0, 9, 24)
+    text = write_codebook(sheet.questionnaire, sheet.anonymity).removeprefix("\ufeff")
+    for at, line in enumerate(csv.reader(io.StringIO(text, newline=""))):
+        for column, cell in enumerate(line):
+            codebook.write_string(at, column, cell, *([bold] if at == 0 else []))
+    try:
+        book.close()
+    except FileCreateError as error:
+        raise error.args[0] from None  # the OSError that it wraps
+
+
+def _fill(answers: Any, sheet: Sheet) -> None:
+    string, number = answers.write_string, answers.write_number
+    for at, record in enumerate(sheet.records, 1):
         for column, cell in enumerate(record):
             if isinstance(cell, str):
-                answers.write_string(at, column, safe_cell(cell))
+                string(at, column, safe_cell(cell))
             elif cell is not None:
-                answers.write_number(at, column, cell)
-    sheet = book.add_worksheet("codebook")
-    sheet.set_column(0, 9, 24)
-    for at, line in enumerate(
-        csv.reader(io.StringIO(write_codebook(questionnaire).removeprefix("\ufeff"), newline=""))
-    ):
-        for column, cell in enumerate(line):
-            sheet.write_string(at, column, cell, *([bold] if at == 0 else []))
-    book.close()
-    return out.getvalue()
+                number(at, column, cell)

@@ -320,6 +320,13 @@ function finish(note) {
   }
 }
 
+// In the hall's window the hall is behind it: closing the window is the way back, and keeps the visitor's place.
+byId("home")?.addEventListener("click", (event) => {
+  if (window.parent === window) return;
+  event.preventDefault();
+  window.parent.postMessage({ type: "survey-close", id: settings.id }, location.origin);
+});
+
 byId("again").addEventListener("click", () => location.reload());
 
 byId("copy").addEventListener("click", async () => {
@@ -338,7 +345,7 @@ byId("withdraw").addEventListener("submit", async (event) => {
   let told = "withdraw_failed";
   try {
     const response = await fetch(`${settings.submissions}/${encodeURIComponent(code)}`, { method: "DELETE" });
-    if (response.ok) told = "withdraw_done";
+    if (response.ok) told = response.status === 202 ? "withdraw_soon" : "withdraw_done";
     else if (response.status === 409) told = "withdraw_frozen";
     else if (response.status < 500) told = "withdraw_unknown";
   } catch { /* no connection: told so */ }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from html import escape
 from pathlib import Path
@@ -15,7 +15,9 @@ from survey.answer import TEXT_LIMIT
 from survey.form.clip import Clip, clip_html
 from survey.questionnaire import Item, Language, Module, Questionnaire, Text
 
-__all__ = ["ASSETS", "form_page", "list_page", "notice_page", "words"]
+__all__ = ["ASSETS", "Home", "document", "form_page", "heading", "list_page", "notice_page", "words"]
+
+Home = Callable[[Language, str | None], str]  # language and exhibit -> address of where the visitor came from
 
 FOLDER = Path(__file__).parent
 ASSETS = {"form.css": "text/css; charset=utf-8", "form.js": "text/javascript; charset=utf-8"}
@@ -44,9 +46,12 @@ def form_page(
     *,
     clip: Clip | None = None,
     preview: bool = False,
+    home: str | None = None,
+    privacy: bool = False,
 ) -> str:
     """The page of one questionnaire; `exhibit` is kept with the answer, `clip` stands beside items on motion.
 
+    home: address to which the thanks lead back, None: nowhere. privacy: whether there is a privacy page to name.
     preview: everything as visitors see it, but nothing is kept or sent.
     """
     say = words(language)
@@ -56,7 +61,7 @@ def form_page(
     )
     title, intro = questionnaire.title.in_language(language), questionnaire.intro.in_language(language)
     body = f"""
-{_header(title, intro, language, exhibit, preview)}
+{heading(title, intro, language, exhibit, preview)}
 <noscript><p class="notice">{escape(say["noscript"])}</p></noscript>
 {f'<p class="notice" id="preview">{escape(say["preview"])}</p>' if preview else ""}
 <div class="progress"><div class="track"><div id="bar"></div></div><p id="count" role="status"></p></div>
@@ -65,15 +70,15 @@ def form_page(
 <p id="restored" class="notice quiet" hidden><span>{escape(say["restored"])}</span>
 <button type="button" id="restart" class="plain">{escape(say["restart"])}</button></p>
 {modules}
-{_consent(questionnaire, language)}
+{_consent(questionnaire, language, privacy)}
 <div class="sending"><button type="submit" id="send" class="primary">{escape(say["send"])}</button>
 <p class="small">{escape(say["saved"])}</p></div>
 </form>
 <div id="state" class="notice" role="status" tabindex="-1" hidden></div>
-{_thanks(say)}
+{_thanks(say, home)}
 {_withdraw(say)}
 <script type="application/json" id="settings">{_settings(questionnaire, language, exhibit, preview)}</script>"""
-    return _page(questionnaire.title.in_language(language), language, body, script=True)
+    return document(questionnaire.title.in_language(language), language, body, script=True)
 
 
 def list_page(questionnaires: Iterable[Questionnaire], language: Language) -> str:
@@ -84,21 +89,29 @@ def list_page(questionnaires: Iterable[Questionnaire], language: Language) -> st
         f'<li><a href="./questionnaires/{key}?lang={language}">{name}</a></li>' for key, name in named
     )
     listed = f'<ul class="list">{links}</ul>' if links else f"<p>{escape(say['list_empty'])}</p>"
-    head = _header(say["list_title"], say["list_intro"], language, None)
-    return _page(say["list_title"], language, head + listed, script=False, base="./")
+    head = heading(say["list_title"], say["list_intro"], language, None)
+    return document(say["list_title"], language, head + listed, script=False, base="./")
 
 
-def notice_page(kind: Literal["missing", "unavailable"], language: Language) -> str:
-    """What a wrong address shows, or any while the store does not answer."""
+def notice_page(kind: Literal["missing", "nothing", "unavailable"], language: Language) -> str:
+    """What a wrong address shows, a questionnaire of which nothing is asked here, or any while the store is away."""
     say = words(language)
-    titles = {"missing": say["missing_title"], "unavailable": say["unavailable_title"]}
-    texts = {"missing": say["missing_text"], "unavailable": say["unavailable_text"]}
-    head = _header(titles[kind], texts[kind], language, None)
-    return _page(titles[kind], language, head, script=False)
+    title, text = {
+        "missing": (say["missing_title"], say["missing_text"]),
+        "nothing": (say["nothing_title"], say["nothing_text"]),
+        "unavailable": (say["unavailable_title"], say["unavailable_text"]),
+    }[kind]
+    return document(title, language, heading(title, text, language, None), script=False)
 
 
-def _page(title: str, language: Language, body: str, *, script: bool, base: str = "../") -> str:
+def document(
+    title: str, language: Language, body: str, *, script: bool, base: str = "../", alone: bool = False
+) -> str:
+    """A whole page. base: the way from it to where style and script lie; alone: the style stands in the page."""
     stamp = _stamp()
+    style = f'<link rel="stylesheet" href="{base}survey-static/form.css?v={stamp}">'
+    if alone:  # what leads to another page of the service leads nowhere in a file
+        style = f"<style>{(FOLDER / 'form.css').read_text('utf-8')}\n.switch {{ display: none; }}</style>"
     source = f'<script src="{base}survey-static/form.js?v={stamp}" defer></script>' if script else ""
     return f"""<!doctype html>
 <html lang="{"zh-Hans" if language == "zh" else "en"}">
@@ -107,7 +120,7 @@ def _page(title: str, language: Language, body: str, *, script: bool, base: str 
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(title)}</title>
 <link rel="icon" href="data:,">
-<link rel="stylesheet" href="{base}survey-static/form.css?v={stamp}">
+{style}
 {source}
 </head>
 <body><main>{body}
@@ -116,7 +129,8 @@ def _page(title: str, language: Language, body: str, *, script: bool, base: str 
 """
 
 
-def _header(title: str, intro: str, language: Language, exhibit: str | None, preview: bool = False) -> str:
+def heading(title: str, intro: str, language: Language, exhibit: str | None, preview: bool = False) -> str:
+    """The top of a page: the seal, the switch to the other language, title and introduction."""
     say, other = words(language), "en" if language == "zh" else "zh"
     kept = f"&amp;exhibit={escape(exhibit)}" if exhibit else ""
     kept += "&amp;preview" if preview else ""
@@ -195,9 +209,12 @@ def _point(item: Item, value: str, mark: str, anchor: Text, language: Language) 
     )
 
 
-def _consent(questionnaire: Questionnaire, language: Language) -> str:
+def _consent(questionnaire: Questionnaire, language: Language, privacy: bool) -> str:
     say, until = words(language), questionnaire.retain_until
     kept = f'<p class="small">{escape(say["kept"].format(date=until.isoformat()))}</p>' if until else ""
+    if privacy:  # in a window of its own: what was filled in stays where it is
+        link = f'<a href="../privacy?lang={language}" target="_blank" rel="noopener">{escape(say["privacy"])}</a>'
+        kept += f'<p class="small">{link}</p>'
     return f"""<section class="module consent" id="consent-box"><h2>{escape(say["consent_title"])}</h2>
 <label class="check"><input type="checkbox" id="consent" aria-describedby="wrong-consent">
 <span>{escape(questionnaire.consent.in_language(language))}</span></label>{kept}
@@ -205,13 +222,14 @@ def _consent(questionnaire: Questionnaire, language: Language) -> str:
 """
 
 
-def _thanks(say: dict[str, str]) -> str:
+def _thanks(say: dict[str, str], home: str | None) -> str:
+    back = f'<a id="home" class="primary" href="{escape(home)}">{escape(say["home"])}</a>' if home else ""
     return f"""<section id="thanks" class="thanks" hidden>
 <h2 tabindex="-1" id="thanks-title">{escape(say["thanks"])}</h2>
 <p id="thanks-note" class="notice quiet" hidden></p><p>{escape(say["thanks_text"])}</p>
 <p class="code"><span class="small">{escape(say["code"])}</span><output id="code"></output>
 <button type="button" id="copy" class="plain">{escape(say["copy"])}</button></p>
-<p><button type="button" id="again" class="plain">{escape(say["again"])}</button></p></section>
+<p class="ways">{back}<button type="button" id="again" class="plain">{escape(say["again"])}</button></p></section>
 """
 
 

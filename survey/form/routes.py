@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Mapping
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import HTMLResponse, Response
@@ -11,9 +11,12 @@ from fastapi.routing import APIRoute
 
 from survey.errors import StoreError
 from survey.form.clip import ClipOf
-from survey.form.page import ASSETS, FOLDER, form_page, list_page, notice_page
-from survey.questionnaire import LANGUAGES, Language, Questionnaire
+from survey.form.page import ASSETS, FOLDER, Home, form_page, list_page, notice_page
+from survey.questionnaire import LANGUAGES, Language, Offers, Questionnaire
 from survey.slug import is_slug
+
+if TYPE_CHECKING:
+    from survey.privacy.record import Record
 
 __all__ = ["form_router"]
 
@@ -54,40 +57,67 @@ class PageRoute(APIRoute):
         return showing
 
 
-def form_router(questionnaires: Mapping[str, Questionnaire], clip_of: ClipOf | None = None) -> APIRouter:
-    """GET /questionnaires, /questionnaires/{id} and the script and style they use.
+def form_router(
+    questionnaires: Mapping[str, Questionnaire],
+    clip_of: ClipOf | None = None,
+    *,
+    offers: Offers = None,
+    home: Home | None = None,
+    record: Callable[[], Record] | None = None,
+) -> APIRouter:
+    """GET /questionnaires, /questionnaires/{id} and the script and style they use; /privacy where there is a record.
 
     clip_of: the host's film of an exhibit, shown beside items on motion. `?preview` sends and keeps nothing.
+    offers: what the place has, None: everything is asked. home: where the thanks page leads back to. record: of
+    processing, as it is when it is asked for.
     """
     routes = APIRouter(include_in_schema=False, route_class=PageRoute)
 
     @routes.get("/questionnaires")
     def listed(lang: Wanted = None, preferred: Preferred = "") -> Response:
-        return HTMLResponse(
-            list_page(list(questionnaires.values()), _language(lang, preferred)), headers=_HEADERS
-        )
+        asked = [found for found in questionnaires.values() if found.asking(offers).items]
+        return HTMLResponse(list_page(asked, _language(lang, preferred)), headers=_HEADERS)
 
     @routes.get("/questionnaires/{key}")
     def form(request: Request, key: str, lang: Wanted = None, preferred: Preferred = "") -> Response:
         language, questionnaire = _language(lang, preferred), questionnaires.get(key)
         if questionnaire is None:
             return HTMLResponse(notice_page("missing", language), 404, _HEADERS)
+        questionnaire = questionnaire.asking(offers)
+        if not questionnaire.items:
+            return HTMLResponse(notice_page("nothing", language), 404, _HEADERS)
         exhibit = request.query_params.get("exhibit")
         # A mistyped exhibit must not keep a visitor from answering; the answer then stands without it.
         known = exhibit if exhibit is not None and is_slug(exhibit) else None
         clip = clip_of(known) if clip_of is not None and known is not None else None
         preview = "preview" in request.query_params
-        page = form_page(questionnaire, language, known, clip=clip, preview=preview)
+        back = home(language, known) if home is not None else None
+        page = form_page(
+            questionnaire, language, known, clip=clip, preview=preview, home=back, privacy=record is not None
+        )
         return HTMLResponse(page, headers=_HEADERS)
 
-    @routes.get("/survey-static/{name}")
-    def static(name: str) -> Response:
-        if name not in ASSETS:
-            return Response(status_code=404)
-        headers = {"Cache-Control": "max-age=31536000, immutable", "X-Content-Type-Options": "nosniff"}
-        return Response((FOLDER / name).read_bytes(), headers=headers, media_type=ASSETS[name])
+    if record is not None:
+        _add_privacy(routes, record)
 
+    routes.get("/survey-static/{name}")(_static)
     return routes
+
+
+def _add_privacy(routes: APIRouter, record: Callable[[], Record]) -> None:
+    @routes.get("/privacy")
+    def privacy(request: Request, lang: Wanted = None, preferred: Preferred = "") -> Response:
+        from survey.privacy.page import privacy_page
+
+        page = privacy_page(record(), _language(lang, preferred), scheme=request.url.scheme)
+        return HTMLResponse(page, headers=_HEADERS)
+
+
+def _static(name: str) -> Response:
+    if name not in ASSETS:
+        return Response(status_code=404)
+    headers = {"Cache-Control": "max-age=31536000, immutable", "X-Content-Type-Options": "nosniff"}
+    return Response((FOLDER / name).read_bytes(), headers=headers, media_type=ASSETS[name])
 
 
 def _language(wanted: str | None, preferred: str) -> Language:

@@ -15,17 +15,26 @@ from survey.errors import SurveyError
 from survey.export.cells import safe_cell
 from survey.export.r_script import write_r
 from survey.reading import ScoreTable
+from survey.report.chapter import Further
 from survey.report.page import Part, Report, build
 
 __all__ = ["Part", "Report", "build", "write_report"]
 
 
-def write_report(folder: Path, table: ScoreTable, analysis: Analysis, beside: Sequence[Part] = ()) -> Path:
+def write_report(
+    folder: Path,
+    table: ScoreTable,
+    analysis: Analysis,
+    beside: Sequence[Part] = (),
+    further: Sequence[Further] = (),
+) -> Path:
     """Write report.html, tables/, figures/ and analysis.json into a folder; returns the page.
+
+    further: chapters of other analyses, such as `confirmation_chapter` of one.
 
     Raises SurveyError where the folder cannot be written.
     """
-    report = build(table, analysis, beside)
+    report = build(table, analysis, beside, further)
     told = summary(analysis) | {"descriptives": descriptives(analysis)}
     files = {
         "report.html": report.html,
@@ -66,4 +75,9 @@ def _repeated(analysis: Analysis) -> str:
         factors=chosen.factors,
         missing=chosen.missing,
         method=chosen.method,
+        reverse=analysis.turned.items,
+        turn=analysis.turned.total,
+        scales={
+            f"{scale.kind}_{scale.key}": scale.items for scale in analysis.scales if scale.kind != "component"
+        },
     )

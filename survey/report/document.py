@@ -12,11 +12,16 @@ __all__ = ["document"]
 def document(bodies: Iterable[str], english: str, chinese: str) -> str:
     """One page of both languages' <article>; english, chinese: its titles."""
     style = (Path(__file__).parent / "style.css").read_text("utf-8")
-    # The only script: which of the two languages is shown. Without scripts both are, one after the other.
+    # The only script: which of the two languages is shown, and what is too wide for the window says so and can be
+    # scrolled by keys. Without scripts both languages are shown, one after the other.
     script = (
         "const root=document.documentElement,both="
         + f'{{en:"{_quoted(english)}",zh:"{_quoted(chinese)}"}};'
-        + "function show(l){root.className=l;root.lang=l==='zh'?'zh-Hans':'en';document.title=both[l]}"
+        + "function show(l){root.className=l;root.lang=l==='zh'?'zh-Hans':'en';document.title=both[l];fit()}"
+        + "function fit(){for(const s of document.querySelectorAll('.scroll')){"
+        + "const wide=s.scrollWidth>s.clientWidth+1;s.parentNode.classList.toggle('wide',wide);"
+        + "wide?s.setAttribute('tabindex','0'):s.removeAttribute('tabindex')}}"
+        + "addEventListener('load',fit);addEventListener('resize',fit);"
         + "function turn(){show(root.className==='zh'?'en':'zh');scrollTo(0,0)}"
         + "show(location.hash==='#zh'||location.hash!=='#en'&&/^zh/i.test(navigator.language)?'zh':'en');"
     )

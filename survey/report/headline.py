@@ -7,9 +7,30 @@ from html import escape
 from survey.analysis import Analysis
 from survey.analysis.naming import proposed_modules
 from survey.questionnaire import Questionnaire
+from survey.reading import ScoreTable
 from survey.report.words import Words, coefficient, whole
 
-__all__ = ["component_names", "key_figures"]
+__all__ = ["component_names", "head", "key_figures"]
+
+
+def head(title: str, table: ScoreTable, found: Analysis, say: Words) -> str:
+    """Title, where it comes from, what one must be warned of, and the row of figures."""
+    banners = ""
+    if table.synthetic:
+        banners += f'<p class="banner synthetic"><b>{escape(say("synthetic"))}</b></p>'
+    for note in found.notes:
+        if note.code in ("small_sample", "barely_enough_rows", "too_few_rows"):
+            text = say.note(note)
+            banners += (
+                f'<p class="banner"><b>{escape(say("fragile"))}</b>{escape(text[:1].upper() + text[1:])}</p>'
+            )
+    subtitle = say("subtitle", source=table.source, n=whole(found.n), items=len(found.items))
+    return (
+        f'<header><div class="top"><span>{escape(say("title"))}</span>'
+        f'<button type="button" onclick="turn()">{escape(say("switch"))}</button></div>'
+        f'<h1>{escape(title)}</h1><p class="subtitle">{escape(subtitle)}</p></header>'
+        f"{banners}{key_figures(found, say)}"
+    )
 
 
 def key_figures(found: Analysis, say: Words) -> str:
@@ -23,6 +44,12 @@ def key_figures(found: Analysis, say: Words) -> str:
         shown.append((f"{share:.1f} %", say("explained")))
     if found.reliability is not None:
         shown.append((coefficient(found.reliability.alpha), "Cronbach α"))
+    parts = [
+        scale.reliability.alpha for scale in found.scales if scale.kind == "component" and scale.reliability
+    ]
+    if len(parts) > 1:
+        span = f"{coefficient(min(parts), 2)} – {coefficient(max(parts), 2)}"
+        shown.append((span, say("alpha_of_components")))
     if found.omega is not None:
         shown.append((coefficient(found.omega.omega), "McDonald ω"))
     cells = "".join(

@@ -12,6 +12,7 @@ from survey.report.words import Words, coefficient, decimal
 
 __all__ = ["MANY", "Table", "as_html", "tables_of"]
 
+SHORT = 4  # characters of a column's head that stay on one line
 MANY = 4  # components, beyond which the table has room for their loadings alone
 
 
@@ -34,8 +35,8 @@ class Table:
     rules: frozenset[int] = field(default_factory=frozenset)
 
 
-def as_html(table: Table, number: str, link: str) -> str:
-    """A <figure> with its numbered caption above and rules as journals set them."""
+def as_html(table: Table, number: str, link: str, hint: str = "") -> str:
+    """A <figure> with its numbered caption above and rules as journals set them. hint: shown where it must scroll."""
     groups = ""
     if table.groups:
         cells = "".join(
@@ -51,12 +52,16 @@ def as_html(table: Table, number: str, link: str) -> str:
     )
     return (
         f'<figure class="table"><figcaption><b>{escape(number)}</b> {escape(table.caption)} {link}</figcaption>'
+        f'<p class="hint" aria-hidden="true">{escape(hint)}</p>'
         f'<div class="scroll"><table><thead>{groups}<tr>{head}</tr></thead><tbody>{rows}</tbody></table></div></figure>'
     )
 
 
 def _th(text: str, left: bool) -> str:
-    return f'<th scope="col"{" class=left" if left else ""}>{escape(text)}</th>'
+    # Chinese breaks anywhere, so a short head would stand upright in a narrow column.
+    kinds = [*(["left"] if left else []), *(["short"] if len(text) <= SHORT else [])]
+    kind = f' class="{" ".join(kinds)}"' if kinds else ""
+    return f'<th scope="col"{kind}>{escape(text).replace(" %", "&nbsp;%")}</th>'
 
 
 def _td(table: Table, row: int, column: int, text: str) -> str:
@@ -212,17 +217,14 @@ def _reliability(analysis: Analysis, say: Words) -> Table | None:
     found = analysis.reliability
     if found is None or found.if_deleted is None:
         return None
-    rows = tuple(
-        (say.item(item), coefficient(value))
-        for item, value in zip(analysis.factored, found.if_deleted, strict=True)
-    )
-    return Table("alpha", say("reliability_caption"), (say("item"), say("without")), rows)
+    figures = zip(analysis.factored, found.item_total, found.if_deleted, strict=True)
+    rows = tuple((say.item(item), coefficient(r), coefficient(value)) for item, r, value in figures)
+    head = (say("item"), say("item_total"), say("without"))
+    return Table("alpha", say("reliability_caption"), head, rows)
 
 
 def _notes(analysis: Analysis, say: Words) -> Table:
-    rows = tuple(
-        (note.code, ", ".join(map(say.item, note.items)) or "–", say.note(note)) for note in analysis.notes
-    )
+    rows = tuple((note.code, say.items(note.items) or "–", say.note(note)) for note in analysis.notes)
     return Table(
         "notes", say("section_flags"), (say("note"), say("concerning"), say("message")), rows, left=3
     )

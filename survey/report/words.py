@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -21,13 +22,21 @@ def _texts() -> dict[str, dict[str, str]]:
 
 
 class Words:
-    """`say("key", name=value)` in one language, and the labels of a questionnaire's items and modules."""
+    """`say("key", name=value)` in one language, and the labels of a questionnaire's items and modules.
 
-    def __init__(self, language: Language, questionnaire: Questionnaire | None) -> None:
+    turned: items whose scores were turned; their labels say so.
+    """
+
+    def __init__(
+        self, language: Language, questionnaire: Questionnaire | None, turned: Sequence[str] = ()
+    ) -> None:
         self.language: Language = language
         self._words = _texts()[language]
         self._items = {} if questionnaire is None else {item.id: item.label for item in questionnaire.items}
         modules = [] if questionnaire is None else questionnaire.modules
+        self._turned = frozenset(turned)
+        sides = [] if questionnaire is None else questionnaire.dimensions
+        self._sides = {side.id: side.label for side in sides}
         self._modules = {module.id: module.title for module in modules}
         self._in_module = {}
         if questionnaire is not None and questionnaire.dimensions:
@@ -38,10 +47,13 @@ class Words:
         return self._words[key].format(**values) if values else self._words[key]
 
     def item(self, key: str) -> str:
-        """The item's label, with its module's where every module has the same labels; else its key."""
+        """The item's label, with its module's where every module has the same labels; a dimension's; else its key."""
+        return self._label(key) + (self("turned_mark") if key in self._turned else "")
+
+    def _label(self, key: str) -> str:
         label = self._items.get(key)
         if label is None:
-            return key
+            return self.dimension(key)
         module = self._in_module.get(key)
         text = label.in_language(self.language)
         return text if module is None else f"{module.in_language(self.language)} · {text}"
@@ -50,6 +62,30 @@ class Words:
         """The module's title, else its key."""
         title = self._modules.get(key)
         return key if title is None else title.in_language(self.language)
+
+    def dimension(self, key: str) -> str:
+        """The dimension's label, else its key."""
+        label = self._sides.get(key)
+        return key if label is None else label.in_language(self.language)
+
+    def items(self, keys: Iterable[str]) -> str:
+        """Their labels one after the other."""
+        return ("、" if self.language == "zh" else ", ").join(map(self.item, keys))
+
+    def remark(self, note: Note) -> str:
+        """What a note says as a sentence of its own, beginning with the items it is about."""
+        said = self.note(note)
+        said = f"{self.items(note.items)}{self('colon')}{said}" if note.items else said
+        end = "" if said[-1] in ".。" else "." if self.language == "en" else "。"
+        return said[0].upper() + said[1:] + end
+
+    def way_apart(self, by: str) -> str:
+        """What groups differ in, in words; of a table the column's name."""
+        return self._words.get(f"by_{by}", f"“{by}”" if self.language == "zh" else by)
+
+    def group(self, by: str, key: str) -> str:
+        """A group's name: of languages their own, of everything else its key."""
+        return self._words.get(f"language_{key}", key) if by == "language" else key
 
     def note(self, note: Note) -> str:
         """What a note says; of an error in Chinese its kind, and its own words in brackets."""

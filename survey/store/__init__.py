@@ -1,8 +1,10 @@
 """Where answers are kept: SQLite by default, PostgreSQL by URL."""
 
 from survey.store.committing import Receipt
-from survey.store.store import Store, Stored
-from survey.store.tally import Count, Tally
+from survey.store.publishing import Public
+from survey.store.removal import Overdue
+from survey.store.store import PATIENCE, Store
+from survey.store.stored import Stored
 from survey.store.tokens import Tokens
 
-__all__ = ["Count", "Receipt", "Store", "Stored", "Tally", "Tokens"]
+__all__ = ["PATIENCE", "Overdue", "Public", "Receipt", "Store", "Stored", "Tokens"]

@@ -11,6 +11,7 @@ from sqlalchemy import Connection, Engine, create_engine, select
 
 from survey.errors import StoreError
 from survey.store import tables
+from survey.store.permissions import make_file
 from survey.store.schema import bring_up_to_date
 
 __all__ = ["write_copy"]
@@ -19,6 +20,8 @@ __all__ = ["write_copy"]
 def write_copy(engine: Engine, path: Path) -> int:
     """Copy to `path`, which must not exist; it appears there only when whole, checked and on the disk.
 
+    It is readable by its owner alone, and holds nothing of what was erased before.
+
     Returns the number of submissions in it. Raises StoreError.
     """
     if path.exists():
@@ -26,6 +29,7 @@ def write_copy(engine: Engine, path: Path) -> int:
     part = path.with_name(path.name + ".part")
     try:
         part.unlink(missing_ok=True)
+        make_file(part)
         if engine.dialect.name == "sqlite":
             _copy_file(engine, part)
         else:
@@ -43,11 +47,13 @@ def write_copy(engine: Engine, path: Path) -> int:
 
 
 def _copy_file(engine: Engine, part: Path) -> None:
-    with engine.connect() as connection, closing(sqlite3.connect(part)) as copy:
+    with engine.connect() as connection:
         source = connection.connection.driver_connection
         assert isinstance(source, sqlite3.Connection)
-        # All pages at once are one snapshot; writers go on, because WAL lets them.
-        source.backup(copy)
+        # Row by row, not page by page: unused parts of pages may still hold what was moved out of them. It is one
+        # snapshot; writers go on, because WAL lets them.
+        source.execute("VACUUM INTO ?", (str(part.absolute()),))
+    with closing(sqlite3.connect(part)) as copy:
         copy.execute("PRAGMA journal_mode=DELETE")  # one file, nothing beside it
 
 

@@ -14,6 +14,7 @@ from survey.answer import Answer
 from survey.errors import AnswerError
 from survey.questionnaire import Questionnaire
 from survey.store import tables
+from survey.store.stored import WITHDRAWN
 
 __all__ = ["Entry", "Receipt", "commit_batch", "freeze_version", "insert_new", "now"]
 
@@ -145,7 +146,7 @@ def _add_rows(connection: Connection, table: Table, rows: Sequence[tuple[object,
 
 def _replay(answer: Answer, digest: str, *, withdrawn: bool) -> Receipt | AnswerError:
     if withdrawn:
-        return AnswerError("id", "this answer was withdrawn", "make a fresh id to answer anew", status=410)
+        return AnswerError("id", *WITHDRAWN, status=410)
     if digest != answer.digest:
         problem = "this id stands for another answer already"
         return AnswerError("id", problem, "send the same body again, or make a fresh id", status=409)

@@ -9,21 +9,22 @@ from pathlib import Path
 from sqlalchemy import Engine
 
 from survey.errors import StoreError
+from survey.store.permissions import tighten
 from survey.store.schema import bring_up_to_date, has_tables
 
 __all__ = ["Place"]
 
 
 class Place:
-    """The database of an engine. `name` is its file or its URL without the password."""
+    """The database of an engine. `file` is that of an SQLite one, `name` the same or the URL without the password."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
         database = engine.url.database
-        self._file = (
+        self.file = (
             Path(database).absolute() if engine.dialect.name == "sqlite" and database is not None else None
         )
-        self.name = str(self._file) if self._file else engine.url.render_as_string(hide_password=True)
+        self.name = str(self.file) if self.file else engine.url.render_as_string(hide_password=True)
         self._identity: tuple[int, int] | None = None
         self._held: int | None = None
         self._missed = False
@@ -31,6 +32,8 @@ class Place:
 
     def open(self) -> None:
         """Bring the schema up to date. Raises StoreError, and what the database raises."""
+        if self.file is not None:
+            tighten(self.file)
         bring_up_to_date(self._engine)
         self._hold()
 
@@ -46,7 +49,7 @@ class Place:
         An open connection would go on writing into a file that nobody finds any more, so all are given up.
         Raises StoreError where there is no file, one without a store in it, or one beside a foreign WAL.
         """
-        if self._file is None or self._unmoved():
+        if self.file is None or self._unmoved():
             return
         with self._reopening:
             if self._unmoved():
@@ -58,7 +61,8 @@ class Place:
                 remedy = "put it back (or a backup in its place, without -wal and -shm)"
                 raise StoreError(f"the database file is gone – {remedy}", self.name)
             if found != self._identity:
-                self._see_that_it_is_whole(self._file)
+                self._see_that_it_is_whole(self.file)
+                tighten(self.file)
                 bring_up_to_date(self._engine)
                 self._hold()
             self._missed = False
@@ -84,15 +88,15 @@ class Place:
     def _hold(self) -> None:
         """Remember the file. Held open, its number cannot go to another; O_PATH leaves SQLite's locks alone."""
         self.close()
-        if self._file is not None and hasattr(os, "O_PATH"):
-            self._held = os.open(self._file, os.O_PATH | os.O_CLOEXEC)
+        if self.file is not None and hasattr(os, "O_PATH"):
+            self._held = os.open(self.file, os.O_PATH | os.O_CLOEXEC)
         self._identity = self._look()
 
     def _look(self) -> tuple[int, int] | None:
-        if self._file is None:
+        if self.file is None:
             return None
         try:
-            found = os.stat(self._file)
+            found = os.stat(self.file)
         except OSError:
             return None
         return found.st_dev, found.st_ino

@@ -4,56 +4,64 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import date, datetime
 from pathlib import Path
 
-from sqlalchemy import ColumnElement, Connection, Engine, Table, delete, func, select, update
+from sqlalchemy import Connection, Engine, func, select, update
 from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError
 
 from survey.answer import Answer
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire import Language, Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import tables
+from survey.store.audit import Audit, in_utc, note
 from survey.store.backup import write_copy
 from survey.store.committing import Entry, Receipt, commit_batch, freeze_version, now
+from survey.store.erasure import Eraser, add_trace, clear_traces, rewrite_tables, traces
+from survey.store.leftovers import Erased, everything
 from survey.store.place import Place
-from survey.store.tally import Tallies, Tally
+from survey.store.publishing import Public, Publishing, forget
+from survey.store.removal import Overdue, erase, overdue, withdraw
+from survey.store.stored import Stored, given_answer, standing, stored_rows
 from survey.store.tokens import Tokens
 from survey.store.writer import Writer
 
-__all__ = ["Receipt", "Store", "Stored"]
+__all__ = ["PATIENCE", "Receipt", "Store"]
 
-
-@dataclass(frozen=True)
-class Stored:
-    """One row for the researcher: the answer and when it was received (UTC)."""
-
-    answer: Answer
-    received: datetime
+PATIENCE = 5.0  # seconds that are waited for the last bytes of something erased to be gone from the files
+OPENING = 2.0  # the same when a store is opened: a command need not wait for whoever reads
 
 
 class Store:
     """Answers in a database. One writer in this process, with group commit; what returns is on the disk.
 
-    where: the data folder (Path) or a database URL. Raises StoreError when it cannot be opened.
+    where: the data folder (Path) or a database URL. Raises StoreError when it cannot be opened. file: of SQLite.
     """
 
     def __init__(self, where: Path | str) -> None:
+        self.where = where  # a URL may hold a password: never shown
         self._engine: Engine = tables.open_engine(where)
         self._writing = threading.Lock()
         self._place = Place(self._engine)
         with explained(self._place.name):
             self._place.open()
         self._writer = Writer(self._commit)
-        self._tallies = Tallies(self._snapshot)
+        self._publishing = Publishing(self._snapshot, self._write)
         self.tokens = Tokens(self._write, self._read)
+        self.audit = Audit(self._write, self._read)
+        self.file = self._place.file
+        self._eraser = None if self.file is None else Eraser(self.file, self._alone, self._write)
+        if self._eraser is not None and self._left():
+            self.settle(OPENING)
 
     def close(self) -> None:
         """Write what waits and give the connections back."""
         self._writer.close()
+        self._publishing.close()
+        if self._eraser is not None:
+            self._eraser.close()
         self._engine.dispose()
         self._place.close()
 
@@ -61,6 +69,33 @@ class Store:
         """Ask the database for anything. Raises StoreError."""
         with self._read() as connection:
             connection.execute(select(1))
+
+    def erasure_owed(self) -> bool:
+        """Whether the last bytes of something erased may still be in the database's files. Raises StoreError."""
+        left = self._left()
+        if self._eraser is not None:
+            self._eraser.watch(left)
+        return bool(left)
+
+    def _left(self) -> tuple[str, ...]:
+        with self._read() as connection:
+            return traces(connection)
+
+    def settle(self, patience: float = 2 * PATIENCE) -> bool:
+        """Take what was erased out of the database's files; False where that is not done within seconds.
+
+        SQLite: then it is tried again and again, also after the next start. PostgreSQL: raises StoreError.
+        """
+        if self._eraser is not None:
+            done = self._eraser.ask(everything())
+            wait([done], patience)
+            return done.done() and done.result()
+        left = self._left()
+        with explained(self._place.name), self._engine.connect() as connection:
+            rewrite_tables(connection.execution_options(isolation_level="AUTOCOMMIT"))
+        with self._write() as connection:
+            clear_traces(connection, left)
+        return True
 
     def changed(self, questionnaire: Questionnaire) -> bool:
         """True when this version reads differently from what its publication froze."""
@@ -94,33 +129,41 @@ class Store:
         with self._read() as connection:
             return connection.execute(select(table.c.id).where(table.c.id == submission)).first() is not None
 
-    def version_of(self, questionnaire: str, submission: str) -> Questionnaire | None:
-        """The version to which the answer with this id was given, also of a tombstone; None: no such answer."""
-        table = tables.submission
-        mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
-        with self._read() as connection:
-            found = connection.execute(select(table.c.version).where(*mine)).scalar_one_or_none()
-        return None if found is None else self.frozen(questionnaire, found)
+    def asked_of(self, questionnaire: str, submission: str) -> Questionnaire | None:
+        """What was asked when the answer with this id was given; None: no such answer.
+
+        Raises AnswerError 410 when it was withdrawn.
+        """
+        with self._snapshot() as connection:
+            found = given_answer(connection, questionnaire, submission)
+        if found is None:
+            return None
+        version, items = found
+        asked = self.frozen(questionnaire, version)
+        return None if asked is None else asked.asked(items)
 
     def withdraw(self, questionnaire: str, submission: str) -> bool:
-        """Take an answer back: its scores and suggestions are deleted. False when there is no such answer.
+        """As take_back(), waiting PATIENCE for its last bytes to be gone. False when there is no such answer."""
+        gone = self.take_back(questionnaire, submission)
+        if gone is not None:
+            wait([gone], PATIENCE)
+        return gone is not None
 
-        Raises AnswerError 409 once the answers were frozen for evaluation.
+    def take_back(self, questionnaire: str, submission: str) -> Future[bool] | None:
+        """Delete scores and suggestions of an answer and commit that; None when there is no such answer.
+
+        The future is of whether nothing of it can be read in the files any more; on PostgreSQL, which keeps deleted
+        rows until its VACUUM, it is done at once. Raises AnswerError 409 once the answer was frozen for evaluation.
         """
-        table = tables.submission
         with self._write() as connection:
-            mine = (table.c.id == submission, table.c.questionnaire == questionnaire)
-            # Held until the commit: another process must not freeze between this look and the erasure. SQLite's
-            # writing transaction holds everything already.
-            asked = select(table.c.withdrawn, table.c.frozen).where(*mine).with_for_update()
-            found = connection.execute(asked).first()
-            if found is None:
-                return False
-            if found.withdrawn is None:
-                if found.frozen is not None:
-                    raise AnswerError("id", *_TOO_LATE, status=409)
-                _erase(connection, (table.c.id == submission,))
-        return True
+            erased = withdraw(connection, questionnaire, submission)
+        if erased is False:
+            return None
+        if self._eraser is not None and isinstance(erased, Erased):
+            return self._eraser.ask(erased)
+        done: Future[bool] = Future()
+        done.set_result(True)
+        return (self._eraser and self._eraser.busy()) or done
 
     def freeze(self, questionnaire: str) -> int:
         """Fix all standing answers for evaluation: they cannot be withdrawn any more. How many were fixed now."""
@@ -128,16 +171,33 @@ class Store:
         open_ones = (table.c.questionnaire == questionnaire, *_OPEN)
         with self._write() as connection:
             done = connection.execute(update(table).where(*open_ones).values(frozen=now()))
-            connection.execute(tables.audit.insert().values(at=now(), action="freeze", subject=questionnaire))
+            note(connection, "freeze", questionnaire, done.rowcount)
             return done.rowcount
 
     def purge(self, questionnaire: str, version: int) -> int:
-        """Erase all answers to a version whose retention has ended, frozen or not; tombstones stay."""
+        """Erase all answers to a version whose retention has ended, and its public figures; tombstones stay.
+
+        settle() takes them out of the files then.
+        """
         with self._write() as connection:
-            done = _erase(connection, _standing(questionnaire, version))
-            subject = f"{questionnaire} {version}"
-            connection.execute(tables.audit.insert().values(at=now(), action="purge", subject=subject))
+            done = erase(connection, standing(questionnaire, version))
+            forget(connection, questionnaire, version)
+            note(connection, "purge", f"{questionnaire} version {version}", done)
+            add_trace(connection)
             return done
+
+    def overdue(self, today: date) -> tuple[Overdue, ...]:
+        """What a purge on that day (UTC) would erase, by questionnaire and version."""
+        asked = self.all_frozen()
+        with self._snapshot() as connection:
+            found = [overdue(connection, one, today) for one in asked]
+        return tuple(one for one in found if one is not None)
+
+    def newest(self) -> datetime | None:
+        """When the last answer was received (UTC), None: there is none."""
+        with self._read() as connection:
+            found = connection.execute(select(func.max(tables.submission.c.received))).scalar()
+        return None if found is None else in_utc(found)
 
     def all_frozen(self) -> tuple[Questionnaire, ...]:
         """Every frozen version, by questionnaire and version."""
@@ -149,18 +209,20 @@ class Store:
 
     def copy_to(self, path: Path) -> int:
         """Write a consistent copy of everything into a new SQLite file, while answers come in. Answers in it."""
-        return write_copy(self._engine, path)
+        count = write_copy(self._engine, path)
+        self.audit.note("backup", path.name, count)
+        return count
 
     def count(self, questionnaire: str, version: int) -> int:
         """How many answers stand."""
         table = tables.submission
-        query = select(func.count()).select_from(table).where(*_standing(questionnaire, version))
+        query = select(func.count()).select_from(table).where(*standing(questionnaire, version))
         with self._read() as connection:
             return connection.execute(query).scalar_one()
 
-    def tally(self, questionnaire: Questionnaire) -> Tally:
-        """Counts and sums over the answers that stand; counted anew only after a change."""
-        return self._tallies.of(questionnaire)
+    def public(self, questionnaire: Questionnaire) -> Public:
+        """The figures that everybody may see; a step further where enough answers came for one."""
+        return self._publishing.of(questionnaire)
 
     def versions(self, questionnaire: str) -> tuple[int, ...]:
         """The versions that were answered, the earliest first."""
@@ -173,15 +235,8 @@ class Store:
 
     def rows(self, questionnaire: Questionnaire) -> tuple[Stored, ...]:
         """All answers to this version that stand, in the order in which they were received."""
-        table = tables.submission
-        of_submission = _standing(questionnaire.id, questionnaire.version)
         with self._snapshot() as connection:
-            heads = connection.execute(
-                select(table).where(*of_submission).order_by(table.c.received, table.c.id)
-            ).all()
-            scores = _grouped(connection, tables.answer, "item", "score", of_submission)
-            texts = _grouped(connection, tables.suggestion, "module", "text", of_submission)
-        return tuple(_stored(questionnaire, head, scores[head.id], texts.get(head.id, {})) for head in heads)
+            return stored_rows(connection, questionnaire)
 
     def frozen(self, questionnaire: str, version: int) -> Questionnaire | None:
         """The version as it was asked, or None before its first answer."""
@@ -222,6 +277,14 @@ class Store:
             # What was written into a file that went away meanwhile must not be acknowledged.
             self._place.check()
 
+    @contextmanager
+    def _alone(self) -> Iterator[Connection]:
+        """A connection outside of any transaction, while nothing else is written here."""
+        with self._writing, explained(self._place.name):
+            self._place.check()
+            with self._engine.connect() as connection:
+                yield connection
+
 
 @contextmanager
 def explained(place: str) -> Iterator[None]:
@@ -240,20 +303,6 @@ def explained(place: str) -> Iterator[None]:
 
 
 _OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))
-_TOO_LATE = (
-    "the answers were frozen for evaluation, so this one cannot be withdrawn any more",
-    "ask the curator; no name was stored with it",
-)
-
-
-def _erase(connection: Connection, which: tuple[ColumnElement[bool], ...]) -> int:
-    """Delete scores and texts of the submissions; the rows stay as tombstones."""
-    table = tables.submission
-    ids = select(table.c.id).where(*which)
-    for part in (tables.answer, tables.suggestion):
-        connection.execute(delete(part).where(part.c.submission.in_(ids)))
-    empty = {"withdrawn": now(), "digest": "", "exhibit": None}
-    return connection.execute(update(table).where(*which).values(**empty)).rowcount
 
 
 def _frozen_digest(connection: Connection, questionnaire: Questionnaire) -> str | None:
@@ -263,35 +312,3 @@ def _frozen_digest(connection: Connection, questionnaire: Questionnaire) -> str 
             table.c.questionnaire == questionnaire.id, table.c.version == questionnaire.version
         )
     ).scalar_one_or_none()
-
-
-def _standing(questionnaire: str, version: int) -> tuple[ColumnElement[bool], ...]:
-    table = tables.submission
-    return (table.c.questionnaire == questionnaire, table.c.version == version, table.c.withdrawn.is_(None))
-
-
-def _grouped(connection: Connection, table: Table, key: str, value: str, of_submission) -> dict[str, dict]:
-    """submission → {key: value} in one query."""
-    query = (
-        select(table.c.submission, table.c[key], table.c[value]).join(tables.submission).where(*of_submission)
-    )
-    groups: dict[str, dict] = {}
-    for submission, name, content in connection.execute(query):
-        groups.setdefault(submission, {})[name] = content
-    return groups
-
-
-def _stored(questionnaire: Questionnaire, head, scores: dict, texts: dict) -> Stored:
-    language: Language = "zh" if head.language == "zh" else "en"
-    answer = Answer(
-        id=head.id,
-        questionnaire=head.questionnaire,
-        version=head.version,
-        language=language,
-        scores=tuple((item, scores[item]) for item in questionnaire.item_ids),
-        suggestions=tuple((m.id, texts[m.id]) for m in questionnaire.modules if m.id in texts),
-        exhibit=head.exhibit,
-    )
-    # SQLite gives the time back without its zone; it was written in UTC.
-    received = head.received if head.received.tzinfo else head.received.replace(tzinfo=UTC)
-    return Stored(answer, received.astimezone(UTC))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sqlite3
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from sqlalchemy import (
     JSON,
     Column,
     Connection,
+    Date,
     DateTime,
     Engine,
     ForeignKey,
@@ -26,18 +26,22 @@ from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError
 
 from survey.errors import StoreError
+from survey.store import permissions
 
 __all__ = [
     "SQLITE_FILE",
     "answer",
     "audit",
     "begin_writing",
+    "figure",
     "metadata",
     "open_engine",
+    "publication",
     "sqlite_file",
     "submission",
     "suggestion",
     "token",
+    "trace",
     "version",
 ]
 
@@ -70,8 +74,9 @@ submission = Table(
     Column("received", DateTime(timezone=True), nullable=False),
     Column("withdrawn", DateTime(timezone=True)),
     Column("frozen", DateTime(timezone=True)),  # fixed for evaluation: cannot be withdrawn any more
+    Column("counted", Integer),  # the step of the public figures that counted it first; null: none yet
 )
-Index("submission_by_questionnaire", submission.c.questionnaire, submission.c.version)
+Index("submission_by_questionnaire", submission.c.questionnaire, submission.c.version, submission.c.counted)
 
 answer = Table(
     "answer",
@@ -89,6 +94,33 @@ suggestion = Table(
     Column("text", Text, nullable=False),
 )
 
+# The last step of a version's public figures: how many answers it counted.
+publication = Table(
+    "publication",
+    metadata,
+    Column("questionnaire", String(64), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("step", Integer, nullable=False),
+    Column("n", Integer, nullable=False),
+)
+
+# The last figure of each item, rounded as everybody saw it: an exact sum beside the answers that stand would keep
+# what was withdrawn. n = 0: there was none yet. judged: the step that last looked whether there could be another.
+# withheld: why it is not shown now.
+figure = Table(
+    "figure",
+    metadata,
+    Column("questionnaire", String(64), primary_key=True),
+    Column("version", Integer, primary_key=True),
+    Column("item", String(64), primary_key=True),
+    Column("step", Integer, nullable=False),
+    Column("judged", Integer, nullable=False),
+    Column("n", Integer, nullable=False),
+    Column("units", Integer, nullable=False),
+    Column("decimals", Integer, nullable=False),
+    Column("withheld", String(8)),
+)
+
 token = Table(
     "token",
     metadata,
@@ -96,9 +128,12 @@ token = Table(
     Column("label", String(200), nullable=False),
     Column("digest", String(64), nullable=False, unique=True),
     Column("made", DateTime(timezone=True), nullable=False),
+    Column("questionnaire", String(64)),  # the only one it opens; null: all
+    Column("expires", Date),  # the last day (UTC) on which it is good; null: it has none
+    Column("used", Date),  # the day (UTC) of its last use
 )
 
-# What was done to the store, by which no visitor can be known: freezing, purging, tokens.
+# What was done to the store, by which no visitor can be known: survey/store/audit.py.
 audit = Table(
     "audit",
     metadata,
@@ -106,6 +141,15 @@ audit = Table(
     Column("at", DateTime(timezone=True), nullable=False),
     Column("action", String(32), nullable=False),
     Column("subject", String(200), nullable=False),
+    Column("number", Integer),  # of answers concerned
+)
+
+# One row for each erasure whose last bytes may still be in the database's files: survey/store/erasure.py.
+trace = Table(
+    "trace",
+    metadata,
+    Column("key", String(32), primary_key=True),
+    Column("since", DateTime(timezone=True), nullable=False),
 )
 
 
@@ -149,7 +193,7 @@ def open_engine(where: Path | str) -> Engine:
     """
     if isinstance(where, Path):
         try:
-            where.mkdir(parents=True, exist_ok=True)
+            permissions.make_folder(where, SQLITE_FILE)
         except OSError as error:
             raise StoreError(f"{where}: no data folder ({error.strerror}) – give a writable one") from None
         url = make_url("sqlite://").set(database=str(where / SQLITE_FILE))
@@ -170,7 +214,7 @@ def open_engine(where: Path | str) -> Engine:
 def _open_file(url: URL, file: Path) -> Engine:
     try:
         if not file.exists():
-            os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o644))
+            permissions.make_file(file)
     except OSError as error:
         raise StoreError(f"no database file ({error.strerror}) – give a writable place", str(file)) from None
 
@@ -191,4 +235,11 @@ def _prepare_sqlite(connection, _record) -> None:
     # NORMAL may lose the last commits when the power fails; an acknowledged answer must not be lost.
     cursor.execute("PRAGMA synchronous=FULL")
     cursor.execute("PRAGMA foreign_keys=ON")
+    # What is sorted or rewritten stays in memory: a temporary file would lie outside of the data folder.
+    cursor.execute("PRAGMA temp_store=MEMORY")
+    # Builds differ in what they do unasked, and one may be without it.
+    if cursor.execute("PRAGMA secure_delete=ON").fetchone() != (1,):
+        raise StoreError(
+            "this SQLite does not overwrite what is deleted – use Python with another build of it"
+        )
     cursor.close()

@@ -1,7 +1,10 @@
 from __future__ import annotations
 
+import contextlib
 import itertools
+import subprocess
 import warnings
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -14,6 +17,14 @@ import survey
 _NUMBERS = itertools.count()
 
 
+def started(pgserver, folder: Path):
+    """pgserver waits ten seconds for its server and no longer; asked again it takes the one that starts meanwhile."""
+    for _ in range(30):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return pgserver.get_server(folder, cleanup_mode="delete")
+    raise AssertionError("PostgreSQL did not start in five minutes")
+
+
 @pytest.fixture(scope="session")
 def postgres(tmp_path_factory):
     """A PostgreSQL server of our own; a function that makes an empty database and returns its URL."""
@@ -23,7 +34,7 @@ def postgres(tmp_path_factory):
         pgserver = pytest.importorskip("pgserver", reason="no PostgreSQL server for this platform")
     from sqlalchemy import create_engine, make_url, text
 
-    server = pgserver.get_server(tmp_path_factory.mktemp("postgres"), cleanup_mode="delete")
+    server = started(pgserver, tmp_path_factory.mktemp("postgres"))
     url = make_url(server.get_uri()).set(drivername="postgresql+psycopg")
     engine = create_engine(url, isolation_level="AUTOCOMMIT")
 

@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy import create_engine, text
 
-from survey.demonstration.recipe import ITEMS, drawn_sample, exact_sample
+from survey.demonstration import sample_file
+from survey.demonstration.recipe import drawn_sample
 from survey.demonstration.table3 import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS
+from survey.reading import read_scores
 
 __all__ = [
     "ALPHA",
@@ -42,7 +44,8 @@ def given(value: T | None) -> T:
 
 def paper_sample() -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """Twelve items, 20 rows: Table 3's ten with the printed KMO, χ² and α, and the two static ones at .968, .930."""
-    return exact_sample(), ITEMS
+    table = read_scores(sample_file("exact-20"))
+    return table.scores, table.items
 
 
 def likert_sample(n: int, seed: int) -> NDArray[np.float64]:

@@ -114,7 +114,10 @@ def test_items_may_be_called_as_the_page_s_own_properties_are(visit, site):
     module = part("module", "constructor", "title") + f"suggestion = {text('more')}\n"
     items = "".join(part("module.item", key, "label") for key in ODD_KEYS)
     (site[1].questionnaires.folder / "odd.toml").write_text(head + scale + module + items, "utf-8")
-    time.sleep(0.5)  # until a new file shows
+    end = time.monotonic() + 30
+    while site[1].questionnaires.get("odd") is None:  # until a new file shows
+        assert time.monotonic() < end
+        time.sleep(0.05)
     page = visit("/questionnaires/odd?lang=en")
     assert page.locator("#count").inner_text() == f"0 of {len(ODD_KEYS)} answered"
     assert page.locator("textarea").input_value() == ""
@@ -163,9 +166,9 @@ def test_what_is_lacking_is_listed_and_reached_by_keyboard_alone(visit, site):
     page = visit("/questionnaires/platform-user?lang=zh")
     page.locator("#send").focus()
     page.keyboard.press("Enter")
-    assert page.locator("#errors a").count() == 25  # 24 items and the consent
-    for left in range(24, 0, -1):
-        page.locator("#errors a").nth(24 - left).focus()
+    assert page.locator("#errors a").count() == 31  # 30 items and the consent
+    for left in range(30, 0, -1):
+        page.locator("#errors a").nth(30 - left).focus()
         page.keyboard.press("Enter")
         page.keyboard.press("Space")
         page.keyboard.press("ArrowRight")
@@ -385,3 +388,54 @@ def test_nothing_overflows_and_every_target_is_large_enough_for_a_thumb(visit, w
     clipped = page.evaluate("""() => [...document.querySelectorAll(".cell")]
         .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.textContent)""")
     assert clipped == []
+
+
+# Words, by a pattern, of the elements a selector finds that stand on more than one line.
+BROKEN = """([selector, pattern]) => [...document.querySelectorAll(selector)].filter((one) => one.checkVisibility())
+    .flatMap((one) => {
+        const texts = document.createTreeWalker(one, NodeFilter.SHOW_TEXT), found = [];
+        while (texts.nextNode()) for (const word of texts.currentNode.data.matchAll(new RegExp(pattern, "g"))) {
+            const range = document.createRange();
+            range.setStart(texts.currentNode, word.index);
+            range.setEnd(texts.currentNode, word.index + word[0].length);
+            if (new Set([...range.getClientRects()].map((box) => box.top)).size > 1) found.push(word[0]);
+        }
+        return found;
+    })"""
+
+# Buttons whose words reach beyond their frame.
+SPILT = """() => [...document.querySelectorAll("button")].filter((one) => one.checkVisibility())
+    .filter((one) => one.scrollWidth > one.clientWidth).map((one) => one.textContent)"""
+
+
+@pytest.mark.parametrize(
+    ("status", "told"),
+    [
+        (204, {"zh": "已撤回", "en": "are deleted."}),
+        (202, {"zh": "残留数据将很快清除", "en": "the last traces of them"}),
+        (404, {"zh": "没有找到", "en": "not known"}),
+        (409, {"zh": "不能再撤回", "en": "can no longer be withdrawn"}),
+        (503, {"zh": "稍后再试", "en": "try again later"}),
+    ],
+)
+@pytest.mark.parametrize("language", ["zh", "en"])
+def test_every_reply_to_a_withdrawal_is_told_and_its_button_stands_on_one_line(visit, status, told, language):
+    page = visit(f"/questionnaires/garment?lang={language}", width=390)
+    page.route("**/submissions/**", lambda route: route.fulfill(status=status))
+    page.locator("details.withdraw summary").click()
+    for width in (390, 1100):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate(BROKEN, ["button", r"\S+"]) == []
+        assert page.evaluate(SPILT) == []
+    page.locator("#withdraw-code").fill("01234567-89ab-4def-8123-456789abcdef")
+    page.locator("#withdraw button").click()
+    page.get_by_text(told[language]).wait_for()
+
+
+@pytest.mark.parametrize("language", ["zh", "en"])
+@pytest.mark.parametrize("width", [320, 390, 1100])
+def test_the_record_of_processing_fits_and_breaks_no_word(visit, width, language):
+    page = visit(f"/privacy?lang={language}", width=width)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate(BROKEN, ["h1, h2, th, td, dt", "[A-Za-z]+"]) == []

@@ -165,13 +165,14 @@ def test_a_token_opens_the_rows_until_it_is_revoked(tmp_path, capsys):
 
 FAULTY = {
     "no numbers": ("a,b\nx,y\n", "no column of numbers"),
+    "endless": ("a,b\n1,2\n2,3\n3,1e999\n", "table.csv: line 4, b: '1e999' is infinite"),
     "header only": ("a,b\n", "no rows"),
     "empty": ("", "no rows"),
     "ragged": ("a,b\n1,2\n3\n", "line 3 has 1 cells, the header 2"),
     "twice": ("a,a\n1,2\n3,4\n", "column 'a' stands twice"),
     "one row": ("a,b\n1,2\n", "1 complete answers"),
     "all equal": ("a,b\n3,3\n3,3\n3,3\n", "the same score in all answers"),
-    "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "b: infinite"),
+    "infinite": ("a,b\n1,inf\n2,3\n3,1\n", "table.csv: line 2, b: 'inf' is infinite"),
     "absurd": ("a,b\n1,1e308\n2,3\n3,1\n4,4\n", "b: scores beyond"),
     "underscore": ("a,b\n1,4_0\n2,3\n3,1\n4,4\n", "line 2, b: '4_0' is no number"),
     "no utf-8": (b"a,b\n\xff,2\n", "no CSV in UTF-8"),

@@ -64,7 +64,7 @@ def test_purge_erases_only_what_was_kept_long_enough(tmp_path, capsys, day, left
     asked = kept_until(day)
     filled(tmp_path, asked)
     assert main(["freeze", "garment", "--data", str(tmp_path)]) == 0
-    assert main(["purge", "--data", str(tmp_path)]) == 0
+    assert main(["purge", "--yes", "--data", str(tmp_path)]) == 0
     assert ("3 answers erased" in capsys.readouterr().out) == (left == 0)
     with closing(Store(tmp_path)) as store:
         assert len(store.rows(asked)) == left

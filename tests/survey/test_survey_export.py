@@ -138,7 +138,7 @@ def test_the_codebook_names_every_column_in_both_languages():
     tone = next(row for row in table if row["column"] == "culture_tone")
     assert tone["label_zh"] == "传统民族服饰文化 · 色调"
     assert tone["values_en"].startswith("1 = Very unreasonable; 2 = ")
-    assert tone["missing"] == "未使用 / Not used"
+    assert tone["missing"] == "未使用 / Not used; . = 未询问 / not asked (needs culture)"
 
 
 @pytest.mark.parametrize("kind", FORMATS)

@@ -20,7 +20,14 @@ from survey import read_questionnaire
 from survey.store.tables import open_engine
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
-SETTINGS = {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1, "busy_timeout": 15_000}
+SETTINGS = {
+    "journal_mode": "wal",
+    "synchronous": 2,
+    "foreign_keys": 1,
+    "busy_timeout": 15_000,
+    "secure_delete": 1,
+    "temp_store": 2,
+}
 URL = "/api/v1/questionnaires/garment/submissions"
 
 

@@ -23,13 +23,13 @@ from survey.analysis import (
 )
 from survey.analysis.components import eigenvalues
 from survey.demonstration import sample_file
-from survey.demonstration.recipe import drawn_sample, exact_sample
+from survey.demonstration.recipe import drawn_sample
 from survey.reading import read_scores
 
 RECORDED = json.loads((Path(__file__).parent / "recorded" / "psych.json").read_text("utf-8"))
 SETS = RECORDED["data_sets"]
 OURS = {
-    "exact-20x10": lambda: exact_sample()[:, :10],
+    "exact-20x10": lambda: read_scores(sample_file("exact-20")).scores[:, :10],
     "likert-20x12": lambda: read_scores(sample_file("likert-20")).scores,
     "likert-200x12": lambda: drawn_sample(200, seed=200),
     "likert-1000x8": lambda: drawn_sample(1000, seed=1000)[:, :8],

@@ -53,7 +53,7 @@ def folder(tmp_path_factory):
 
 
 def platform(questionnaire, n, seed):
-    z = np.random.default_rng(seed).normal(size=(n, 24))
+    z = np.random.default_rng(seed).normal(size=(n, len(questionnaire.items)))
     scores = np.clip(np.rint(4 + z), 1, 5)
     scores[0, 3] = np.nan
     written = (("culture", "<script>alert(1)</script>"),)
@@ -76,7 +76,7 @@ def test_the_page_needs_nothing_from_outside_and_calls_itself_synthetic(folder):
 def test_every_figure_is_svg_and_every_table_csv_in_both_languages(folder):
     for language in ("en", "zh"):
         drawn = {path.name.split(".")[0] for path in (folder / "figures").glob(f"*.{language}.svg")}
-        assert drawn == {"correlation", "scatter", "scree", "loadings"}
+        assert drawn == {"correlation", "scatter", "scree", "loadings", "way"}
         for path in (folder / "figures").glob(f"*.{language}.svg"):
             assert ElementTree.parse(path).getroot().tag.endswith("svg")
         tables = {path.name.split(".")[0] for path in (folder / "tables").glob(f"*.{language}.csv")}
@@ -90,6 +90,10 @@ def test_every_figure_is_svg_and_every_table_csv_in_both_languages(folder):
             "variance",
             "loadings",
             "alpha",
+            "scales",
+            "scale-items",
+            "way",
+            "way-pairs",
             "notes",
             "paper",
         }
@@ -146,7 +150,7 @@ def test_a_platform_report_draws_both_roles_and_escapes_what_visitors_wrote():
 
 def test_module_and_dimension_means_have_student_s_interval():
     scores = platform(USER, 20, 3).scores
-    seen = profile(scores, 4, 6)
+    seen = profile(scores, len(USER.modules), 6)
     column = scores[:, 6 * 2 + 1]
     assert seen.mean[2, 1] == pytest.approx(column.mean())
     assert seen.half[2, 1] == pytest.approx(2.0930240544 * column.std(ddof=1) / np.sqrt(20))

@@ -19,6 +19,7 @@ from survey.analysis import Settings, analyse, summary
 from survey.analysis.summary import KEYS
 from survey.cli import main
 from survey.export import FORMATS
+from survey.working import stated_groups
 
 BASE = "/api/v1/questionnaires"
 GUARDED = ["rows", "suggestions", "analysis", *(f"export/{kind}" for kind in FORMATS)]
@@ -126,7 +127,8 @@ def test_every_choice_of_the_analysis_reaches_it(hall, researcher):
         ({"drop": "pleat,silhouette"}, Settings(drop=("pleat", "silhouette"))),
     ):
         reply = hall.client.get(f"{BASE}/garment/analysis", params=query, headers=researcher)
-        wanted = summary(analyse(stored, hall.garment.item_ids, settings=settings))
+        groups = stated_groups(hall.garment)
+        wanted = summary(analyse(stored, hall.garment.item_ids, settings=settings, groups=groups))
         assert reply.json() == json.loads(json.dumps(wanted)), query
 
 

@@ -137,6 +137,67 @@ def test_bootstrap_means_are_as_wide_as_the_normal_interval():
     assert np.abs((found.means[1] - found.means[0]) / 2 / normal - 1).max() < 0.08
 
 
+def plainly(table, draws, seed=0):
+    """Means, α, eigenvalues and Kaiser's number of tables that are really resampled: draws × …"""
+    generator, found = rng(seed), []
+    for _ in range(draws):
+        sample = table[generator.integers(0, len(table), len(table))]
+        values = np.linalg.eigvalsh(np.corrcoef(sample, rowvar=False))[::-1]
+        found.append([*sample.mean(axis=0), reliability(sample).alpha, *values])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("n", [60, 9000])
+def test_resamples_are_distributed_as_tables_drawn_row_by_row(n):
+    # 9000 answers are drawn in several blocks; in order these differ, so that how many fall into each one matters.
+    table = likert_sample(n, 11)[:, :6]
+    table = table[np.argsort(table.sum(axis=1))]
+    _, found = resampled(table, draws=3000)
+    ours = np.hstack([found.means, given(found.alpha)[:, None], given(found.eigenvalues)])
+    theirs = np.quantile(plainly(table, 1500), [0.025, 0.975], axis=0)
+    width = theirs[1] - theirs[0]
+    assert np.abs((ours - theirs) / width).max() < 0.12
+    assert np.abs((ours[1] - ours[0]) / width - 1).max() < 0.12
+
+
+def test_whole_scores_and_the_same_on_a_broken_scale_give_the_same_intervals():
+    # Whole scores are added in single precision: nothing may be lost by it.
+    table = likert_sample(9000, 12)
+    _, whole = resampled(table, draws=300)
+    _, broken = resampled(table / 7 + 0.1, draws=300)
+    assert broken.means == pytest.approx(whole.means / 7 + 0.1, abs=1e-12)
+    for name in ("alpha", "eigenvalues", "loadings", "kaiser"):
+        assert given(getattr(broken, name)) == pytest.approx(given(getattr(whole, name)), abs=1e-10)
+
+
+def test_dropped_items_and_gaps_beside_them_leave_the_others_as_they_are():
+    table, factored = likert_sample(400, 13), np.arange(10) > 1
+    _, bare = resampled(table[:, 2:], draws=2000)
+    beside = bootstrap(table, factored, None, rng(3), draws=2000)
+    table[::3, 0] = np.nan
+    gaps = bootstrap(table, factored, None, rng(4), draws=2000)
+    width = np.diff(given(bare.alpha))[0]
+    for found in (beside, gaps):
+        assert np.abs(given(found.alpha) - given(bare.alpha)).max() < 0.15 * width
+        assert found.means.shape == (2, 10)
+        assert found.used == 2000
+
+
+@pytest.mark.parametrize("middle", [3.0, 1000.3, 1e6 + 0.1])
+def test_an_item_that_stands_still_far_from_zero_is_seen(middle):
+    table = likert_sample(12, 7)
+    table[:, 0] = middle
+    table[0, 0] = middle + 40.2
+    found = bootstrap(table, np.ones(10, bool), None, rng(1), draws=500)
+    assert 0.55 < found.used / found.draws < 0.75
+
+
+def test_progress_counts_every_resample():
+    told = []
+    bootstrap(likert_sample(30, 1), np.ones(10, bool), None, rng(1), draws=1700, progress=told.append)
+    assert sum(told) == 1700
+
+
 def test_procrustes_makes_resamples_comparable_where_bare_varimax_swaps_columns():
     table = likert_sample(100, 5)
     components, found = resampled(table, draws=300)

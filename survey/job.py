@@ -1,0 +1,154 @@
+"""What runs in a process of its own, so that visitors need not wait for it: an export or an analysis of the store.
+
+`python -m survey.job`: reads one line of JSON from its input, writes the file to its output, and at its end one line
+of JSON to its errors: {"headers": …}, {"refusal": …} or {"store": …}. Its input stays open; when that ends, so does
+the process, whatever it is at: whoever started it is gone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+import sys
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+# All that costs time to import is imported where it is needed, after the process has made way for others.
+if TYPE_CHECKING:
+    from sqlalchemy import Connection
+
+    from survey.export.sheet import Sheet
+    from survey.questionnaire import Questionnaire
+    from survey.store.archive import Archive
+
+__all__ = ["HEADER", "NICE", "main", "sheet_of"]
+
+HEADER = "Survey-Anonymity"  # says of a k-anonymous file what was made coarse
+NICE = 10  # how far behind the service it stands for the processor
+
+
+def main() -> int:
+    """Do the one job. Exit status 0, also where the job is refused."""
+    if hasattr(os, "nice"):
+        with contextlib.suppress(OSError):
+            os.nice(NICE)
+    job = json.loads(sys.stdin.buffer.readline())
+    folder = Path(job["folder"])
+    threading.Thread(target=_end_with_input, args=(folder,), daemon=True).start()
+    from survey.errors import AnswerError, StoreError
+    from survey.room import room_in
+
+    told: dict[str, Any]
+    try:
+        # A buffer of its own: what sys.stdout could not write it would try once more at the end, and fail there.
+        with room_in(folder.parent), open(sys.stdout.fileno(), "wb", closefd=False) as out:
+            told = {"headers": _done(job, out, folder)}
+    except AnswerError as error:
+        told = {"refusal": [error.field, error.problem, error.remedy, error.status]}
+    except StoreError as error:
+        told = {"store": [error.problem, error.place]}
+    sys.stderr.write(json.dumps(told) + "\n")
+    return 0
+
+
+def _end_with_input(folder: Path) -> None:
+    # Not through sys.stdin, whose lock the interpreter wants at its end.
+    while os.read(0, 1024):
+        pass
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(1)
+
+
+def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
+    """Write what is asked for; what its response's header says of it. Raises AnswerError, StoreError."""
+    from survey.questionnaire import Questionnaire
+    from survey.store.archive import Archive
+
+    archive = Archive(Path(job["data"]) if "data" in job else job["db"])
+    asked, task = Questionnaire.model_validate(job["questionnaire"]), job["task"]
+    if task == "analysis":
+        found = _analysed(asked, archive, job["settings"])
+        out.write(json.dumps(found, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode())
+        return {}
+    from survey.errors import AnswerError
+    from survey.export.anonymity import TooFew
+
+    try:
+        with archive.snapshot() as connection:
+            sheet = sheet_of(connection, asked, job.get("k"), task)
+            _put(task, sheet, out, folder)
+    except TooFew as error:
+        problem, _, remedy = str(error).partition(" – ")
+        raise AnswerError("k", problem, remedy) from None
+    return {} if sheet.anonymity is None else {HEADER: sheet.anonymity.told()}
+
+
+def _put(task: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
+    from survey.export import put
+    from survey.export.json_file import put_rows, put_suggestions
+
+    if task in ("rows", "suggestions"):
+        (put_rows if task == "rows" else put_suggestions)(sheet, out)
+    else:
+        put(task, sheet, out, folder)
+
+
+def sheet_of(connection: Connection, questionnaire: Questionnaire, k: int | None, kind: str) -> Sheet:
+    """All standing answers to a version, read while the sheet is written. connection: of a snapshot.
+
+    k: so many answers share all that is told of a visitor beside the scores, None: everything is told. kind: of what
+    the sheet becomes; a script ("r") is for the items that somebody was asked, and a "codebook" tells of no answer
+    unless k made them coarse. Raises TooFew where there are fewer than k answers.
+    """
+    import numpy as np
+
+    from survey.export.anonymity import hide
+    from survey.export.sheet import anonymous, of_columns, of_rows
+    from survey.store.columns import read_columns, read_heads, read_texts
+
+    if kind == "codebook" and k is None:
+        return of_rows(questionnaire, ())
+    columns = read_columns(connection, questionnaire)
+    heads = read_heads(connection, questionnaire)
+    if kind == "r" and columns.asked.any():
+        there = {item for item, n in zip(questionnaire.item_ids, columns.asked, strict=True) if n}
+        columns = columns.of(questionnaire.asked(there))
+    if k is None:
+        return of_columns(columns, heads, read_texts(connection, questionnaire))
+    # Drawn from the system's own source of chance: nobody can put the rows back into the order of their arrival.
+    return anonymous(columns, heads, hide(columns, heads, k, np.random.default_rng()))
+
+
+def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) -> dict[str, Any]:
+    from survey.analysis import analyse
+    from survey.analysis.errors import AnalysisError
+    from survey.analysis.pipeline import Settings
+    from survey.analysis.summary import summary
+    from survey.errors import AnswerError
+    from survey.working import dropped, reverse_keyed, stated_groups, stored_scores
+
+    table = stored_scores(whole, archive, texts=False)
+    factors = wanted["factors"]
+    settings = Settings(
+        drop=dropped(wanted["drop"], whole),
+        factors=int(factors) if factors.isdecimal() else factors,
+        rotation=wanted["rotation"],
+        missing=wanted["missing"],
+        method=wanted["correlation"],
+        bootstrap=wanted["bootstrap"],
+        seed=wanted["seed"],
+        reverse=reverse_keyed(wanted["reverse"], table),
+    )
+    told = {"points": whole.points, "unasked": table.unasked, "groups": stated_groups(table.questionnaire)}
+    try:
+        return summary(analyse(table.scores, table.items, settings=settings, **told))
+    except AnalysisError as error:
+        problem, _, remedy = str(error).partition(" – ")
+        raise AnswerError(error.code, problem, remedy or "see survey/README.md") from None
+
+
+if __name__ == "__main__":
+    sys.exit(main())

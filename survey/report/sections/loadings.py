@@ -1,0 +1,34 @@
+"""Loadings sorted within components (the paper's Table 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from html import escape
+
+from survey.report import figures
+from survey.report.article import Article
+from survey.report.tables import MANY
+
+__all__ = ["loadings"]
+
+
+def loadings(article: Article) -> Iterator[str]:
+    """The table and the figure, or that no component could be extracted."""
+    found, say = article.found.components, article.say
+    yield article.section("section_loadings")
+    if found is None:
+        yield f"<p>{escape(say('no_components'))}</p>"
+        return
+    yield article.set(article.tables["loadings"], "dense" if found.kept > MANY else "")
+    if found.kept > MANY:
+        yield f'<p class="small">{escape(" · ".join(article.names))}</p>'
+    yield f'<p class="small">{escape(say("naming"))}</p>' if article.asked else ""
+    yield article.set(article.tables.get("component-correlations"))
+    order, boot = found.sorted_items(), article.found.bootstrap
+    interval = None if boot is None or boot.loadings is None else boot.loadings[:, order]
+    labels = [say.item(article.found.factored[row]) for row in order]
+    caption = say("loadings_figure")
+    svg = figures.loadings(
+        found.loadings[order], interval, labels, article.names, article.name("loadings"), caption
+    )
+    yield article.draw("loadings", caption, svg)
