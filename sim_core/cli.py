@@ -14,7 +14,7 @@ __all__ = ["main"]
 
 ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
 ELSEWHERE = {"mannequin": "sim_core.garment.figure_command"}  # commands that share another room
-BENCHES = ("weave", "mesh", "cloth", "field")
+BENCHES = ("weave", "drafts", "mesh", "cloth", "field")
 
 DESCRIPTION = """\
 The simulation core, one stage at a time: files in, files out.

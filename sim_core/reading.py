@@ -15,7 +15,7 @@ from sim_core.errors import FileProblem
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["read_json", "read_npz", "read_text", "read_toml", "shown"]
+__all__ = ["read_bytes", "read_json", "read_npz", "read_text", "read_toml", "shown"]
 
 LARGEST_TEXT = 16_000_000  # bytes of a TOML or JSON file; an outline of half a million points
 LARGEST_ARRAYS = 2_000_000_000  # bytes of all arrays of an npz once unpacked
@@ -48,7 +48,7 @@ def read_toml(path: Path, what: str) -> dict[str, Any]:
 
     Raises FileProblem where it is missing, empty, too large, not UTF-8 or not TOML.
     """
-    text = _text(path, what)
+    text = read_bytes(path, what)
     try:
         return tomllib.loads(text.decode("utf-8-sig"))
     except RecursionError as error:
@@ -59,7 +59,7 @@ def read_toml(path: Path, what: str) -> dict[str, Any]:
 
 def read_json(path: Path, what: str) -> Any:
     """The value of a JSON file; raises FileProblem as `read_toml` does."""
-    text = _text(path, what)
+    text = read_bytes(path, what)
     try:
         return json.loads(text.decode("utf-8-sig"))
     except RecursionError as error:
@@ -70,14 +70,15 @@ def read_json(path: Path, what: str) -> Any:
 
 def read_text(path: Path, what: str) -> str:
     """The text of a UTF-8 file, with or without a byte order mark; raises FileProblem as `read_toml` does."""
-    text = _text(path, what)
+    text = read_bytes(path, what)
     try:
         return text.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise FileProblem(f"{path}: not UTF-8 text – give {what}") from error
 
 
-def _text(path: Path, what: str) -> bytes:
+def read_bytes(path: Path, what: str) -> bytes:
+    """What a file holds; raises FileProblem where it is missing, empty or larger than 16 MB."""
     try:
         with path.open("rb") as stream:
             text = stream.read(LARGEST_TEXT + 1)

@@ -20,7 +20,8 @@ _ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
 
 @dataclass
 class RunState:
-    """All that a run needs to go on with the same bits: positions and velocities (V, 3), step, frame, safety, mode."""
+    """All that a run needs to go on with the same bits where it began: positions and velocities (V, 3), step, frame,
+    safety, mode."""
 
     positions: np.ndarray
     velocities: np.ndarray
@@ -40,7 +41,10 @@ class RunState:
 
 
 def run_key(parts: Iterable[object]) -> str:
-    """A hash of everything a run depends on; arrays by their bytes, the rest by its text."""
+    """A hash of everything a run depends on; arrays by their bytes, the rest by its text.
+
+    Arrays that were computed differ in their last bits from machine to machine, so a run goes on where it began.
+    """
     digest = hashlib.sha256()
     for part in parts:
         data = np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode()

@@ -39,7 +39,7 @@ JSON. --error MM lets the shipped table choose mesh and steps (flag, teapot, han
 --substeps and --integrator set them. What the table was not measured with, it refuses: --layers, --gusts, --precision
 single, and the settings it chooses itself.
 --precision single halves the time at errors of about 0.05 mm; --courant trades steps for time error.
-With --resume FILE an interrupted run goes on where it was, to the same bits.
+With --resume FILE an interrupted run goes on where it was, on the same machine to the same bits.
 """
 
 

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
-ENGINE_VERSION = 4  # raise when equal inputs give other bits: old checkpoints are then left alone
+ENGINE_VERSION = (
+    4  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
+)
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]
@@ -91,9 +93,9 @@ def drape(
     positions that are no sheet, points thrown about, are smoothed into one before the first frame, unless a solid or
     holds are there (`smoothing.py`; `Drape.smoothed` tells).
     on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
-    checkpoint: a file that is rewritten every few seconds; a run resumed from it gives the same bits. keep: leave
-    it behind, finished, for a caller who has more to do. only_own: refuse a state that this run cannot go on from,
-    where it would else be written over; a file that is no state at all is always refused.
+    checkpoint: a file that is rewritten every few seconds; a run resumed from it on the same machine gives the same
+    bits. keep: leave it behind, finished, for a caller who has more to do. only_own: refuse a state that this run
+    cannot go on from, where it would else be written over; a file that is no state at all is always refused.
     certify: look, every frame, whether anything passed through the cloth, by continuous collision detection (needs
     ipctk), and do the frame again where it did; or the mesh, vertices (S, 3) [m] and faces, of a still collider to
     be looked at as well. The start must be free of intersections.

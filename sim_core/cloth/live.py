@@ -27,8 +27,8 @@ class Live:
     """The state of a running cloth; `step` moves it on by one frame of 1/25 s.
 
     sheet, positions (V, 3) [m], substeps and certify as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the
-    material's), which may be set anew between two frames. The same calls give the same bits. Raises SimCoreError on
-    bad input.
+    material's), which may be set anew between two frames. The same calls give the same bits on one
+    machine. Raises SimCoreError on bad input.
     """
 
     def __init__(

@@ -54,7 +54,8 @@ def smoothed(sheet: Sheet, start: np.ndarray, pins: Sequence[int]) -> tuple[np.n
     """A sheet near a hopeless start (V, 3) [m] that passes through itself nowhere, pins where they were.
 
     Also the length l [m] over which it was smoothed; the start itself and 0 where it is not hopeless, or where no
-    such sheet is found. The centre of mass of a sheet without pins stays. Same input, same bits.
+    such sheet is found. The centre of mass of a sheet without pins stays. Same input, same bits on one
+    machine.
     """
     if not hopeless(sheet, start) or len(set(pins)) == len(start):
         return start, 0.0

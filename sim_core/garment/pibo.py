@@ -93,11 +93,12 @@ def pibo_on_figure(
     on_frame: Callable[[int, np.ndarray], None] | None = None,
     checkpoint: Path | None = None,
 ) -> Garment:
-    """Drapes the pattern's strip, woven as `weave`, behind the figure and over its forearms; equal inputs, equal bits.
+    """Drapes the pattern's strip, woven as `weave`, behind the figure and over its forearms.
 
-    The pattern is one half of the strip (mirror = true), draped against its mirror image. beneath: a robe draped on
-    the figure in the same pose. on_frame(index, positions (P, 3) of all pattern vertices) hears 25 frames a second;
-    checkpoint: file to go on from. Raises SimCoreError where the strip is no half or too short.
+    Equal inputs give equal bits on one machine. The pattern is one half of the strip (mirror = true), draped against
+    its mirror image. beneath: a robe draped on the figure in the same pose. on_frame(index, positions (P, 3) of all
+    pattern vertices) hears 25 frames a second; checkpoint: file to go on from. Raises SimCoreError where the strip is
+    no half or too short.
     """
     if not pattern.panels or not pattern.mirror:
         raise SimCoreError(f"pattern {pattern.name}: pibo_on_figure needs one [[panel]] and mirror = true")

@@ -14,7 +14,7 @@ __all__ = ["Clock", "versions"]
 
 
 def versions() -> dict[str, str]:
-    """Of everything that decides the bits of a result."""
+    """Of all that decides the bits of a result on one machine; another processor rounds BLAS and sines differently."""
     return {
         "cloth_engine": str(ENGINE_VERSION),
         "python": platform.python_version(),

@@ -36,7 +36,7 @@ def robe_on_figure(
     on_frame: Callable[[int, np.ndarray, Pose], None] | None = None,
     checkpoint: Path | None = None,
 ) -> Garment:
-    """Dresses the figure in the pattern's panels, woven as `weave`; equal inputs give equal bits.
+    """Dresses the figure in the pattern's panels, woven as `weave`; equal inputs give equal bits on one machine.
 
     The pattern is one half (mirror = true): it is dressed against its own mirror image, so that the robe hangs alike
     on both sides and neither front passes the middle. on_frame(index, positions (P, 3) of all pattern vertices, pose)

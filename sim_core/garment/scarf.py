@@ -47,7 +47,7 @@ def scarf_on_stand(
     on_frame: Callable[[int, np.ndarray], None] | None = None,
     checkpoint: Path | None = None,
 ) -> Garment:
-    """Drapes the pattern's strip, woven as `weave`, over the stand's bar; equal inputs give equal bits.
+    """Drapes the pattern's strip, woven as `weave`, over the stand's bar; equal inputs give equal bits on one machine.
 
     edge: mesh step [m], None: the pattern's own; on_frame(index, positions (V, 3) float32) hears 25 frames a second;
     checkpoint: file to go on from. Raises SimCoreError where the strip does not fit the stand.

@@ -20,12 +20,12 @@ FLAT = 1e-7  # share of cancellation in a triangle's area below which its circle
 
 
 @njit(cache=True, error_model="numpy")
-def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, unsure):
+def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, unsure, spent):
     """The optimal point C left of a -> b (Eq. 9 with the fan rule), or -1 where no point lies there.
 
     places: (n, 2) in growth order.  start … rows: its cells.  boxes: `block_boxes`.  walls: `Walls` or None.
     unsure: (n,) int32, room for points that rounding cannot tell from the circle of the best so far; most of them
-    are settled by a better point, the rest exactly in the end.
+    are settled by a better point, the rest exactly in the end.  spent: (1,) int64, points looked at, counted on.
     Fan rule: points on one circle become a fan from the one that comes first in growth order. If that is not an end
     of the edge, take it; if it is, take the neighbour of the edge's other end along the circle.
 
@@ -41,6 +41,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
     row = cell_of(ay + 0.5 * uy + 0.866 * ux, y0, per_metre, rows)
     reach, blocks, block, final = 0, False, 0, False
     left, right, i, last = column, column, row, row
+    work = 0
     while True:
         if i > last:
             if blocks:
@@ -55,6 +56,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
                     if m < r0 // BLOCK:
                         block = (r0 // BLOCK) * wide
                         continue
+                    work += 1
                     if n * BLOCK > c1 or n * BLOCK + BLOCK <= c0 or _right_of(boxes[m, n], ax, ay, ux, uy):
                         continue
                     left, right = max(c0, n * BLOCK), min(c1, n * BLOCK + BLOCK - 1)
@@ -78,6 +80,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
                 continue
             if not blocks:
                 waiting = 0  # the new stretch holds all that may still be better
+        work += 1 + start[i * columns + right + 1] - start[i * columns + left]
         for k in range(start[i * columns + left], start[i * columns + right + 1]):
             wx, wy = places[k, 0] - ax, places[k, 1] - ay
             p, q = ux * wy, uy * wx
@@ -119,6 +122,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
                 if final:
                     left, right = max(left, c0), min(right, c1)
         i += 1
+    spent[0] += work + waiting
     if waiting == 0:
         return best
     return _settled(places, a, b, best, unsure, waiting, x0, y0, per_metre, columns, rows, walls)
@@ -184,31 +188,34 @@ def block_boxes(places, start, columns, rows):
 
 
 @njit(cache=True, error_model="numpy")
-def strictly_delaunay(places, edges, start, x0, y0, per_metre, columns, rows, boxes):
+def strictly_delaunay(places, edges, start, x0, y0, per_metre, columns, rows, boxes, spent, most):
     """Per edge (m, 2) whether some circle through its ends holds no other point, inside or on it. Returns (m,) bool.
 
     Such an edge is in every (constrained) Delaunay triangulation, so nothing has to keep triangles from crossing it.
+    spent: as in `apex`; the search ends, with what it has, when that is above `most`.
     """
     strict = np.ones(edges.shape[0], np.bool_)
     unsure = np.zeros(places.shape[0], np.int32)
     for m in range(edges.shape[0]):
+        if spent[0] > most:
+            break
         a, b = edges[m, 0], edges[m, 1]
-        if not _crowded(places, a, b, start, x0, y0, per_metre, columns, rows):
+        if not _crowded(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
             continue  # the circle over the edge as diameter is empty
-        c = apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, None, unsure)
-        d = apex(places, b, a, start, x0, y0, per_metre, columns, rows, boxes, None, unsure)
+        c = apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, None, unsure, spent)
+        d = apex(places, b, a, start, x0, y0, per_metre, columns, rows, boxes, None, unsure, spent)
         if c >= 0 and d >= 0:
             side = incircle(
                 places[a, 0], places[a, 1], places[b, 0], places[b, 1], places[c, 0], places[c, 1],
                 places[d, 0], places[d, 1],
             )  # fmt: skip
             strict[m] = side < 0
-        strict[m] &= not _between(places, a, b, start, x0, y0, per_metre, columns, rows)
+        strict[m] &= not _between(places, a, b, start, x0, y0, per_metre, columns, rows, spent)
     return strict
 
 
 @njit(cache=True, error_model="numpy")
-def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows):
+def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
     """Whether a third point may lie in the closed circle over a b as diameter (rounding counts as inside)."""
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     mx, my = (ax + bx) / 2, (ay + by) / 2
@@ -216,6 +223,7 @@ def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows):
     j, j2 = cell_of(mx - radius, x0, per_metre, columns), cell_of(mx + radius, x0, per_metre, columns)
     i, i2 = cell_of(my - radius, y0, per_metre, rows), cell_of(my + radius, y0, per_metre, rows)
     for m in range(i, i2 + 1):
+        spent[0] += 1 + start[m * columns + j2 + 1] - start[m * columns + j]
         for k in range(start[m * columns + j], start[m * columns + j2 + 1]):
             x, y = places[k, 0], places[k, 1]
             p, q = (x - ax) * (x - bx), (y - ay) * (y - by)
@@ -225,13 +233,14 @@ def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows):
 
 
 @njit(cache=True, error_model="numpy")
-def _between(places, a, b, start, x0, y0, per_metre, columns, rows):
+def _between(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
     """Whether a point lies on the segment between its ends."""
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     left, right = min(ax, bx), max(ax, bx)
     low, high = min(ay, by), max(ay, by)
     j, j2 = cell_of(left, x0, per_metre, columns), cell_of(right, x0, per_metre, columns)
     for i in range(cell_of(low, y0, per_metre, rows), cell_of(high, y0, per_metre, rows) + 1):
+        spent[0] += 1 + start[i * columns + j2 + 1] - start[i * columns + j]
         for k in range(start[i * columns + j], start[i * columns + j2 + 1]):
             x, y = places[k, 0], places[k, 1]
             if left <= x <= right and low <= y <= high and k != a and k != b:

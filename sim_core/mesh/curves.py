@@ -1,10 +1,10 @@
-"""Curves of drawing files as polylines: Bézier pieces, elliptic arcs, bulges."""
+"""Curves as polylines: Bézier pieces and elliptic arcs."""
 
 from math import atan2, ceil, cos, hypot, pi, radians, sin
 
 import numpy as np
 
-__all__ = ["arc_points", "bezier_points", "bulge_points"]
+__all__ = ["arc_points", "bezier_points"]
 
 PIECES = 48  # of a Bézier curve
 TURN = radians(3)  # most of an arc in one step
@@ -42,20 +42,3 @@ def arc_points(start, radii, degrees: float, large: bool, sweep: bool, end) -> l
     points = np.column_stack([rx * np.cos(angles), ry * np.sin(angles)]) @ turn + middle
     points[-1] = end
     return list(points)
-
-
-def bulge_points(a, b, bulge: float) -> list[np.ndarray]:
-    """Points after `a` of a DXF polyline segment with a bulge, the tangent of a quarter of its angle."""
-    a, b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
-    if bulge == 0 or np.array_equal(a, b):
-        return [b]
-    chord = b - a
-    middle = (a + b) / 2 + np.array([-chord[1], chord[0]]) * (1 - bulge * bulge) / (4 * bulge)
-    u, angle = a - middle, 4 * atan2(bulge, 1.0)
-    steps = max(1, ceil(abs(angle) / TURN))
-    found = []
-    for k in range(1, steps + 1):
-        c, s = cos(angle * k / steps), sin(angle * k / steps)
-        found.append(middle + np.array([c * u[0] - s * u[1], s * u[0] + c * u[1]]))
-    found[-1] = b
-    return found

@@ -4,7 +4,8 @@ The point C that minimises (AC^2 + BC^2 - AB^2) / (|AC| |BC|) = 2 cos C on the l
 through A and B holds no other point on that side: the Delaunay triangle. Comparing two candidates by the exact
 `incircle` test instead of by the cosine makes the choice free of rounding. Candidates on one circle are a tie; the
 fan rule of `apex` settles it alike from whichever edge the circle is met (proof in the README). The paper's stop rule
-"all points used" may leave holes: growth stops when the front is empty.
+"all points used" may leave holes: growth stops when the front is empty. Where points crowd into few cells, or walls
+hide most of them, its searches grow with the number of points: past a bounded share `incremental.py` takes over.
 """
 
 from typing import NamedTuple
@@ -14,21 +15,26 @@ from numba import njit
 
 from sim_core.mesh.apex import apex, block_boxes, strictly_delaunay
 from sim_core.mesh.cells import Cells, point_cells
+from sim_core.mesh.incremental import hull_edges, inner_faces, joined_points
 from sim_core.mesh.walls import wall_cells
 
 __all__ = ["CLOSED", "Growth", "grow_points"]
 
-CLOSED, TOO_MANY, NO_APEX = 0, 1, 2
+CLOSED, TOO_MANY, NO_APEX, TOO_LONG = 0, 1, 2, 3
+PATIENCE = 400  # points and walls looked at, by the point: some 20 where points are spread evenly
 
 
 class Growth(NamedTuple):
     """faces: (F, 3) int32 counter-clockwise with y up.  status: 0 closed, 1 endless front, 2 a seed without an apex.
-    where: index of the point where it failed, or -1.  walls: number of seeds that are not Delaunay by themselves."""
+    where: index of the point where it failed, or -1.  walls: number of seeds that are not Delaunay by themselves.
+    work: points and walls that were looked at.  handed_over: whether `incremental.py` made the faces."""
 
     faces: np.ndarray
     status: int
     where: int
     walls: int
+    work: int = 0
+    handed_over: bool = False
 
 
 def grow_points(points: np.ndarray, seeds: np.ndarray | None) -> Growth:
@@ -42,17 +48,31 @@ def grow_points(points: np.ndarray, seeds: np.ndarray | None) -> Growth:
     places = points[order]
     order, places, cells, rank = _without_equals(order, places, cells, seeds is not None)
     boxes = block_boxes(places, cells.start, cells.columns, cells.rows)
+    spent, most = np.zeros(1, np.int64), PATIENCE * (len(places) + 64)
     walls = None
     if seeds is None:
         edges = _nearest_pair(places, cells, boxes)
     else:
         edges = rank[np.asarray(seeds, dtype=np.int64)]
-        weak = ~strictly_delaunay(places, edges, *cells, boxes)
-        walls = wall_cells(places, edges[weak], cells) if weak.any() else None
-    count, faces, status, where = _grow(places, edges, seeds is not None, *cells, boxes, walls)
+        weak = ~strictly_delaunay(places, edges, *cells, boxes, spent, most)
+        if weak.any() and spent[0] <= most:
+            walls = wall_cells(places, edges[weak], cells, spent, most)
+            spent += 0 if walls else most + 1
+    count, faces, status, where = _grow(places, edges, seeds is not None, *cells, boxes, walls, spent, most)
+    if status == TOO_LONG:
+        return _handed_over(places, order, None if seeds is None else edges, int(spent[0]))
     found = order[faces[:count]]
     blame = int(order[where]) if where >= 0 else -1
-    return Growth(found, int(status), blame, 0 if walls is None else len(walls.ends))
+    return Growth(found, int(status), blame, 0 if walls is None else len(walls.ends), int(spent[0]))
+
+
+def _handed_over(places: np.ndarray, order: np.ndarray, edges: np.ndarray | None, work: int) -> Growth:
+    """The same triangulation, up to how ties are cut, from `incremental.py`: whose time growth cannot lengthen."""
+    edges = hull_edges(places) if edges is None else np.unique(edges, axis=0)
+    flips, lost = joined_points(places, edges)
+    if lost >= 0:
+        return Growth(np.zeros((0, 3), np.int32), NO_APEX, int(order[lost]), 0, work, True)
+    return Growth(order[inner_faces(flips)], CLOSED, -1, 0, work, True)
 
 
 def _without_equals(
@@ -84,12 +104,13 @@ def _nearest_pair(places: np.ndarray, cells: Cells, boxes: np.ndarray) -> np.nda
     square[0] = np.inf
     near = np.flatnonzero(square <= square.min() * (1 + 1e-12)).astype(np.int32)
     edges = np.column_stack([np.zeros_like(near), near])
-    nearest = int(near[strictly_delaunay(places, edges, *cells, boxes).argmax()])
+    strict = strictly_delaunay(places, edges, *cells, boxes, np.zeros(1, np.int64), np.iinfo(np.int64).max)
+    nearest = int(near[strict.argmax()])
     return np.array([[0, nearest], [nearest, 0]], dtype=np.int32)
 
 
 @njit(cache=True, error_model="numpy")
-def _grow(places, seeds, closed, start, x0, y0, per_metre, columns, rows, boxes, walls):
+def _grow(places, seeds, closed, start, x0, y0, per_metre, columns, rows, boxes, walls, spent, most):
     n = places.shape[0]
     limit = 2 * n + 8
     faces = np.zeros((limit, 3), np.int32)
@@ -101,12 +122,16 @@ def _grow(places, seeds, closed, start, x0, y0, per_metre, columns, rows, boxes,
         top = _open(head, origin, target, later, top, seeds[k, 0], seeds[k, 1])
     unsure = np.zeros(n, np.int32)
     count = 0
+    if spent[0] > most:
+        return count, faces, TOO_LONG, -1
     while top > 0:
         top -= 1
         a, b = origin[top], target[top]
         if not _close(head, target, later, a, b):
             continue
-        c = apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, unsure)
+        c = apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, unsure, spent)
+        if spent[0] > most:
+            return count, faces, TOO_LONG, a
         if c < 0:
             if closed:
                 return count, faces, NO_APEX, a

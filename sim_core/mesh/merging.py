@@ -28,7 +28,7 @@ def merged(named: list[tuple[str, np.ndarray]], edge: float) -> Merged:
     of no width would make two sheets of cloth share a vertex. Holes that truly cross the outline are left for the
     check of crossings to name. Raises OutlineError where a hole cuts the panel in two.
     """
-    from shapely import Polygon, unary_union
+    from shapely import Polygon, covers, prepare, unary_union
 
     shapes = [Polygon(contour) for _, contour in named]
     near = NEAR * float(np.ptp(named[0][1], axis=0).max())
@@ -36,17 +36,10 @@ def merged(named: list[tuple[str, np.ndarray]], edge: float) -> Merged:
         return Merged(named)  # the check of crossings says where
     cloth, holes = shapes[0], shapes[1:]
     grown = cloth.buffer(near)
-    if any(not grown.covers(hole) for hole in holes):
+    prepare(grown)
+    if not np.all(covers(grown, holes)):
         return Merged(named)
-    touching = [
-        k
-        for k, hole in enumerate(holes)
-        if hole.distance(cloth.exterior) <= near
-        or any(
-            m != k and hole.distance(other) <= near and not other.contains(hole) and not hole.contains(other)
-            for m, other in enumerate(holes)
-        )
-    ]
+    touching = _touching(cloth, holes, near)
     if not touching:
         return Merged(named)
     names = ", ".join(named[k + 1][0] for k in touching)
@@ -70,6 +63,18 @@ def merged(named: list[tuple[str, np.ndarray]], edge: float) -> Merged:
     # a hole that touches along a line leaves no more there than a hair, which is no cloth
     parts = [part for part in getattr(as_given, "geoms", [as_given]) if part.area > near * part.length]
     return Merged(told, [ring for part in parts for ring in _rings(part)])
+
+
+def _touching(cloth, holes: list, near: float) -> list[int]:
+    """Holes that touch the outline, or another hole without one lying in the other."""
+    from shapely import STRtree
+
+    found = set(STRtree([cloth.exterior]).query(holes, predicate="dwithin", distance=near)[0].tolist())
+    one, other = STRtree(holes).query(holes, predicate="dwithin", distance=near)
+    for k, m in zip(one[one < other].tolist(), other[one < other].tolist(), strict=True):
+        if not holes[k].contains(holes[m]) and not holes[m].contains(holes[k]):
+            found |= {k, m}
+    return sorted(found)
 
 
 def _rings(polygon) -> list[np.ndarray]:

@@ -11,7 +11,8 @@ __all__ = ["MeshReport", "PanelMesh"]
 class MeshReport:
     """What was measured on a panel mesh.
 
-    seconds: wall time of meshing.  min_angle_deg: smallest angle of any triangle [degrees].
+    seconds: wall time of meshing.  compile_seconds: of making or fetching machine code meanwhile, not part of these.
+    min_angle_deg: smallest angle of any triangle [degrees].
     mean_quality, worst_quality: of q = 4 sqrt(3) area / sum of squared edges, 1 = equilateral.
     mean_edge_ratio, worst_edge_ratio: of shortest / longest edge of a triangle.
     area_error: |mesh area - polygon area| / polygon area.  conformity: fraction of outline steps that are mesh edges.
@@ -28,6 +29,7 @@ class MeshReport:
     area_error: float
     conformity: float
     outline_deviation: float
+    compile_seconds: float = 0.0
 
     def to_dict(self) -> dict[str, float]:
         """A plain dictionary that JSON can hold."""

@@ -172,8 +172,7 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
     following = np.concatenate(
         [np.roll(np.arange(len(c)), -1) + s for c, s in zip(contours, first, strict=False)]
     )
-    left = np.minimum(points[:, 0], points[following, 0])
-    i, j = first_crossing(points, following, np.argsort(left, kind="stable"))
+    i, j = first_crossing(points, following)
     if i < 0:
         return
     i, j = min(i, j), max(i, j)
@@ -191,14 +190,25 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
 
 
 def _check_nesting(names: list[str], contours: list[np.ndarray]) -> None:
+    from shapely import STRtree, box, points
+
     from sim_core.mesh.raycast import inside
 
-    for k in range(1, len(contours)):
-        if not inside(contours[k][:1], contours[:1])[0]:
-            raise OutlineError(f"{names[k]}: lies outside the outline – holes belong inside it")
-        for m in range(1, len(contours)):
-            if m != k and inside(contours[k][:1], [contours[m]])[0]:
-                raise OutlineError(f"{names[k]}: lies inside {names[m]} – holes must not be nested")
+    if len(contours) == 1:
+        return
+    first = np.array([contour[0] for contour in contours[1:]])
+    outside = np.flatnonzero(~inside(first, contours[:1]))
+    if outside.size:
+        raise OutlineError(f"{names[outside[0] + 1]}: lies outside the outline – holes belong inside it")
+    rims = [(*contour.min(axis=0), *contour.max(axis=0)) for contour in contours[1:]]
+    point, other = STRtree(box(*np.array(rims).T)).query(points(first))
+    for m in np.unique(other[point != other]):
+        within = point[(other == m) & (point != m)]
+        nested = within[inside(first[within], [contours[m + 1]])]
+        if nested.size:
+            raise OutlineError(
+                f"{names[nested[0] + 1]}: lies inside {names[m + 1]} – holes must not be nested"
+            )
 
 
 def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:

@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 
 from sim_core.errors import OutlineError
+from sim_core.machine_code import CompileClock, compile_clock
 from sim_core.mesh.best import BestFill, best_fill
 from sim_core.mesh.graded import graded_points
 from sim_core.mesh.growth import CLOSED, Growth, grow_points
@@ -21,7 +22,7 @@ from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.smoothing import smoothed
 from sim_core.mesh.verify import fills, verify
 
-__all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh"]
+__all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh", "timed"]
 
 UPRIGHT = np.array([1.0, -1.0])  # y down -> y up; exact
 ENOUGH_DEGREES = 30.0
@@ -55,17 +56,23 @@ def panel_mesh(
     Raises OutlineError saying what is wrong with the outline, where, and what to do.
     """
     begin = perf_counter()
-    check_options(threshold, quality)
-    contours, given = cleaned_contours(outline, holes, edge=edge)
-    check_edge(edge, contours)
-    if sizes is not None:
-        sizes.check(edge)
-    rim = _rim(contours, constraints, edge, sizes, sampled)
-    mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
-    strays = deviation(given or contours, rim.contours, merged=given is not None)
-    return replace(
-        mesh, report=replace(mesh.report, outline_deviation=strays, seconds=perf_counter() - begin)
-    )
+    with compile_clock() as clock:
+        check_options(threshold, quality)
+        contours, given = cleaned_contours(outline, holes, edge=edge)
+        check_edge(edge, contours)
+        if sizes is not None:
+            sizes.check(edge)
+        rim = _rim(contours, constraints, edge, sizes, sampled)
+        mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
+        strays = deviation(given or contours, rim.contours, merged=given is not None)
+    return timed(mesh, strays, begin, clock)
+
+
+def timed(mesh: PanelMesh, strays: float, begin: float, clock: CompileClock) -> PanelMesh:
+    """The mesh with what `filled_mesh` cannot know: deviation [m], and time since `begin` without compiling."""
+    seconds = perf_counter() - begin - clock.seconds
+    told = replace(mesh.report, outline_deviation=strays, seconds=seconds, compile_seconds=clock.seconds)
+    return replace(mesh, report=told)
 
 
 def check_options(threshold: float, quality: str) -> None:
@@ -81,7 +88,7 @@ def filled_mesh(
 ) -> PanelMesh:
     """The checked mesh of a sampled rim; options as in `panel_mesh`. Its report's `outline_deviation` and `seconds`
     are 0: the rim does not know them. Raises OutlineError."""
-    vertices, faces = _filled(rim, edge, threshold, quality, sizes)
+    vertices, faces, rim = _filled(rim, edge, threshold, quality, sizes)
     free = verify(vertices, faces, rim.loops, edge, rim.lines)
     return PanelMesh(vertices, faces, rim.loops, measured(vertices, faces, rim.loops, free), rim.lines)
 
@@ -98,17 +105,20 @@ def _rim(contours, constraints, edge: float, sizes: SizeField | None, sampled: b
     loops = tuple(
         np.arange(end - len(loop), end, dtype=np.int32) for loop, end in zip(contours, ends, strict=True)
     )
-    return Rim(np.concatenate(contours), loops)
+    return Rim(np.concatenate(contours), loops, whole=np.ones(int(ends[-1]), dtype=bool))
 
 
-def _filled(rim: Rim, edge: float, threshold: float, quality: str, sizes) -> tuple[np.ndarray, np.ndarray]:
+def _filled(
+    rim: Rim, edge: float, threshold: float, quality: str, sizes
+) -> tuple[np.ndarray, np.ndarray, Rim]:
+    """Vertices, faces, and the rim, whose steps `best` may have divided."""
     if quality == "best" or (sizes is not None and quality == "light"):
-        best = best_fill(rim, edge, sizes)
-        return best.vertices, _closed(best, best.vertices)
+        best = best_fill(rim, edge, sizes, refine=quality == "best")
+        return best.vertices, _closed(best, best.vertices), best.rim
     if sizes is not None:
         vertices = np.concatenate([rim.points, graded_points(rim, edge, sizes)])
-        return vertices, _fill(vertices, rim)
-    return _light_fill(rim, edge, threshold, PASSES if quality == "light" else 0)
+        return vertices, _fill(vertices, rim), rim
+    return *_light_fill(rim, edge, threshold, PASSES if quality == "light" else 0), rim
 
 
 def _light_fill(rim: Rim, edge: float, threshold: float, smooth: int) -> tuple[np.ndarray, np.ndarray]:

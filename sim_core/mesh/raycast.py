@@ -8,6 +8,8 @@ from sim_core.mesh.exact import orient
 
 __all__ = ["distance_below", "inside", "keep_points"]
 
+MOST_ROWS = 8  # that a segment passes on average: rows are as fine as that allows
+
 
 def inside(points: np.ndarray, contours: list[np.ndarray]) -> np.ndarray:
     """Whether points lie strictly inside: a horizontal ray to the right crosses the contours an odd number of times.
@@ -19,7 +21,8 @@ def inside(points: np.ndarray, contours: list[np.ndarray]) -> np.ndarray:
     points = np.ascontiguousarray(points, dtype=float).reshape(-1, 2)
     segments = np.concatenate([np.hstack([c, np.roll(c, -1, axis=0)]) for c in contours])
     low, high = float(segments[:, [1, 3]].min()), float(segments[:, [1, 3]].max())
-    rows = max(1, len(segments))
+    passed = float(np.abs(segments[:, 3] - segments[:, 1]).sum()) / max(high - low, 1e-300)
+    rows = max(1, min(len(segments), int(MOST_ROWS * len(segments) / max(passed, 1.0))))
     per_metre = rows / max(high - low, 1e-300)
     start, items = _row_buckets(segments, low, per_metre, rows)
     return _strictly_inside(points, segments, start, items, low, per_metre, rows)
@@ -129,6 +132,7 @@ def _cell_buckets(points, low, cell, columns, rows):
 @njit(cache=True)
 def _near(points, segments, reach, low, cell, columns, rows, start, items):
     near = np.zeros(points.shape[0], np.bool_)
+    end = start[1:].copy()  # points found near leave their cell, so that each is found once
     for s in range(segments.shape[0]):
         ax, ay, bx, by = segments[s]
         ux, uy = bx - ax, by - ay
@@ -137,14 +141,18 @@ def _near(points, segments, reach, low, cell, columns, rows, start, items):
         last_row = min(int((max(ay, by) + reach - low[1]) // cell), rows - 1)
         first_column = max(int((min(ax, bx) - reach - low[0]) // cell), 0)
         last_column = min(int((max(ax, bx) + reach - low[0]) // cell), columns - 1)
-        if first_column > last_column:  # the segment lies beside all points
-            continue
         for i in range(first_row, last_row + 1):
-            for k in range(start[i * columns + first_column], start[i * columns + last_column + 1]):
-                p = items[k]
-                px, py = points[p, 0] - ax, points[p, 1] - ay
-                t = min(max((px * ux + py * uy) / square, 0.0), 1.0)
-                dx, dy = px - t * ux, py - t * uy
-                if dx * dx + dy * dy < reach * reach:
-                    near[p] = True
+            for c in range(i * columns + first_column, i * columns + last_column + 1):
+                k = start[c]
+                while k < end[c]:
+                    p = items[k]
+                    px, py = points[p, 0] - ax, points[p, 1] - ay
+                    t = min(max((px * ux + py * uy) / square, 0.0), 1.0)
+                    dx, dy = px - t * ux, py - t * uy
+                    if dx * dx + dy * dy < reach * reach:
+                        near[p] = True
+                        end[c] -= 1
+                        items[k] = items[end[c]]
+                    else:
+                        k += 1
     return near

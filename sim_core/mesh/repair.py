@@ -15,12 +15,13 @@ from sim_core.mesh.quality import triangle_areas
 from sim_core.mesh.smoothing import centre, open_angles, sharpest_angle, stars
 from sim_core.mesh.verify import open_edges
 
-__all__ = ["repaired"]
+__all__ = ["SPOTS", "repaired"]
 
 REACH = 4.5  # longest sides of the worst triangle: radius of a patch
 ENOUGH = np.cos(np.radians(39.0))
 SPOTS = 24  # most spots that are treated in one mesh
 SWEEPS = 6
+MOST_FACES = 1200  # of a patch: a long face among much finer ones is no spot that a patch could mend
 
 
 class Patch(NamedTuple):
@@ -50,7 +51,7 @@ def repaired(
             break
         tried.append(places[spot].mean(axis=0))
         patch = _patch(places, faces, movable, spot)
-        found = _best_trial(places, weights, patch, spot)
+        found = _best_trial(places, weights, patch, spot) if len(patch.faces) <= MOST_FACES else None
         if found is not None:
             places, faces, movable, weights = _replaced(places, faces, movable, weights, patch, *found)
     return places, weights, np.flatnonzero(movable)

@@ -9,6 +9,8 @@ from sim_core.mesh.verify import area_error, conformity
 
 __all__ = ["deviation", "measured"]
 
+MOST_TRIED = 32
+
 
 def measured(vertices, faces, boundary, free) -> MeshReport:
     """Measure a finished mesh, but for time and deviation (0). Arrays as in PanelMesh; free: its `open_edges`."""
@@ -32,32 +34,98 @@ def deviation(given: list[np.ndarray], loops: list[np.ndarray], *, merged: bool 
     given, loops: (n, 2) [m] each; compared one by one, or all with all where holes were merged.
     """
     if merged:
-        pairs = [(_steps(given), _steps(loops))]
-    else:
-        pairs = [(_steps([a]), _steps([b])) for a, b in zip(given, loops, strict=True)]
-    return max(max(_farthest(a, b), _farthest(b, a)) for a, b in pairs)
+        return max(_apart(given, loops), _apart(loops, given))
+    worst = 0.0
+    for contour, loop in zip(given, loops, strict=True):
+        passed = _passed(contour, loop)
+        if passed[0] < 0:
+            worst = max(worst, _apart([contour], [loop]), _apart([loop], [contour]))
+            continue
+        along, across = _bounds(contour, loop, passed)
+        worst = _farthest(_probes(loop), contour, along, worst)
+        worst = _farthest(_probes(contour), loop, across, worst)
+    return worst
 
 
-def _steps(contours: list[np.ndarray]) -> np.ndarray:
-    """The steps of closed contours (n, 2) as (m, 4): from, to."""
-    return np.concatenate([np.hstack([contour, np.roll(contour, -1, axis=0)]) for contour in contours])
+def _probes(contour: np.ndarray) -> np.ndarray:
+    """The points of a closed contour (n, 2) and the middles of its steps, in turn. (2 n, 2)"""
+    return np.stack([contour, (contour + np.roll(contour, -1, axis=0)) / 2], axis=1).reshape(-1, 2)
+
+
+def _apart(given: list[np.ndarray], others: list[np.ndarray]) -> float:
+    """Largest distance [m] from the probes of contours to other contours that have nothing to do with their order."""
+    from shapely import LineString, STRtree, points
+
+    steps = np.concatenate([np.stack([c, np.roll(c, -1, axis=0)], axis=1) for c in others])
+    probes = np.concatenate([_probes(contour) for contour in given])
+    tree = STRtree([LineString(step) for step in steps])
+    return float(tree.query_nearest(points(probes), all_matches=False, return_distance=True)[1].max())
+
+
+def _farthest(probes: np.ndarray, contour: np.ndarray, bounds: np.ndarray, worst: float) -> float:
+    """The largest of `worst` and the distances [m] from probes (n, 2) to a closed contour, which are at most `bounds`
+    (n,) [m]. Where too many bounds are no distances, because contours run side by side, the bound itself counts."""
+    for tried, k in enumerate(np.argsort(-bounds, kind="stable")):
+        if bounds[k] <= worst:
+            break
+        worst = max(worst, float(bounds[k]) if tried >= MOST_TRIED else _nearest(probes[k], contour))
+    return worst
 
 
 @njit(cache=True, error_model="numpy")
-def _farthest(steps: np.ndarray, others: np.ndarray) -> float:
-    """Largest distance [m] from the beginning or middle of one of the steps (n, 4) to the others (m, 4)."""
-    worst = 0.0
-    for k in range(2 * len(steps)):
-        x, y = steps[k // 2, 0], steps[k // 2, 1]
-        if k % 2:
-            x, y = (x + steps[k // 2, 2]) / 2, (y + steps[k // 2, 3]) / 2
-        nearest = np.inf
-        for m in range(len(others)):
-            if nearest <= worst:
-                break  # cannot be the farthest
-            ux, uy = others[m, 2] - others[m, 0], others[m, 3] - others[m, 1]
-            px, py = x - others[m, 0], y - others[m, 1]
-            t = min(max((px * ux + py * uy) / (ux * ux + uy * uy), 0.0), 1.0)
-            nearest = min(nearest, (px - t * ux) ** 2 + (py - t * uy) ** 2)
-        worst = max(worst, nearest)
-    return np.sqrt(worst)
+def _gap(x, y, contour, k):
+    """Distance [m] from a place to step k of a closed contour."""
+    m = (k + 1) % len(contour)
+    ux, uy = contour[m, 0] - contour[k, 0], contour[m, 1] - contour[k, 1]
+    px, py = x - contour[k, 0], y - contour[k, 1]
+    t = min(max((px * ux + py * uy) / max(ux * ux + uy * uy, 1e-300), 0.0), 1.0)
+    return np.hypot(px - t * ux, py - t * uy)
+
+
+@njit(cache=True, error_model="numpy")
+def _nearest(place, contour):
+    """Distance [m] from a place (2,) to a closed contour (n, 2)."""
+    nearest = np.inf
+    for k in range(len(contour)):
+        nearest = min(nearest, _gap(place[0], place[1], contour, k))
+    return nearest
+
+
+@njit(cache=True, error_model="numpy")
+def _passed(contour, loop):
+    """Steps of a contour (n, 2) that the points of a loop (m, 2) sampled from it lie on, counted on from turn to turn.
+    (m + 1,), the last the first again; all -1 where a point lies on none."""
+    count = len(contour)
+    near = 1e-9 * (np.abs(contour[:, 0] - contour[0, 0]).max() + np.abs(contour[:, 1] - contour[0, 1]).max())
+    passed = np.full(len(loop) + 1, -1)
+    k = 0
+    for m in range(len(loop)):
+        last = k + count
+        while k < last and _gap(loop[m, 0], loop[m, 1], contour, k % count) > near:
+            k += 1
+        if k == last or k - max(passed[0], 0) > count:
+            passed[:] = -1
+            return passed
+        passed[m] = k
+    passed[-1] = passed[0] + count
+    return passed
+
+
+@njit(cache=True, error_model="numpy")
+def _bounds(contour, loop, passed):
+    """What the distances [m] between the probes of a loop and the contour, and the other way, are not above: told from
+    the steps that lie beside each other."""
+    along, across = np.zeros(2 * len(loop)), np.full(2 * len(contour), np.inf)
+    for m in range(len(loop)):
+        here, ahead = loop[m], loop[(m + 1) % len(loop)]
+        x, y = (here[0] + ahead[0]) / 2, (here[1] + ahead[1]) / 2
+        along[2 * m] = _gap(here[0], here[1], contour, passed[m] % len(contour))
+        along[2 * m + 1] = np.inf
+        for turn in range(passed[m], passed[m + 1] + 1):
+            k = turn % len(contour)
+            n = (k + 1) % len(contour)
+            along[2 * m + 1] = min(along[2 * m + 1], _gap(x, y, contour, k))
+            across[2 * n] = min(across[2 * n], _gap(contour[n, 0], contour[n, 1], loop, m))
+            cx, cy = (contour[k, 0] + contour[n, 0]) / 2, (contour[k, 1] + contour[n, 1]) / 2
+            across[2 * k + 1] = min(across[2 * k + 1], _gap(cx, cy, loop, m))
+    return along, across

@@ -17,6 +17,7 @@ SAME = 1e-9  # of a chain's length: places nearer to each other are one
 DEVIATION = 0.045  # of the edge: a step that leaves the given line by more is halved
 PARTS = 256  # of a chain between corners, at least, over which edge lengths of a size field are summed
 MOST_PARTS = 1_000_000
+TRIALS = 128  # numbers of even steps that are tried on a bend
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,12 +25,14 @@ class Rim:
     """What of a mesh is given: the sampled contours and inner lines.
 
     points: (b, 2) [m], y down, no two equal.  loops: one array of indices per contour, cloth on the left in (x, -y).
-    lines: open chains of indices inside the cloth.
+    lines: open chains of indices inside the cloth.  whole: (k,) bool, which of the first k
+    `steps` must not be divided further (a seam's); those behind them may be.
     """
 
     points: np.ndarray
     loops: tuple[np.ndarray, ...]
     lines: tuple[np.ndarray, ...] = ()
+    whole: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
     @property
     def contours(self) -> list[np.ndarray]:
@@ -42,6 +45,31 @@ class Rim:
         around = [np.column_stack([loop, np.roll(loop, -1)]) for loop in self.loops]
         along = [np.column_stack([line[:-1], line[1:]]) for line in self.lines]
         return np.concatenate([*around, *along, *(pairs[:, ::-1] for pairs in along)])
+
+    @property
+    def kept(self) -> np.ndarray:
+        """Which of `steps` must not be divided. (m,) bool"""
+        kept = np.zeros(len(self.steps), dtype=bool)
+        kept[: len(self.whole)] = self.whole
+        return kept
+
+    def divided(self, parts: np.ndarray) -> "Rim":
+        """The rim with steps divided: parts (k, 3) first, last and middle point of each, in the order they were. The
+        middles get no place among `points`."""
+        middle = {(min(a, b), max(a, b)): v for a, b, v in parts.tolist()}
+
+        def along(chain: list[int]) -> np.ndarray:
+            found, ahead = [chain[0]], chain[:0:-1]
+            while ahead:
+                step = (min(found[-1], ahead[-1]), max(found[-1], ahead[-1]))
+                if step in middle:
+                    ahead.append(middle[step])
+                else:
+                    found.append(ahead.pop())
+            return np.array(found, dtype=np.int32)
+
+        loops = tuple(along([*loop.tolist(), int(loop[0])])[:-1] for loop in self.loops)
+        return replace(self, loops=loops, lines=tuple(along(line.tolist()) for line in self.lines))
 
     @property
     def segments(self) -> np.ndarray:
@@ -80,7 +108,12 @@ class _Chain:
         """The chain with all its given points in the marked steps (bool)."""
         step = np.clip(np.searchsorted(self.at, self.arc, side="right") - 1, 0, len(steps) - 1)
         given = self.arc[steps[step]]
-        gap = np.abs(self.at[:, None] - given).min(axis=1, initial=np.inf)
+        after = np.clip(np.searchsorted(given, self.at), 0, max(len(given) - 1, 0))
+        gap = np.full(len(self.at), np.inf)
+        if len(given):
+            gap = np.minimum(
+                np.abs(given[after] - self.at), np.abs(given[np.maximum(after - 1, 0)] - self.at)
+            )
         kept = self.at[(gap == 0) | (gap > SAME * self.arc[-1])]  # no sample within rounding of a given point
         return replace(self, at=np.union1d(kept, given))
 
@@ -119,7 +152,7 @@ def sampled_rim(
     for _ in range(SPLITTING_PASSES):
         places = [chain.sampled() for chain in chains]
         split = [_strays(chain, DEVIATION * edge) for chain in chains]
-        crowded = _crowded(places, [chain.closed for chain in chains])
+        crowded = _crowded(places, [chain.closed for chain in chains], finest / 2)
         steps = [np.hypot(*np.diff(place, axis=0).T) > finest for place in places]
         split = [(a | b) & c for a, b, c in zip(split, crowded, steps, strict=True)]
         if fixed is not None:
@@ -171,10 +204,15 @@ def _even(
     """Sample positions from begin to before end: equal steps, or steps in proportion to the size field."""
     if sizes is None:
         fewest = max(least, int(np.ceil((end - begin) / edge - 1e-9)))
-        for steps in range(fewest, 2 * fewest):  # a bend gets more, but still even, steps
+        first, last = np.searchsorted(arc, (begin, end))
+        part = slice(int(first), int(last) + 1)
+        if last == first + 1:  # straight
+            return np.linspace(begin, end, fewest + 1)[:-1]
+        for steps in range(
+            fewest, 2 * fewest, max(1, fewest // TRIALS)
+        ):  # a bend gets more, but still even, steps
             at = np.linspace(begin, end, steps + 1)
-            inner = (arc >= begin) & (arc <= end)
-            if not _strays(_Chain(points[inner], arc[inner], at, False), DEVIATION * edge).any():
+            if not _strays(_Chain(points[part], arc[part], at, False), DEVIATION * edge).any():
                 return at[:-1]
         return np.linspace(begin, end, fewest + 1)[:-1]
     parts = int(np.clip(2 * (end - begin) / sizes.sizes.min(), PARTS, MOST_PARTS))
@@ -199,25 +237,30 @@ def _strays(chain: _Chain, most: float) -> np.ndarray:
     return stray
 
 
-def _crowded(places: list[np.ndarray], closed: list[bool]) -> list[np.ndarray]:
-    """Steps whose circle over them as diameter holds a sample other than those next to the step."""
+def _crowded(places: list[np.ndarray], closed: list[bool], least: float) -> list[np.ndarray]:
+    """Steps whose circle over them as diameter holds a sample other than those next to the step, not nearer to it than
+    `least` [m]: a gap narrower than that stays narrow however fine the steps are."""
     starts, ends, before, after = [], [], [], []
     for place, round_ in zip(places, closed, strict=True):
         starts.append(place[:-1])
         ends.append(place[1:])
         before.append(np.vstack([place[-2:-1] if round_ else place[:1], place[:-2]]))
         after.append(np.vstack([place[2:], place[1:2] if round_ else place[-1:]]))
-    points = np.concatenate(
-        [*starts, *(p[-1:] for p, round_ in zip(places, closed, strict=True) if not round_)]
-    )
+    points = np.unique(np.concatenate([*starts, *ends]).view(complex)).view(float).reshape(-1, 2)
     a, b, behind, beyond = (np.concatenate(rows) for rows in (starts, ends, before, after))
-    middle, reach = (a + b) / 2, np.hypot(*(b - a).T) / 2 * (1 - 1e-9)
-    tree = KDTree(points)
-    crowded = np.zeros(len(a), dtype=bool)
-    for k in np.flatnonzero(tree.query_ball_point(middle, reach, return_length=True)):
-        others = points[tree.query_ball_point(middle[k], reach[k])]
-        known = np.stack([a[k], b[k], behind[k], beyond[k]])
-        crowded[k] = bool((others[:, None] != known).any(axis=2).all(axis=1).any())
+    middle, reach = (a + b) / 2, np.hypot(*(b - a).T) / 2
+    # the ends lie on the circle, so of the three nearest points inside at most two are known
+    found = KDTree(points).query(middle, k=min(3, len(points)))[1].reshape(len(a), -1)
+    near = points[found]
+    known = np.stack([a, b, behind, beyond], axis=1)
+    other = (near[:, :, None] != known[:, None]).any(axis=3).all(axis=2)
+    inside = np.hypot(*np.moveaxis(near - middle[:, None], 2, 0)) < reach[:, None] * (1 - 1e-9)
+    unit = (b - a) / np.maximum(2 * reach, 1e-300)[:, None]
+    off = near - a[:, None]
+    gap = np.abs(off[:, :, 0] * unit[:, None, 1] - off[:, :, 1] * unit[:, None, 0])
+    hit = other & inside
+    first = hit.argmax(axis=1)
+    crowded = hit.any(axis=1) & (gap[np.arange(len(a)), first] >= least)
     return np.split(crowded, np.cumsum([len(rows) for rows in starts])[:-1])
 
 
@@ -230,13 +273,14 @@ def _joined(chains: list[_Chain]) -> Rim:
             points.append(chain.sampled()[:-1])
             loops.append(np.arange(count, count + len(points[-1]), dtype=np.int32))
             count += len(points[-1])
+    whole = ~chains[0].free
     lines = [chain.sampled() for chain in chains if not chain.closed]
     if not lines:
-        return Rim(np.concatenate(points), tuple(loops))
+        return Rim(np.concatenate(points), tuple(loops), whole=whole)
     number = {tuple(point): k for k, point in enumerate(np.concatenate(points).tolist())}
     numbered = []
     for line in lines:
         for point in line.tolist():
             number.setdefault(tuple(point), len(number))
         numbered.append(np.array([number[tuple(point)] for point in line.tolist()], dtype=np.int32))
-    return Rim(np.array(list(number)), tuple(loops), tuple(numbered))
+    return Rim(np.array(list(number)), tuple(loops), tuple(numbered), whole)

@@ -6,7 +6,7 @@ between each two.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
 from typing import TypeVar
@@ -14,10 +14,11 @@ from typing import TypeVar
 import numpy as np
 
 from sim_core.errors import OutlineError
+from sim_core.machine_code import compile_clock
 from sim_core.mesh.lines import clean_lines
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.outline import check_edge, clean_contour, clean_contours, cleaned_contours, signed_area
-from sim_core.mesh.panel import check_options, filled_mesh
+from sim_core.mesh.panel import check_options, filled_mesh, timed
 from sim_core.mesh.report import deviation
 from sim_core.mesh.sampling import sampled_rim
 from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
@@ -206,18 +207,18 @@ def _steps(number: int, seam: Seam, pair, panels: list[_Panel], fields, edge: fl
 def _meshed(panel: _Panel, pieces: dict, edge: float, sizes, threshold: float, quality: str) -> PanelMesh:
     """The mesh of a panel whose seams are sampled: pieces as `_put` notes them."""
     begin = perf_counter()
-    contour, fixed = _sampled(panel.outline, pieces)
-    if len(clean_contours(contour, panel.holes)[0]) != len(contour):
-        raise OutlineError("samples fall together – give a larger seam or a smaller edge")
-    if signed_area(contour) < 0:  # steps are named by the point they begin at, which is the other one now
-        contour, fixed = contour[::-1], np.roll(fixed[::-1], -1)
-    kept = np.array(sorted(panel.kept)).reshape(-1, 2)
-    rim = sampled_rim([contour, *panel.holes], edge, lines=panel.lines, kept=kept, sizes=sizes, fixed=fixed)
-    mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
-    strays = deviation(panel.given, rim.contours, merged=panel.merged)
-    return replace(
-        mesh, report=replace(mesh.report, outline_deviation=strays, seconds=perf_counter() - begin)
-    )
+    with compile_clock() as clock:
+        contour, fixed = _sampled(panel.outline, pieces)
+        if len(clean_contours(contour, panel.holes)[0]) != len(contour):
+            raise OutlineError("samples fall together – give a larger seam or a smaller edge")
+        if signed_area(contour) < 0:  # steps are named by the point they begin at, which is the other one now
+            contour, fixed = contour[::-1], np.roll(fixed[::-1], -1)
+        kept = np.array(sorted(panel.kept)).reshape(-1, 2)
+        contours = [contour, *panel.holes]
+        rim = sampled_rim(contours, edge, lines=panel.lines, kept=kept, sizes=sizes, fixed=fixed)
+        mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
+        strays = deviation(panel.given, rim.contours, merged=panel.merged)
+    return timed(mesh, strays, begin, clock)
 
 
 def _chain(side: SeamSide, panels: list[_Panel], number: int) -> np.ndarray:

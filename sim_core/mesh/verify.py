@@ -35,22 +35,17 @@ def open_edges(faces: np.ndarray, count: int) -> tuple[np.ndarray, int]:
 @njit(cache=True, error_model="numpy")
 def _open_edges(faces, start, items):
     found, kept, twice = np.zeros((3 * faces.shape[0], 2), np.int32), 0, -1
-    ahead = np.zeros(items.size, np.int32)  # where the edges that leave a vertex lead, vertex by vertex
-    for m in range(items.size):
-        ahead[m] = faces[items[m] // 3, (items[m] % 3 + 1) % 3]
-    for f in range(faces.shape[0]):
-        for k in range(3):
-            a, b = faces[f, k], faces[f, (k + 1) % 3]
-            same = 0
-            for m in range(start[a], start[a + 1]):
-                same += ahead[m] == b
-            if same > 1:
-                twice = a
-            paired = False
-            for m in range(start[b], start[b + 1]):
-                paired |= ahead[m] == a
-            if not paired:
-                found[kept, 0], found[kept, 1] = a, b
+    left = np.full(start.size, -1, np.int32)  # by vertex: the last vertex that an edge led from to it
+    for v in range(start.size - 1):
+        for m in range(start[v], start[v + 1]):
+            ahead = faces[items[m] // 3, (items[m] % 3 + 1) % 3]
+            if left[ahead] == v:
+                twice = v
+            left[ahead] = v
+        for m in range(start[v], start[v + 1]):
+            behind = faces[items[m] // 3, (items[m] % 3 + 2) % 3]
+            if left[behind] != v:
+                found[kept, 0], found[kept, 1] = behind, v
                 kept += 1
     return found[:kept].copy(), twice
 

@@ -16,24 +16,30 @@ RECENT = 4
 class Walls(NamedTuple):
     """ends: (w, 2) int32 points.  first: (cells + 1,) and items: per cell the walls whose bounding box meets it.
     recent: (RECENT,) int32, walls that hid the last points, latest first, or -1: under a wide circle, as a triangle
-    across a narrow gap has it, a few walls hide nearly everything."""
+    across a narrow gap has it, a few walls hide nearly everything.  spent: (1,) int64, walls tried, counted on."""
 
     ends: np.ndarray
     first: np.ndarray
     items: np.ndarray
     recent: np.ndarray
+    spent: np.ndarray
 
 
-def wall_cells(places: np.ndarray, ends: np.ndarray, cells: Cells) -> Walls:
-    """Sort walls (w, 2) into the grid of the points they join."""
+def wall_cells(
+    places: np.ndarray, ends: np.ndarray, cells: Cells, spent: np.ndarray, most: int
+) -> Walls | None:
+    """Sort walls (w, 2) into the grid of the points they join; None where they would fill more than `most` places."""
     ends = np.unique(np.sort(ends, axis=1), axis=0).astype(np.int32)
-    first, items = _fill(places, ends, cells.x0, cells.y0, cells.per_metre, cells.columns, cells.rows)
-    return Walls(ends, first, items, np.full(RECENT, -1, np.int32))
+    first, items = _fill(places, ends, cells.x0, cells.y0, cells.per_metre, cells.columns, cells.rows, most)
+    if first[-1] > most:
+        return None
+    return Walls(ends, first, items, np.full(RECENT, -1, np.int32), spent)
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(places, ends, x0, y0, per_metre, columns, rows):
-    first = np.zeros(columns * rows + 1, np.int32)
+def _fill(places, ends, x0, y0, per_metre, columns, rows, most):
+    first = np.zeros(columns * rows + 1, np.int64)
+    total = 0
     spans = np.zeros((ends.shape[0], 4), np.int32)
     for k in range(ends.shape[0]):
         p, q = ends[k, 0], ends[k, 1]
@@ -41,6 +47,10 @@ def _fill(places, ends, x0, y0, per_metre, columns, rows):
         spans[k, 1] = cell_of(max(places[p, 0], places[q, 0]), x0, per_metre, columns)
         spans[k, 2] = cell_of(min(places[p, 1], places[q, 1]), y0, per_metre, rows)
         spans[k, 3] = cell_of(max(places[p, 1], places[q, 1]), y0, per_metre, rows)
+        total += (spans[k, 1] - spans[k, 0] + 1) * (spans[k, 3] - spans[k, 2] + 1)
+        if total > most:
+            first[-1] = total
+            return first, np.zeros(0, np.int32)
         for i in range(spans[k, 2], spans[k, 3] + 1):
             for j in range(spans[k, 0], spans[k, 1] + 1):
                 first[i * columns + j + 1] += 1
@@ -97,6 +107,7 @@ def _wall_between(places, a, c, x0, y0, per_metre, columns, rows, walls):
             from_x = max(left, min(enter, leave) - beyond)
             to_x = min(right, max(enter, leave) + beyond)
         j, j2 = cell_of(from_x, x0, per_metre, columns), cell_of(to_x, x0, per_metre, columns)
+        walls.spent[0] += 1 + walls.first[i * columns + j2 + 1] - walls.first[i * columns + j]
         for k in range(walls.first[i * columns + j], walls.first[i * columns + j2 + 1]):
             w = walls.items[k]
             if crosses(places, a, c, walls.ends[w, 0], walls.ends[w, 1]):

@@ -1,5 +1,6 @@
-"""Readers and writers of the mesh room: outlines from JSON, SVG and DXF in; npz, PLY, OBJ out."""
+"""Readers and writers of the mesh room: outlines from JSON and pattern sheets in; npz, PLY, OBJ out."""
 
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -7,12 +8,10 @@ from typing import IO, Any, NamedTuple
 
 import numpy as np
 
-from sim_core.errors import FileProblem
-from sim_core.mesh.dxf import read_dxf
+from sim_core.errors import FileProblem, OutlineWarning
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.numbers import check_numbers
-from sim_core.mesh.outline import LARGEST, signed_area
-from sim_core.mesh.svg import read_svg
+from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
 from sim_core.reading import read_json, shown
 
 __all__ = ["Drawing", "read_outline", "write_mesh", "write_picture"]
@@ -26,16 +25,20 @@ class Drawing(NamedTuple):
     constraints: list
 
 
-def read_outline(path: Path) -> Drawing:
-    """The outline, holes and inner lines of a JSON, SVG or DXF file, metres, y down.
+def read_outline(path: Path, choice: Choice | None = None, units: str | None = None) -> Drawing:
+    """The outline, holes and inner lines of a JSON file or of one piece of a pattern sheet, metres, y down.
 
-    JSON: {"outline": [[x, y], ...], "holes": [...], "constraints": [...]}. In drawings the closed line of the largest
-    area is the outline, other closed lines are holes, open ones are inner lines.
+    JSON: {"outline": [[x, y], ...], "holes": [...], "constraints": [...]}. Sheets (SVG, DXF, GarmentCode): `choice`
+    says which piece along which line, `units` what a drawing unit is; remarks are OutlineWarnings.
     Raises FileProblem (path: what – remedy) for a file that is missing, empty, of another kind or shape.
     """
-    kind = path.suffix.lower()
-    if kind in (".svg", ".dxf"):
-        return _sorted(path, read_svg(path) if kind == ".svg" else read_dxf(path))
+    choice = choice or Choice()
+    if is_sheet(path):
+        sheet = read_sheet(path, units, choice.layer)
+        piece, remark = panel_of(path, sheet, choice)
+        for told in (*sheet.remarks, *filter(None, [remark])):
+            warnings.warn(told, OutlineWarning, stacklevel=2)
+        return Drawing(piece.cut, list(piece.holes), list(piece.lines))
     shape = 'it must hold {"outline": [[x, y], ...], "holes": [...], "constraints": [...]} in metres'
     values = read_json(path, f"an outline file (JSON): {shape}")
     if not isinstance(values, dict) or "outline" not in values:
@@ -51,19 +54,6 @@ def read_outline(path: Path) -> Drawing:
         for k, rows in enumerate(values.get(name, [])):
             check_numbers(path, f"{kind} {k}", rows, "[x, y] in metres")
     return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
-
-
-def _sorted(path: Path, lines: list[tuple[np.ndarray, bool]]) -> Drawing:
-    for points, _ in lines:
-        if not (np.abs(points) <= LARGEST).all():  # false for NaN too
-            raise FileProblem(
-                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
-            )
-    closed = [points for points, round_ in lines if round_]
-    if not closed:
-        raise FileProblem(f"{path}: no closed line in it – close the outline")
-    closed.sort(key=lambda points: -abs(signed_area(points)))
-    return Drawing(closed[0], closed[1:], [points for points, round_ in lines if not round_])
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:

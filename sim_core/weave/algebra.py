@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from sim_core.errors import WeaveError
 
-__all__ = ["Harness", "drawdown", "harness", "lift_plan", "smallest_period", "tie_up"]
+__all__ = ["Harness", "drawdown", "harness", "kinds_of", "lift_plan", "smallest_period", "tie_up"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +26,9 @@ class Harness:
     def __post_init__(self) -> None:
         for name in ("threading", "tieup", "treadling"):
             values = np.array(getattr(self, name))
-            if values.ndim != 2 or not np.isin(values, (0, 1)).all():
+            if values.ndim != 2 or (values.dtype != bool and not np.isin(values, (0, 1)).all()):
                 raise WeaveError(f"harness: {name} has shape {values.shape} – give a matrix of 0 and 1")
-            object.__setattr__(self, name, values.astype(bool))
+            object.__setattr__(self, name, values.astype(bool, copy=False))
         if self.threading.shape[1] != self.tieup.shape[0] or self.treadling.shape[1] != self.tieup.shape[1]:
             raise WeaveError(
                 f"harness: threading over {self.threading.shape[1]} shafts, tie-up {self.tieup.shape}, treadling over "
@@ -47,12 +48,12 @@ def lift_plan(tieup: np.ndarray, treadling: np.ndarray) -> np.ndarray:
 
 def drawdown(threading: np.ndarray, plan: np.ndarray) -> np.ndarray:
     """Lift (picks, ends) bool from threading (ends, shafts) and lift plan (picks, shafts)."""
-    return _product(np.asarray(plan, bool), np.asarray(threading, bool).T)
+    return _product(np.asarray(threading, bool), np.asarray(plan, bool).T).T
 
 
 def tie_up(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The inverse of `lift_plan`: tie-up (shafts, treadles) and treadling, one treadle for each row that differs."""
-    rows, which = _distinct(np.asarray(plan, bool))
+    rows, which = kinds_of(np.asarray(plan, bool))
     return rows.T, np.eye(len(rows), dtype=bool)[which]
 
 
@@ -61,7 +62,7 @@ def harness(lift: np.ndarray) -> Harness:
 
     Shafts and treadles are numbered as they first appear, so that the same lift yields the same harness.
     """
-    columns, shaft = _distinct(np.asarray(lift, bool).T)
+    columns, shaft = kinds_of(np.asarray(lift, bool).T)
     tieup, treadling = tie_up(columns.T)
     return Harness(np.eye(len(columns), dtype=bool)[shaft], tieup, treadling)
 
@@ -77,13 +78,15 @@ def smallest_period(values: Sequence) -> int:
     return len(values) - border[-1] if values else 0
 
 
+def kinds_of(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (n, m) bool that differ, in order of appearance, and for each of the n rows which of them it is."""
+    seen: dict[bytes, int] = {}
+    packed = np.packbits(rows, axis=1)
+    kind = np.array([seen.setdefault(row.tobytes(), len(seen)) for row in packed], dtype=np.int64)
+    _, first = np.unique(kind, return_index=True)
+    return rows[first], kind
+
+
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a.astype(np.int32) @ b.astype(np.int32) > 0
-
-
-def _distinct(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows that differ, in order of appearance, and for each row which of them it is."""
-    _, first, inverse = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    appearance = np.argsort(first)
-    rank = np.argsort(appearance)
-    return rows[np.sort(first)], rank[inverse.ravel()]
+    # Rows of a harness hold few ones; a float holds every count that 4,096 shafts can give.
+    return (csr_matrix(a, dtype=np.float32) @ b.astype(np.float32)) > 0

@@ -1,14 +1,17 @@
 """What a draft tells before anything is simulated: floats, interlacings, whether it hangs together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from sim_core.weave.draft import Draft
+from sim_core.weave.factors import Factors
 
-__all__ = ["FloatLengths", "Summary", "float_statistics", "hangs_together", "summary"]
+Sides = tuple[np.ndarray, np.ndarray]  # counts of the floats of each length on face and back
+
+__all__ = ["FloatLengths", "Summary", "float_statistics", "hangs_together", "summary", "summary_of_factors"]
 
 
 @dataclass(frozen=True)
@@ -42,37 +45,44 @@ class Summary:
 
 
 def summary(draft: Draft) -> Summary:
-    """Smallest repeat, face class, floats, interlacings and integrity of a draft."""
+    """Smallest repeat, face class, floats, interlacings and integrity of a draft with all its channels."""
     small = draft.repeat()
-    ends, picks = small.interlacings()
-    floats = float_statistics(small)
-    return Summary(
-        small.ends, small.picks, small.face, *floats, int(ends.sum() + picks.sum()), hangs_together(small)
-    )
+    counted = _counted(Factors.of_lift(small.lift))
+    return counted if _bare(draft) else replace(counted, integral=hangs_together(small))
+
+
+def summary_of_factors(factors: Factors) -> Summary:
+    """The same of a lift without channels, counted by its kinds of ends and picks, however large it is."""
+    return _counted(factors.repeat())
+
+
+def _counted(small: Factors) -> Summary:
+    picks, ends = small.counts()
+    ones = int(picks @ small.core.astype(np.int64) @ ends)
+    rest = small.picks * small.ends - ones
+    face = "warp" if ones > rest else "weft" if ones < rest else "same"
+    counts = small.float_counts()
+    # a yarn that changes side has as many changes as runs; one that does not, has a run as long as the repeat
+    changes = sum(int(side[:-1].sum()) for sides in counts for side in sides)
+    return Summary(small.ends, small.picks, face, *_floats(counts), changes, small.hangs_together())
 
 
 def float_statistics(draft: Draft) -> tuple[FloatLengths, FloatLengths]:
     """Floats of the warp and of the weft. A float is a maximal cyclic run of equal entries along one yarn."""
-    warp, weft = draft.lift.T, ~draft.lift
-    return tuple(FloatLengths(_histogram(system), _histogram(~system)) for system in (warp, weft))  # type: ignore[return-value]
+    return _floats(Factors.of_lift(draft.lift).float_counts())
 
 
-def _histogram(on_top: np.ndarray) -> tuple[tuple[int, int], ...]:
-    """(length, count) of the cyclic runs of True along the rows of (yarns, crossings)."""
-    count = on_top.shape[1]
-    full = int(on_top.all(axis=1).sum())
-    rows = on_top[~on_top.all(axis=1)]
-    begins = rows & ~np.roll(rows, 1, axis=1)
-    ends = rows & ~np.roll(rows, -1, axis=1)
-    # begins and ends alternate along a row; a run across the border has its end before its begin
-    lengths: list[int] = [count] * full
-    for begin, end in zip(begins, ends, strict=True):
-        first, last = np.flatnonzero(begin), np.flatnonzero(end)
-        if first.size and last[0] < first[0]:
-            last = np.roll(last, -1)
-        lengths += ((last - first) % count + 1).tolist()
-    values, counts = np.unique(np.array(lengths, dtype=int), return_counts=True)
-    return tuple(zip(values.tolist(), counts.tolist(), strict=True))
+def _floats(counts: tuple[Sides, Sides]) -> tuple[FloatLengths, FloatLengths]:
+    made = []
+    for sides in counts:
+        pairs = (tuple((int(n), int(side[n])) for n in np.flatnonzero(side)) for side in sides)
+        made.append(FloatLengths(*pairs))
+    return made[0], made[1]
+
+
+def _bare(draft: Draft) -> bool:
+    channels = draft.channels
+    return channels.region is None and channels.order is None
 
 
 def hangs_together(draft: Draft) -> bool:

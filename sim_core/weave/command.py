@@ -1,18 +1,35 @@
 """`simcore weave`: a weave by name, file or motif becomes facts, maps, yarns and WIF."""
 
+from __future__ import annotations
+
 import argparse
 import json
+import re
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from sim_core.arguments import ending, whole
+from sim_core.errors import WeaveError, WrongArgument
+
+if TYPE_CHECKING:
+    from sim_core.weave.geometry import YarnGeometry
+    from sim_core.weave.model import Weave
+    from sim_core.weave.particles import ParticleCell
+    from sim_core.weave.sources import Source
 
 __all__ = ["add_parser", "run"]
 
 PER = 8  # particles a crossing and yarn
 MOST_PARTICLES = 4_000_000  # of a repeat: about 1 GB
 MOST_WORK = 3_000_000_000  # particles x steps of a large repeat: about five minutes
+
+MOST_UNASKED = (
+    4_096  # crossings of another program's draft that are relaxed without being asked for: a second or two
+)
+MOST_OURS = 16_384  # of a weave of ours
 
 DESCRIPTION = """\
 From draft to yarn to cloth.
@@ -23,22 +40,34 @@ SOURCE is one of
   satin:8/3                 warp-faced, the one weft point of pick i on end 3 i mod 8
     suffixes                :S mirrors, :weft takes the weft-faced weave (twill:3/1:S, satin:8/3:weft)
   FILE.toml                 a weave file, such as those in assets/weaves
-  FILE.wif                  WIF 1.0 or 1.1, read tolerantly
+  FILE.wif, FILE.dtx        a draft of another program (WIF 1.0 or 1.1, Fiberworks), read tolerantly
   FILE.json                 what Weave.to_dict or draft_to_dict wrote
   FILE.png, .jpg ...        a motif, one pixel a crossing: dark becomes figure of a satin damask
 
-Yarn heights of one repeat are brought into force balance: at the crossings (stage A, beams in contact), and with
---relax in three dimensions (stage B: stretch, bending, contact, friction, flattened sections). Leno and compound
-weaves stay at stage A, and so do figures of more than 250,000 crossings or that do not come to rest in minutes, which a
-note in the summary says. A bare draft is woven of an assumed silk, which the summary says.
+What needs no physics is told of every draft that can be read, up to 4,000 x 4,000 crossings and, where it is treadled,
+20,000 ends and picks: repeat, floats, colours, and whether it hangs together. What the reader had to replace is told
+as remarks. Then yarn heights of one repeat are brought into force balance: at the crossings (stage A, beams in
+contact), and with --relax in three dimensions (stage B: stretch, bending, contact, friction, flattened sections).
+Leno and compound weaves stay at stage A, and so do figures of more than 250,000 crossings or that do not come to rest
+in minutes, which a note in the summary says. Large drafts are relaxed only for --relax, --maps or --yarns; where that
+cannot be done, the summary is printed all the same, one line says why, and the exit status is 1.
+A bare draft is woven of an assumed silk, which the summary says.
 
 Written on demand:
   --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json
   --yarns FILE  the yarns of one repeat: tubes as .glb, axes as .ply
   --wif FILE    WIF 1.1; what WIF cannot say goes into a private section
+  --draft FILE  threading, tie-up, treadling and drawdown: .svg to print, on the smallest sheet on which its cells can
+                be read (pages FILE-1, FILE-2 ... beyond 500 ends or picks), or .png (beyond 4,000)
+  --cards FILE  one pixel a crossing, black where the warp is up; the lowest row is pick 1, the left column end 1
+  --pegs FILE   the same of the lift plan: one pixel a shaft and pick
 
-example:
+examples:
   simcore weave satin:8/3 --relax --maps satin --size 1024 --json
+  simcore weave scarf.wif --draft scarf.svg --floats 5             the draft, floats over 5 marked
+  simcore weave scarf.wif --draft look.png --view colour           in the colours of its yarns
+  simcore weave scarf.dtx --draft part.svg --part 1-120,1-80       a part of it
+  simcore weave profile.wif --blocks summer-winter --wif cloth.wif --draft cloth.svg
 """
 
 
@@ -60,46 +89,167 @@ def add_parser(subparsers) -> None:
     )
     parser.add_argument("--yarns", type=ending(".glb", ".ply"), metavar="FILE", help="yarn tubes or axes")
     parser.add_argument("--wif", type=ending(".wif"), metavar="FILE", help="the draft as WIF 1.1")
+    _add_drawing(parser)
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 
-def run(args: argparse.Namespace) -> int:
-    """Relax, draw and write; returns the exit status."""
-    from sim_core.weave.draft import plain
-    from sim_core.weave.particles import relax_particles
-    from sim_core.weave.report import summary_of
-    from sim_core.weave.words import dressed, weave_of
+def _add_drawing(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--draft", type=ending(".svg", ".png"), metavar="FILE", help="picture of the draft")
+    parser.add_argument(
+        "--view", choices=("structure", "colour"), default="structure",
+        help="the drawdown filled where the warp is on top (default), or in the colours of its yarns",
+    )  # fmt: skip
+    parser.add_argument(
+        "--floats", type=whole(1, 9999), default=0, metavar="N", help="mark floats over more than N crossings"
+    )
+    parser.add_argument("--plan", action="store_true", help="draw a lift plan, not tie-up and treadling")
+    parser.add_argument(
+        "--first", choices=("right", "left"), default="right",
+        help="end 1 on the right, pick 1 on top (default), or on the left and at the bottom",
+    )  # fmt: skip
+    parser.add_argument(
+        "--part", type=_part, metavar="E-E,P-P", help="ends and picks to draw, such as 1-120,1-80"
+    )
+    parser.add_argument("--cards", type=ending(".png"), metavar="FILE", help="the lift, a pixel a crossing")
+    parser.add_argument("--pegs", type=ending(".png"), metavar="FILE", help="the lift plan, a pixel a peg")
+    parser.add_argument(
+        "--blocks", metavar="STRUCTURE",
+        help="SOURCE is a profile draft: block it out by summer-winter, bronson, double, twill:3/1, satin:5/2 ...",
+    )  # fmt: skip
 
-    for path in (args.yarns, args.wif):  # refused before the work, not after it
+
+def _part(text: str) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Ends and picks of a part, from 0 and the last excluded."""
+    found = re.fullmatch(r"(\d{1,6})-(\d{1,6}),(\d{1,6})-(\d{1,6})", text, re.ASCII)
+    numbers = [int(n) for n in found.groups()] if found else []
+    if not numbers or not (1 <= numbers[0] <= numbers[1] and 1 <= numbers[2] <= numbers[3]):
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} – give ends and picks, such as 1-120,1-80")
+    return (numbers[0] - 1, numbers[1]), (numbers[2] - 1, numbers[3])
+
+
+def run(args: argparse.Namespace) -> int:
+    """Tell, relax, draw and write; returns the exit status."""
+    from sim_core.weave.report import facts_of, summary_text
+    from sim_core.weave.sources import blocked_source, source_of
+
+    _check_words(args)
+    _check_places(args)
+    source = source_of(args.source)
+    if args.blocks:
+        source = blocked_source(source, args.blocks)
+    summary = facts_of(source)
+    cloth, failed = _cloth(args, source)
+    if cloth is not None:
+        summary |= cloth.summary
+    elif failed:
+        summary["note"] = f"not relaxed: {failed}"
+    if args.wif:
+        _write_wif(source, args.wif)
+    if cloth is not None and args.yarns:
+        from sim_core.weave.strands import strands
+        from sim_core.weave.tubes import write_yarns
+
+        write_yarns(strands(cloth.weave, cloth.geometry), args.yarns)
+    if cloth is not None and args.maps:
+        _write(args.maps, cloth, args.size, summary)
+    _draw(args, source)
+    for remark in () if args.json else source.remarks:
+        sys.stderr.write(f"simcore weave: {args.source}: {remark}\n")
+    text = (
+        json.dumps(summary, ensure_ascii=False, indent=2) if args.json else summary_text(source.name, summary)
+    )
+    sys.stdout.write(text + "\n")
+    if failed and (args.relax or args.maps or args.yarns):
+        raise WeaveError(failed)
+    return 0
+
+
+def _check_words(args: argparse.Namespace) -> None:
+    """Arguments that say nothing without others, and structures that are none, are refused before the work."""
+    from sim_core.weave.profiles import unit_of
+
+    drawn = {"view": args.view != "structure", "floats": args.floats, "plan": args.plan,
+             "first": args.first != "right", "part": args.part}  # fmt: skip
+    idle = [name for name, given in drawn.items() if given]
+    if idle and not args.draft:
+        raise WrongArgument(f"--{idle[0]}: says how a draft is drawn – add --draft FILE")
+    if args.blocks:
+        try:
+            unit_of(args.blocks)
+        except WeaveError as error:
+            raise WrongArgument(f"--blocks {error}") from error
+
+
+def _check_places(args: argparse.Namespace) -> None:
+    """Files and folders that cannot be written are refused before the work, not after it."""
+    for path in (args.yarns, args.wif, args.draft, args.cards, args.pegs):
         if path is not None and not path.parent.is_dir():
             raise NotADirectoryError(f"{path}: no such folder – make {path.parent} first")
         if path is not None and path.is_dir():
             raise IsADirectoryError(f"{path}: a folder – give the name of a file")
     if args.maps and any(place.exists() and not place.is_dir() for place in (args.maps, *args.maps.parents)):
         raise NotADirectoryError(f"{args.maps}: a file is in the way – give the name of a folder")
-    weave, origin = weave_of(args.source)
-    if args.maps:
-        args.maps.mkdir(parents=True, exist_ok=True)
-    if args.relax:  # compiled before the clock runs: `seconds` is what the relaxation takes
-        relax_particles(dressed(plain()), tolerance=0.1)
-    begin = perf_counter()
-    geometry, note = _relaxed(weave, args.relax)
-    summary = summary_of(weave, geometry, perf_counter() - begin, origin) | note
-    if args.wif:
-        from sim_core.weave.wif import wif_of
-        from sim_core.weave.wif_write import write_wif
 
-        write_wif(wif_of(weave), args.wif)
-    if args.yarns:
-        from sim_core.weave.strands import strands
-        from sim_core.weave.tubes import write_yarns
 
-        write_yarns(strands(weave, geometry), args.yarns)
-    if args.maps:
-        _write(args.maps, weave, geometry, args.size, summary)
-    text = json.dumps(summary, ensure_ascii=False, indent=2) if args.json else _text(weave.name, summary)
-    sys.stdout.write(text + "\n")
-    return 0
+@dataclass(frozen=True, eq=False)
+class _Cloth:
+    """A weave that was relaxed, and what its summary says."""
+
+    weave: Weave
+    geometry: YarnGeometry | ParticleCell
+    summary: dict
+
+
+def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str]:
+    """The relaxed cloth, or None and the one line that says why there is none.
+
+    A large draft is relaxed only for who asks for it: what needs no physics is answered at once.
+    """
+    from sim_core.weave.draft import plain
+    from sim_core.weave.particles import relax_particles
+    from sim_core.weave.report import summary_of
+    from sim_core.weave.words import dressed
+
+    asked = args.relax or args.maps or args.yarns
+    crossings = source.factors.picks * source.factors.ends
+    if not asked and crossings > (MOST_OURS if source.made is not None else MOST_UNASKED):
+        return None, f"{crossings:,} crossings are relaxed only with --relax, --maps or --yarns"
+    try:
+        weave, origin = source.weave
+        if args.maps:
+            args.maps.mkdir(parents=True, exist_ok=True)
+        if args.relax:  # compiled before the clock runs: `seconds` is what the relaxation takes
+            relax_particles(dressed(plain()), tolerance=0.1)
+        begin = perf_counter()
+        geometry, note = _relaxed(weave, args.relax)
+        summary = summary_of(weave, geometry, perf_counter() - begin, origin)
+        return _Cloth(weave, geometry, summary | note), ""
+    except WeaveError as error:
+        return None, str(error)
+
+
+def _draw(args: argparse.Namespace, source: Source) -> None:
+    """The pictures of the draft that were asked for."""
+    if not (args.draft or args.cards or args.pegs):
+        return
+    from sim_core.weave.chart import View, Window, write_cards, write_draft, write_pegs
+
+    if args.draft:
+        view = View(args.view == "colour", args.floats, args.plan, args.first)
+        write_draft(source, args.draft, view, Window(*args.part) if args.part else None)
+    if args.cards:
+        write_cards(source, args.cards)
+    if args.pegs:
+        write_pegs(source, args.pegs)
+
+
+def _write_wif(source: Source, path: Path) -> None:
+    """The file of another program as it stands, else our draft with all that WIF cannot say."""
+    from sim_core.weave.wif import wif_of
+    from sim_core.weave.wif_write import write_wif
+
+    own = source.made is None and source.wif is not None
+    write_wif(source.wif if own and source.wif is not None else wif_of(source.weave[0]), path)
 
 
 def _relaxed(weave, particles: bool):
@@ -126,33 +276,14 @@ def _relaxed(weave, particles: bool):
             return solve(weave), {"note": f"stage A, at the crossings: {error}"}
 
 
-def _write(folder: Path, weave, geometry, size: int, summary: dict) -> None:
+def _write(folder: Path, cloth: _Cloth, size: int, summary: dict) -> None:
     from PIL import Image
 
     from sim_core.weave.surface import lit_cloth, surface_maps
 
-    maps = surface_maps(weave, geometry, pixels=size)
+    maps = surface_maps(cloth.weave, cloth.geometry, pixels=size)
     for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():
         Image.fromarray(picture).save(folder / f"{name}.png")
     tile = {"size": list(maps.size), "relief": maps.relief, "repeats": list(maps.repeats), "unit": "m"}
     text = json.dumps({**summary, "tile": tile}, ensure_ascii=False, indent=2)
     (folder / "parameters.json").write_text(text + "\n", "utf-8")
-
-
-def _text(name: str, summary: dict) -> str:
-    repeat, floats, crimp = summary["repeat"], summary["floats"], summary["crimp"]
-    lines = [
-        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, longest float "
-        f"{floats['warp']['longest']} warp {floats['weft']['longest']} weft, "
-        f"{'hangs together' if summary['integral'] else 'FALLS APART'}",
-        f"  crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, {summary['thickness'] * 1e6:.0f} um thick, "
-        f"{summary['areal_density'] * 1e3:.1f} g/m2",
-    ]
-    for key, entry in summary["parameters"].items():
-        if isinstance(entry, dict) and "value" in entry:
-            band = entry.get("band")
-            between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
-            lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
-    if "note" in summary:
-        lines.append(f"  {summary['note']}")
-    return "\n".join(lines)

@@ -12,9 +12,10 @@ import numpy as np
 
 from sim_core.errors import WeaveError
 
-__all__ = ["Channels", "Draft", "plain", "satin", "twill"]
+__all__ = ["Channels", "Draft", "check_size", "plain", "satin", "twill"]
 
-MOST = 1024  # ends or picks of one repeat
+MOST = 4096  # ends or picks of one draft; beyond, it is counted by its factors
+MOST_MOTIF = 1024  # of what a weave file or a picture makes
 KINDS = ("main", "inner", "extra")
 
 
@@ -70,8 +71,8 @@ class Draft:
         lift = np.array(self.lift)
         if lift.ndim != 2 or lift.size == 0:
             raise WeaveError(f"draft {self.name}: lift has shape {lift.shape} – give rows of picks by ends")
-        _check_size(self.name, *lift.shape)
-        if not np.isin(lift, (0, 1)).all():
+        check_size(self.name, *lift.shape)
+        if lift.dtype != bool and not np.isin(lift, (0, 1)).all():
             raise WeaveError(f"draft {self.name}: lift holds values other than 0 and 1")
         lift = lift.astype(bool)
         lift.setflags(write=False)
@@ -199,11 +200,10 @@ def _period(draft: Draft, axis: int) -> int:
     return count
 
 
-def _check_size(name: str, *counts: int) -> None:
+def check_size(name: str, *counts: int) -> None:
+    """Raises WeaveError where a draft would have more than MOST ends or picks."""
     if max(counts) > MOST:
-        raise WeaveError(
-            f"draft {name}: a repeat of {max(counts)} yarns – give at most {MOST} ends and picks"
-        )
+        raise WeaveError(f"draft {name}: {max(counts):,} yarns – give at most {MOST:,} ends and picks")
 
 
 def _runs(cycle: np.ndarray) -> list[int]:
@@ -238,7 +238,7 @@ def twill(up: int, down: int, step: int = 1) -> Draft:
     size = up + down
     if up < 1 or down < 1 or size < 3:
         raise WeaveError(f"twill {up}/{down}: floats must be at least 1 and their sum at least 3")
-    _check_size(f"twill {up}/{down}", size)
+    check_size(f"twill {up}/{down}", size)
     if gcd(abs(step), size) != 1:
         raise WeaveError(f"twill {up}/{down}: step {step} shares a factor with {size} – choose one without")
     picks, ends = np.indices((size, size))
@@ -252,7 +252,7 @@ def satin(ends: int, step: int) -> Draft:
     """
     if ends < 5:
         raise WeaveError(f"satin of {ends}: a regular satin needs 5 ends, or 7 and more")
-    _check_size(f"satin of {ends}", ends)
+    check_size(f"satin of {ends}", ends)
     if not 1 < step < ends - 1:
         raise WeaveError(f"satin {ends}: step {step} makes a twill – choose 1 < step < {ends - 1}")
     if gcd(ends, step) != 1:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.draft import Draft, _check_size, plain, satin, twill
+from sim_core.weave.draft import Draft, check_size, plain, satin, twill
 
 __all__ = [
     "basket",
@@ -26,7 +26,7 @@ def basket(warp: int, weft: int) -> Draft:
     """Plain weave with `weft` picks in each shed and `warp` ends side by side: ribs and hopsacks."""
     if warp < 1 or weft < 1:
         raise WeaveError(f"basket {warp}/{weft}: give at least one end and one pick")
-    _check_size(f"basket {warp}/{weft}", 2 * warp, 2 * weft)
+    check_size(f"basket {warp}/{weft}", 2 * warp, 2 * weft)
     return Draft(f"basket {warp}/{weft}", np.kron(plain().lift, np.ones((weft, warp), bool)))
 
 
@@ -35,7 +35,7 @@ def herringbone(up: int, down: int, width: int) -> Draft:
     base = twill(up, down)
     if width < 2:
         raise WeaveError(f"herringbone {up}/{down}: width {width} – give at least 2 ends a stripe")
-    _check_size("herringbone", 2 * width)
+    check_size("herringbone", 2 * width)
     ends = np.concatenate([np.arange(width), width - np.arange(width)]) % base.ends
     return Draft(f"herringbone {up}/{down} {width}", base.lift[:, ends])
 
@@ -81,7 +81,7 @@ def damask(
     mask = np.array(motif)
     if mask.ndim != 2 or mask.size == 0 or not np.isin(mask, (0, 1)).all():
         raise WeaveError(f"{name}: the motif has shape {mask.shape} – give rows of picks by ends, 0 and 1")
-    _check_size(name, *mask.shape)
+    check_size(name, *mask.shape)
     ground = ground or satin(5, 2)
     figure = figure or weft_faced(ground)
     rows, columns = np.indices(mask.shape)

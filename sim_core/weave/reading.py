@@ -8,7 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sim_core.errors import SimCoreError, WeaveError
 from sim_core.reading import read_toml, shown
-from sim_core.weave.draft import MOST, Draft, plain, satin, twill
+from sim_core.weave.draft import MOST_MOTIF as MOST
+from sim_core.weave.draft import Draft, plain, satin, twill
 from sim_core.weave.model import Weave
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 

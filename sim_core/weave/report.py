@@ -6,17 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim_core.weave.analysis import summary
-from sim_core.weave.draft import Draft
+from sim_core.weave.factors import Factors
 from sim_core.weave.geometry import ClothParameters, YarnGeometry
 from sim_core.weave.model import Weave
 from sim_core.weave.parameters import cloth_parameters
 from sim_core.weave.particles import ParticleCell
 from sim_core.weave.solve import ground_of, solve
+from sim_core.weave.sources import Source
 from sim_core.weave.strands import strands
+from sim_core.weave.wif_sections import listed
 
-__all__ = ["measured", "parameters_of", "summary_of"]
+__all__ = ["facts_of", "measured", "parameters_of", "summary_of", "summary_text"]
 
+MOST_SHOWN = 65_536  # crossings of a drawdown told in full
 UNITS = {
     "density": "kg/m2",
     "thickness": "m",
@@ -38,15 +40,15 @@ TAKE_UP = (
 )
 
 
-def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
-    """All keys of the command's JSON. seconds: that the relaxation took.  origin: of yarns and sett."""
-    facts = summary(_structure(weave.draft))
-    size = measured(weave, geometry)
-    parameters = parameters_of(weave, geometry)
-    deep = geometry.penetration
-    if not isinstance(geometry, ParticleCell):
-        deep /= (weave.warp.height + weave.weft.height) / 2
-    return {
+def facts_of(source: Source) -> dict:
+    """What a draft tells without physics: the first keys of the command's JSON.
+
+    `repeat` is the smallest that makes up the whole draft. Of a file of another program also its size and period (a
+    repeat of which the last may be cut off), what does not interlace (numbers from 1), its colours, the drawdown of up
+    to 65,536 crossings (one text a pick, 1 = warp on top), and what the reader had to replace.
+    """
+    facts = source.facts
+    made = {
         "repeat": {"ends": facts.ends, "picks": facts.picks},
         "face": facts.face,
         "floats": {
@@ -55,6 +57,49 @@ def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: flo
         },
         "interlacings": facts.interlacings,
         "integral": facts.integral,
+    }
+    if source.wif is None:
+        return made
+    factors, tieup = source.factors, source.harness.tieup
+    picks, ends = factors.loose()
+    size = {"title": source.name, "ends": factors.ends, "picks": factors.picks, "shafts": tieup.shape[0]}
+    size["period"] = {"ends": factors.periods[1], "picks": factors.periods[0]}
+    return made | {
+        "draft": size | ({"lift_plan": True} if source.plan else {"treadles": tieup.shape[1]}),
+        "loose": {"ends": (ends + 1).tolist(), "picks": (picks + 1).tolist()},
+        "colours": {
+            "warp": _counted(source.palette, source.warp_colours),
+            "weft": _counted(source.palette, source.weft_colours),
+        },
+        "drawdown": _rows(factors) if factors.picks * factors.ends <= MOST_SHOWN else None,
+        "remarks": list(source.remarks),
+    }
+
+
+def _counted(palette: np.ndarray, colours: np.ndarray) -> list[dict]:
+    """Each colour that is used, with how many yarns have it."""
+    used, counts = np.unique(colours, return_counts=True)
+    return [
+        {"colour": "#{:02x}{:02x}{:02x}".format(*palette[k]), "number": int(k) + 1, "yarns": int(n)}
+        for k, n in zip(used, counts, strict=True)
+    ]
+
+
+def _rows(factors: Factors) -> list[str]:
+    return ["".join("1" if over else "0" for over in pick) for pick in factors.lift()]
+
+
+def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
+    """What the relaxed cloth tells: the keys of the command's JSON beside `facts_of`.
+
+    seconds: that the relaxation took.  origin: of yarns and sett.
+    """
+    size = measured(weave, geometry)
+    parameters = parameters_of(weave, geometry)
+    deep = geometry.penetration
+    if not isinstance(geometry, ParticleCell):
+        deep /= (weave.warp.height + weave.weft.height) / 2
+    return {
         "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
         "thickness": size["thickness"],
         "areal_density": size["areal_density"],
@@ -64,14 +109,6 @@ def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: flo
         "seconds": seconds,
         "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
     }
-
-
-def _structure(draft: Draft) -> Draft:
-    """A draft without series that only colour its yarns: stripes are no larger repeat of the weave."""
-    channels = draft.channels
-    if channels.order is not None or channels.layer is not None:
-        return draft
-    return replace(draft, channels=replace(channels, end_series=None, pick_series=None))
 
 
 def _covered(weave: Weave, geometry: YarnGeometry | ParticleCell) -> str:
@@ -184,3 +221,43 @@ def _stand_in(weave: Weave) -> Weave:
     return replace(
         weave, draft=plain(), ends_per_m=ends, picks_per_m=picks, warp_colours=(), weft_colours=(), extra=None
     )
+
+
+def summary_text(name: str, summary: dict) -> str:
+    """The summary for people, a line a topic."""
+    repeat, floats = summary["repeat"], summary["floats"]
+    lines = [
+        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, longest float "
+        f"{floats['warp']['longest']} warp {floats['weft']['longest']} weft, "
+        f"{'hangs together' if summary['integral'] else 'FALLS APART'}"
+    ]
+    lines += _draft_lines(summary)
+    if "crimp" in summary:
+        crimp = summary["crimp"]
+        lines.append(
+            f"  crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, {summary['thickness'] * 1e6:.0f} um thick, "
+            f"{summary['areal_density'] * 1e3:.1f} g/m2"
+        )
+    for key, entry in summary.get("parameters", {}).items():
+        if isinstance(entry, dict) and "value" in entry:
+            band = entry.get("band")
+            between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
+            lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
+    if "note" in summary:
+        lines.append(f"  {summary['note']}")
+    return "\n".join(lines)
+
+
+def _draft_lines(summary: dict) -> list[str]:
+    """What a file of another program says besides: its size, its colours, what does not interlace."""
+    if "draft" not in summary:
+        return []
+    draft, colours = summary["draft"], summary["colours"]
+    how = "lift plan" if "lift_plan" in draft else f"{draft['treadles']} treadles"
+    lines = [f"  {draft['ends']} ends on {draft['shafts']} shafts, {draft['picks']} picks, {how}"]
+    for side, used in colours.items():
+        lines.append(f"  {side:<5}" + listed([f"{entry['yarns']} {entry['colour']}" for entry in used], 6))
+    for side, loose in summary["loose"].items():
+        if loose:
+            lines.append(f"  never interlace: {side} {listed(loose)}")
+    return lines

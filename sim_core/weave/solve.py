@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sim_core.errors import WeaveError
 from sim_core.weave.draft import Draft
 from sim_core.weave.geometry import YarnGeometry
 from sim_core.weave.model import Weave
@@ -14,6 +15,8 @@ from sim_core.weave.relaxation import relax
 from sim_core.weave.strands import main_picks
 
 __all__ = ["ground_of", "solve"]
+
+MOST_RELAXED = 1_048_576  # crossings of a repeat
 
 
 def ground_of(weave: Weave) -> Weave:
@@ -40,7 +43,12 @@ def solve(
 
     The ground of a brocade is relaxed alone. Leno and compound weaves stay at stage A (their ends cross or lie over
     one another, which the particles' grid of crossings does not hold).  watch, most: as of relax_particles.
+    Raises WeaveError for more than a million crossings, a jammed sett, or yarns that do not come to rest.
     """
+    if weave.draft.lift.size > MOST_RELAXED:
+        raise WeaveError(
+            f"{weave.name}: a repeat of {weave.draft.lift.size:,} crossings – at most {MOST_RELAXED:,} are relaxed"
+        )
     ground = ground_of(weave)
     channels = weave.draft.channels
     simple = channels.order is None and channels.layer is None

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from sim_core.errors import WeaveError
 from sim_core.weave.algebra import Harness, harness
-from sim_core.weave.draft import Draft
+from sim_core.weave.draft import Draft, check_size
+from sim_core.weave.factors import Factors
 from sim_core.weave.model import Weave, draft_from_dict, draft_to_dict
 
-__all__ = ["PRIVATE", "Wif", "centimetres", "plain_title", "tidy", "wif_of"]
+__all__ = ["PRIVATE", "Wif", "centimetres", "plain_title", "thread_colours", "tidy", "wif_of"]
 
 PRIVATE = "PRIVATE HALL WEAVE"
 MOST_TREADLES = 64  # beyond, the file has a lift plan instead of tie-up and treadling
@@ -67,6 +69,11 @@ class Wif:
             np.array_equal(a, b) for a, b in zip(arrays(self), arrays(other), strict=True)
         )
 
+    @cached_property
+    def factors(self) -> Factors:
+        """The lift by its kinds of ends and picks, whatever the size; raises WeaveError as Factors.of_harness."""
+        return Factors.of_harness(self.harness)
+
     @property
     def draft(self) -> Draft:
         """The draft; with all channels where our private section fits the lift that the harness weaves."""
@@ -78,13 +85,14 @@ class Wif:
         return self._value()[1]
 
     def _value(self) -> tuple[Draft, Weave | None]:
-        lift = self.harness.lift
+        factors = self.factors
+        check_size(self.title or "draft", factors.picks, factors.ends)
+        lift = factors.lift()
         if self.private:
             weave = Weave.from_dict(self.private["weave"]) if "weave" in self.private else None
             draft = weave.draft if weave else draft_from_dict(self.private.get("draft", {}))
-            if np.array_equal(
-                draft.lift, lift
-            ):  # else another program has changed the draft: its word counts
+            # else another program has changed the draft: its word counts
+            if np.array_equal(draft.lift, lift):
                 return draft, weave
         return Draft(self.title or "draft", lift), None
 
@@ -106,7 +114,7 @@ def wif_of(cloth: Weave | Draft) -> Wif:
     )
     if weave is None:
         return value
-    palette, warp, weft = _thread_colours(weave)
+    palette, warp, weft = thread_colours(weave)
     return replace(
         value,
         palette=palette,
@@ -117,7 +125,7 @@ def wif_of(cloth: Weave | Draft) -> Wif:
     )
 
 
-def _thread_colours(weave: Weave) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def thread_colours(weave: Weave) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Palette of 0 to 255, colour of every end and of every pick; of a pick in several colours, the most frequent."""
     channels, draft = weave.draft.channels, weave.draft
     sides = weave.warp_colours or (weave.warp.colour,), weave.weft_colours or (weave.weft.colour,)

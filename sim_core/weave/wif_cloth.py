@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from sim_core.errors import WeaveError
+from sim_core.weave.algebra import Harness, smallest_period
 from sim_core.weave.draft import Channels, Draft
 from sim_core.weave.jam import check_jam
 from sim_core.weave.model import Weave
 from sim_core.weave.wif import Wif
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["cloth_of"]
+__all__ = ["cloth_of", "cut_to_repeat"]
+
+MOST_WHOLE = 1024  # ends or picks of a file; beyond, only its smallest repeat is relaxed
 
 
 def cloth_of(wif: Wif, assumed: Weave, name: str, origin: str) -> tuple[Weave, str]:
@@ -37,6 +40,39 @@ def cloth_of(wif: Wif, assumed: Weave, name: str, origin: str) -> tuple[Weave, s
         if kept:
             return sized, f"{kept} and colours of {name}{note}; else {origin}"
     return weave, f"{origin}; colours of {name}; its sett and thickness are of no cloth"
+
+
+def cut_to_repeat(wif: Wif) -> tuple[Wif, str]:
+    """A warp or weft of more than 1,024 yarns cut to its smallest repeat, with its colours if they repeat as well.
+
+    Returns the file, and what was done for whoever asks where the cloth comes from.
+    """
+    factors, notes, kept, colours = wif.factors, [], [], []
+    for side, kind, given in (
+        ("ends", factors.end, wif.warp_colours),
+        ("picks", factors.pick, wif.weft_colours),
+    ):
+        count = period = len(kind)
+        if count > MOST_WHOLE:
+            period = smallest_period(list(zip(kind.tolist(), given.tolist(), strict=True)))
+            if period > MOST_WHOLE:
+                period = smallest_period(kind.tolist())
+                if period < count:
+                    given = np.full(count, np.bincount(given).argmax())
+                    notes.append(f"the colours of its {side} do not repeat and were left out")
+            if period < count:
+                notes.append(f"cut to its repeat of {period} of {count} {side}")
+        kept.append(period)
+        colours.append(given[:period])
+    threaded, treadled = wif.harness.threading[: kept[0]], wif.harness.treadling[: kept[1]]
+    cut = replace(
+        wif,
+        harness=Harness(threaded, wif.harness.tieup, treadled),
+        warp_colours=colours[0],
+        weft_colours=colours[1],
+        private=None,
+    )
+    return cut, "".join(f"; {note}" for note in notes)
 
 
 def _sized(weave: Weave, spacing, thickness) -> Weave:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from sim_core.errors import WeaveError
 from sim_core.reading import shown
 from sim_core.weave.wif import PRIVATE
 
-__all__ = ["KNOWN", "Section", "decoded", "escaped", "sections_of", "unescaped", "whole"]
+__all__ = ["KNOWN", "Section", "decoded", "escaped", "listed", "sections_of", "unescaped", "whole"]
 
 KNOWN = {
     "WIF", "CONTENTS", "COLOR PALETTE", "TEXT", "WEAVING", "WARP", "WEFT", "NOTES", "COLOR TABLE", "THREADING", "TIEUP",
     "TREADLING", "LIFTPLAN", "WARP COLORS", "WEFT COLORS", PRIVATE,
 }  # fmt: skip
 VERBATIM = {"TEXT", "NOTES"}  # sections in which ";" is no comment
+# In these a line without "=" may be a thread or a treadle that was meant; elsewhere nothing is lost with it.
+NEEDED = {"THREADING", "TIEUP", "TREADLING", "LIFTPLAN"}
 Section = dict[str, tuple[str, str]]  # lower-case key -> key as written, value
 
 
@@ -45,14 +48,17 @@ def decoded(data: bytes) -> str:
         return data.decode("cp1252", errors="replace")
 
 
-def sections_of(text: str) -> dict[str, Section]:
-    """Sections by upper-case name; raises WeaveError that names the line.
+def sections_of(text: str) -> tuple[dict[str, Section], list[str]]:
+    """Sections by upper-case name, and remarks on lines that were passed over; raises WeaveError that names the line.
 
-    Lines without "=" are a further line of the [NOTES], and nothing in sections of other programs.
+    A line without "=" is a further line of the [NOTES], passed over with a remark where it may have been meant, and
+    nothing in sections of other programs. In tables of numbers, "3" without "=" is a thread of which nothing is said.
     """
     sections: dict[str, Section] = {}
     current: Section | None = None
     name = ""
+    stray: dict[str, list[tuple[int, str]]] = {}
+    twice: dict[str, list[str]] = {}
     for number, raw in enumerate(re.split(r"\r\n|\r|\n", text), 1):
         line = raw.strip().strip("\x00\x1a")
         if not line or line[0] in ";#":
@@ -65,23 +71,53 @@ def sections_of(text: str) -> dict[str, Section]:
             current = sections.setdefault(name, {})
             continue
         key, equals, value = line.partition("=")
-        if not equals:
-            if current is None:
-                raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
-            if name == "NOTES":
-                current[f"line {number}"] = ("", unescaped(line))
-            elif name in KNOWN:
-                raise WeaveError(f"[{name}] line {number}: {shown(line, 30)} – write key=value")
-            continue
         if current is None:
-            raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
+            stray.setdefault("", []).append((number, line))
+            continue
+        if not equals and not (name in NEEDED and line.isascii() and line.isdigit()):
+            if _is_lost(current, name, number, line):
+                stray.setdefault(name, []).append((number, line))
+            continue
         if name not in VERBATIM and not name.startswith("PRIVATE"):
             value = value.partition(";")[0]
         key, value = key.strip(), value.strip()
         if name != PRIVATE:
             key, value = unescaped(key), unescaped(value)
+        if name in KNOWN and current.get(key.lower(), ("", value))[1] != value:
+            twice.setdefault(name, []).append(key)
         current[key.lower()] = (key, value)
-    return sections
+    if not sections and stray:
+        number, line = stray[""][0]
+        raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
+    return sections, _told(stray, twice)
+
+
+def _is_lost(current: Section, name: str, number: int, line: str) -> bool:
+    """Whether a line without "=" is passed over; it is a note, or nothing to us in another program's section."""
+    if name in NEEDED:
+        raise WeaveError(f"[{name}] line {number}: {shown(line, 30)} – write key=value")
+    if name == "NOTES":
+        current[f"line {number}"] = ("", unescaped(line))
+    return name in KNOWN and name != "NOTES"
+
+
+def _told(stray: dict[str, list[tuple[int, str]]], twice: dict[str, list[str]]) -> list[str]:
+    remarks = []
+    for name, lines in stray.items():
+        number, line = lines[0]
+        more = f", and {len(lines) - 1} more such lines" if len(lines) > 1 else ""
+        where = f"[{name}] line" if name else "line"
+        remarks.append(f"{where} {number}: {shown(line, 30)} says nothing here – passed over{more}")
+    for name, keys in twice.items():
+        remarks.append(f"[{name}] {listed(keys)}: said twice – the last word counts")
+    return remarks
+
+
+def listed(numbers: Iterable[object], most: int = 4) -> str:
+    """The first few of many, and how many more there are: "4, 5, 6, 9 and 12 more"."""
+    texts = [str(number)[:20] for number in numbers]
+    more = len(texts) - most
+    return ", ".join(texts[:most]) + (f" and {more} more" if more > 0 else "")
 
 
 def whole(text: str, section: str, key: str, remedy: str) -> int:

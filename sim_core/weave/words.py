@@ -1,4 +1,7 @@
-"""SOURCE of the command: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; a file; a motif picture."""
+"""Drafts by name: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; by a picture of a motif.
+
+A draft that comes without yarns is dressed with an assumed silk.
+"""
 
 from __future__ import annotations
 
@@ -9,37 +12,16 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import FileProblem, WeaveError
-from sim_core.weave.draft import MOST, Draft, plain, satin, twill
-from sim_core.weave.generators import damask
-from sim_core.weave.model import Weave, draft_from_dict
+from sim_core.weave.draft import MOST_MOTIF, Draft, plain, satin, twill
+from sim_core.weave.model import Weave
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["draft_of_words", "dressed", "satin_by_pick", "weave_of"]
+__all__ = ["ASSUMED", "PICTURES", "draft_of_words", "dressed", "motif_of", "satin_by_pick"]
 
-WORDS = (
-    "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .json or .toml file, or a picture of a motif"
-)
+WORDS = "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .dtx, .json or .toml file, or a picture of a motif"
 PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"}
 # What a bare draft is woven of: degummed silk, two threads of 20/22 den; an assumption, told in the provenance.
 TEX, DIAMETER, FLATTENING, ROOM = 3.59e-6, 78e-6, 1.8, 1.7
-
-
-def weave_of(source: str) -> tuple[Weave, str]:
-    """The cloth that SOURCE names, and where its yarns and sett come from.
-
-    Raises WeaveError or FileProblem: what, where, and the remedy.
-    """
-    path = Path(source)
-    kind = path.suffix.lower()
-    if kind == ".toml":
-        return Weave.load(path), f"{path.name}"
-    if kind == ".json":
-        return _from_json(path)
-    if kind == ".wif":
-        return _from_wif(path)
-    if kind in PICTURES:
-        return dressed(damask(_motif_of(path), longest=8, name=path.stem)), ASSUMED
-    return dressed(draft_of_words(source)), ASSUMED
 
 
 ASSUMED = (
@@ -100,35 +82,6 @@ def dressed(draft: Draft) -> Weave:
     )
 
 
-def _from_json(path: Path) -> tuple[Weave, str]:
-    from sim_core.reading import read_json
-
-    values = read_json(path, "a weave written as JSON")
-    if not isinstance(values, dict):
-        raise WeaveError(f"{path}: not an object – give what Weave.to_dict or draft_to_dict wrote")
-    try:
-        if "draft" in values:
-            return Weave.from_dict(values), path.name
-        return dressed(draft_from_dict(values)), ASSUMED
-    except WeaveError as error:
-        raise WeaveError(f"{path}: {error}") from error
-
-
-def _from_wif(path: Path) -> tuple[Weave, str]:
-    from sim_core.weave.wif_read import read_wif
-
-    wif = read_wif(path)
-    try:
-        weave = wif.weave
-        if weave:
-            return weave, path.name
-        from sim_core.weave.wif_cloth import cloth_of
-
-        return cloth_of(wif, dressed(wif.draft), path.name, ASSUMED)
-    except WeaveError as error:
-        raise WeaveError(f"{path}: {error}") from error
-
-
 def _grey(picture) -> np.ndarray:
     """(rows, columns) brightness; what is transparent counts as white paper, 16 bits keep their range."""
     from PIL import Image
@@ -141,15 +94,15 @@ def _grey(picture) -> np.ndarray:
     return np.asarray(picture.convert("L"))
 
 
-def _motif_of(path: Path) -> np.ndarray:
+def motif_of(path: Path) -> np.ndarray:
     """(picks, ends) bool, dark where the figure is; one pixel a crossing, the lowest row the first pick."""
     from PIL import Image, UnidentifiedImageError
 
     try:
         with Image.open(path) as picture:
-            if max(picture.size) > MOST:
+            if max(picture.size) > MOST_MOTIF:
                 raise WeaveError(
-                    f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST}"
+                    f"{path}: {picture.size[0]} x {picture.size[1]} pixels – a crossing a pixel, at most {MOST_MOTIF}"
                 )
             grey = _grey(picture)
     except (OSError, UnidentifiedImageError, ValueError, SyntaxError, Image.DecompressionBombError) as error:

@@ -21,7 +21,8 @@ def sorted_ring(count: int):
     order, cells = point_cells(points)
     rank = np.zeros(len(points), dtype=np.int64)
     rank[order] = np.arange(len(points))
-    return points[order], rank, cells, walls.wall_cells(points[order], rank[steps], cells)
+    found = walls.wall_cells(points[order], rank[steps], cells, np.zeros(1, np.int64), 10**6)
+    return points[order], rank, cells, found
 
 
 def test_hidden_agrees_with_every_wall_tried():

@@ -17,7 +17,7 @@ from sim_core.weave.generators import (
     weft_faced,
 )
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.words import _motif_of, draft_of_words, dressed
+from sim_core.weave.words import draft_of_words, dressed, motif_of
 
 RNG = np.random.default_rng(5)
 
@@ -249,5 +249,5 @@ def test_a_motif_is_dark_on_light_in_any_kind_of_picture(mode, tmp_path):
     else:
         picture = Image.fromarray(grey if mode == "L" else grey.astype(np.uint16) * 200 + 3000)
     picture.save(tmp_path / "motif.png")
-    dark = _motif_of(tmp_path / "motif.png")
+    dark = motif_of(tmp_path / "motif.png")
     assert np.array_equal(dark, (grey < 128)[::-1])

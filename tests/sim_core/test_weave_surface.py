@@ -13,10 +13,10 @@ from sim_core.weave.figure1 import figure_one, figure_one_picture
 from sim_core.weave.generators import basket
 from sim_core.weave.report import measured, parameters_of, summary_of
 from sim_core.weave.solve import solve
+from sim_core.weave.sources import weave_of
 from sim_core.weave.strands import strands
 from sim_core.weave.surface import lit_cloth, surface_maps
 from sim_core.weave.tubes import tube_mesh, write_yarns
-from sim_core.weave.words import weave_of
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))

@@ -1,0 +1,140 @@
+"""Lines of a DXF drawing, read by ezdxf: text or binary, release 10 to 2018, blocks where they are inserted.
+
+ezdxf mends what is broken and decodes by the drawing's own code page; what is left to do here is to follow inserts
+with a bound on their number, to leave out what is hidden, and to keep the layer and the block of every line.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim_core.errors import FileProblem
+from sim_core.mesh.left_out import MOST_VISITED, visited, warn_left_out
+from sim_core.mesh.sheets.dxf_mending import mended
+from sim_core.mesh.sheets.strokes import Stroke
+from sim_core.mesh.sheets.words import spoken
+from sim_core.reading import read_bytes
+
+__all__ = ["dxf_strokes"]
+
+METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 14: 0.1}
+DRAWN = ("LWPOLYLINE", "POLYLINE", "LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
+BINARY = b"AutoCAD Binary DXF"
+SAG = 0.02  # [mm] most between a curve and its steps
+WHAT = "a pattern drawn as DXF"
+
+
+def dxf_strokes(path: Path, metres: float | None = None) -> list[Stroke]:
+    """The lines of a DXF file [m], y down; raises FileProblem.
+
+    metres: of a drawing unit; without it $INSUNITS counts, and where that is silent a millimetre.
+    """
+    text = read_bytes(path, WHAT)
+    if b"SECTION" not in text and not text.startswith(BINARY):
+        raise FileProblem(f"{path}: not a DXF file (no section in it) – give {WHAT}")
+    document, lost = _document(path, text)
+    unit = document.header.get("$INSUNITS", 0)
+    scale = metres or METRES.get(unit)
+    if scale is None:
+        raise FileProblem(f"{path}: $INSUNITS {unit} – say the unit with --units, such as --units mm")
+    walk = _Walk(document, SAG * 1e-3 / scale)
+    walk.left_out["INSERT of no block"] += lost
+    try:
+        with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
+            found = list(walk.strokes(document.modelspace(), ()))
+    except (ValueError, TypeError, AttributeError, ArithmeticError) as error:
+        reason = " ".join(str(error).split())[:120]
+        raise FileProblem(f"{path}: an entity cannot be read ({reason}) – draw it as polylines") from error
+    walk.left_out["in paper space"] += sum(
+        len(layout) for layout in document.layouts if layout.name != "Model"
+    )
+    warn_left_out(path, +walk.left_out)
+    with np.errstate(all="ignore"):
+        turned = np.array([scale, -scale])
+        return [Stroke(points * turned, closed, *rest) for points, closed, *rest in found]
+
+
+def _document(path: Path, text: bytes) -> tuple[Any, int]:
+    """The drawing, and how many inserts name no block; ezdxf tells damage by many kinds of exception."""
+    from ezdxf import recover
+    from ezdxf.audit import AuditError
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    logging.getLogger("ezdxf").addHandler(
+        logging.NullHandler()
+    )  # what it mends is no news to whoever cuts cloth
+    try:
+        if text.startswith(BINARY):
+            return readfile(path), 0
+        document, audit = recover.read(BytesIO(mended(text)))
+        return document, sum(fix.code == AuditError.UNDEFINED_BLOCK for fix in audit.fixes)
+    except (DXFError, ValueError, KeyError, IndexError, AttributeError, TypeError, OSError) as error:
+        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        raise FileProblem(f"{path}: not a DXF file ({reason}) – give {WHAT}") from error
+    except (RecursionError, OverflowError, MemoryError, ArithmeticError) as error:
+        raise FileProblem(f"{path}: not a DXF file that can be read – give {WHAT}") from error
+
+
+class _Walk:
+    """A way through a drawing, inserts followed into their blocks."""
+
+    def __init__(self, document: Any, sag: float) -> None:
+        self.document, self.sag, self.visits = document, sag, 0
+        self.left_out: Counter[str] = Counter()
+        self.dark = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
+
+    def strokes(self, entities, within: tuple[str, ...], layer: str = "0") -> Iterator[tuple]:
+        """(points, closed, layer, groups, words) of entities. within: blocks around.  layer: the insert's."""
+        for entity in entities:
+            self.visits = visited(self.visits)
+            kind, own = entity.dxftype(), str(entity.dxf.get("layer", "0"))
+            own = layer if own == "0" else own  # what a block draws on layer 0 lies on its insert's
+            own = own.encode("utf-8", "replace").decode()  # what ezdxf could not decode
+            if entity.dxf.get("invisible", 0):
+                self.left_out["invisible"] += 1
+            elif own in self.dark:
+                self.left_out[f"on layer {own}, off or frozen"] += 1
+            elif kind == "INSERT":
+                yield from self._inserted(entity, within, own)
+            elif kind == "POINT":
+                place = entity.dxf.location
+                yield np.array([[place.x, place.y]]), False, own, within, spoken(own)
+            elif kind in DRAWN:
+                yield from self._drawn(entity, own, within)
+            else:
+                self.left_out[kind] += 1
+
+    def _drawn(self, entity, layer: str, within: tuple[str, ...]) -> Iterator[tuple]:
+        from ezdxf import path as curves
+
+        if entity.dxftype() == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
+            self.left_out["POLYLINE mesh"] += 1
+            return
+        curve = curves.make_path(entity)
+        points = np.array([(p.x, p.y) for p in curve.flattening(self.sag)]).reshape(-1, 2)
+        closed = len(points) > 3 and bool(getattr(entity, "is_closed", False) or curve.is_closed)
+        if closed and np.allclose(points[0], points[-1], rtol=0, atol=1e-9 * (1 + np.abs(points).max())):
+            points = points[:-1]
+        if len(points) > 1:
+            yield points, closed, layer, within, spoken(layer)
+
+    def _inserted(self, insert, within: tuple[str, ...], layer: str) -> Iterator[tuple]:
+        name = str(insert.dxf.get("name", ""))
+        if self.document.blocks.get(name) is None:
+            self.left_out[f"INSERT of {name or 'nothing'}"] += 1
+            return
+        if name in within:
+            raise ValueError(f"block {name[:40]} within itself")
+        rows, columns = (max(1, int(insert.dxf.get(key, 1))) for key in ("row_count", "column_count"))
+        if rows * columns > MOST_VISITED:
+            visited(MOST_VISITED)
+        for one in [insert] if rows * columns == 1 else insert.multi_insert():
+            yield from self.strokes(one.virtual_entities(), (*within, name), layer)

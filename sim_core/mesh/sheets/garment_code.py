@@ -1,0 +1,225 @@
+"""Patterns of GarmentCode (Korosteleva and Sorkine-Hornung, SIGGRAPH Asia 2023) as values, from their JSON and back.
+
+A panel is vertices, and edges between them in order, straight or curved; lengths in `units_in_meter`, y up, the right
+side of the cloth towards the reader where edges run counter-clockwise. Curvature is relative to the edge: (0, 0) its
+beginning, (1, 0) its end, (0, 1) as far to its left as it is long. A stitch joins two edges, the end of one to the
+beginning of the other, so that right side meets right side; the word "right_wrong" joins beginning to beginning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from sim_core.errors import FileProblem
+from sim_core.mesh.curves import arc_points, bezier_points
+from sim_core.mesh.sheets.model import Piece, Sheet
+from sim_core.reading import read_json, shown
+
+__all__ = [
+    "CodeEdge",
+    "CodePanel",
+    "GarmentCode",
+    "Stitch",
+    "code_sheet",
+    "is_garment_code",
+    "read_garment_code",
+]
+
+REMEDY = "give a specification as GarmentCode writes it"
+Curve = Literal["line", "quadratic", "cubic", "circle"]
+
+
+@dataclass(frozen=True)
+class CodeEdge:
+    """From vertex `start` to vertex `end`. curve: its kind.  params: control points relative to the edge; of a circle
+    its radius, whether it is the larger arc, and whether it bulges to the right.  rest: what else the file says."""
+
+    start: int
+    end: int
+    curve: Curve = "line"
+    params: tuple = ()
+    rest: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class CodePanel:
+    """vertices: pairs of numbers.  edges: in order around.  rest: translation, rotation, label, …"""
+
+    vertices: tuple[tuple[float, float], ...]
+    edges: tuple[CodeEdge, ...]
+    rest: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Stitch:
+    """a, b: (panel, number of the edge).  right_wrong: beginning meets beginning; otherwise beginning meets end."""
+
+    a: tuple[str, int]
+    b: tuple[str, int]
+    right_wrong: bool = False
+
+
+@dataclass(frozen=True)
+class GarmentCode:
+    """A specification. per_metre: units of length in a metre.  rest, pattern_rest: what else the file says at its top
+    and under "pattern"."""
+
+    panels: dict[str, CodePanel]
+    stitches: tuple[Stitch, ...]
+    per_metre: float = 100.0
+    rest: dict[str, Any] = field(default_factory=dict)
+    pattern_rest: dict[str, Any] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What JSON holds; of a file that was read, the same as in it."""
+        panels = {name: _panel_dict(panel) for name, panel in self.panels.items()}
+        stitches = [
+            [
+                {"panel": s.a[0], "edge": s.a[1]},
+                {"panel": s.b[0], "edge": s.b[1]},
+                *["right_wrong"][: s.right_wrong],
+            ]
+            for s in self.stitches
+        ]
+        return {"pattern": {"panels": panels, "stitches": stitches, **self.pattern_rest}, **self.rest}
+
+    def leg(self, panel: str, number: int) -> np.ndarray:
+        """The points of an edge (n, 2) [m], y down, both ends included."""
+        held = self.panels[panel]
+        edge = held.edges[number]
+        start, end = (np.array(held.vertices[k], float) for k in (edge.start, edge.end))
+        return np.vstack([start, *_steps(edge, start, end)]) * (1, -1) / self.per_metre
+
+    def outline(self, panel: str) -> np.ndarray:
+        """The outline of a panel (n, 2) [m], y down, not closed."""
+        return np.concatenate([self.leg(panel, k)[:-1] for k in range(len(self.panels[panel].edges))])
+
+
+def _panel_dict(panel: CodePanel) -> dict[str, Any]:
+    edges = []
+    for edge in panel.edges:
+        made: dict[str, Any] = {"endpoints": [edge.start, edge.end], **edge.rest}
+        if edge.curve != "line" and "curvature" not in edge.rest:
+            made["curvature"] = {"type": edge.curve, "params": [_plain(p) for p in edge.params]}
+        edges.append(made)
+    return {"vertices": [list(v) for v in panel.vertices], "edges": edges, **panel.rest}
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _steps(edge: CodeEdge, start: np.ndarray, end: np.ndarray) -> list[np.ndarray]:
+    """Points of an edge after its beginning, y up."""
+    if edge.curve == "line":
+        return [end]
+    if edge.curve == "circle":
+        radius, large, right = edge.params
+        return arc_points(start, (radius, radius), 0.0, bool(large), bool(right), end)
+    along = end - start
+    left = np.array([-along[1], along[0]])
+    controls = [start + p[0] * along + p[1] * left for p in edge.params]
+    return bezier_points([start, *controls, end])
+
+
+def is_garment_code(path: Path) -> bool:
+    """Whether a JSON file holds a pattern with panels; False for a file that cannot be read."""
+    if path.suffix.lower() != ".json":
+        return False
+    try:
+        values = read_json(path, "")
+    except FileProblem:
+        return False
+    return (
+        isinstance(values, dict) and isinstance(values.get("pattern"), dict) and "panels" in values["pattern"]
+    )
+
+
+def read_garment_code(path: Path, values: Any) -> GarmentCode:
+    """The specification that a JSON file holds; raises FileProblem naming panel, edge or stitch and the remedy."""
+    try:
+        pattern = dict(values["pattern"])
+        panels = {str(name): _panel(str(name), panel) for name, panel in pattern.pop("panels").items()}
+        per_metre = float((values.get("properties") or {}).get("units_in_meter", 100))
+        if not 1e-3 <= per_metre <= 1e6:
+            raise ValueError(f"properties.units_in_meter: {per_metre:g} – 100 for centimetres")
+        if (values.get("properties") or {}).get("curvature_coords", "relative") != "relative":
+            raise ValueError(
+                "properties.curvature_coords: only 'relative' is read – save it anew with GarmentCode"
+            )
+        stitches = tuple(_stitch(k, stitch, panels) for k, stitch in enumerate(pattern.pop("stitches", [])))
+        rest = {key: value for key, value in values.items() if key != "pattern"}
+        return GarmentCode(panels, stitches, per_metre, rest, pattern)
+    except (KeyError, TypeError, AttributeError, IndexError) as error:
+        raise FileProblem(f"{path}: not a pattern of GarmentCode ({shown(error)}) – {REMEDY}") from error
+    except ValueError as error:
+        text = str(error)
+        raise FileProblem(f"{path}: {text}" + ("" if "–" in text else f" – {REMEDY}")) from error
+
+
+def _panel(name: str, values: dict[str, Any]) -> CodePanel:
+    vertices = tuple(_pair(f"panel {name}: vertex {k}", v) for k, v in enumerate(values["vertices"]))
+    edges = tuple(
+        _edge(f"panel {name}: edge {k}", edge, len(vertices)) for k, edge in enumerate(values["edges"])
+    )
+    ends = [(edge.end, edges[(k + 1) % len(edges)].start) for k, edge in enumerate(edges)]
+    if len(edges) < 2 or any(end != start for end, start in ends):
+        raise ValueError(f"panel {name}: its edges do not follow each other around – order them end to start")
+    return CodePanel(vertices, edges, {k: v for k, v in values.items() if k not in ("vertices", "edges")})
+
+
+def _pair(what: str, values: Any) -> tuple[float, float]:
+    if len(values) != 2 or not all(type(v) in (int, float) and abs(v) < 1e9 for v in values):
+        raise ValueError(f"{what}: {shown(values)} – give two numbers")
+    return values[0], values[1]
+
+
+def _edge(what: str, values: dict[str, Any], count: int) -> CodeEdge:
+    start, end = values["endpoints"]
+    if not all(type(v) is int and 0 <= v < count for v in (start, end)) or start == end:
+        raise ValueError(f"{what}: endpoints {shown([start, end])} – two different numbers below {count}")
+    rest = {key: value for key, value in values.items() if key not in ("endpoints", "curvature")}
+    bent = values.get("curvature")
+    if bent is None:
+        return CodeEdge(
+            start, end, "line", (), rest if "curvature" not in values else {**rest, "curvature": None}
+        )
+    if isinstance(bent, list):  # files before 2023: one control point
+        return CodeEdge(start, end, "quadratic", (_pair(what, bent),), {**rest, "curvature": bent})
+    kind, params = bent["type"], bent["params"]
+    if kind == "circle":
+        radius = params[0]
+        if len(params) != 3 or type(radius) not in (int, float) or not 0 < radius < 1e9:
+            raise ValueError(f"{what}: circle {shown(params)} – give radius, large arc and direction")
+        return CodeEdge(start, end, "circle", tuple(params), rest)
+    if (kind, len(params)) not in (("quadratic", 1), ("cubic", 2)):
+        raise ValueError(
+            f"{what}: curvature {shown(bent)} – quadratic, cubic or circle with its control points"
+        )
+    return CodeEdge(start, end, kind, tuple(_pair(what, p) for p in params), rest)
+
+
+def _stitch(number: int, values: list[Any], panels: dict[str, CodePanel]) -> Stitch:
+    sides = []
+    for side in values[:2]:
+        name, edge = side["panel"], side["edge"]
+        if name not in panels or type(edge) is not int or not 0 <= edge < len(panels[name].edges):
+            raise ValueError(f"stitch {number}: {shown(side)} – no such panel or edge")
+        sides.append((name, edge))
+    if values[2:] not in ([], ["right_wrong"]) or len(sides) != 2:
+        raise ValueError(
+            f"stitch {number}: {shown(values[2:])} – two sides, and 'right_wrong' or nothing after them"
+        )
+    return Stitch(sides[0], sides[1], bool(values[2:]))
+
+
+def code_sheet(code: GarmentCode) -> Sheet:
+    """The panels as pieces; their outlines are sewing lines."""
+    pieces = []
+    for name, panel in code.panels.items():
+        pieces.append(Piece(name, str(panel.rest.get("label") or ""), None, code.outline(name)))
+    return Sheet(tuple(pieces))

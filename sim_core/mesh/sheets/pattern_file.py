@@ -1,0 +1,153 @@
+"""Pieces and GarmentCode specifications written as pattern files: our TOML, or GarmentCode's JSON."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+
+from sim_core.errors import FileProblem
+from sim_core.mesh.sheets.garment_code import CodeEdge, CodePanel, GarmentCode
+from sim_core.mesh.sheets.legs import Leg, cubic_through, legs_of
+
+__all__ = ["code_of", "pattern_text", "write_pattern"]
+
+EASE = 0.02  # sides of a seam may differ by this share in a pattern file
+MOST_LEGS = 200
+
+
+def write_pattern(path: Path, code: GarmentCode, edge: float) -> list[str]:
+    """Write a specification as .toml (a pattern file, meshed at `edge` [m]) or .json; returns remarks.
+
+    Raises FileProblem for another kind of file, or one that cannot be written.
+    """
+    text, remarks = (json.dumps(code.to_dict(), indent=2) + "\n", [])
+    if path.suffix.lower() == ".toml":
+        text, remarks = pattern_text(path.stem, code, edge)
+    try:
+        path.write_text(text, "utf-8")
+    except OSError as error:
+        remedy = "give a file in a folder that can be"
+        raise FileProblem(f"{path}: cannot be written ({error.strerror}) – {remedy}") from error
+    return remarks
+
+
+def code_of(outlines: dict[str, np.ndarray]) -> GarmentCode:
+    """A specification of outlines (n, 2) [m], y down, by name: centimetres, no stitches."""
+    panels = {}
+    for name, outline in outlines.items():
+        if _area(outline) < 0:
+            outline = outline[::-1]  # counter-clockwise seen with y up, as GarmentCode has its right side
+        legs = legs_of(outline)
+        vertices = tuple((float(x), float(y)) for x, y in np.array([leg.start for leg in legs]) * (100, -100))
+        edges = tuple(_edge(k, leg, legs[(k + 1) % len(legs)].start, len(legs)) for k, leg in enumerate(legs))
+        panels[name] = CodePanel(vertices, edges, {"translation": [0, 0, 0], "rotation": [0, 0, 0]})
+    properties = {
+        "curvature_coords": "relative",
+        "normalize_panel_translation": False,
+        "normalized_edge_loops": True,
+        "units_in_meter": 100,
+    }
+    return GarmentCode(panels, (), 100.0, {"parameters": {}, "parameter_order": [], "properties": properties})
+
+
+def _area(outline: np.ndarray) -> float:
+    """Twice the area, positive where an outline runs counter-clockwise seen with y up."""
+    x, y = (outline - outline.mean(axis=0)).T
+    return float((np.roll(x, -1) * y - x * np.roll(y, -1)).sum())
+
+
+def _edge(number: int, leg: Leg, following: np.ndarray, count: int) -> CodeEdge:
+    ends = (number, (number + 1) % count)
+    if leg.controls is None:
+        return CodeEdge(*ends)
+    along = (following - leg.start) * (1, -1)
+    left, square = np.array([-along[1], along[0]]), float(along @ along)
+    away = (leg.controls - leg.start) * (1, -1)
+    params = tuple((float(p @ along / square), float(p @ left / square)) for p in away)
+    return CodeEdge(*ends, "cubic", params)
+
+
+def pattern_text(name: str, code: GarmentCode, edge: float) -> tuple[str, list[str]]:
+    """The text of a pattern file, panels in millimetres as the paper has them and stitches as seams; and remarks."""
+    remarks: list[str] = []
+    names = _keys(list(code.panels))
+    parts = [f"name = {json.dumps(name, ensure_ascii=False)}\nedge = {edge:.6g}"]
+    scale = 1000 / code.per_metre
+    for panel, key in names.items():
+        held = code.panels[panel]
+        if len(held.edges) > MOST_LEGS:
+            raise FileProblem(
+                f"{name}: panel {panel} has {len(held.edges)} edges – a pattern file bears {MOST_LEGS}"
+            )
+        rows = [f"  {{ {_row(code, panel, k, scale)} }}," for k in range(len(held.edges))]
+        title = f"# {panel}\n" if panel != key else ""
+        parts.append(f'{title}[[panel]]\nname = "{key}"\noutline = [\n' + "\n".join(rows) + "\n]")
+    for number, stitch in enumerate(code.stitches):
+        sides = (
+            _way(code, stitch.a, names, turned=False),
+            _way(code, stitch.b, names, turned=not stitch.right_wrong),
+        )
+        seam = f'[[seam]]\nsewn = ["{sides[0]}", "{sides[1]}"]'
+        lengths = [_length(code.leg(*side)) for side in (stitch.a, stitch.b)]
+        if abs(lengths[0] - lengths[1]) > EASE * max(lengths):
+            both = " and ".join(f"{1000 * length:.1f}" for length in lengths)
+            remarks.append(f"stitch {number}: sides of {both} mm are gathered, left out of the seams")
+            seam = "\n".join(f"# {line}" for line in [f"gathered, {both} mm:", *seam.splitlines()])
+        parts.append(seam)
+    return "\n\n".join(parts) + "\n", remarks
+
+
+def _row(code: GarmentCode, panel: str, number: int, scale: float) -> str:
+    """The point at which an edge begins, with the curve that leads to it."""
+    held = code.panels[panel]
+    edge, before = held.edges[number], held.edges[number - 1]
+    x, y = held.vertices[edge.start]
+    text = f'name = "p{edge.start}", at = [{x * scale:.4f}, {-y * scale:.4f}]'
+    if before.curve == "line":
+        return text
+    controls = _controls(code, panel, number - 1) * 1000
+    pairs = ", ".join(f"[{a:.4f}, {b:.4f}]" for a, b in controls)
+    return f"{text}, curve = [{pairs}]"
+
+
+def _controls(code: GarmentCode, panel: str, number: int) -> np.ndarray:
+    """Two control points (2, 2) [m], y down, of the cubic that an edge is or is nearest to."""
+    held = code.panels[panel]
+    edge = held.edges[number]
+    if edge.curve == "circle":
+        leg = code.leg(panel, number)
+        return cubic_through(leg, np.linspace(0, 1, len(leg)))
+    start, end = (np.array(held.vertices[k], float) for k in (edge.start, edge.end))
+    along = end - start
+    left = np.array([-along[1], along[0]])
+    points = [start + p[0] * along + p[1] * left for p in edge.params]
+    if edge.curve == "quadratic":
+        points = [start + 2 / 3 * (points[0] - start), end + 2 / 3 * (points[0] - end)]
+    return np.array(points) * (1, -1) / code.per_metre
+
+
+def _way(code: GarmentCode, side: tuple[str, int], names: dict[str, str], *, turned: bool) -> str:
+    """The path of an edge in a pattern file's words; turned: from its end to its beginning."""
+    edge = code.panels[side[0]].edges[side[1]]
+    start, end = f"p{edge.start}", f"p{edge.end}"
+    return f"{names[side[0]]}: " + (f"{end} < {start}" if turned else f"{start} > {end}")
+
+
+def _length(leg: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(leg, axis=0).T).sum())
+
+
+def _keys(names: list[str]) -> dict[str, str]:
+    """Names as pattern files have them: lower case, digits and underscores, no two alike."""
+    found: dict[str, str] = {}
+    for name in names:
+        key = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")
+        key = key if key[:1].isalpha() else f"panel_{key}".rstrip("_")
+        number = 1
+        while (made := key if number == 1 else f"{key}_{number}") in found.values():
+            number += 1
+        found[name] = made
+    return found

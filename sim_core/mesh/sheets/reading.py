@@ -1,0 +1,157 @@
+"""A pattern sheet from a file, and what of it is to be meshed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import shapely
+
+from sim_core.errors import FileProblem, OutlineError
+from sim_core.mesh.left_out import warn_left_out
+from sim_core.mesh.outline import LARGEST
+from sim_core.mesh.sheets.dxf_strokes import dxf_strokes
+from sim_core.mesh.sheets.garment_code import code_sheet, is_garment_code, read_garment_code
+from sim_core.mesh.sheets.model import Piece, Sheet, Which
+from sim_core.mesh.sheets.sorting import sorted_sheet
+from sim_core.mesh.sheets.svg_strokes import svg_strokes
+from sim_core.reading import read_json
+
+__all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet"]
+
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
+SHOWN = 12  # names in a message
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What of a sheet is wanted. piece: its name.  line: along which it is meshed.  layer: pieces of that layer or
+    material only.  allowance: [m] between cutting and sewing line where the sheet draws one of them only."""
+
+    piece: str | None = None
+    line: Which = "cut"
+    layer: str | None = None
+    allowance: float = 0.0
+
+
+def is_sheet(path: Path) -> bool:
+    """Whether a file is a pattern sheet: a drawing, or JSON of GarmentCode."""
+    return path.suffix.lower() in (".svg", ".dxf") or is_garment_code(path)
+
+
+def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -> Sheet:
+    """The pieces of an SVG, DXF or GarmentCode file; units: of a drawing unit, one of `UNITS`.
+
+    What is left out is told in an OutlineWarning. Raises FileProblem for a file without a piece.
+    """
+    metres = UNITS[units] if units else None
+    if path.suffix.lower() not in (".svg", ".dxf"):
+        return _on(
+            path,
+            code_sheet(read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))),
+            layer,
+        )
+    strokes = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
+    for stroke in strokes:
+        if not (np.abs(stroke.points) <= LARGEST).all():  # false for NaN too
+            raise FileProblem(
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+            )
+    try:
+        sheet = sorted_sheet(strokes)
+    except (shapely.errors.ShapelyError, ValueError) as error:
+        raise FileProblem(
+            f"{path}: its lines cannot be sorted ({error}) – draw plain closed outlines"
+        ) from error
+    if not sheet.pieces:
+        small = "closed lines of less than 2 mm" in sheet.left_out
+        remedy = "say what a drawing unit is, such as --units in" if small else "close the outline"
+        what = "only closed lines of less than 2 mm" if small else "no closed line in it that may be a piece"
+        raise FileProblem(f"{path}: {what} – {remedy}")
+    warn_left_out(path, Counter(sheet.left_out))
+    return _on(path, sheet, layer)
+
+
+def _on(path: Path, sheet: Sheet, layer: str | None) -> Sheet:
+    """The pieces on one layer; raises FileProblem where there are none."""
+    if layer is None:
+        return sheet
+    found = tuple(piece for piece in sheet.pieces if piece.layer.lower() == layer.lower())
+    if not found:
+        known = sorted({piece.layer or "none" for piece in sheet.pieces})
+        raise FileProblem(f"{path}: layer {layer!r}: no piece on it – layers: {', '.join(known[:SHOWN])}")
+    return replace(sheet, pieces=found)
+
+
+def panel_of(path: Path, sheet: Sheet, choice: Choice) -> tuple[Piece, str]:
+    """The piece chosen, its `cut` the outline to mesh and lines and holes inside it, and a remark or "".
+
+    Raises FileProblem where the name is unknown, or missing while the sheet has several pieces.
+    """
+    names = [piece.name for piece in sheet.pieces]
+    shown = ", ".join(names[:SHOWN]) + (", …" if len(names) > SHOWN else "")
+    if choice.piece is None and len(names) > 1:
+        raise FileProblem(f"{path}: {len(names)} pieces – choose one with --piece NAME: {shown}")
+    if choice.piece is not None and choice.piece not in names:
+        raise FileProblem(f"{path}: piece {choice.piece!r}: no such piece – pieces: {shown}")
+    piece = sheet.pieces[names.index(choice.piece) if choice.piece is not None else 0]
+    try:
+        outline, remark = outline_along(piece, choice.line, choice.allowance)
+    except OutlineError as error:
+        raise FileProblem(f"{path}: {error}") from error
+    lines, cut = _clipped(outline, piece.lines)
+    if cut:
+        remark = "; ".join(
+            [*filter(None, [remark]), f"{cut} inner lines are cut off where they leave the outline"]
+        )
+    return replace(piece, cut=outline, sew=None, lines=lines), remark
+
+
+def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarray, str]:
+    """The cutting or the sewing line of a piece (n, 2) [m], and a remark where the other one serves for it.
+
+    allowance: [m]; where only one of the two is drawn, the cutting line lies so far outside it, the sewing line inside.
+    Raises OutlineError where nothing is left, or several parts.
+    """
+    drawn = piece.cut if line == "cut" else piece.sew
+    other: Literal["cut", "sew"] = "sew" if line == "cut" else "cut"
+    if drawn is not None and not (allowance and line == "cut" and piece.sew is None):
+        left = (
+            f"piece {piece.name}: its {line} line is drawn, --allowance changes nothing" if allowance else ""
+        )
+        return drawn, left
+    if not allowance:
+        return (
+            piece.outline,
+            f"piece {piece.name}: only its {other} line is drawn, taken for its {line} line too",
+        )
+    away = allowance if line == "cut" else -allowance
+    moved = shapely.buffer(shapely.Polygon(piece.outline), away, join_style="mitre", mitre_limit=3)
+    if not isinstance(moved, shapely.Polygon) or moved.is_empty:
+        raise OutlineError(
+            f"piece {piece.name}: an allowance of {1000 * allowance:g} mm leaves no piece – give less"
+        )
+    return np.array(moved.exterior.coords)[:-1], ""
+
+
+def _clipped(outline: np.ndarray, lines: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
+    """Inner lines within an outline, and how many had to be cut."""
+    shape = shapely.Polygon(outline)
+    if not shape.is_valid or not lines:
+        return lines, 0
+    found: list[np.ndarray] = []
+    cut = 0
+    grown = shapely.buffer(shape, 1e-9)
+    for line in lines:
+        whole = shapely.LineString(line)
+        if grown.covers(whole):
+            found.append(line)
+            continue
+        cut += 1
+        for part in shapely.get_parts(shapely.intersection(whole, shape)):
+            if isinstance(part, shapely.LineString) and part.length > 1e-3:
+                found.append(np.array(part.coords))
+    return tuple(found), cut

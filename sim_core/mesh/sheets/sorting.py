@@ -1,0 +1,224 @@
+"""Lines of a drawing sorted into pieces: outline, seam, holes, inner lines, notches and grain of each."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import shapely
+
+from sim_core.mesh.sheets.contours import Contour, contours, owner_of, piece_name, seam_inside
+from sim_core.mesh.sheets.model import Piece, Sheet
+from sim_core.mesh.sheets.strokes import Stroke, joined
+from sim_core.mesh.sheets.words import Role, role_of, speaks
+
+__all__ = ["sorted_sheet"]
+
+NEAR = 0.005  # [m] a mark may lie outside its piece
+TOUCHES, APART = 5e-4, 0.003  # [m] from a notch to the outline; between two notches
+SHORT = 0.015, 0.05  # [m] most of a notch, and of its piece's diagonal
+SLENDER = 8  # how many times longer than wide a filled arrow is
+
+
+def sorted_sheet(strokes: list[Stroke]) -> Sheet:
+    """The pieces that lines make; see `Piece` and `Sheet`. A line is what its layer, class or group says (`words`);
+    one that says nothing is an outline where it is closed and outermost, a hole where it lies in one, a seam where it
+    follows one, and an inner line where it is open."""
+    remarks: list[str] = []
+    left_out: Counter[str] = Counter()
+    numbered = _numbered(strokes)
+    outlines: list[tuple[Stroke, Role]] = []
+    others: list[tuple[Stroke, Role]] = []
+    for stroke in joined(strokes):
+        role: Role = role_of(stroke.layer, stroke.words, numbered=numbered)
+        if role in ("mark", "hidden"):
+            left_out[_called(stroke, role)] += 1
+        elif _may_close(stroke, role):
+            outlines.append((stroke, role))
+        else:
+            others.append((stroke, role))
+    outlines = _around(outlines, left_out)
+    outermost = contours(outlines, remarks, left_out)
+    drafts = [_Draft(contour) for contour in outermost if contour.role not in ("hole", "inner")]
+    drafts = _paired(drafts)
+    for draft in drafts:
+        draft.take(left_out)
+    _assign(drafts, others, left_out)
+    names = _named(drafts)
+    pieces = tuple(draft.piece(name) for draft, name in zip(drafts, names, strict=True))
+    return Sheet(pieces, dict(left_out), tuple(remarks))
+
+
+def _numbered(strokes: list[Stroke]) -> bool:
+    """Whether layers are numbers of AAMA or ASTM: a boundary or a sew line on its own layer."""
+    layers = {stroke.layer.strip() for stroke in strokes}
+    return bool(layers & {"1", "14"}) and all(layer.isdigit() for layer in layers)
+
+
+def _called(stroke: Stroke, role: Role) -> str:
+    return "hidden (visibility)" if role == "hidden" else f"{stroke.layer or stroke.name or role}"
+
+
+def _may_close(stroke: Stroke, role: Role) -> bool:
+    """Whether a line may be an outline: closed, or a cutting line that goes around most of a piece."""
+    if role not in ("", "cut", "sew", "hole", "inner") or len(stroke.points) < 3 or stroke.filled:
+        return False
+    if stroke.closed:
+        return True
+    steps = np.hypot(*np.diff(stroke.points, axis=0).T)
+    gap = float(np.hypot(*(stroke.points[0] - stroke.points[-1])))
+    width, height = np.ptp(stroke.points, axis=0)
+    area = shapely.Polygon(stroke.points).area
+    if role in ("sew", "") and area > 0.2 * width * height and gap < 0.005 * steps.sum():
+        return True  # one that misses its start by a rounding
+    return role == "cut" and gap < 0.8 * steps.sum() and area > 0.2 * width * height > 0
+
+
+def _around(outlines: list[tuple[Stroke, Role]], left_out: Counter[str]) -> list[tuple[Stroke, Role]]:
+    """Outlines without open cutting lines that, closed straight, hold no seam of their group whole."""
+    seams: dict[tuple[str, ...], list] = {}
+    for stroke, role in outlines:
+        if stroke.closed and role == "sew":
+            area = shapely.make_valid(shapely.Polygon(stroke.points))
+            seams.setdefault(owner_of(stroke), []).append(area)
+    kept = []
+    for stroke, role in outlines:
+        if not stroke.closed and role == "cut":
+            shape = shapely.make_valid(shapely.Polygon(stroke.points))
+            shares = [
+                shapely.intersection(shape, seam).area / seam.area for seam in seams.get(owner_of(stroke), [])
+            ]
+            if shares and (max(shares) < 0.97 or any(0.1 < share < 0.97 for share in shares)):
+                left_out["cut lines along a part of a piece"] += 1
+                continue
+        kept.append((stroke, role))
+    return kept
+
+
+class _Draft:
+    """A piece in the making."""
+
+    def __init__(self, contour: Contour) -> None:
+        self.contour = contour
+        self.seam = seam_inside(contour)
+        self.holes: list[np.ndarray] = []
+        self.lines: list[np.ndarray] = []
+        self.notches: dict[tuple[int, int], np.ndarray] = {}
+        self.edge = shapely.boundary(contour.shape)
+        self.diagonal = float(np.hypot(*np.ptp(contour.stroke.points, axis=0)))
+        shapely.prepare(self.edge)
+        self.grain: np.ndarray | None = None
+
+    def take(self, left_out: Counter[str]) -> None:
+        """Sort what lies inside the outline."""
+        for inner in [*self.contour.inside, *(self.seam.inside if self.seam else [])]:
+            if inner is self.seam:
+                continue
+            points = inner.stroke.points
+            if inner.role == "hole" or (inner.role == "" and not inner.stroke.dashed):
+                self.holes.append(points)
+            else:
+                self.lines.append(np.vstack([points, points[:1]]))
+            left_out["closed lines within holes"] += len(inner.inside)
+        left_out += Counter()
+
+    def put(self, stroke: Stroke, role: Role, length: float, left_out: Counter[str]) -> None:
+        """Take an open line or a mark as what it is. length: [m] of the line."""
+        points = stroke.points
+        ends = shapely.distance(self.edge, shapely.points(points[[0, -1]]))
+        short = len(points) > 1 and length < min(SHORT[0], SHORT[1] * self.diagonal) and ends.min() < TOUCHES
+        if role == "notch" or (role == "" and (len(points) == 1 or short)):
+            place = (points.min(axis=0) + points.max(axis=0)) / 2
+            if not stroke.closed and len(points) > 1:
+                place = points[0 if ends[0] <= ends[1] else -1]
+            cell = (round(place[0] / APART), round(place[1] / APART))
+            self.notches.setdefault(cell, place)
+        elif (role == "grain" and len(points) > 1) or (role == "" and stroke.filled and _slender(points)):
+            if self.grain is None:
+                longest = int(np.argmax(np.hypot(*np.diff(points, axis=0).T)))  # not the heads of its arrow
+                self.grain = points[longest : longest + 2]
+        elif role == "cut":
+            left_out["cut lines along a part of a piece"] += 1
+        elif len(points) > 1 and not stroke.filled:
+            self.lines.append(np.vstack([points, points[:1]]) if stroke.closed else points)
+
+    def piece(self, name: str) -> Piece:
+        stroke, seam = self.contour.stroke, self.seam
+        only_sewn = self.contour.role == "sew"
+        return Piece(
+            name,
+            self.contour.material or stroke.layer,
+            None if only_sewn else stroke.points,
+            stroke.points if only_sewn else seam.stroke.points if seam else None,
+            tuple(self.holes),
+            tuple(self.lines),
+            np.array(list(self.notches.values())).reshape(-1, 2),
+            self.grain,
+        )
+
+
+def _paired(drafts: list[_Draft]) -> list[_Draft]:
+    """A seam that leaves its cutting line a little is still its seam: outlines of one group that cover each other."""
+    cuts = [draft for draft in drafts if draft.contour.role == "cut" and draft.seam is None]
+    gone = set()
+    for draft in drafts:
+        contour = draft.contour
+        if contour.role not in ("sew", ""):
+            continue
+        for cut in cuts:
+            same = cut.contour.owner == contour.owner and contour.material in ("", cut.contour.material)
+            if same and cut.seam is None:
+                shared = shapely.intersection(cut.contour.shape, contour.shape).area
+                if shared > 0.8 * contour.area and shared > 0.4 * cut.contour.area:
+                    cut.seam = contour
+                    gone.add(id(draft))
+                    break
+    return [draft for draft in drafts if id(draft) not in gone]
+
+
+def _assign(drafts: list[_Draft], lines: list[tuple[Stroke, Role]], left_out: Counter[str]) -> None:
+    """Give open lines and marks to the pieces they lie on: of their own group first, then the smallest one."""
+    tree = shapely.STRtree([draft.contour.shape for draft in drafts])
+    for stroke, role in lines:
+        line = (
+            shapely.LineString(stroke.points) if len(stroke.points) > 1 else shapely.Point(stroke.points[0])
+        )
+        best = None
+        for k in tree.query(line.centroid, predicate="dwithin", distance=NEAR).tolist():
+            contour = drafts[k].contour
+            foreign = owner_of(stroke)[: len(contour.owner)] != contour.owner
+            far = shapely.distance(contour.shape, line.centroid)
+            rank = (foreign, -len(contour.owner), far, contour.area, k)
+            best = rank if best is None else min(best, rank)
+        if best is None:
+            left_out[f"{stroke.layer or 'lines'} outside every piece"] += 1
+        else:
+            drafts[best[-1]].put(stroke, role, line.length, left_out)
+
+
+def _slender(points: np.ndarray) -> bool:
+    box = shapely.minimum_rotated_rectangle(shapely.MultiPoint(points))
+    if not isinstance(box, shapely.Polygon):
+        return True
+    corners = np.array(box.exterior.coords)
+    sides = np.hypot(*np.diff(corners[:3], axis=0).T)
+    return bool(sides.max() > SLENDER * sides.min())
+
+
+def _named(drafts: list[_Draft]) -> list[str]:
+    """A name for each piece, no two alike: its group's or block's, else its own, with its material; else piece-1, …"""
+    names: list[str] = []
+    for draft in drafts:
+        contour = draft.contour
+        own = contour.stroke.name if not speaks(contour.stroke.name) else ""
+        name = piece_name(contour.owner) or own or "piece"
+        if contour.material not in ("", "fabric") and contour.material not in name.lower():
+            name += f"-{contour.material}"
+        names.append(" ".join(name.split()))
+    counted = Counter(names)
+    seen: Counter[str] = Counter()
+    for k, name in enumerate(names):
+        seen[name] += 1
+        if counted[name] > 1 or name == "piece":
+            names[k] = name if seen[name] == 1 and name != "piece" else f"{name}-{seen[name]}"
+    return names
