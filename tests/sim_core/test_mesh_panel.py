@@ -224,7 +224,9 @@ def test_an_output_that_cannot_be_written_is_one_line_with_a_remedy(tmp_path, ca
             place.mkdir()
         assert cli.main(["mesh", str(outline), "--edge", "0.3", option, str(place)]) == 1
         lines = capsys.readouterr().err.splitlines()
-        (told,) = (line for line in lines if "making machine code" not in line)  # told once, where it takes long
+        (told,) = (
+            line for line in lines if "making machine code" not in line
+        )  # told once, where it takes long
         assert f"{place}: cannot be written (" in told
         assert "– give" in told
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "panel.json"])
