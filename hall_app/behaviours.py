@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from .stage import Stage
+from .visitors import Visitor
 
-__all__ = ["BEHAVIOURS", "Behaviour", "behaviour"]
+__all__ = ["BEHAVIOURS", "Behaviour", "Stage", "behaviour"]
 
-Behaviour = Callable[["Stage", str], None]
+
+class Stage(Protocol):
+    """What a behaviour may ask for (`stage.Stage` gives it)."""
+
+    def on_click(self, exhibit: str, act: Callable[[Visitor], None]) -> None: ...
+    def on_near(self, exhibit: str, distance: float, act: Callable[[Visitor, bool], None]) -> None: ...
+    def on_open(self, exhibit: str, extra: dict[str, Any]) -> None: ...
+    def notice(self, visitor: Visitor, exhibit: str, on: bool, *, glow: bool) -> None: ...
+    def open(self, visitor: Visitor, exhibit: str) -> None: ...
+
+
+Behaviour = Callable[[Stage, str], None]
 
 BEHAVIOURS: dict[str, Behaviour] = {}
 

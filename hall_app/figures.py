@@ -10,8 +10,8 @@ from pathlib import Path
 from .bake.places import key_now
 from .content.files import is_there
 from .content.floor import foot_height
+from .content.folder import Content, Exhibit
 from .content.glb import GlbError, read_glb
-from .content.loading import Content, Exhibit
 from .content.problems import Problem
 from .models import ExhibitModels, models_of
 from .scene.nodes import Figure

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from .baking_queue import Bake
 from .beside import beside
-from .content.loading import Content, Exhibit
+from .content.folder import Content, Exhibit
 from .content.problems import Problem
 from .content.views import yaw_of
 from .content.walkable import walking_floor

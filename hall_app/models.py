@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .bake.places import bake_folder
+from .content.folder import Content, Exhibit
 from .content.glb import read_glb
-from .content.loading import Content, Exhibit
 
 __all__ = ["ExhibitModels", "models_of"]
 

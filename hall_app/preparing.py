@@ -14,7 +14,7 @@ from pathlib import Path
 
 from .bake.places import bake_folder, bake_work, data_bake, key_now, read_record
 from .baking_queue import Bake
-from .content.loading import Content, Exhibit
+from .content.folder import Content, Exhibit
 from .ending import undisturbed
 
 __all__ = ["ROOM", "Preparation", "bake_places", "forsake", "stale_garments", "wanted_bakes"]

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .baking_queue import BakingQueue
-from .content.loading import Content, load
+from .content.folder import Content
+from .content.loading import load
 from .content.lookup import content_folder
 from .content.problems import ContentError
 from .data_folder import make_data_folder

@@ -12,7 +12,7 @@ from .bake.key import KEY_DIGITS
 from .bake.places import RECORD as BAKE_RECORD
 from .bake.places import bake_folder, bake_work, data_bake, key_now
 from .baking_queue import Bake
-from .content.loading import Content
+from .content.folder import Content
 from .preparing import ROOM, bake_places
 from .room.key import room_key
 from .room.places import RECORD as ROOM_RECORD

@@ -39,6 +39,43 @@ def test_arrows(room):
         assert ours <= ALLOWED[room], f"{path.relative_to(ROOT)} imports {ours - ALLOWED[room]}"
 
 
+def named(path: Path) -> str:
+    """The dotted name of a module."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def imports_within(room: str) -> dict[str, set[str]]:
+    """Module -> modules of the same package that it imports, at its top, within functions or for its types."""
+    names = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
+        for path in modules(room)
+    }
+    arrows: dict[str, set[str]] = {}
+    for name, path in names.items():
+        home = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
+        arrows[name] = set()
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                arrows[name] |= {alias.name for alias in node.names} & set(names)
+            elif isinstance(node, ast.ImportFrom):
+                base = home[: len(home) - node.level + 1] if node.level else []
+                source = ".".join([*base, *filter(None, [node.module])])
+                for alias in node.names:  # a name of a package, or a module in it
+                    inner = f"{source}.{alias.name}"
+                    arrows[name] |= {inner if inner in names else source} & set(names)
+        arrows[name].discard(name)
+    return arrows
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_circle_between_modules(room):
+    arrows = {name: set(targets) for name, targets in imports_within(room).items()}
+    while ground := [name for name, targets in arrows.items() if not targets & set(arrows)]:
+        for name in ground:
+            del arrows[name]
+    assert not arrows, f"these import one another, or stand on such: {', '.join(sorted(arrows))}"
+
+
 @pytest.mark.parametrize("room", ROOMS)
 def test_heavy_packages_are_imported_where_needed(room):
     for path in modules(room):

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..content.folder import Content, Exhibit
 from ..content.glb import read_glb
-from ..content.loading import Content, Exhibit
 from ..sealing import FILES, seal, text_of
 from .encode import film_possible
 from .film import filming, stills
 from .places import RECORD
-from .recipes import RECIPES, Inputs, Recipe, read_inputs
+from .recipe import Inputs, Recipe, read_inputs
+from .recipes import RECIPES
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment

@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..content.loading import Content, Exhibit, load
+from ..content.folder import Content, Exhibit
+from ..content.loading import load
 from ..content.lookup import content_folder
 from ..data_folder import make_data_folder
 from .places import bake_fault, bake_work, baked_here, data_bake, read_record

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .film import Look, Solid
-from .recipes import Inputs, OnFrame, Progress, RobeOnFigure, cover, shown_colour
+from .recipe import Inputs, OnFrame, Progress, cover, shown_colour
+from .robe_recipe import RobeOnFigure
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment

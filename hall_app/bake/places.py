@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..content.loading import Content, Exhibit
+from ..content.folder import Content, Exhibit
 from ..sealing import Fault, seal_fault
 from .key import KEY_DIGITS, bake_key
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ..content.exhibit_file import GarmentRecipe
-from ..content.loading import Content, Exhibit, load
+from ..content.folder import Content, Exhibit
+from ..content.loading import load
 from .limits import PIBO, limits_of, writer
 from .places import bake_fault, baked_here, key_now, read_record
 from .stored import Measured, measured_again

@@ -1,7 +1,8 @@
 """The hall's content: files read into frozen values, checked, watched, and shown to the page as JSON."""
 
 from .floor import Footprint, foot_height, solids_of
-from .loading import Content, Exhibit, load
+from .folder import Content, Exhibit
+from .loading import load
 from .lookup import content_folder
 from .problems import ContentError, Problem
 from .reload import Watcher

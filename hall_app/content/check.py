@@ -7,7 +7,8 @@ from pathlib import Path
 
 from .checks import CHECKS
 from .checks.questionnaires import unstated
-from .loading import Content, load, load_exhibit_problems
+from .folder import Content
+from .loading import load, load_exhibit_problems
 from .problems import ContentError, Problem
 
 __all__ = ["check", "hints"]

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .exhibit_file import ExhibitFile
+from .folder import Exhibit
 from .plan_file import PlanFile, Solid, Wall
 from .values import Point
 
 if TYPE_CHECKING:
     from shapely import Polygon
-
-    from .loading import Exhibit
 
 ROUND_SIDES = 32  # of the polygon that stands for a round in exact tests, per quarter circle
 

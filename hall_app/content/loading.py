@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,13 +16,13 @@ from .files import (
     exhibit_files,
     file_problem,
     hall_files,
-    is_there,
     leaves,
     made_by_build,
     recipe_files,
     revision,
 )
 from .floor import body_footprint
+from .folder import Content, Exhibit
 from .glb import GlbError, read_glb
 from .hall_file import HallFile
 from .places import place_faults, plan_problems, start_problems
@@ -35,58 +34,6 @@ RESERVED = ("hall",)  # /media/hall/ is the hall's own
 ID_FORM = "abcdefghijklmnopqrstuvwxyz0123456789-"
 
 T = TypeVar("T", bound=Table)
-
-
-@dataclass(frozen=True)
-class Exhibit:
-    """An exhibit as its folder describes it. `text` is Markdown; `folder` an absolute path."""
-
-    id: str
-    folder: Path
-    file: ExhibitFile
-    text_zh: str
-    text_en: str
-
-    @property
-    def toml(self) -> str:
-        """Name of its file inside the content folder."""
-        return f"exhibits/{self.id}/exhibit.toml"
-
-    def model_path(self, precision: str) -> Path | None:
-        """The GLB to draw in the "hall" or "close" up, or None where it is not baked yet."""
-        if self.file.models is None:
-            path = self.folder / "baked" / f"{precision}.glb"
-        else:
-            fine = self.file.models.close if precision == "close" else None
-            path = self.folder / (fine or self.file.models.hall)
-        return path if is_there(path) else None
-
-    def own_models(self) -> dict[str, tuple[str, Path]]:
-        """Precision -> (key in its file, path) of the models that are there; a close-up without a file of its own
-        is left out."""
-        found: dict[str, tuple[str, Path]] = {}
-        for precision in ("hall", "close"):
-            path = self.model_path(precision)
-            if path is not None and path not in {other for _, other in found.values()}:
-                key = f"models.{precision}" if self.file.models else f"baked/{path.name}"
-                found[precision] = (key, path)
-        return found
-
-
-@dataclass(frozen=True)
-class Content:
-    """A content folder, read. Faulty exhibits are left out and named in `problems`."""
-
-    folder: Path
-    hall: HallFile
-    plan: PlanFile
-    exhibits: tuple[Exhibit, ...]
-    problems: tuple[Problem, ...]
-    revision: str
-
-    def exhibit(self, identity: str) -> Exhibit | None:
-        """The exhibit of that id, or None."""
-        return next((exhibit for exhibit in self.exhibits if exhibit.id == identity), None)
 
 
 def load(folder: Path, *, last_good: Content | None = None) -> Content:

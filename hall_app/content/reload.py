@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from .files import snapshot
-from .loading import Content, load
+from .folder import Content
+from .loading import load
 from .problems import Problem
 
 

@@ -12,7 +12,7 @@ from urllib.parse import quote
 from .exhibit_file import Media, Record
 from .files import BAKED, digest, is_there
 from .floor import plan_footprints
-from .loading import Content, Exhibit
+from .folder import Content, Exhibit
 from .measured import measured_lines
 from .record_labels import RECORD_LABELS
 from .text import html_of

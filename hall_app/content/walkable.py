@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .floor import Footprint, solids_of
-from .loading import Content, Exhibit
+from .folder import Content, Exhibit
 from .plan_file import PlanFile
 
 if TYPE_CHECKING:

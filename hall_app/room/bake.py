@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..content.loading import Content
+from ..content.folder import Content
 from ..sealing import FILES, seal, text_of
 from .charts import surfaces
 from .drawn import room_glb

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..content.files import digest
-from ..content.loading import Content, Exhibit
+from ..content.folder import Content, Exhibit
 from ..content.plan_file import PlanFile
 from ..models import models_of
 

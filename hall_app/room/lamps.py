@@ -10,7 +10,7 @@ from .patch import Frame
 from .regions import Regions
 
 if TYPE_CHECKING:
-    from ..content.loading import Exhibit
+    from ..content.folder import Exhibit
     from ..content.models import PlanFile, Solid
     from ..light.model import Spot
 

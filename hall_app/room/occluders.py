@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..content.floor import foot_height
-from ..content.loading import Content
+from ..content.folder import Content
 from ..models import models_of
 from .patch import Frame
 

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..content.loading import Content
+from ..content.folder import Content
 from ..sealing import Fault, seal_fault
 from .key import built_key, room_key
 

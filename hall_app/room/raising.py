@@ -17,7 +17,7 @@ from .timber import timber
 from .walls import walls
 
 if TYPE_CHECKING:
-    from ..content.loading import Exhibit
+    from ..content.folder import Exhibit
     from ..content.models import Bilingual, PlanFile
 
 __all__ = ["Room", "raise_room"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..content.loading import Content
+from ..content.folder import Content
 from .drawn import room_glb
 from .environment import environment_jpeg, painted
 from .key import built_key, room_key

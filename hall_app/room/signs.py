@@ -15,7 +15,7 @@ from .patch import Frame, Patch, box, quad, strip, tube
 from .regions import Regions, bay_height
 
 if TYPE_CHECKING:
-    from ..content.loading import Exhibit
+    from ..content.folder import Exhibit
     from ..content.models import Bay, Bilingual, PlanFile, Sign
 
 __all__ = ["Board", "boards_of", "signs"]

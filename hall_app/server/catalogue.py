@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ..content.loading import Content, Exhibit
+from ..content.folder import Content, Exhibit
 from ..content.text import html_of
 from ..content.views import exhibit_json, own_picture, thumbnail
 from .page import ICON

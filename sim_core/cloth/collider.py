@@ -3,49 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
+from sim_core.cloth.distance import distances
 from sim_core.cloth.given import FURTHEST, finite, numeric, of_kind, told, triple
 from sim_core.cloth.given import points as checked_points
+from sim_core.cloth.packed import BOX, CAPSULE, CYLINDER, GRID, HALFSPACE, NO_GRID, Packed
 from sim_core.errors import SimCoreError
 
-CAPSULE, CYLINDER, BOX, HALFSPACE, GRID, MOVING = range(6)
-FASTEST = 4  # column of a moving grid: the most that its distance changes anywhere between the two keys [m]
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
 MOST_NODES = 2e8  # of a grid
-_NO_GRID = np.zeros((2, 2, 2), np.float32)
-_AT_REST = np.zeros(2)
-_NO_FACES, _NO_CORNERS = np.full((1, 1, 1), -1, np.int32), np.zeros((0, 3, 3))
-
-
-class Fields(NamedTuple):
-    """Of `Packed` what a distance is asked of: compiled calls hand every array on, and most calls ask no more."""
-
-    kind: np.ndarray
-    data: np.ndarray
-    grid: np.ndarray
-    later: np.ndarray
-    blend: np.ndarray
-
-
-class Packed(NamedTuple):
-    """Solids as arrays: kind (P,), data (P, 20), and the nodes of at most one grid, float32.
-
-    A moving grid lies between `grid` and `later`: blend (2,) is how far, 0..1, and how fast [1/s]. Where its surface is
-    known, nearest (nx, ny, nz) is the face next to each node (-1: none), corners (F, 3, 3) [m] are those of the faces
-    and ways (F, 3, 3) [m] where these go in between.
-    """
-
-    kind: np.ndarray
-    data: np.ndarray
-    grid: np.ndarray
-    later: np.ndarray = _NO_GRID
-    blend: np.ndarray = _AT_REST
-    nearest: np.ndarray = _NO_FACES
-    corners: np.ndarray = _NO_CORNERS
-    ways: np.ndarray = _NO_CORNERS
 
 
 def _vector(name: str, value: object) -> np.ndarray:
@@ -98,8 +66,6 @@ class Solid:
 
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance (N,) [m] at points (N, 3)."""
-        from sim_core.cloth.distance import distances
-
         return distances(self.packed(), checked_points("points", points))
 
 
@@ -113,7 +79,7 @@ class Capsule(Solid):
 
     def _row(self) -> tuple[int, np.ndarray, np.ndarray]:
         start, end = _vector("capsule.start", self.start), _vector("capsule.end", self.end)
-        return CAPSULE, np.r_[start, end, _positive("capsule.radius", self.radius)], _NO_GRID
+        return CAPSULE, np.r_[start, end, _positive("capsule.radius", self.radius)], NO_GRID
 
     def _ball(self) -> np.ndarray:
         start, end = np.asarray(self.start, float), np.asarray(self.end, float)
@@ -137,7 +103,7 @@ class Cylinder(Solid):
         if not 0 <= finite("cylinder.rounding", self.rounding) <= min(self.radius, length / 2):
             raise SimCoreError(f"cylinder.rounding: {self.rounding} – at most the radius and half the length")
         middle, axis = (start + end) / 2, (end - start) / length
-        return CYLINDER, np.r_[middle, axis, length / 2, self.radius, self.rounding], _NO_GRID
+        return CYLINDER, np.r_[middle, axis, length / 2, self.radius, self.rounding], NO_GRID
 
     def _ball(self) -> np.ndarray:
         start, end = np.asarray(self.start, float), np.asarray(self.end, float)
@@ -160,7 +126,7 @@ class Box(Solid):
             raise SimCoreError(
                 f"box: size {told(self.size)}, rounding {self.rounding} – sizes above 0, rounding at most half"
             )
-        return BOX, np.r_[centre, half, self.rounding, np.cos(self.yaw), np.sin(self.yaw)], _NO_GRID
+        return BOX, np.r_[centre, half, self.rounding, np.cos(self.yaw), np.sin(self.yaw)], NO_GRID
 
     def _ball(self) -> np.ndarray:
         return np.r_[np.asarray(self.centre, float), np.linalg.norm(self.size) / 2]
@@ -179,7 +145,7 @@ class HalfSpace(Solid):
         return (
             HALFSPACE,
             np.r_[normal / np.linalg.norm(normal), _vector("halfspace.point", self.point)],
-            _NO_GRID,
+            NO_GRID,
         )
 
 
@@ -226,6 +192,6 @@ class Union(Solid):
             raise SimCoreError("union: no parts – name at least one solid")
         if sum(int((pack.kind == GRID).sum()) for pack in packs) > 1:
             raise SimCoreError("union: more than one grid – sample them into one")
-        grid = next((pack.grid for pack in packs if GRID in pack.kind), _NO_GRID)
+        grid = next((pack.grid for pack in packs if GRID in pack.kind), NO_GRID)
         kind, data = np.concatenate([p.kind for p in packs]), np.concatenate([p.data for p in packs])
         return Packed(kind, data, grid)

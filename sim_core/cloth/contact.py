@@ -12,8 +12,8 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.collider import FASTEST, MOVING
 from sim_core.cloth.distance import carried, fields_of, signed_distance
+from sim_core.cloth.packed import FASTEST, MOVING
 
 LONGEST_SLEEP = 40  # substeps
 SETTLE = 6  # more looks at samples inside, at the end of a frame

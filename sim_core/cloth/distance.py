@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.collider import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING, Fields
+from sim_core.cloth.packed import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING, Fields
 from sim_core.cloth.pairs import triangle_weights
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from sim_core.cloth.air import Air
 from sim_core.cloth.bands import bands_of, ordered
-from sim_core.cloth.collider import Packed, Solid
+from sim_core.cloth.collider import Solid
 from sim_core.cloth.conditions import Conditions
 from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.given import within
@@ -16,6 +16,7 @@ from sim_core.cloth.health import Health
 from sim_core.cloth.holding import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.implicit import Implicit, Load
 from sim_core.cloth.moving import MovingGrid
+from sim_core.cloth.packed import Packed
 from sim_core.cloth.pairs import finder_of, pairs_of
 from sim_core.cloth.phases import FRAME, Contact
 from sim_core.cloth.precision import COURANT, Laned, Pace, lanes_for

@@ -9,8 +9,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from sim_core.cloth.collider import FASTEST, GRID, MOVING, GridSdf, Packed, nodes
+from sim_core.cloth.collider import GridSdf, nodes
 from sim_core.cloth.given import FURTHEST, called, finite, numeric, of_kind, told, triangles, triple, whole
+from sim_core.cloth.packed import FASTEST, GRID, MOVING, Packed
 from sim_core.errors import SimCoreError
 
 _WIDTH = 20

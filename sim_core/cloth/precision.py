@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.cloth.bands import Bands
-from sim_core.cloth.collider import Packed
 from sim_core.cloth.given import finite, one_of
 from sim_core.cloth.holding import Holds
 from sim_core.cloth.lattice import Lanes, lattice_lanes, plain_lanes
 from sim_core.cloth.leaping import advance_lanes
+from sim_core.cloth.packed import Packed
 from sim_core.cloth.pairs import Finder
 from sim_core.cloth.repulsion import Shell
 from sim_core.cloth.sheet import Sheet

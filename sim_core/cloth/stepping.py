@@ -21,13 +21,13 @@ from sim_core.cloth.banded import (
     band_strains,
     band_tensions,
 )
-from sim_core.cloth.collider import MOVING
 from sim_core.cloth.contact import (
     collide_due_samples,
     collide_due_vertices,
     settle_samples,
 )
 from sim_core.cloth.holding import bound, draw_together, keep_lengths, limits, mirror
+from sim_core.cloth.packed import MOVING
 from sim_core.cloth.repulsion import candidate_pairs, repel
 
 SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)

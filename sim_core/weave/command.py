@@ -208,7 +208,7 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
     from sim_core.weave.draft import plain
     from sim_core.weave.particles import relax_particles
     from sim_core.weave.report import summary_of
-    from sim_core.weave.words import dressed
+    from sim_core.weave.sources import dressed
 
     asked = args.relax or args.maps or args.yarns
     crossings = source.factors.picks * source.factors.ends

@@ -1,10 +1,12 @@
-"""The values that come out of the weave room: yarn geometry and cloth parameters."""
+"""The values that come out of the weave room: yarn geometry, yarn paths and cloth parameters."""
 
 from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-__all__ = ["ClothParameters", "YarnGeometry"]
+from sim_core.weave.yarn import Yarn
+
+__all__ = ["ClothParameters", "Strands", "YarnGeometry"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,3 +60,32 @@ class ClothParameters:
     def to_dict(self) -> dict:
         """A plain dictionary that JSON can hold."""
         return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Strands:
+    """All yarns of one kind in one repeat, as graphs along the warp (up the cloth) or along the weft (to the right).
+
+    along: "warp" or "weft".  place: (yarns,) [m] where each lies across.  side, height: (yarns, n) [m] sideways from
+    there and above the middle plane, n places a repeat length apart by length / n, the first at crossing 0.
+    colour: (yarns, n) int, index into palette, -1 where the yarn is not there.  palette: (colours, 3) sRGB.
+    yarn: its size.  length, across: [m] of the repeat along the yarns and across them.
+    """
+
+    along: str
+    place: np.ndarray
+    side: np.ndarray
+    height: np.ndarray
+    colour: np.ndarray
+    palette: np.ndarray
+    yarn: Yarn
+    length: float
+    across: float
+
+    def points(self, number: int) -> np.ndarray:
+        """(n, 3) [m] axis of one yarn over the repeat: x to the right, y up the cloth, z towards the eye."""
+        n = self.side.shape[1]
+        along = np.arange(n) * self.length / n
+        across = self.place[number] + self.side[number]
+        first, second = (across, along) if self.along == "warp" else (along, across)
+        return np.column_stack([first, second, self.height[number]])

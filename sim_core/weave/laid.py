@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.optimize import nnls
 
 from sim_core.errors import WeaveError
+from sim_core.weave.geometry import Strands
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.relaxation import beam_stiffness
-
-if TYPE_CHECKING:
-    from sim_core.weave.strands import Strands
 
 __all__ = ["brocade_heights", "lay_beams", "leno_paths", "leno_rest"]
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from sim_core.errors import WeaveError
 from sim_core.weave.draft import Channels, Draft
+from sim_core.weave.reading import read_weave_file
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["Weave", "draft_from_dict", "draft_to_dict"]
@@ -82,9 +83,11 @@ class Weave:
     @classmethod
     def load(cls, path: str | Path) -> "Weave":
         """Read a weave file (TOML); raises FileProblem or WeaveError naming file, key, value and remedy."""
-        from sim_core.weave.reading import read_weave
-
-        return read_weave(Path(path))
+        values = read_weave_file(Path(path))
+        try:
+            return cls(**values)
+        except WeaveError as error:
+            raise WeaveError(f"{path}: {error}") from error
 
     def to_dict(self) -> dict:
         """A plain dictionary that JSON can hold and `from_dict` reads back."""

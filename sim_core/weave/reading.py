@@ -1,7 +1,7 @@
-"""Weave files: TOML in, `Weave` out, every mistake named by file, key, value and remedy."""
+"""Weave files: TOML in, what makes a `Weave` out, every mistake named by file, key, value and remedy."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -10,10 +10,9 @@ from sim_core.errors import SimCoreError, WeaveError
 from sim_core.reading import read_toml, shown
 from sim_core.weave.draft import MOST_MOTIF as MOST
 from sim_core.weave.draft import Draft, plain, satin, twill
-from sim_core.weave.model import Weave
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 
-__all__ = ["read_weave"]
+__all__ = ["read_weave_file"]
 
 
 Colour = Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")]
@@ -184,18 +183,21 @@ class _WeaveFile(_Part):
     weft_colours: list[Colour] = Field(default=[], max_length=16)
 
 
-def read_weave(path: Path) -> Weave:
-    """Read a weave file; raises FileProblem (cannot be read) or WeaveError (file: key: what – remedy)."""
+def read_weave_file(path: Path) -> dict[str, Any]:
+    """The keyword arguments of the `Weave` a file describes.
+
+    Raises FileProblem (cannot be read) or WeaveError (file: key: what – remedy).
+    """
     values = read_toml(path, "a weave file (TOML), such as those in assets/weaves")
     try:
-        return _weave(_WeaveFile.model_validate(values))
+        return _values(_WeaveFile.model_validate(values))
     except ValidationError as error:
         raise WeaveError(f"{path}: {_first(error)}") from error
     except SimCoreError as error:
         raise WeaveError(f"{path}: {error}") from error
 
 
-def _weave(file: _WeaveFile) -> Weave:
+def _values(file: _WeaveFile) -> dict[str, Any]:
     yarns = {}
     for side in ("warp", "weft", "extra"):
         try:
@@ -203,7 +205,7 @@ def _weave(file: _WeaveFile) -> Weave:
                 yarns[side] = getattr(file, side).yarn()
         except WeaveError as error:
             raise WeaveError(f"{side}: {error}") from error
-    return Weave(
+    return dict(
         name=file.name,
         draft=file.draft.draft(),
         ends_per_m=file.ends_per_m,

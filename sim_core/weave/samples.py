@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from sim_core.weave.geometry import Strands
 from sim_core.weave.lines import smooth_noise
-from sim_core.weave.strands import Strands
 
 __all__ = ["Samples", "Tile", "sample_surface", "tile_of"]
 

@@ -20,9 +20,17 @@ from sim_core.weave.generators import damask
 from sim_core.weave.model import Weave, draft_from_dict
 from sim_core.weave.wif import Wif, thread_colours
 from sim_core.weave.wif_sections import listed
-from sim_core.weave.words import ASSUMED, PICTURES, draft_of_words, dressed, motif_of
+from sim_core.weave.words import PICTURES, draft_of_words, motif_of
+from sim_core.weave.yarn import Yarn
 
-__all__ = ["Source", "blocked_source", "source_of", "source_of_wif", "weave_of"]
+__all__ = ["Source", "blocked_source", "dressed", "source_of", "source_of_wif", "weave_of"]
+
+# What a bare draft is woven of: degummed silk, two threads of 20/22 den; an assumption, told in the provenance.
+TEX, DIAMETER, FLATTENING, ROOM = 3.59e-6, 78e-6, 1.8, 1.7
+ASSUMED = (
+    f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, "
+    f"spaced {ROOM} widths"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +101,21 @@ def source_of(words: str) -> Source:
 def weave_of(words: str) -> tuple[Weave, str]:
     """The cloth that SOURCE names, and where its yarns and sett come from; raises as `source_of` does."""
     return source_of(words).weave
+
+
+def dressed(draft: Draft) -> Weave:
+    """A bare draft with yarns and sett of a plain silk."""
+    yarn = Yarn(DIAMETER, TEX, FLATTENING, unevenness=0.05)
+    sett = 1 / (ROOM * yarn.width)
+    return Weave(
+        draft.name,
+        draft,
+        yarn,
+        yarn,
+        sett,
+        sett,
+        extra=yarn if draft.channels.pick_kind is not None else None,
+    )
 
 
 def _from_draft(path: Path) -> Source:

@@ -2,52 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.geometry import YarnGeometry
+from sim_core.weave.geometry import Strands, YarnGeometry
 from sim_core.weave.laid import brocade_heights, leno_paths
 from sim_core.weave.lines import resampled
 from sim_core.weave.model import Weave
 from sim_core.weave.particles import ParticleCell
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["Strands", "strands"]
+__all__ = ["strands"]
 
 BENEATH = (
     0.9  # of a yarn's height: how much lower the hidden yarns of a compound unit lie than the one that shows
 )
-
-
-@dataclass(frozen=True, eq=False)
-class Strands:
-    """All yarns of one kind in one repeat, as graphs along the warp (up the cloth) or along the weft (to the right).
-
-    along: "warp" or "weft".  place: (yarns,) [m] where each lies across.  side, height: (yarns, n) [m] sideways from
-    there and above the middle plane, n places a repeat length apart by length / n, the first at crossing 0.
-    colour: (yarns, n) int, index into palette, -1 where the yarn is not there.  palette: (colours, 3) sRGB.
-    yarn: its size.  length, across: [m] of the repeat along the yarns and across them.
-    """
-
-    along: str
-    place: np.ndarray
-    side: np.ndarray
-    height: np.ndarray
-    colour: np.ndarray
-    palette: np.ndarray
-    yarn: Yarn
-    length: float
-    across: float
-
-    def points(self, number: int) -> np.ndarray:
-        """(n, 3) [m] axis of one yarn over the repeat: x to the right, y up the cloth, z towards the eye."""
-        n = self.side.shape[1]
-        along = np.arange(n) * self.length / n
-        across = self.place[number] + self.side[number]
-        first, second = (across, along) if self.along == "warp" else (along, across)
-        return np.column_stack([first, second, self.height[number]])
 
 
 def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8) -> tuple[Strands, ...]:

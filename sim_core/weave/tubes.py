@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.strands import Strands
+from sim_core.weave.geometry import Strands
 
 __all__ = ["tube_mesh", "write_yarns"]
 

@@ -1,7 +1,4 @@
-"""Drafts by name: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; by a picture of a motif.
-
-A draft that comes without yarns is dressed with an assumed silk.
-"""
+"""Drafts by name: `plain`, `twill:2/1`, `satin:8/3`, with :S and :weft; by a picture of a motif."""
 
 from __future__ import annotations
 
@@ -13,21 +10,11 @@ import numpy as np
 
 from sim_core.errors import FileProblem, WeaveError
 from sim_core.weave.draft import MOST_MOTIF, Draft, plain, satin, twill
-from sim_core.weave.model import Weave
-from sim_core.weave.yarn import Yarn
 
-__all__ = ["ASSUMED", "PICTURES", "draft_of_words", "dressed", "motif_of", "satin_by_pick"]
+__all__ = ["PICTURES", "draft_of_words", "motif_of", "satin_by_pick"]
 
 WORDS = "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .dtx, .json or .toml file, or a picture of a motif"
 PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"}
-# What a bare draft is woven of: degummed silk, two threads of 20/22 den; an assumption, told in the provenance.
-TEX, DIAMETER, FLATTENING, ROOM = 3.59e-6, 78e-6, 1.8, 1.7
-
-
-ASSUMED = (
-    f"assumed: degummed silk of {TEX * 1e6:.2f} tex, {DIAMETER * 1e6:.0f} um, flattened {FLATTENING}, "
-    f"spaced {ROOM} widths"
-)
 
 
 def draft_of_words(words: str) -> Draft:
@@ -65,21 +52,6 @@ def satin_by_pick(ends: int, step: int) -> Draft:
     if ends >= 5 and 1 < step < ends - 1 and gcd(ends, step) == 1:
         return satin(ends, pow(step, -1, ends)).renamed(f"satin {ends}/{step}")
     return satin(ends, step)  # says what is wrong
-
-
-def dressed(draft: Draft) -> Weave:
-    """A bare draft with yarns and sett of a plain silk."""
-    yarn = Yarn(DIAMETER, TEX, FLATTENING, unevenness=0.05)
-    sett = 1 / (ROOM * yarn.width)
-    return Weave(
-        draft.name,
-        draft,
-        yarn,
-        yarn,
-        sett,
-        sett,
-        extra=yarn if draft.channels.pick_kind is not None else None,
-    )
 
 
 def _grey(picture) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from ..loading import Content
+from ..folder import Content
 from ..problems import Problem
 from .backdrops import backdrop_problems
 from .bakes import bake_problems

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...room.palette import BACKDROPS, linear
 from ..colours import difference, hex_of, main_colour
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..plan_file import Solid
 from ..problems import Problem
 

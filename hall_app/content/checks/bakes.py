@@ -11,7 +11,7 @@ from typing import Any
 from ...bake.key import bake_key
 from ...bake.places import bake_fault
 from ..files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..problems import Problem
 
 FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}

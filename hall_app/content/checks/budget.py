@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..files import walk_files
+from ..folder import Content
 from ..glb import GlbError, read_glb
-from ..loading import Content
 from ..problems import Problem
 
 MB = 1_000_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ..files import walk_files
-from ..loading import Content
+from ..folder import Content
 from ..problems import Problem
 
 FOLDER, NAME = "mannequins", "README.md"

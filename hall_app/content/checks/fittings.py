@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...room.regions import Regions
-from ..loading import Content
+from ..folder import Content
 from ..plan_file import Curtain, Opening, PlanFile, Sign, Wall
 from ..problems import Problem
 from ..values import Point

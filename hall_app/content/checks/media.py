@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..files import TEXTS, hall_files, is_there
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..pictures import FORMATS, picture_fault
 from ..problems import Problem
 from ..text import pictures_in

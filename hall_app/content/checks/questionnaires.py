@@ -7,7 +7,7 @@ from pathlib import Path
 from survey.content import FOLDER, QuestionnaireFolder
 from survey.privacy.controller import read_controller
 
-from ..loading import Content
+from ..folder import Content
 from ..problems import Problem
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..places import overlapping_bodies
 from ..problems import Problem
 from ..walkable import facing_spots, reached_spots

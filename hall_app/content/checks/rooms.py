@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ...room.key import room_key
 from ...room.places import ENVIRONMENT, GLB, RECORD, room_fault, room_here, room_record
+from ..folder import Content
 from ..glb import GlbError, GlbInfo, open_glb, read_glb
-from ..loading import Content
 from ..pictures import picture_fault
 from ..problems import Problem
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from ...bake.places import bake_fault
 from ..files import BAKED
+from ..folder import Content, Exhibit
 from ..glb import GlbError, GlbInfo, read_glb
-from ..loading import Content, Exhibit
 from ..problems import Problem
 
 FOOT = 0.05  # [m] a ready-made model's lowest point may be off its own floor

@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 
 from ..files import BAKED, TEXTS, exhibit_files, walk_files
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..problems import Problem
 from ..text import pictures_in
 

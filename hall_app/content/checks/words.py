@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..exhibit_file import ExhibitFile
 from ..files import TEXTS, shortened
-from ..loading import Content, Exhibit
+from ..folder import Content, Exhibit
 from ..problems import Problem
 from ..text import pictures_in, raw_html_in
 from ..views import own_picture
