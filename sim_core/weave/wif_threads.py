@@ -103,6 +103,8 @@ def harness_of(
         _remark_bare("LIFTPLAN", planned or {}, picks, "lifts no shaft", remarks)
     else:
         _remark_treadles(treadled or {}, tieup, treadling, remarks)
+    if sections.get("WEAVING", {}).get("rising shed", ("", "yes"))[1] == "":
+        remarks.append("[WEAVING] Rising Shed: empty – taken for a rising shed")
     if not truth(sections, "WEAVING", "Rising Shed", True):
         # A sinking shed: what is tied goes down, so all other shafts stay up. Told as a lift plan, which is exact.
         tieup, treadling, use_plan = np.eye(shafts, dtype=bool), ~lift_plan(tieup, treadling), True
@@ -126,18 +128,20 @@ def truth(sections: Sections, section: str, key: str, default: bool) -> bool:
     return default if not word else word in TRUE
 
 
-def announced(sections: Sections, key: str) -> int:
-    """The number of shafts or treadles that [WEAVING] announces, 0 where it does not."""
+def announced(sections: Sections, key: str, remarks: list[str]) -> int:
+    """The number of shafts or treadles that [WEAVING] announces, 0 where it does not; no lift hangs on it."""
     written, value = sections.get("WEAVING", {}).get(key.lower(), (key, "0"))
-    number = whole(value, "WEAVING", written, "give a number")
-    if number > MOST_SHAFTS:
-        raise WeaveError(f"[WEAVING] {written}: {number} – at most {MOST_SHAFTS}")
-    return number
+    if value.isascii() and value.isdigit() and len(value) < 10 and int(value) <= MOST_SHAFTS:
+        return int(value)
+    remarks.append(
+        f"[WEAVING] {written}: {shown(value, 30)} – not a number up to {MOST_SHAFTS}, counted from the lines"
+    )
+    return 0
 
 
 def _most(sections: Sections, key: str, tables: list[tuple[str, Lists | None]], remarks: list[str]) -> int:
     """Shafts or treadles: as many as announced, or as are used."""
-    told = announced(sections, key)
+    told = announced(sections, key, remarks)
     used = [
         (max((max(v, default=0) for v in (table or {}).values()), default=0), name) for name, table in tables
     ]
