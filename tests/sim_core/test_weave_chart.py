@@ -91,6 +91,10 @@ def test_the_svg_is_a_sheet_of_paper_with_all_of_the_draft(tmp_path):
     (path,) = write_draft(source_of(TWILL), tmp_path / "d.svg", View(floats=3))
     root = ElementTree.parse(path).getroot()
     assert (root.get("width"), root.get("height")) in {("210mm", "297mm"), ("297mm", "210mm")}
+    size = " ".join(root.get(side) for side in ("width", "height"))
+    assert (
+        root.find(f"{SVG}style").text == f"@page {{ size: {size}; margin: 0 }}"
+    )  # a browser prints it whole
     titles = [title.text for title in root.iter(f"{SVG}title")]
     assert {"threading", "tie-up", "treadling", "drawdown", "warp face floats", "weft back floats"} <= set(
         titles

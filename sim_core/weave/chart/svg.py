@@ -24,6 +24,8 @@ def svg_of(chart: Chart, page: Page) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{page.width:g}mm" height="{page.height:g}mm" '
         f'viewBox="0 0 {page.width:g} {page.height:g}" font-family="{FONT}" fill="#1f2328">',
         f"<title>{escape(chart.title)}</title>",
+        # a browser prints on this sheet, at its size, instead of cutting the drawing at the paper it is set to
+        f"<style>@page {{ size: {page.width:g}mm {page.height:g}mm; margin: 0 }}</style>",
         '<rect width="100%" height="100%" fill="#fff"/>',
         *(_patch(patch) for patch in patches),
         *(
