@@ -43,6 +43,8 @@ class Harness:
 
 def lift_plan(tieup: np.ndarray, treadling: np.ndarray) -> np.ndarray:
     """Shafts raised at each pick: (picks, shafts) bool from (shafts, treadles) and (picks, treadles)."""
+    if tieup.shape[0] == tieup.shape[1] and np.array_equal(tieup, np.eye(len(tieup), dtype=bool)):
+        return np.asarray(treadling, bool)  # one treadle a shaft: it is a lift plan
     return _product(np.asarray(treadling, bool), np.asarray(tieup, bool).T)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from sim_core.arguments import ending, whole
 from sim_core.errors import WeaveError, WrongArgument
+from sim_core.weave.drawing import add_drawing, check_drawing, draw
 
 if TYPE_CHECKING:
     from sim_core.weave.geometry import YarnGeometry
@@ -57,14 +57,19 @@ Written on demand:
   --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json
   --yarns FILE  the yarns of one repeat: tubes as .glb, axes as .ply
   --wif FILE    WIF 1.1; what WIF cannot say goes into a private section
-  --draft FILE  threading, tie-up, treadling and drawdown: .svg to print, on the smallest sheet on which its cells can
-                be read (pages FILE-1, FILE-2 ... beyond 500 ends or picks), or .png (beyond 4,000)
+  --draft FILE  threading, tie-up, treadling and drawdown with heddles a shaft, repeats, colours, sett and yarn counts:
+                .svg to print, on the smallest sheet on which its cells can be read (pages FILE-1, FILE-2 ... beyond 500
+                ends or picks), or .png (beyond 4,000); with --paper A4 on as many of these as readable cells need.
+                Print at 100 %; the foot has a line of 50 mm to check that.
   --cards FILE  one pixel a crossing, black where the warp is up; the lowest row is pick 1, the left column end 1
   --pegs FILE   the same of the lift plan: one pixel a shaft and pick
 
 examples:
+  simcore weave scarf.wif                                          what the file says, and what had to be replaced
   simcore weave satin:8/3 --relax --maps satin --size 1024 --json
   simcore weave scarf.wif --draft scarf.svg --floats 5             the draft, floats over 5 marked
+  simcore weave scarf.wif --draft scarf.svg --paper letter         on pages of a home printer
+  simcore weave twill:2/1 --draft twill.svg --times 6,4            six repeats side by side, four one after the other
   simcore weave scarf.wif --draft look.png --view colour           in the colours of its yarns
   simcore weave scarf.dtx --draft part.svg --part 1-120,1-80       a part of it
   simcore weave profile.wif --blocks summer-winter --wif cloth.wif --draft cloth.svg
@@ -89,42 +94,8 @@ def add_parser(subparsers) -> None:
     )
     parser.add_argument("--yarns", type=ending(".glb", ".ply"), metavar="FILE", help="yarn tubes or axes")
     parser.add_argument("--wif", type=ending(".wif"), metavar="FILE", help="the draft as WIF 1.1")
-    _add_drawing(parser)
+    add_drawing(parser)
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
-
-
-def _add_drawing(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--draft", type=ending(".svg", ".png"), metavar="FILE", help="picture of the draft")
-    parser.add_argument(
-        "--view", choices=("structure", "colour"), default="structure",
-        help="the drawdown filled where the warp is on top (default), or in the colours of its yarns",
-    )  # fmt: skip
-    parser.add_argument(
-        "--floats", type=whole(1, 9999), default=0, metavar="N", help="mark floats over more than N crossings"
-    )
-    parser.add_argument("--plan", action="store_true", help="draw a lift plan, not tie-up and treadling")
-    parser.add_argument(
-        "--first", choices=("right", "left"), default="right",
-        help="end 1 on the right, pick 1 on top (default), or on the left and at the bottom",
-    )  # fmt: skip
-    parser.add_argument(
-        "--part", type=_part, metavar="E-E,P-P", help="ends and picks to draw, such as 1-120,1-80"
-    )
-    parser.add_argument("--cards", type=ending(".png"), metavar="FILE", help="the lift, a pixel a crossing")
-    parser.add_argument("--pegs", type=ending(".png"), metavar="FILE", help="the lift plan, a pixel a peg")
-    parser.add_argument(
-        "--blocks", metavar="STRUCTURE",
-        help="SOURCE is a profile draft: block it out by summer-winter, bronson, double, twill:3/1, satin:5/2 ...",
-    )  # fmt: skip
-
-
-def _part(text: str) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Ends and picks of a part, from 0 and the last excluded."""
-    found = re.fullmatch(r"(\d{1,6})-(\d{1,6}),(\d{1,6})-(\d{1,6})", text, re.ASCII)
-    numbers = [int(n) for n in found.groups()] if found else []
-    if not numbers or not (1 <= numbers[0] <= numbers[1] and 1 <= numbers[2] <= numbers[3]):
-        raise argparse.ArgumentTypeError(f"{text[:40]!r} – give ends and picks, such as 1-120,1-80")
-    return (numbers[0] - 1, numbers[1]), (numbers[2] - 1, numbers[3])
 
 
 def run(args: argparse.Namespace) -> int:
@@ -152,7 +123,9 @@ def run(args: argparse.Namespace) -> int:
         write_yarns(strands(cloth.weave, cloth.geometry), args.yarns)
     if cloth is not None and args.maps:
         _write(args.maps, cloth, args.size, summary)
-    _draw(args, source)
+    drawn = draw(args, source)
+    if drawn:
+        summary["drawn"] = [str(path) for path in drawn]
     for remark in () if args.json else source.remarks:
         sys.stderr.write(f"simcore weave: {args.source}: {remark}\n")
     text = (
@@ -168,11 +141,7 @@ def _check_words(args: argparse.Namespace) -> None:
     """Arguments that say nothing without others, and structures that are none, are refused before the work."""
     from sim_core.weave.profiles import unit_of
 
-    drawn = {"view": args.view != "structure", "floats": args.floats, "plan": args.plan,
-             "first": args.first != "right", "part": args.part}  # fmt: skip
-    idle = [name for name, given in drawn.items() if given]
-    if idle and not args.draft:
-        raise WrongArgument(f"--{idle[0]}: says how a draft is drawn – add --draft FILE")
+    check_drawing(args)
     if args.blocks:
         try:
             unit_of(args.blocks)
@@ -226,21 +195,6 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
         return _Cloth(weave, geometry, summary | note), ""
     except WeaveError as error:
         return None, str(error)
-
-
-def _draw(args: argparse.Namespace, source: Source) -> None:
-    """The pictures of the draft that were asked for."""
-    if not (args.draft or args.cards or args.pegs):
-        return
-    from sim_core.weave.chart import View, Window, write_cards, write_draft, write_pegs
-
-    if args.draft:
-        view = View(args.view == "colour", args.floats, args.plan, args.first)
-        write_draft(source, args.draft, view, Window(*args.part) if args.part else None)
-    if args.cards:
-        write_cards(source, args.cards)
-    if args.pegs:
-        write_pegs(source, args.pegs)
 
 
 def _write_wif(source: Source, path: Path) -> None:

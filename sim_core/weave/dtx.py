@@ -14,7 +14,7 @@ from sim_core.errors import WeaveError
 from sim_core.reading import shown
 from sim_core.weave.wif import Wif
 from sim_core.weave.wif_read import read_bytes, wif_of_sections
-from sim_core.weave.wif_sections import Section, decoded
+from sim_core.weave.wif_sections import Section, decoded, listed
 
 __all__ = ["parse_dtx", "read_dtx"]
 
@@ -54,6 +54,7 @@ def parse_dtx(text: str) -> Wif:
     if "liftplan" in blocks:
         rows = _rows(blocks, "liftplan")
         sections["LIFTPLAN"] = _numbered([_ones(row) for row in rows])
+    remarks += _lacking(blocks)
     table = blocks.get("color palet", blocks.get("color palette"))
     if table:
         sections["COLOR TABLE"] = _numbered(table[1])
@@ -61,8 +62,14 @@ def parse_dtx(text: str) -> Wif:
         sections[side] = _side(info.get(told, ""))
         colours = [_one_more(colour) for colour in _words(blocks, f"{side.lower()} colors")]
         sections[f"{side} COLORS"] = _numbered(colours)
+        if colours and info.get(told, "").isdigit() and len(colours) < int(info[told]):
+            remarks.append(
+                f"@@{side.title()} Colors: {len(colours)} of {info[told]} {told} – the others have the first"
+            )
         # threads beyond the list have the first colour of it, as in the WIF that Fiberworks writes
-        sections[side]["color"] = ("Color", colours[0] if colours else "1" if side == "WARP" else "2")
+        if f"{side.lower()} colors" in blocks:
+            usual = colours[0] if colours else "1" if side == "WARP" else "2"
+            sections[side]["color"] = ("Color", usual)
         steps = _words(blocks, f"{side.lower()} spacing")
         if steps:
             sections[f"{side} SPACING"] = _numbered([_centimetres(step) for step in steps])
@@ -91,6 +98,25 @@ def _blocks(text: str, remarks: list[str]) -> dict[str, Block]:
     if "startdtx" not in blocks:
         raise WeaveError("@@StartDTX: missing – every .dtx file begins with it")
     return blocks
+
+
+def _lacking(blocks: dict[str, Block]) -> list[str]:
+    """Remarks on what a whole file has: its end, the sections that it announces, a row of the tie-up a shaft."""
+    remarks = [] if "enddtx" in blocks else ["@@EndDTX: missing – the file seems to be cut off"]
+    if "info" not in blocks:
+        remarks.append("@@Info: missing – ends, picks, shafts and treadles were counted")
+    names = {" ".join(line.lower().split()): line for line in blocks.get("contents", ({}, []))[1]}
+    lacking = [line for name, line in names.items() if name.replace("palette", "palet") not in
+               {block.replace("palette", "palet") for block in blocks} | {"enddtx"}]  # fmt: skip
+    if lacking:
+        remarks.append(f"@@Contents {listed(lacking)}: announced, but not in the file")
+    shafts = [int(n) for n in re.findall(r"\b\d{1,6}\b", " ".join(_words(blocks, "threading")))]
+    rows = len(blocks["tieup"][1]) if "tieup" in blocks else 0
+    if rows and shafts and rows < max(shafts):
+        remarks.append(
+            f"@@Tieup: {rows} rows, but ends on shaft {max(shafts)} – the last row was taken for shaft 1"
+        )
+    return remarks
 
 
 def _words(blocks: dict[str, Block], name: str) -> list[str]:

@@ -52,7 +52,7 @@ class Factors:
                 f"{len(threaded):,} different ends – at most {MOST_CORE:,} crossings of different yarns are counted; "
                 "give a part of it"
             )
-        core, kind = kinds_of(_lifted(_planned(treadled, harness.tieup), threaded))
+        core, kind = kinds_of(_lifted(lift_plan(harness.tieup, treadled), threaded))
         columns, other = kinds_of(np.ascontiguousarray(core.T))
         return cls(np.ascontiguousarray(columns.T), kind[pick], other[end])
 
@@ -124,13 +124,6 @@ class Factors:
             if (proper & (tops[s] + sums[t] == s * picks + t * ends - s * t)).any():
                 return False
         return True
-
-
-def _planned(treadled: np.ndarray, tieup: np.ndarray) -> np.ndarray:
-    """Shafts raised by each kind of pick: (kinds, shafts) bool."""
-    if tieup.shape[0] == tieup.shape[1] and np.array_equal(tieup, np.eye(len(tieup), dtype=bool)):
-        return treadled  # a lift plan
-    return lift_plan(tieup, treadled)
 
 
 def _lifted(plan: np.ndarray, threaded: np.ndarray) -> np.ndarray:

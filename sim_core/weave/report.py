@@ -245,6 +245,9 @@ def summary_text(name: str, summary: dict) -> str:
             lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
     if "note" in summary:
         lines.append(f"  {summary['note']}")
+    if "drawn" in summary:
+        drawn = summary["drawn"]
+        lines.append(f"  drawn: {listed(drawn) if len(drawn) < 5 else f'{drawn[0]} to {drawn[-1]}'}")
     return "\n".join(lines)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sim_core.errors import WeaveError
+from sim_core.errors import FileProblem, WeaveError
 from sim_core.weave.algebra import Harness, harness
 from sim_core.weave.analysis import Summary, summary, summary_of_factors
 from sim_core.weave.draft import Draft
@@ -95,6 +95,12 @@ def source_of(words: str) -> Source:
         return _ours(*_from_json(path))
     if kind in PICTURES:
         return _ours(dressed(damask(motif_of(path), longest=8, name=path.stem)), ASSUMED)
+    if path.is_dir():
+        raise FileProblem(f"{path}: a folder – give a file, such as a .wif")
+    if path.is_file():
+        raise FileProblem(
+            f"{path}: no kind of file that can be read – let the program that made it save it as WIF (.wif)"
+        )
     return _ours(dressed(draft_of_words(words)), ASSUMED)
 
 

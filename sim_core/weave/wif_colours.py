@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from sim_core.reading import shown
-from sim_core.weave.wif_sections import Section, listed, whole
+from sim_core.weave.wif_sections import Section, from_one, listed
 
 __all__ = ["Palette", "palette_of", "thread_colours"]
 
 MOST_COLOURS = 4096
 Sections = dict[str, Section]
 Pair = tuple[np.ndarray, np.ndarray]
-Palette = tuple[np.ndarray, int, int]  # (n, 3) int of 0 to top, top, number of the first colour (0 or 1)
+# (n, 3) int of 0 to top, top, number of the first colour (0 or 1), places from 1 of the colours without a line
+Palette = tuple[np.ndarray, int, int, frozenset[int]]
+Table = tuple[
+    int, int, int, frozenset[int]
+]  # first colour, how many, which is taken where none is named, no line
 
 
 def palette_of(sections: Sections, remarks: list[str]) -> Palette:
@@ -48,31 +52,30 @@ def palette_of(sections: Sections, remarks: list[str]) -> Palette:
         palette[1] = 0
         if sections.get("WARP COLORS") or sections.get("WEFT COLORS"):
             remarks.append("[COLOR TABLE]: missing – colour 1 is white and colour 2 black")
-    return palette, top, first
+    told = {number + 1 - first for number in colours}
+    return palette, top, first, frozenset(range(1, len(palette) + 1)) - told if told else frozenset()
 
 
 def thread_colours(
     sections: Sections, made: Palette, counts: tuple[int, int], remarks: list[str]
 ) -> tuple[np.ndarray, Pair]:
     """The palette, in white where the threads name a colour that it leaves out, and the colours of ends and picks."""
-    palette, top, first = made
-    ends = _colours(sections, "WARP", counts[0], (first, len(palette), 1), remarks)
-    picks = _colours(sections, "WEFT", counts[1], (first, len(palette), 2), remarks)
+    palette, top, first, gaps = made
+    ends = _colours(sections, "WARP", counts[0], (first, len(palette), 1, gaps), remarks)
+    picks = _colours(sections, "WEFT", counts[1], (first, len(palette), 2, gaps), remarks)
     most = max(int(ends.max()), int(picks.max()))
     white = np.full((max(most - len(palette), 0), 3), top)
     return np.concatenate([palette, white]), (ends, picks)
 
 
-def _colours(
-    sections: Sections, side: str, count: int, table: tuple[int, int, int], remarks: list[str]
-) -> np.ndarray:
+def _colours(sections: Sections, side: str, count: int, table: Table, remarks: list[str]) -> np.ndarray:
     """A colour a thread, from 1; a thread without a line has the usual colour of [WARP] or [WEFT].
 
-    table: number of the first colour, how many there are, and which is taken where the side names none.
+    Lines that are numbered from 0 count from there; a line that names no thread is left out with a remark.
     """
-    first, size, default = table
+    first, size, default, _ = table
     name = f"{side} COLORS"
-    lines = sections.get(name, {})
+    lines = from_one(name, sections.get(name, {}), count, remarks)
     key, value = sections.get(side, {}).get("color", ("Color", ""))
     usual = _number(value, first) or min(default, size)
     if value or len(lines) < count:
@@ -83,7 +86,7 @@ def _colours(
     wrong: dict[str, list[str]] = {}
     beyond = []
     for lower, (key, value) in lines.items():
-        number = whole(lower, name, key, "number the threads from 1")
+        number = int(lower[:9]) if lower.isascii() and lower.isdigit() else 0
         if not 1 <= number <= count:
             beyond.append(key)
             continue
@@ -97,15 +100,17 @@ def _colours(
     return colours
 
 
-def _told(value: str, table: tuple[int, int, int], usual: int) -> str:
+def _told(value: str, table: Table, usual: int) -> str:
     """What was taken for the colour of a thread that the table does not have; nothing where it does."""
-    first, size, _ = table
+    first, size, _, gaps = table
     number = _number(value, first)
     if number is None:
         what = f"{shown(value, 30)} is no colour" if value else "no colour"
         return f"{what} – colour {usual - 1 + first} was taken"
     if number > size:
         return f"colour {number - 1 + first} is not among the {size} of [COLOR TABLE] – white was taken"
+    if number in gaps:
+        return f"colour {number - 1 + first} has no line in [COLOR TABLE] – white was taken"
     return ""
 
 
@@ -121,9 +126,13 @@ def _number(value: str, first: int) -> int | None:
 def _range(sections: Sections, remarks: list[str]) -> tuple[int, int]:
     key, value = sections.get("COLOR PALETTE", {}).get("range", ("Range", "0,255"))
     parts = [part.strip() for part in value.split(",")]
+    if len(parts) == 1 and parts[0] not in ("", "0"):  # some programs write the highest value alone
+        parts = ["0", *parts]
     if len(parts) == 2 and all(part.isascii() and part.isdigit() and len(part) < 6 for part in parts):
         low, high = int(parts[0]), int(parts[1])
         if low < high <= 65535:
+            if "," not in value:
+                remarks.append(f"[COLOR PALETTE] {key}: {shown(value, 30)} – taken for 0,{high}")
             return low, high
     remarks.append(f"[COLOR PALETTE] {key}: {shown(value, 30)} is no range – 0,255 was taken")
     return 0, 255

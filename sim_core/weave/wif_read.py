@@ -22,7 +22,7 @@ from sim_core.reading import shown
 from sim_core.weave.algebra import Harness
 from sim_core.weave.wif import PRIVATE, Wif, centimetres, tidy
 from sim_core.weave.wif_colours import palette_of, thread_colours
-from sim_core.weave.wif_sections import KNOWN, Section, decoded, sections_of
+from sim_core.weave.wif_sections import KNOWN, Section, decoded, sections_of, unfit_sections
 from sim_core.weave.wif_threads import count_of, harness_of, shed_of
 
 __all__ = ["parse_wif", "read_bytes", "read_wif", "wif_of_sections"]
@@ -62,16 +62,21 @@ def parse_wif(text: str) -> Wif:
     """
     sections, remarks = sections_of(text)
     if "WIF" not in sections:
-        raise WeaveError("[WIF]: missing – every WIF file begins with it")
-    version = sections["WIF"].get("version", ("", "1.1"))[1]
-    if not re.fullmatch(r"1(\.\d+)?", version.strip()):
+        # some programs leave it out; what begins with another section is another kind of file
+        if next(iter(sections), "") not in KNOWN or "THREADING" not in sections:
+            raise WeaveError("[WIF]: missing – every WIF file begins with it")
+        remarks.append("[WIF]: missing – read as version 1.1")
+    version = sections.get("WIF", {}).get("version", ("", "1.1"))[1]
+    if not re.fullmatch(r"(1(\.\d+)?)?", version.strip()):
         raise WeaveError(f"[WIF] Version: {shown(version)} – 1.0 and 1.1 can be read")
-    return wif_of_sections(sections, remarks)
+    if not version:
+        remarks.append("[WIF] Version: empty – read as version 1.1")
+    return wif_of_sections(sections, remarks + unfit_sections(sections))
 
 
 def wif_of_sections(sections: dict[str, Section], remarks: list[str]) -> Wif:
     """The value of the sections of a WIF file, or of a file that says the same in another form."""
-    threading, shed = shed_of(sections)
+    threading, shed = shed_of(sections, remarks)
     _, treadled, planned = shed
     counts = (
         count_of(sections, "WARP", threading, remarks),
@@ -107,10 +112,13 @@ def _length(sections: dict[str, Section], side: str, key: str, remarks: list[str
     """Spacing or thickness of a side [m]; None with a remark where it is no length, since no draft needs it."""
     written, value = sections.get(side, {}).get(key.lower(), (key, ""))
     try:
-        return tidy(_metres(sections, side, side, written, value)) if value else None
+        length = tidy(_metres(sections, side, side, written, value)) if value else None
     except WeaveError as error:
         remarks.append(f"{error} (left out)")
         return None
+    if length == 0:
+        remarks.append(f"[{side}] {written}: {shown(value, 30)} is no length – give more (left out)")
+    return length or None
 
 
 def _kept(sections: dict[str, Section], name: str, remarks: list[str]) -> tuple[tuple[str, str], ...]:

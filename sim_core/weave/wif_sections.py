@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass, field
+from difflib import get_close_matches
 
 from sim_core.errors import WeaveError
 from sim_core.reading import shown
 from sim_core.weave.wif import PRIVATE
 
-__all__ = ["KNOWN", "Section", "decoded", "escaped", "listed", "sections_of", "unescaped", "whole"]
+__all__ = [
+    "FALSE", "KNOWN", "TRUE", "Section", "decoded", "escaped", "from_one", "listed", "sections_of", "unescaped",
+    "unfit_sections", "whole",
+]  # fmt: skip
 
 KNOWN = {
     "WIF", "CONTENTS", "COLOR PALETTE", "TEXT", "WEAVING", "WARP", "WEFT", "NOTES", "COLOR TABLE", "THREADING", "TIEUP",
     "TREADLING", "LIFTPLAN", "WARP COLORS", "WEFT COLORS", PRIVATE,
 }  # fmt: skip
+SECTIONS = KNOWN | {
+    f"{side} {what}" for side in ("WARP", "WEFT")
+    for what in ("SPACING", "SPACING ZOOM", "THICKNESS", "THICKNESS ZOOM", "SYMBOLS", "SYMBOL TABLE", "SYMBOL PALETTE")
+}  # fmt: skip
+TRUE, FALSE = {"true", "yes", "on", "1", "t", "y"}, {"false", "no", "off", "0", "f", "n"}
 VERBATIM = {"TEXT", "NOTES"}  # sections in which ";" is no comment
 # In these a line without "=" may be a thread or a treadle that was meant; elsewhere nothing is lost with it.
 NEEDED = {"THREADING", "TIEUP", "TREADLING", "LIFTPLAN"}
@@ -57,39 +67,72 @@ def sections_of(text: str) -> tuple[dict[str, Section], list[str]]:
     sections: dict[str, Section] = {}
     current: Section | None = None
     name = ""
-    stray: dict[str, list[tuple[int, str]]] = {}
-    twice: dict[str, list[str]] = {}
+    odd = _Odd()
     for number, raw in enumerate(re.split(r"\r\n|\r|\n", text), 1):
         line = raw.strip().strip("\x00\x1a")
         if not line or line[0] in ";#":
             continue
-        if line[0] == "[":
-            name, bracket, _ = line[1:].partition("]")
-            if not bracket:
-                raise WeaveError(f"line {number}: {shown(line, 30)} – close the section with ]")
-            name = " ".join(name.split()).upper()
+        if line[0] == "[" and _is_header(line, name, number, odd):
+            name = " ".join(line[1:].partition("]")[0].split()).upper()
             current = sections.setdefault(name, {})
             continue
         key, equals, value = line.partition("=")
         if current is None:
-            stray.setdefault("", []).append((number, line))
+            odd.stray.setdefault("", []).append((number, line))
             continue
         if not equals and not (name in NEEDED and line.isascii() and line.isdigit()):
             if _is_lost(current, name, number, line):
-                stray.setdefault(name, []).append((number, line))
+                odd.stray.setdefault(name, []).append((number, line))
             continue
         if name not in VERBATIM and not name.startswith("PRIVATE"):
-            value = value.partition(";")[0]
+            value, _, comment = value.partition(";")
+            if name in NEEDED and re.fullmatch(r"[\s\d,;]*\d[\s\d,;]*", comment, re.ASCII):
+                odd.commented.setdefault(name, []).append(key.strip())
         key, value = key.strip(), value.strip()
         if name != PRIVATE:
             key, value = unescaped(key), unescaped(value)
         if name in KNOWN and current.get(key.lower(), ("", value))[1] != value:
-            twice.setdefault(name, []).append(key)
+            odd.twice.setdefault(name, []).append(key)
         current[key.lower()] = (key, value)
-    if not sections and stray:
-        number, line = stray[""][0]
+    if not sections and odd.stray:
+        number, line = odd.stray[""][0]
         raise WeaveError(f"line {number}: {shown(line, 30)} – a WIF file begins with [WIF]")
-    return sections, _told(stray, twice)
+    return sections, odd.told()
+
+
+@dataclass
+class _Odd:
+    """What was passed over or settled line by line: by section, numbers and texts of lines, or keys."""
+
+    stray: dict[str, list[tuple[int, str]]] = field(default_factory=dict)
+    twice: dict[str, list[str]] = field(default_factory=dict)
+    commented: dict[str, list[str]] = field(default_factory=dict)
+    unclosed: list[str] = field(default_factory=list)
+
+    def told(self) -> list[str]:
+        remarks = list(self.unclosed)
+        for name, lines in self.stray.items():
+            number, line = lines[0]
+            more = f", and {len(lines) - 1} more such lines" if len(lines) > 1 else ""
+            where = f"[{name}] line" if name else "line"
+            remarks.append(f"{where} {number}: {shown(line, 30)} says nothing here – passed over{more}")
+        for name, keys in self.twice.items():
+            remarks.append(f"[{name}] {listed(keys)}: said twice – the last word counts")
+        for name, keys in self.commented.items():
+            remarks.append(f"[{name}] {listed(keys)}: what follows ; is a comment – commas part numbers")
+        return remarks
+
+
+def _is_header(line: str, name: str, number: int, odd: _Odd) -> bool:
+    """Whether a line that begins with [ is the head of a section; raises WeaveError where a lift may hang on it."""
+    if "]" in line:
+        return True
+    if name in VERBATIM and " ".join(line[1:].split()).upper() not in KNOWN:
+        return False
+    if " ".join(line[1:].split()).upper() not in KNOWN - NEEDED:
+        raise WeaveError(f"line {number}: {shown(line, 30)} – close the section with ]")
+    odd.unclosed.append(f"line {number}: {shown(line, 30)} has no ] – taken for the head of that section")
+    return True
 
 
 def _is_lost(current: Section, name: str, number: int, line: str) -> bool:
@@ -101,16 +144,30 @@ def _is_lost(current: Section, name: str, number: int, line: str) -> bool:
     return name in KNOWN and name != "NOTES"
 
 
-def _told(stray: dict[str, list[tuple[int, str]]], twice: dict[str, list[str]]) -> list[str]:
-    remarks = []
-    for name, lines in stray.items():
-        number, line = lines[0]
-        more = f", and {len(lines) - 1} more such lines" if len(lines) > 1 else ""
-        where = f"[{name}] line" if name else "line"
-        remarks.append(f"{where} {number}: {shown(line, 30)} says nothing here – passed over{more}")
-    for name, keys in twice.items():
-        remarks.append(f"[{name}] {listed(keys)}: said twice – the last word counts")
+def unfit_sections(sections: dict[str, Section]) -> list[str]:
+    """Remarks on sections that [CONTENTS] announces and the file does not have, and on names that look misspelt."""
+    lacking = [
+        key
+        for lower, (key, value) in sections.get("CONTENTS", {}).items()
+        if value.lower() in TRUE and lower.upper() in SECTIONS and lower.upper() not in sections
+    ]
+    remarks = [f"[CONTENTS] {listed(lacking)}: announced, but not in the file"] if lacking else []
+    for name in sections:
+        near = [] if name in SECTIONS else get_close_matches(name, SECTIONS - sections.keys(), 1, 0.84)
+        if near:
+            remarks.append(f"[{name}]: no section of WIF, and left out – is [{near[0]}] meant?")
     return remarks
+
+
+def from_one(name: str, lines: Section, count: int, remarks: list[str]) -> Section:
+    """The lines of a table of so many threads, numbered from 1, with a remark where the file numbers them from 0."""
+    if "0" not in lines or str(count) in lines:
+        return lines
+    remarks.append(f"[{name}]: its threads are numbered from 0 – counted from 1")
+    return {
+        str(int(k) + 1) if k.isascii() and k.isdigit() and len(k) < 10 else k: line
+        for k, line in lines.items()
+    }
 
 
 def listed(numbers: Iterable[object], most: int = 4) -> str:

@@ -9,28 +9,32 @@ import numpy as np
 from sim_core.errors import WeaveError
 from sim_core.reading import shown
 from sim_core.weave.algebra import Harness, lift_plan
-from sim_core.weave.wif_sections import Section, listed, whole
+from sim_core.weave.wif_sections import FALSE, TRUE, Section, from_one, listed, whole
 
 __all__ = ["Shed", "announced", "count_of", "harness_of", "shed_of", "truth"]
 
 MOST_THREADS = 65_536  # of a file
 MOST_SHAFTS = 4096  # shafts or treadles; a jacquard has a hook an end
 MOST_CELLS = 400_000_000  # of threading or treadling
-TRUE, FALSE = {"true", "yes", "on", "1", "t", "y"}, {"false", "no", "off", "0", "f", "n"}
 NUMBERS = re.compile(r"[\d,\s]*", re.ASCII)
 Lists = dict[int, list[int]]  # number of a thread or treadle -> shafts or treadles
 Shed = tuple[Lists | None, Lists | None, Lists | None]  # tie-up, treadling, lift plan
 Sections = dict[str, Section]
 
 
-def shed_of(sections: Sections) -> tuple[Lists, Shed]:
+def shed_of(sections: Sections, remarks: list[str]) -> tuple[Lists, Shed]:
     """Threading, and tie-up, treadling and lift plan as far as they are there; the plan only where it is used.
 
     Raises WeaveError where the threading is missing, or lift plan and treadling or tie-up both are.
     """
-    threading = _lists(sections, "THREADING", "shaft")
+    counted = sections | {
+        name: from_one(name, sections[name], _threads(sections, side, name), remarks)
+        for name, side in (("THREADING", "WARP"), ("TREADLING", "WEFT"), ("LIFTPLAN", "WEFT"))
+        if name in sections
+    }
+    threading = _lists(counted, "THREADING", "shaft")
     tied, treadled, planned = (
-        _lists(sections, name, what) if name in sections else None
+        _lists(counted, name, what) if name in sections else None
         for name, what in (("TIEUP", "shaft"), ("TREADLING", "treadle"), ("LIFTPLAN", "shaft"))
     )
     use_plan = planned is not None and any(planned.values())
@@ -39,6 +43,12 @@ def shed_of(sections: Sections) -> tuple[Lists, Shed]:
             "[LIFTPLAN]: missing, and so are [TIEUP] and [TREADLING] together – add one or the other"
         )
     return threading, (tied, treadled, planned if use_plan else None)
+
+
+def _threads(sections: Sections, side: str, name: str) -> int:
+    """The threads that a side announces, else as many as a table has lines."""
+    told = sections.get(side, {}).get("threads", ("", ""))[1]
+    return int(told) if told.isascii() and told.isdigit() and len(told) < 10 else len(sections[name])
 
 
 def count_of(sections: Sections, side: str, lists: Lists, remarks: list[str]) -> int:
@@ -51,6 +61,8 @@ def count_of(sections: Sections, side: str, lists: Lists, remarks: list[str]) ->
         found = max(lines, told)
         if lines > told:
             remarks.append(f"[{side}] {key}: {told}, but there are lines for {lines} – {lines} were taken")
+    else:
+        remarks.append(f"[{side}] Threads: missing – there are lines for {lines}")
     if not 1 <= found <= MOST_THREADS:
         raise WeaveError(f"[{side}] Threads: {found} – 1 to {MOST_THREADS} threads can be read")
     return found
@@ -62,7 +74,7 @@ def harness_of(
     """The harness, and whether it is told as a lift plan."""
     tied, treadled, planned = shed
     use_plan, (ends, picks) = planned is not None, size
-    _remark_bare("THREADING", threading, ends, "shaft", remarks)
+    _remark_bare("THREADING", threading, ends, "on no shaft", remarks)
     shafts = _most(
         sections, "Shafts", [("THREADING", threading), ("LIFTPLAN", planned), ("TIEUP", tied)], remarks
     )
@@ -87,8 +99,12 @@ def harness_of(
             by_treadle = np.eye(shafts, dtype=bool), plan
     assert by_treadle is not None
     tieup, treadling = by_treadle
-    if not use_plan:
+    if use_plan:
+        _remark_bare("LIFTPLAN", planned or {}, picks, "lifts no shaft", remarks)
+    else:
         _remark_treadles(treadled or {}, tieup, treadling, remarks)
+    if sections.get("WEAVING", {}).get("rising shed", ("", "yes"))[1] == "":
+        remarks.append("[WEAVING] Rising Shed: empty – taken for a rising shed")
     if not truth(sections, "WEAVING", "Rising Shed", True):
         # A sinking shed: what is tied goes down, so all other shafts stay up. Told as a lift plan, which is exact.
         tieup, treadling, use_plan = np.eye(shafts, dtype=bool), ~lift_plan(tieup, treadling), True
@@ -97,7 +113,7 @@ def harness_of(
 
 
 def _remark_treadles(treadled: Lists, tieup: np.ndarray, treadling: np.ndarray, remarks: list[str]) -> None:
-    _remark_bare("TREADLING", treadled, len(treadling), "treadle", remarks)
+    _remark_bare("TREADLING", treadled, len(treadling), "on no treadle", remarks)
     idle = np.flatnonzero(treadling.any(axis=0) & ~tieup.any(axis=0))
     if idle.size:
         remarks.append(f"[TIEUP] {listed(idle + 1)}: trodden, but tied to no shaft – lifts nothing")
@@ -112,18 +128,20 @@ def truth(sections: Sections, section: str, key: str, default: bool) -> bool:
     return default if not word else word in TRUE
 
 
-def announced(sections: Sections, key: str) -> int:
-    """The number of shafts or treadles that [WEAVING] announces, 0 where it does not."""
+def announced(sections: Sections, key: str, remarks: list[str]) -> int:
+    """The number of shafts or treadles that [WEAVING] announces, 0 where it does not; no lift hangs on it."""
     written, value = sections.get("WEAVING", {}).get(key.lower(), (key, "0"))
-    number = whole(value, "WEAVING", written, "give a number")
-    if number > MOST_SHAFTS:
-        raise WeaveError(f"[WEAVING] {written}: {number} – at most {MOST_SHAFTS}")
-    return number
+    if value.isascii() and value.isdigit() and len(value) < 10 and int(value) <= MOST_SHAFTS:
+        return int(value)
+    remarks.append(
+        f"[WEAVING] {written}: {shown(value, 30)} – not a number up to {MOST_SHAFTS}, counted from the lines"
+    )
+    return 0
 
 
 def _most(sections: Sections, key: str, tables: list[tuple[str, Lists | None]], remarks: list[str]) -> int:
     """Shafts or treadles: as many as announced, or as are used."""
-    told = announced(sections, key)
+    told = announced(sections, key, remarks)
     used = [
         (max((max(v, default=0) for v in (table or {}).values()), default=0), name) for name, table in tables
     ]
@@ -136,7 +154,7 @@ def _most(sections: Sections, key: str, tables: list[tuple[str, Lists | None]], 
 def _remark_bare(name: str, lists: Lists, count: int, what: str, remarks: list[str]) -> None:
     bare = [number for number in range(1, count + 1) if not lists.get(number)]
     if bare:
-        remarks.append(f"[{name}] {listed(bare)}: on no {what}")
+        remarks.append(f"[{name}] {listed(bare)}: {what}")
 
 
 def _lists(sections: Sections, name: str, what: str) -> Lists:

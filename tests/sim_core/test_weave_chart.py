@@ -91,6 +91,10 @@ def test_the_svg_is_a_sheet_of_paper_with_all_of_the_draft(tmp_path):
     (path,) = write_draft(source_of(TWILL), tmp_path / "d.svg", View(floats=3))
     root = ElementTree.parse(path).getroot()
     assert (root.get("width"), root.get("height")) in {("210mm", "297mm"), ("297mm", "210mm")}
+    size = " ".join(root.get(side) for side in ("width", "height"))
+    assert (
+        root.find(f"{SVG}style").text == f"@page {{ size: {size}; margin: 0 }}"
+    )  # a browser prints it whole
     titles = [title.text for title in root.iter(f"{SVG}title")]
     assert {"threading", "tie-up", "treadling", "drawdown", "warp face floats", "weft back floats"} <= set(
         titles
@@ -112,6 +116,25 @@ def test_a_jacquard_is_drawn_without_its_hooks(tmp_path):
     assert "more than 80 shafts are not drawn" in chart_of(source, View()).foot
 
 
+def test_no_page_weaves_out_a_plan_that_it_does_not_draw(monkeypatch, tmp_path):
+    """A jacquard of thousands of hooks has dozens of pages; their lift plan took seconds on each of them."""
+    from sim_core.weave.chart import layout
+
+    lift = np.random.default_rng(3).random((120, 90)) < 0.5
+    sizes = []
+
+    def counted(tieup, treadling):
+        sizes.append(len(treadling))
+        return (treadling.astype(int) @ tieup.T.astype(int)) > 0
+
+    monkeypatch.setattr(layout, "lift_plan", counted)
+    (tmp_path / "j.json").write_text(json.dumps({"name": "jacquard", "lift": lift.astype(int).tolist()}))
+    chart_of(source_of(str(tmp_path / "j.json")), View(plan=True), Window((0, 9), (0, 7)))
+    assert sizes == []
+    chart_of(source_of(TWILL), View(plan=True), Window((0, 9), (0, 7)))
+    assert sizes == [7]
+
+
 def test_larger_drafts_are_pages_that_meet_without_a_gap(tmp_path):
     from sim_core.weave.chart.sheets import windows
 
@@ -129,6 +152,140 @@ def test_larger_drafts_are_pages_that_meet_without_a_gap(tmp_path):
 def pixels(path):
     with Image.open(path) as picture:
         return np.asarray(picture.convert("L")) < 128
+
+
+def hearts(tmp_path, **told):
+    """A point threading of ten ends, three times and one more, in two colours."""
+    threading = [1, 2, 3, 4, 5, 6, 5, 4, 3, 2] * 3 + [1]
+    lines = {
+        "WIF": "Version=1.1",
+        "TEXT": f"Title={told.get('title', 'hearts')}\nAuthor=A. Weaver",
+        "WARP": f"Threads=31\nColor=1\nUnits=centimeters\nSpacing={told.get('spacing', 0.1)}",
+        "WEFT": "Threads=8\nColor=2\nUnits=centimeters\nSpacing=.125",
+        "COLOR TABLE": "1=200,0,0\n2=0,0,200\n3=9,9,9",
+        "WARP COLORS": "4=2",
+        "THREADING": "\n".join(f"{k}={shaft}" for k, shaft in enumerate(threading, 1)),
+        "TIEUP": "1=1,2,4\n2=2,3,5\n3=3,4,6\n4=1,5,6",
+        "TREADLING": "\n".join(f"{k}={1 + (k - 1) % 4}" for k in range(1, 9)),
+    }
+    path = tmp_path / "hearts.wif"
+    path.write_text("".join(f"[{name}]\n{text}\n" for name, text in lines.items()), "utf-8")
+    return path
+
+
+@pytest.mark.parametrize("first", ["right", "left"])
+def test_repeats_are_marked_between_the_last_yarn_of_one_and_the_first_of_the_next(first, tmp_path):
+    source = source_of(str(hearts(tmp_path)))
+    assert source.factors.periods == (4, 10)
+    chart = chart_of(source, View(first=first))
+    across = sorted(x0 for x0, _, x1, _ in chart.repeats.tolist() if x0 == x1)
+    top = blocks(source)["drawdown"].y
+    along = [y0 - top for _, y0, _, y1 in chart.repeats.tolist() if y0 == y1]
+    assert across == ([1, 11, 21] if first == "right" else [10, 20, 30])
+    assert along == [4]
+    assert "repeat 10 (3 times + 1) x 4 (2 times)" in chart.facts
+    assert "green: repeats" in chart.foot
+    part = chart_of(source, View(first=first), Window((5, 15), (0, 3)))
+    assert [x0 for x0, _, x1, _ in part.repeats.tolist() if x0 == x1] == [5]
+
+
+def test_a_draft_that_does_not_repeat_is_not_marked():
+    chart = chart_of(source_of(TWILL), View())
+    assert not len(chart.repeats)
+    assert "repeat 62 x 62 ·" in chart.facts
+
+
+def test_heddles_colours_sett_and_author_stand_on_the_page(tmp_path):
+    source = source_of(str(hearts(tmp_path)))
+    chart = chart_of(source, View(), Window((0, 10), (0, 4)))  # counted over the whole draft on every page
+    heddles = [label.text for label in chart.labels if label.x < 0]
+    assert heddles == ["4", "6", "6", "6", "6", "3", "heddles"]
+    assert chart.swatches == (((200, 0, 0), "colour 1: 30 ends"), ((0, 0, 200), "colour 2: 1 end, 8 picks"))
+    assert chart.credits == (
+        "A. Weaver · hearts.wif · sett 10 x 8 per cm (25.4 x 20.3 per inch) · 3.1 cm in the reed"
+    )
+    svg = write_draft(source, tmp_path / "h.svg", View())[0].read_text("utf-8")
+    assert chart.credits in svg
+    assert "50 mm" in svg
+
+
+def test_a_path_in_the_title_is_its_last_name(tmp_path):
+    path = hearts(tmp_path, title="C:\\Users\\anna\\Desktop\\shawl.dbw")
+    assert chart_of(source_of(str(path)), View()).title == "shawl.dbw"
+    path = hearts(tmp_path, title="twill 2/2 / tabby")
+    assert chart_of(source_of(str(path)), View()).title == "twill 2/2 / tabby"
+
+
+def test_a_profile_by_name_has_no_file(tmp_path):
+    assert chart_of(blocked_source(source_of("twill:1/3"), "summer-winter"), View()).credits == ""
+
+
+@pytest.mark.parametrize("paper", ["A4", "letter"])
+def test_on_a_paper_that_was_asked_for_the_draft_has_as_many_pages_as_readable_cells_need(paper, tmp_path):
+    from sim_core.weave.chart import PAPERS, repeated
+
+    source = repeated(source_of(TWILL), 3, 4)  # 186 x 248
+    paths = write_draft(source, tmp_path / "d.svg", View(floats=3), paper=paper)
+    assert len(paths) > 1
+    crossings = 0
+    for path in paths:
+        root = ElementTree.parse(path).getroot()
+        size = tuple(float(root.get(side).removesuffix("mm")) for side in ("width", "height"))
+        assert size in {PAPERS[paper], PAPERS[paper][::-1]}
+        texts = [text.text for text in root.iter(f"{SVG}text")]
+        assert f"page {paths.index(path) + 1} of {len(paths)}" in texts
+        cell = next(
+            float(found[1]) for text in texts if (found := re.search(r"a cell ([\d.]+) mm", text or ""))
+        )
+        assert cell >= 1.6
+        groups = {t.text: g for g in root.iter(f"{SVG}g") if (t := g.find(f"{SVG}title")) is not None}
+        box = groups["drawdown"].find(f"{SVG}rect")
+        crossings += int(box.get("width")) * int(box.get("height"))
+    assert crossings == 186 * 248
+    assert len(write_draft(source_of(TWILL), tmp_path / "one.svg", View(), paper=paper)) == 1
+
+
+def test_a_png_on_paper_has_the_size_of_the_paper(tmp_path):
+    (path,) = write_draft(source_of(TWILL), tmp_path / "d.png", View(floats=3), paper="letter")
+    with Image.open(path) as picture:
+        inches = [side / picture.info["dpi"][0] for side in picture.size]
+    assert sorted(inches) == pytest.approx([8.5, 11.0], abs=0.02)
+
+
+@pytest.mark.parametrize("words", [TWILL, "satin:5/2"])
+def test_a_draft_is_drawn_several_times_side_by_side(words):
+    from sim_core.weave.chart import repeated
+
+    source = source_of(words)
+    twice = repeated(source, 3, 2)
+    np.testing.assert_array_equal(twice.factors.lift(), np.tile(source.factors.lift(), (2, 3)))
+    np.testing.assert_array_equal(twice.harness.lift, twice.factors.lift())
+    np.testing.assert_array_equal(
+        twice.palette[twice.warp_colours], np.tile(source.palette[source.warp_colours], (3, 1))
+    )
+    assert twice.facts == source.facts
+    with pytest.raises(WeaveError, match="at most 20,000 picks"):
+        repeated(source, 1, 9999)
+
+
+@pytest.mark.parametrize("words", [["--times", "0,2"], ["--times", "3"], ["--paper", "A5"]])
+def test_repeats_and_papers_that_are_none_are_wrong_arguments(words, tmp_path, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["weave", TWILL, "--draft", str(tmp_path / "d.svg"), *words])
+    assert caught.value.code == 2
+    capsys.readouterr()
+    assert main(["weave", TWILL, "--times", "2,2"]) == 2
+    assert "add --draft" in capsys.readouterr().err
+
+
+def test_the_command_names_the_pages_that_it_drew(tmp_path, capsys):
+    words = ["weave", TWILL, "--draft", str(tmp_path / "d.svg"), "--paper", "A4", "--times", "3,4"]
+    assert main([*words, "--json"]) == 0
+    drawn = json.loads(capsys.readouterr().out)["drawn"]
+    assert len(drawn) > 1
+    assert sorted(drawn) == sorted(str(path) for path in tmp_path.iterdir())
+    assert main(words) == 0
+    assert f"drawn: {drawn[0]}" in capsys.readouterr().out
 
 
 def test_cards_and_pegs_are_a_pixel_a_crossing(tmp_path, capsys):

@@ -112,6 +112,42 @@ def test_a_damaged_dtx_is_named_by_section(text, message):
     assert str(caught.value).startswith(message)
 
 
+def test_a_dtx_without_its_end_is_told_to_be_cut_off():
+    cut = DTX.partition("@@EndDTX")[0]
+    assert parse_dtx(cut).remarks == (
+        "@@EndDTX: missing – the file seems to be cut off",
+        *parse_dtx(DTX).remarks,
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "remark"),
+    [
+        (DTX.replace("@@Info", "@@Inform"), "@@Info: missing"),
+        (DTX.replace("Weft Colors", "Weft Colours"), "[WEFT] Color: no colour"),
+        (DTX.replace("@@Weft Colors", "@@Weft Colours"), "@@Contents Weft Colors: announced"),
+        (DTX.replace("@@Weft Colors", "@@Weft Colors\n1 1\n@@Other"), "@@Weft Colors: 2 of "),
+        (DTX.replace("@@Threading", "@@Threading\n32"), "@@Tieup: "),
+    ],
+)
+def test_what_a_damaged_dtx_lacks_is_told(text, remark):
+    assert not any(told.startswith(remark) for told in parse_dtx(DTX).remarks)
+    assert any(told.startswith(remark) for told in parse_dtx(text).remarks), parse_dtx(text).remarks
+
+
+@pytest.mark.parametrize("name", ["scarf.wpo", "folder"])
+def test_files_of_other_kinds_are_named_as_such(name, tmp_path, capsys):
+    path = tmp_path / name
+    if path.suffix:
+        path.write_bytes(b"WPO")
+    else:
+        path.mkdir()
+    status, _, err = told(capsys, path)
+    assert (status, err.count("\n")) == (1, 1)
+    assert ".wif" in err
+    assert "no such weave" not in err
+
+
 def large(tmp_path: Path, ends: int, picks: int) -> Path:
     """A point twill of that size, as a WIF file."""
     rows = {"THREADING": ends, "TREADLING": picks}

@@ -100,6 +100,17 @@ def test_each_trap_gives_its_drawdown_and_survives_a_round_trip(name, tmp_path):
     assert parse_wif(wif_text(wif)) == replace(wif, remarks=())
 
 
+def test_a_range_of_one_number_is_the_highest_value():
+    wif = parse_wif(BASE.replace("1=255,0,0", "1=999,0,500") + "[COLOR PALETTE]\nRange=999\n")
+    assert wif.top == 999
+    np.testing.assert_array_equal(wif.palette[0], [999, 0, 500])
+
+
+def test_a_bracket_in_a_text_is_no_section():
+    wif = parse_wif(BASE + "[NOTES]\n1=woven\n[not yet washed\n")
+    assert wif.notes == ("woven", "[not yet washed")
+
+
 def test_lift_plan_that_differs_is_remarked_and_one_that_agrees_is_not():
     assert "lift plan was taken" in parse_wif(TRAPS["lift plan beside treadling"][0]).remarks[0]
     both = parse_wif(BASE + "[LIFTPLAN]\n1=1\n2=2\n")
@@ -199,11 +210,31 @@ REPLACED = {
     "[TEXT] line 32: 'of a scarf' says nothing": BASE + "[TEXT]\nTitle=a\nof a scarf\n",
     "line 1: 'saved by hand' says nothing": "saved by hand\n" + BASE,
     "[WARP] Color: said twice": BASE.replace("Color=1\n", "Color=2\nColor=1\n"),
+    "[WEFT] Threads: missing – there are lines for 2": BASE.replace("Threads=2\n", ""),
     "[WARP] Threads: 3, but there are lines for 4": BASE.replace("Threads=4", "Threads=3"),
     "[THREADING] 5: on no shaft": BASE.replace("Threads=4", "Threads=5"),
     "[WEAVING] Treadles: 1, but [TREADLING] uses 2": BASE.replace("Treadles=2", "Treadles=1"),
+    "[WEAVING] Shafts: 'some' – not a number": BASE.replace("Shafts=2", "Shafts=some"),
+    "[WEAVING] Treadles: '' – not a number": BASE.replace("Treadles=2", "Treadles="),
+    "[WEAVING] Treadles: '99999' – not a number": BASE.replace("Treadles=2", "Treadles=99999"),
+    "[WEAVING] Rising Shed: empty": BASE.replace("Rising Shed=true", "Rising Shed="),
     "[WEAVING] Rising Shed: false": BASE.replace("Rising Shed=true", "Rising Shed=false"),
     "[TIEUP] 2: trodden, but tied to no shaft": BASE.replace("1=1\n2=2\n[TREADLING]", "1=1\n[TREADLING]"),
+    "[COLOR PALETTE] Range: '255' – taken for 0,255": BASE + "[COLOR PALETTE]\nRange=255\n",
+    "[WARP COLORS] 1: colour 3 has no line": BASE.replace("2=0,0,255", "2=0,0,255\n4=9,9,9") + "[WARP COLORS]\n1=3\n",
+    "[WARP COLORS] one, 0: no such thread": BASE + "[WARP COLORS]\none=1\n0=1\n4=1\n",
+    "[WEFT COLORS]: its threads are numbered from 0": BASE + "[WEFT COLORS]\n0=1\n1=2\n",
+    "[WEFT] Spacing: '0' is no length": BASE.replace("[WEFT]\n", "[WEFT]\nSpacing=0\n"),
+    "[CONTENTS] warp colors, NOTES: announced": BASE + "[CONTENTS]\nwarp colors=yes\nTEXT=no\nNOTES=1\nMINE=1\n",
+    "[WEFT COLOURS]: no section of WIF": BASE + "[WEFT COLOURS]\n1=1\n",
+    "line 30: '[TEXT' has no ]": BASE + "[TEXT\nTitle=a\n",
+    "[WIF]: missing – read as version 1.1": BASE.replace("[WIF]\nVersion=1.1\n", ""),
+    "[WIF] Version: empty": BASE.replace("1.1", ""),
+    "[TIEUP] 1: what follows ; is a comment": BASE.replace("[TIEUP]\n1=1\n", "[TIEUP]\n1=1;\n1=1; 2\n"),
+    "[LIFTPLAN] 2: lifts no shaft": BASE.replace("[TREADLING]", "[LIFTPLAN]\n1=1\n[TREADLING]"),
+    "[THREADING]: its threads are numbered from 0": BASE.replace(
+        "[THREADING]\n1=1\n2=2\n3=1\n4=2", "[THREADING]\n0=1\n1=2\n2=1\n3=2"
+    ),
     "[PRIVATE HALL WEAVE]: damaged": BASE + f'[{PRIVATE}]\n1="{{"\n',
     "[PRIVATE HALL WEAVE]: draft": BASE + f'[{PRIVATE}]\n1="{{"draft":{{}}}}"\n',
 }  # fmt: skip
@@ -214,7 +245,7 @@ def test_what_no_draft_needs_is_replaced_and_every_replacement_is_told(remark):
     wif = parse_wif(REPLACED[remark])
     assert any(told.startswith(remark) for told in wif.remarks), wif.remarks
     ends = wif.harness.threading.shape[0]
-    if "Rising" not in remark and "tied to no shaft" not in remark:
+    if not any(word in remark for word in ("Rising", "tied to no shaft", "lifts no shaft")):
         np.testing.assert_array_equal(wif.draft.lift, np.pad(TABBY, ((0, 0), (0, ends - 4))))
     assert parse_wif(BASE).remarks == ()
 

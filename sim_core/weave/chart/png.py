@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from sim_core.weave.chart.layout import BACK, FACE, Block, Chart
-from sim_core.weave.chart.paper import MARGIN, SMALL, Page
+from sim_core.weave.chart.furniture import furniture
+from sim_core.weave.chart.paper import SMALL, Page
+from sim_core.weave.chart.values import BACK, FACE, REPEAT, Block, Chart
 
 __all__ = ["picture_of"]
 
 GRID, FIFTH, TENTH = (211, 215, 220), (167, 173, 181), (109, 116, 125)
 DRAWN = 5  # pixels a cell from which lines are drawn between cells
 WRITTEN = 16  # pixels a cell from which numbers are written into them
-GREY = (77, 84, 92)
+GREY = (77, 84, 92)  # numbers
 FONTS = ("NotoSansCJK-Regular.ttc", "NotoSansSC-Regular.otf", "wqy-zenhei.ttc", "msyh.ttc", "PingFang.ttc")
 
 
@@ -28,6 +29,8 @@ def picture_of(chart: Chart, page: Page, pixels: int) -> Image.Image:
     picture = Image.fromarray(sheet)
     picture.info["dpi"] = (per_mm * 25.4, per_mm * 25.4)
     draw = ImageDraw.Draw(picture)
+    for line in (np.array([left, top, left, top]) + chart.repeats * pixels).tolist():
+        draw.line(line, fill=REPEAT, width=max(1, round(0.4 * per_mm)))
     for kind, rows in chart.lines:
         _mark(draw, np.array([left, top, left, top]) + rows * pixels, kind, pixels)
     if pixels >= WRITTEN:
@@ -66,11 +69,28 @@ def _mark(draw: ImageDraw.ImageDraw, lines: np.ndarray, kind: str, pixels: int) 
     colour = FACE if kind.endswith("face") else BACK
     wide = max(1, round(0.3 * pixels))
     rounded = np.rint(lines).astype(int).tolist()
+    dashed = not kind.endswith("face") and pixels >= DRAWN
     if pixels >= DRAWN:
         for line in rounded:
             draw.line(line, fill="white", width=wide + 2 * max(1, pixels // 10))
     for line in rounded:
-        draw.line(line, fill=colour, width=wide)
+        for x0, y0, x1, y1 in _dashes(line, pixels) if dashed else (line,):
+            draw.line((x0, y0, x1, y1), fill=colour, width=wide)
+
+
+def _dashes(line: list[int], pixels: int) -> list[list[int]]:
+    """A line across or down cut into pieces of half a cell; those of the back are dashed, for black prints."""
+    x0, y0, x1, y1 = line
+    along = max(abs(x1 - x0), abs(y1 - y0))
+    step = max(pixels, 4)
+    cuts = range(0, max(along, 1), step)
+    across = x0 != x1
+    return [
+        [x0 + k, y0, x0 + min(k + step // 2, along), y1]
+        if across
+        else [x0, y0 + k, x1, y0 + min(k + step // 2, along)]
+        for k in cuts
+    ]
 
 
 def _number(draw: ImageDraw.ImageDraw, block: Block, left: int, top: int, pixels: int) -> None:
@@ -86,13 +106,14 @@ def _write(
     draw: ImageDraw.ImageDraw, chart: Chart, page: Page, per_mm: float, place: tuple[int, int, int]
 ) -> None:
     left, top, pixels = place
-    edge = MARGIN * per_mm
-    for text, y, size, colour in (
-        (chart.title, edge + 2.4 * per_mm, 5.0, "black"),
-        (chart.facts, edge + 8 * per_mm, 2.7, GREY),
-        (chart.foot, page.height * per_mm - edge + 1.2 * per_mm, 2.7, GREY),
-    ):
-        draw.text((edge, y), text, fill=colour, font=_font(text, size * per_mm), anchor="lm")
+    notes, patches = furniture(chart, page)
+    for patch in patches:
+        x, y = patch.x * per_mm, patch.y * per_mm
+        corner = x + max(patch.width * per_mm, 1), y + max(patch.height * per_mm, 1)
+        draw.rectangle((x, y, *corner), fill=patch.fill, outline=TENTH if patch.edged else None)
+    for note in notes:
+        at, anchor = (note.x * per_mm, note.y * per_mm), "rs" if note.anchor == "end" else "ls"
+        draw.text(at, note.text, fill=note.colour, font=_font(note.text, note.size * per_mm), anchor=anchor)
     height = min(max(0.62 * pixels, 1.4 * per_mm), 2.2 * per_mm)
     font = ImageFont.load_default(max(height, 6))
     anchors = {"start": "lm", "middle": "mm", "end": "rm"}

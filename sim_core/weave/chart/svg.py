@@ -6,8 +6,9 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from sim_core.weave.chart.layout import BACK, FACE, Block, Chart
-from sim_core.weave.chart.paper import MARGIN, SMALL, Page
+from sim_core.weave.chart.furniture import Patch, furniture
+from sim_core.weave.chart.paper import SMALL, Page
+from sim_core.weave.chart.values import BACK, FACE, REPEAT, Block, Chart
 
 __all__ = ["svg_of"]
 
@@ -18,16 +19,24 @@ WRITTEN = 3.0  # cells [mm] from which numbers are written into them
 
 def svg_of(chart: Chart, page: Page) -> str:
     """The drawing on its page."""
+    notes, patches = furniture(chart, page)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{page.width:g}mm" height="{page.height:g}mm" '
         f'viewBox="0 0 {page.width:g} {page.height:g}" font-family="{FONT}" fill="#1f2328">',
         f"<title>{escape(chart.title)}</title>",
+        # a browser prints on this sheet, at its size, instead of cutting the drawing at the paper it is set to
+        f"<style>@page {{ size: {page.width:g}mm {page.height:g}mm; margin: 0 }}</style>",
         '<rect width="100%" height="100%" fill="#fff"/>',
-        _text(MARGIN, MARGIN + 4, chart.title, 5, "start", 'font-weight="600"'),
-        _text(MARGIN, MARGIN + 9, chart.facts, 2.7, "start", 'fill="#4d545c"'),
-        _text(MARGIN, page.height - MARGIN + 2, chart.foot, 2.7, "start", 'fill="#4d545c"'),
+        *(_patch(patch) for patch in patches),
+        *(
+            _text(
+                n.x, n.y, n.text, n.size, n.anchor, f'fill="{_hex(n.colour)}"' + ' font-weight="600"' * n.bold
+            )
+            for n in notes
+        ),
         f'<g transform="translate({page.left:g} {page.top:g}) scale({page.cell:.6g})">',
         *(part for block in chart.blocks for part in _block(block, page.cell)),
+        *_repeats(chart.repeats, page.cell),
         *(_line(kind, rows) for kind, rows in chart.lines if len(rows)),
     ]
     height = min(max(0.62, 1.4 / page.cell), 2.2 / page.cell)
@@ -39,6 +48,29 @@ def svg_of(chart: Chart, page: Page) -> str:
 
 def _text(x: float, y: float, text: str, size: float, anchor: str, more: str = "") -> str:
     return f'<text x="{x:.4g}" y="{y:.4g}" font-size="{size:.3g}" text-anchor="{anchor}" {more}>{escape(text)}</text>'
+
+
+def _hex(colour: tuple[int, int, int]) -> str:
+    return "#{:02x}{:02x}{:02x}".format(*colour)
+
+
+def _patch(patch: Patch) -> str:
+    fill = _hex(patch.fill) if patch.fill else "none"
+    edge = f' stroke="{TENTH}" stroke-width=".15"' if patch.edged else ""
+    return (
+        f'<rect x="{patch.x:.5g}" y="{patch.y:.5g}" width="{patch.width:.4g}" height="{patch.height:.4g}" '
+        f'fill="{fill}"{edge}/>'
+    )
+
+
+def _repeats(rows: np.ndarray, cell: float):
+    """Lines between repeats."""
+    if len(rows):
+        path = "".join(f"M{a:.6g} {b:.6g}L{c:.6g} {d:.6g}" for a, b, c, d in rows.tolist())
+        yield (
+            f'<g fill="none"><title>repeats</title><path d="{path}" stroke="{_hex(REPEAT)}" '
+            f'stroke-width="{0.4 / cell:.3g}"/></g>'
+        )
 
 
 def _block(block: Block, cell: float):
@@ -99,10 +131,11 @@ def _grid(block: Block, cell: float):
 
 
 def _line(kind: str, rows: np.ndarray) -> str:
-    """Long floats, cased in white so that they can be seen on any colour."""
+    """Long floats, cased in white so that they can be seen on any colour; those of the back dashed."""
     path = "".join(f"M{a:.6g} {b:.6g}L{c:.6g} {d:.6g}" for a, b, c, d in rows.tolist())
-    red, green, blue = FACE if kind.endswith("face") else BACK
+    face = kind.endswith("face")
+    dashed = "" if face else ' stroke-dasharray=".5 .55"'
     return (
         f'<g fill="none" stroke-linecap="round"><title>{kind} floats</title><path d="{path}" stroke="#fff" '
-        f'stroke-width=".5"/><path d="{path}" stroke="#{red:02x}{green:02x}{blue:02x}" stroke-width=".3"/></g>'
+        f'stroke-width=".5"/><path d="{path}" stroke="{_hex(FACE if face else BACK)}" stroke-width=".3"{dashed}/></g>'
     )
