@@ -31,7 +31,7 @@ def run_sheet(args: argparse.Namespace) -> int:
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", OutlineWarning)
         sheet = read_sheet(args.file, args.units, args.layer)
-    remarks = [*(str(warning.message) for warning in told), *sheet.remarks]
+    remarks = [*(str(warning.message) for warning in told), *sheet.remarks, *sheet.notes]
     if args.pattern:
         remarks += _write(args, sheet)
     if args.picture:

@@ -18,6 +18,7 @@ NARROWEST = 0.002  # [m] of a piece both ways
 SLACK = 5e-4  # [m] by which a line inside may leave its outline
 LOOPS = 0.02  # most of the area in loops
 WIDEST = 0.06  # [m] most of a seam allowance
+MOST_STEPS = 4000  # along what sticks out of an outline
 GENERIC = {"pieces", "piece", "pattern", "patterns", "sheet", "drawing", "main", "model", "parts", "outline"}
 
 
@@ -88,15 +89,14 @@ def _nested(found: list[Contour]) -> list[Contour]:
     """Every contour put into the least one around it; returns those within none."""
     order = {id(contour): k for k, contour in enumerate(found)}
     found = sorted(found, key=lambda contour: (-contour.area, contour.role != "cut"))
-    grown = [shapely.buffer(contour.shape, SLACK) for contour in found]
-    for each in grown:
-        shapely.prepare(each)
+    for each in found:
+        shapely.prepare(each.shape)
     tree = shapely.STRtree([contour.shape for contour in found])
     outermost = []
     for k, contour in enumerate(found):
         around = tree.query(contour.shape, predicate="intersects")
         holders = [m for m in sorted(around.tolist(), reverse=True) if m < k and _may_hold(found[m], contour)]
-        holder = next((m for m in holders if grown[m].covers(contour.shape)), None)
+        holder = next((m for m in holders if _holds(found[m].shape, contour.shape)), None)
         if holder is None:
             outermost.append(contour)
         else:
@@ -106,6 +106,21 @@ def _nested(found: list[Contour]) -> list[Contour]:
     for frame in (c for c in outermost if _frame(c)):
         kept += frame.inside
     return sorted(kept, key=lambda contour: order[id(contour)])
+
+
+def _holds(outer: Any, inner: Any) -> bool:
+    """Whether an area lies in another, or leaves it by no more than SLACK. (An outline of many teeth cannot be grown
+    by SLACK in bounded time, so what sticks out of it is measured instead.)"""
+    if outer.covers(inner):
+        return True
+    low, high = np.array(outer.bounds).reshape(2, 2)
+    least, most = np.array(inner.bounds).reshape(2, 2)
+    if (least < low - SLACK).any() or (most > high + SLACK).any():
+        return False
+    out = shapely.difference(inner, outer)
+    step = max(SLACK, out.length / MOST_STEPS)
+    points = shapely.points(shapely.get_coordinates(shapely.segmentize(out, step)))
+    return bool(shapely.dwithin(outer, points, SLACK).all())
 
 
 def _may_hold(outer: Contour, inner: Contour) -> bool:

@@ -24,6 +24,7 @@ __all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet"]
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
 SHOWN = 12  # names in a message
+SMALL, LARGE = 0.02, 10.0  # [m] a sheet's largest piece is hardly beyond
 
 
 @dataclass(frozen=True)
@@ -54,14 +55,14 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
             code_sheet(read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))),
             layer,
         )
-    strokes = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
-    for stroke in strokes:
+    drawn = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
+    for stroke in drawn.strokes:
         if not (np.abs(stroke.points) <= LARGEST).all():  # false for NaN too
             raise FileProblem(
-                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin, or say --units"
             )
     try:
-        sheet = sorted_sheet(strokes)
+        sheet = sorted_sheet(drawn.strokes)
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise FileProblem(
             f"{path}: its lines cannot be sorted ({error}) – draw plain closed outlines"
@@ -71,8 +72,26 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
         remedy = "say what a drawing unit is, such as --units in" if small else "close the outline"
         what = "only closed lines of less than 2 mm" if small else "no closed line in it that may be a piece"
         raise FileProblem(f"{path}: {what} – {remedy}")
-    warn_left_out(path, Counter(sheet.left_out))
-    return _on(path, sheet, layer)
+    left_out = +(drawn.left_out + Counter(sheet.left_out))
+    warn_left_out(path, left_out)
+    remarks, notes = (*drawn.remarks, *sheet.remarks), (*drawn.notes, *_noted(sheet))
+    return _on(path, replace(sheet, left_out=dict(left_out), remarks=remarks, notes=notes), layer)
+
+
+def _noted(sheet: Sheet) -> list[str]:
+    """What may be wrong with a sheet that can be read."""
+    widest = max(float(np.ptp(piece.outline, axis=0).max()) for piece in sheet.pieces)
+    found = []
+    if not SMALL <= widest <= LARGE:
+        size = f"{1000 * widest:.0f} mm" if widest < 1 else f"{widest:.0f} m"
+        found.append(
+            f"its largest piece measures {size} – if that is wrong, say what a drawing unit is with --units"
+        )
+    halves = [piece.name for piece in sheet.pieces if piece.fold is not None]
+    if halves:
+        named = ", ".join(halves[:SHOWN]) + (", …" if len(halves) > SHOWN else "")
+        found.append(f"to be cut on the fold, half of it is drawn: {named}")
+    return found
 
 
 def _on(path: Path, sheet: Sheet, layer: str | None) -> Sheet:

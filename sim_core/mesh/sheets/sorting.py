@@ -10,7 +10,7 @@ import shapely
 from sim_core.mesh.sheets.contours import Contour, contours, owner_of, piece_name, seam_inside
 from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.mesh.sheets.strokes import Stroke, joined
-from sim_core.mesh.sheets.words import Role, role_of, speaks
+from sim_core.mesh.sheets.words import Role, layer_name, role_of, speaks
 
 __all__ = ["sorted_sheet"]
 
@@ -18,6 +18,7 @@ NEAR = 0.005  # [m] a mark may lie outside its piece
 TOUCHES, APART = 5e-4, 0.003  # [m] from a notch to the outline; between two notches
 SHORT = 0.015, 0.05  # [m] most of a notch, and of its piece's diagonal
 SLENDER = 8  # how many times longer than wide a filled arrow is
+ARROW = 0.05  # of its piece's diagonal: least length of a filled arrow
 
 
 def sorted_sheet(strokes: list[Stroke]) -> Sheet:
@@ -32,7 +33,7 @@ def sorted_sheet(strokes: list[Stroke]) -> Sheet:
     for stroke in joined(strokes):
         role: Role = role_of(stroke.layer, stroke.words, numbered=numbered)
         if role in ("mark", "hidden"):
-            left_out[_called(stroke, role)] += 1
+            left_out[_called(stroke, role, numbered=numbered)] += 1
         elif _may_close(stroke, role):
             outlines.append((stroke, role))
         else:
@@ -55,8 +56,10 @@ def _numbered(strokes: list[Stroke]) -> bool:
     return bool(layers & {"1", "14"}) and all(layer.isdigit() for layer in layers)
 
 
-def _called(stroke: Stroke, role: Role) -> str:
-    return "hidden (visibility)" if role == "hidden" else f"{stroke.layer or stroke.name or role}"
+def _called(stroke: Stroke, role: Role, *, numbered: bool) -> str:
+    if role == "hidden":
+        return "hidden (visibility)"
+    return layer_name(stroke.layer, numbered=numbered) or stroke.name or "text drawn as outlines"
 
 
 def _may_close(stroke: Stroke, role: Role) -> bool:
@@ -108,6 +111,7 @@ class _Draft:
         self.diagonal = float(np.hypot(*np.ptp(contour.stroke.points, axis=0)))
         shapely.prepare(self.edge)
         self.grain: np.ndarray | None = None
+        self.fold: np.ndarray | None = None
 
     def take(self, left_out: Counter[str]) -> None:
         """Sort what lies inside the outline."""
@@ -125,6 +129,10 @@ class _Draft:
     def put(self, stroke: Stroke, role: Role, length: float, left_out: Counter[str]) -> None:
         """Take an open line or a mark as what it is. length: [m] of the line."""
         points = stroke.points
+        if len(points) > 1 and self.fold is None and (role == "fold" or "cutonfold" in stroke.words):
+            self.fold = points[[0, -1]]
+        if role == "fold":
+            return
         ends = shapely.distance(self.edge, shapely.points(points[[0, -1]]))
         short = len(points) > 1 and length < min(SHORT[0], SHORT[1] * self.diagonal) and ends.min() < TOUCHES
         if role == "notch" or (role == "" and (len(points) == 1 or short)):
@@ -133,7 +141,7 @@ class _Draft:
                 place = points[0 if ends[0] <= ends[1] else -1]
             cell = (round(place[0] / APART), round(place[1] / APART))
             self.notches.setdefault(cell, place)
-        elif (role == "grain" and len(points) > 1) or (role == "" and stroke.filled and _slender(points)):
+        elif (role == "grain" and len(points) > 1) or (role == "" and stroke.filled and self._arrow(points)):
             if self.grain is None:
                 longest = int(np.argmax(np.hypot(*np.diff(points, axis=0).T)))  # not the heads of its arrow
                 self.grain = points[longest : longest + 2]
@@ -141,6 +149,10 @@ class _Draft:
             left_out["cut lines along a part of a piece"] += 1
         elif len(points) > 1 and not stroke.filled:
             self.lines.append(np.vstack([points, points[:1]]) if stroke.closed else points)
+
+    def _arrow(self, points: np.ndarray) -> bool:
+        """Whether a filled area is a grain line with its heads: long as no letter is, and slender."""
+        return float(np.hypot(*np.ptp(points, axis=0))) > ARROW * self.diagonal and _slender(points)
 
     def piece(self, name: str) -> Piece:
         stroke, seam = self.contour.stroke, self.seam
@@ -154,6 +166,7 @@ class _Draft:
             tuple(self.lines),
             np.array(list(self.notches.values())).reshape(-1, 2),
             self.grain,
+            self.fold,
         )
 
 
