@@ -61,7 +61,7 @@ def contours(strokes: list[tuple[Stroke, Role]], remarks: list[str], left_out: C
             found.append(Contour(stroke, role, float(shape.area), shape, material, owner))
         else:
             left_out["closed lines of less than 2 mm"] += 1
-    return _nested(found)
+    return _nested(found, left_out)
 
 
 def _without_loops(stroke: Stroke, remarks: list[str]) -> tuple[Stroke, Any]:
@@ -85,8 +85,8 @@ def _without_loops(stroke: Stroke, remarks: list[str]) -> tuple[Stroke, Any]:
     return replace(stroke, points=np.array(largest.exterior.coords)[:-1]), largest
 
 
-def _nested(found: list[Contour]) -> list[Contour]:
-    """Every contour put into the least one around it; returns those within none."""
+def _nested(found: list[Contour], left_out: Counter[str]) -> list[Contour]:
+    """Every contour put into the least one around it; returns those within none, or within a frame."""
     order = {id(contour): k for k, contour in enumerate(found)}
     found = sorted(found, key=lambda contour: (-contour.area, contour.role != "cut"))
     for each in found:
@@ -105,6 +105,7 @@ def _nested(found: list[Contour]) -> list[Contour]:
     kept = [c for c in outermost if not _frame(c)]
     for frame in (c for c in outermost if _frame(c)):
         kept += frame.inside
+        left_out["frame around pieces"] += 1
     return sorted(kept, key=lambda contour: order[id(contour)])
 
 
@@ -136,7 +137,12 @@ def _frame(contour: Contour) -> bool:
     if contour.role or len(contour.stroke.points) != 4 or len(contour.inside) < 2:
         return False
     told = sum(inner.role in ("cut", "sew") for inner in contour.inside)
-    return told > 1 or len({inner.owner for inner in contour.inside}) > 1
+    if told > 1 or len({inner.owner for inner in contour.inside}) > 1:
+        return True
+    names = {
+        inner.stroke.name for inner in contour.inside if inner.role == "" and not speaks(inner.stroke.name)
+    }
+    return not contour.stroke.name and len(names) > 1
 
 
 def seam_inside(outer: Contour) -> Contour | None:

@@ -14,13 +14,13 @@ from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.left_out import warn_left_out
 from sim_core.mesh.outline import LARGEST
 from sim_core.mesh.sheets.dxf_strokes import dxf_strokes
-from sim_core.mesh.sheets.garment_code import code_sheet, is_garment_code, read_garment_code
+from sim_core.mesh.sheets.garment_code import GarmentCode, code_sheet, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet, Which
 from sim_core.mesh.sheets.sorting import sorted_sheet
 from sim_core.mesh.sheets.svg_strokes import svg_strokes
 from sim_core.reading import read_json
 
-__all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet"]
+__all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_code"]
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
 SHOWN = 12  # names in a message
@@ -50,11 +50,8 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
     """
     metres = UNITS[units] if units else None
     if path.suffix.lower() not in (".svg", ".dxf"):
-        return _on(
-            path,
-            code_sheet(read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))),
-            layer,
-        )
+        code = read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))
+        return sheet_of_code(path, code, layer)
     drawn = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
     for stroke in drawn.strokes:
         if not (np.abs(stroke.points) <= LARGEST).all():  # false for NaN too
@@ -92,6 +89,11 @@ def _noted(sheet: Sheet) -> list[str]:
         named = ", ".join(halves[:SHOWN]) + (", …" if len(halves) > SHOWN else "")
         found.append(f"to be cut on the fold, half of it is drawn: {named}")
     return found
+
+
+def sheet_of_code(path: Path, code: GarmentCode, layer: str | None = None) -> Sheet:
+    """The panels of a specification as pieces; raises FileProblem where none is on the layer."""
+    return _on(path, code_sheet(code), layer)
 
 
 def _on(path: Path, sheet: Sheet, layer: str | None) -> Sheet:

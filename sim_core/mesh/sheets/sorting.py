@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -18,6 +20,7 @@ NEAR = 0.005  # [m] a mark may lie outside its piece
 TOUCHES, APART = 5e-4, 0.003  # [m] from a notch to the outline; between two notches
 SHORT = 0.015, 0.05  # [m] most of a notch, and of its piece's diagonal
 SLENDER = 8  # how many times longer than wide a filled arrow is
+LEAST, HAIR = 0.6, 1e-6  # of a cutting line's area: least of its seam's; [m]
 ARROW = 0.05  # of its piece's diagonal: least length of a filled arrow
 
 
@@ -42,6 +45,7 @@ def sorted_sheet(strokes: list[Stroke]) -> Sheet:
     outermost = contours(outlines, remarks, left_out)
     drafts = [_Draft(contour) for contour in outermost if contour.role not in ("hole", "inner")]
     drafts = _paired(drafts)
+    others = _cut_on_fold(drafts, others, remarks)
     for draft in drafts:
         draft.take(left_out)
     _assign(drafts, others, left_out)
@@ -126,6 +130,12 @@ class _Draft:
             left_out["closed lines within holes"] += len(inner.inside)
         left_out += Counter()
 
+    def take_around(self, outer: Contour) -> None:
+        """Lie within a cutting line that was found around it."""
+        self.seam, self.contour = self.contour, outer
+        self.edge = shapely.boundary(outer.shape)
+        shapely.prepare(self.edge)
+
     def put(self, stroke: Stroke, role: Role, length: float, left_out: Counter[str]) -> None:
         """Take an open line or a mark as what it is. length: [m] of the line."""
         points = stroke.points
@@ -187,6 +197,52 @@ def _paired(drafts: list[_Draft]) -> list[_Draft]:
                     gone.add(id(draft))
                     break
     return [draft for draft in drafts if id(draft) not in gone]
+
+
+def _cut_on_fold(
+    drafts: list[_Draft], lines: list[tuple[Stroke, Role]], remarks: list[str]
+) -> list[tuple[Stroke, Role]]:
+    """Lines that say nothing, but those that run around a piece at the distance of an allowance and end at its fold:
+    closed straight, they are its cutting line, and the outline that lay there is its sewing line."""
+    tree = shapely.STRtree([draft.contour.shape for draft in drafts])
+    kept = []
+    for stroke, role in lines:
+        rim = replace(stroke, closed=True)
+        around = _goes_around(stroke) if role == "" and not stroke.filled and len(stroke.points) > 3 else None
+        inside = tree.query(around, predicate="covers").tolist() if around is not None else []
+        mine = [k for k in inside if drafts[k].seam is None and drafts[k].contour.area > LEAST * around.area]
+        draft = drafts[mine[0]] if len(mine) == 1 else None
+        outer = (
+            Contour(rim, "cut", around.area, around, "", owner_of(rim))
+            if draft and around is not None
+            else None
+        )
+        if draft is None or outer is None or draft.contour.role not in ("", "sew"):
+            kept.append((stroke, role))
+            continue
+        outer.inside.append(draft.contour)
+        if seam_inside(outer) is not draft.contour:
+            kept.append((stroke, role))
+            continue
+        draft.take_around(outer)
+        remarks.append(
+            f"{piece_name(outer.owner) or 'a piece'}: an open line around it is taken for its cut line"
+        )
+    return kept
+
+
+def _goes_around(stroke: Stroke) -> Any:
+    """The area of an open line closed straight, grown by a hair, or None where it is none."""
+    steps = np.hypot(*np.diff(stroke.points, axis=0).T)
+    gap = float(np.hypot(*(stroke.points[0] - stroke.points[-1])))
+    shape = shapely.Polygon(stroke.points)
+    if (
+        gap > 0.8 * steps.sum()
+        or not shape.is_valid
+        or shape.area < 0.2 * np.ptp(stroke.points, axis=0).prod()
+    ):
+        return None
+    return shapely.buffer(shape, HAIR, join_style="mitre")
 
 
 def _assign(drafts: list[_Draft], lines: list[tuple[Stroke, Role]], left_out: Counter[str]) -> None:
