@@ -83,7 +83,14 @@ BOX = [(0, 0), (0, 80), (120, 80), (120, 0)]
 
 @pytest.mark.parametrize(
     ("said", "metres"),
-    [("UNITS: ENGLISH", 0.0254), ("UNITS: METRIC", 1e-3), ("Units: Metric", 1e-3), ("STYLE NAME: BOX", 1e-3)],
+    [
+        ("UNITS: ENGLISH", 0.0254),
+        ("UNITS: METRIC", 1e-3),
+        ("Units: Metric", 1e-3),
+        ("UNITS=MM (DXF R12)", 1e-3),
+        ("UNITS: CM", 1e-2),
+        ("STYLE NAME: BOX", 1e-3),
+    ],
 )
 def test_an_apparel_dxf_has_the_units_that_its_text_says(tmp_path, said, metres):
     path = aama(tmp_path, {"BOX_M": polyline(BOX, closed=1)}, said)
@@ -145,6 +152,24 @@ def test_a_drawing_with_the_line_ends_of_old_macintoshes(tmp_path):
     path = aama(tmp_path, {"BOX": polyline(BOX, closed=1)}, "UNITS: METRIC")
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r"))
     assert sizes(read_sheet(path)) == {"BOX": (120, 80)}
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"),
+    [
+        ("前片_M码", "gb18030"),
+        ("前片", "gb18030"),
+        ("前片_M码", "utf-8"),
+        ("Rücken", "utf-8"),
+        ("Перед", "utf-8"),
+    ],
+)
+def test_names_are_read_without_a_code_page(tmp_path, name, encoding):
+    path = aama(tmp_path, {"FRONT": polyline(BOX, closed=1)}, "UNITS: METRIC")
+    path.write_bytes(path.read_bytes().replace(b"FRONT", name.encode(encoding)))
+    assert sizes(read_sheet(path)) == {name: (120, 80)}
+    path.write_bytes(path.read_bytes().replace(name.encode(encoding), b"\xc4RMEL"))
+    assert sizes(read_sheet(path)) == {"ÄRMEL": (120, 80)}
 
 
 def test_a_binary_drawing_cut_off_is_one_line(tmp_path):
@@ -273,6 +298,19 @@ def test_an_open_line_around_a_piece_is_its_cutting_line_on_the_fold(tmp_path):
     pocket = '<path d="M50 60V450H600V60"/>'  # too far away to be an allowance
     (piece,) = svg(tmp_path, SIZED + seam + pocket + "</svg>").pieces
     assert piece.sew is None
+
+
+def test_a_line_drawn_twice_is_one_and_an_inner_line_ends_at_a_hole(tmp_path, capsys):
+    rim = FRONT.replace("front", "rim")
+    hole, line = '<path d="M80 100h40v40h-40z"/>', '<path d="M20 120h180"/>'
+    (tmp_path / "sheet.svg").write_text(SIZED + FRONT + rim + hole + line + "</svg>")
+    found = read_sheet(tmp_path / "sheet.svg")
+    assert [len(piece.holes) for piece in found.pieces] == [1]
+    assert found.left_out["outlines drawn twice"] == 1
+    assert cli.main(["mesh", str(tmp_path / "sheet.svg"), "--edge", "0.02", "--json"]) == 0
+    told = capsys.readouterr()
+    assert json.loads(told.out)["conformity"] == 1
+    assert "1 inner lines are cut off" in told.err
 
 
 def test_an_outline_of_a_hundred_thousand_teeth_and_a_line_in_it(tmp_path):

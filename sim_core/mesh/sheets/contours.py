@@ -18,6 +18,7 @@ NARROWEST = 0.002  # [m] of a piece both ways
 SLACK = 5e-4  # [m] by which a line inside may leave its outline
 LOOPS = 0.02  # most of the area in loops
 WIDEST = 0.06  # [m] most of a seam allowance
+TWIN = 0.98  # least share of the area in a line drawn twice
 MOST_STEPS = 4000  # along what sticks out of an outline
 GENERIC = {"pieces", "piece", "pattern", "patterns", "sheet", "drawing", "main", "model", "parts", "outline"}
 
@@ -92,13 +93,21 @@ def _nested(found: list[Contour], left_out: Counter[str]) -> list[Contour]:
     for each in found:
         shapely.prepare(each.shape)
     tree = shapely.STRtree([contour.shape for contour in found])
-    outermost = []
+    outermost, twins = [], set()
     for k, contour in enumerate(found):
         around = tree.query(contour.shape, predicate="intersects")
-        holders = [m for m in sorted(around.tolist(), reverse=True) if m < k and _may_hold(found[m], contour)]
+        holders = [
+            m
+            for m in sorted(around.tolist(), reverse=True)
+            if m < k and m not in twins and _may_hold(found[m], contour)
+        ]
         holder = next((m for m in holders if _holds(found[m].shape, contour.shape)), None)
         if holder is None:
             outermost.append(contour)
+        elif _twin(found[holder], contour):
+            found[holder].role = found[holder].role or contour.role
+            left_out["outlines drawn twice"] += 1
+            twins.add(k)
         else:
             found[holder].inside.append(contour)
             contour.within = found[holder].within + 1
@@ -122,6 +131,13 @@ def _holds(outer: Any, inner: Any) -> bool:
     step = max(SLACK, out.length / MOST_STEPS)
     points = shapely.points(shapely.get_coordinates(shapely.segmentize(out, step)))
     return bool(shapely.dwithin(outer, points, SLACK).all())
+
+
+def _twin(outer: Contour, inner: Contour) -> bool:
+    """Whether it is the same line again, such as a fill and its rim; a cut and a seam in one place are two."""
+    if inner.area < TWIN * outer.area or (outer.role and inner.role and outer.role != inner.role):
+        return False
+    return _holds(inner.shape, outer.shape)
 
 
 def _may_hold(outer: Contour, inner: Contour) -> bool:

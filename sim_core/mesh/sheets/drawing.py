@@ -19,6 +19,7 @@ CUT, SEW, LINE, NOTCH, GRAIN, HOLE, INK = (
 )  # fmt: skip
 CLOTH, PAPER = (247, 243, 234), (255, 255, 255)
 LETTERS = 20  # [px] high
+MOST_MOVES, MOST_NAMES = 4, 60  # of a name that others stand in the way of
 DASH = 9  # [px] of a fold line
 OVERLAP = 0.2  # of the smaller one's area: pieces that lie on each other more than this are laid apart
 GAP = 0.03  # [m] between pieces laid apart
@@ -189,7 +190,9 @@ def _write_name(pen, piece: Piece, text: str, font, taken: list[tuple[float, flo
     if piece.grain is not None and np.ptp(piece.grain[:, 1]) < 20 and top < piece.grain[0, 1] < bottom:
         gap = piece.grain[:, 1].max() + 8 * OVERSAMPLE - top
         y, top, bottom = y + gap, top + gap, bottom + gap
-    while any(left < r and right > a and top < b and bottom > t for a, t, r, b in taken):
+    for _ in range(MOST_MOVES):
+        if not any(left < r and right > a and top < b and bottom > t for a, t, r, b in taken[-MOST_NAMES:]):
+            break
         y, top, bottom = y + tall, top + tall, bottom + tall
     taken.append((left, top, right, bottom))
     pen.multiline_text(

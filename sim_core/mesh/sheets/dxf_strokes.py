@@ -20,7 +20,7 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.left_out import MOST_VISITED, visited
 from sim_core.mesh.outline import LARGEST
-from sim_core.mesh.sheets.dxf_mending import mended
+from sim_core.mesh.sheets.dxf_mending import mended, spelled_out
 from sim_core.mesh.sheets.strokes import Drawn, Stroke
 from sim_core.mesh.sheets.words import spoken
 from sim_core.reading import read_bytes
@@ -30,9 +30,7 @@ __all__ = ["dxf_strokes"]
 METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 14: 0.1}
 DRAWN = ("LWPOLYLINE", "POLYLINE", "LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 BINARY = b"AutoCAD Binary DXF"
-SAID = re.compile(
-    r"\s*units?\s*[:=]\s*([a-z]+)\s*", re.IGNORECASE
-)  # AAMA-292 and ASTM D6673 say it in a text
+SAID = re.compile(r"\s*units?\s*[:=]\s*([a-z]+)\b", re.IGNORECASE)  # AAMA-292 and ASTM D6673 say it in a text
 SAYING = {
     "METRIC": 1e-3,
     "ENGLISH": 0.0254,
@@ -71,8 +69,8 @@ def dxf_strokes(path: Path, metres: float | None = None) -> Drawn:
                 found += walk.strokes(block, (block.name,))
     except (ValueError, TypeError, AttributeError, ArithmeticError) as error:
         reason = " ".join(str(error).split())[:120]
-        remedy = "" if "–" in reason else " – draw it as polylines"
-        raise FileProblem(f"{path}: an entity cannot be read ({reason}){remedy}") from error
+        told = reason if " – " in reason else f"an entity cannot be read ({reason}) – draw it as polylines"
+        raise FileProblem(f"{path}: {told}") from error
     walk.left_out["in paper space"] += sum(
         len(layout) for layout in document.layouts if layout.name != "Model"
     )
@@ -89,7 +87,7 @@ def _said(document: Any) -> float | None:
     """Metres of a drawing unit, from the text in which an AAMA or ASTM file says its units."""
     blocks = [document.modelspace(), *_pieces_of(document)]
     for entity in (e for block in blocks for e in block if e.dxftype() == "TEXT"):
-        if (found := SAID.fullmatch(str(entity.dxf.get("text", "")))) is not None:
+        if (found := SAID.match(str(entity.dxf.get("text", "")))) is not None:
             return SAYING.get(found[1].upper())
     return None
 
@@ -114,7 +112,7 @@ def _document(path: Path, text: bytes) -> tuple[Any, int]:
             return readfile(path), 0
         if b"\n" not in text:
             text = text.replace(b"\r", b"\n")  # as old Macintoshes end lines
-        document, audit = recover.read(BytesIO(mended(text)))
+        document, audit = recover.read(BytesIO(mended(spelled_out(text))))
         return document, sum(fix.code == AuditError.UNDEFINED_BLOCK for fix in audit.fixes)
     except (
         DXFError,

@@ -123,12 +123,14 @@ def panel_of(path: Path, sheet: Sheet, choice: Choice) -> tuple[Piece, str]:
         outline, remark = outline_along(piece, choice.line, choice.allowance)
     except OutlineError as error:
         raise FileProblem(f"{path}: {error}") from error
-    lines, cut = _clipped(outline, piece.lines)
+    holes = tuple(hole for hole in piece.holes if shapely.Polygon(hole).is_valid)
+    lines, cut = _clipped(outline, holes, piece.lines)
+    told = [remark] if remark else []
+    if lost := len(piece.holes) - len(holes):
+        told.append(f"{lost} holes cross themselves and are left out")
     if cut:
-        remark = "; ".join(
-            [*filter(None, [remark]), f"{cut} inner lines are cut off where they leave the outline"]
-        )
-    return replace(piece, cut=outline, sew=None, lines=lines), remark
+        told.append(f"{cut} inner lines are cut off where they leave the cloth")
+    return replace(piece, cut=outline, sew=None, holes=holes, lines=lines), "; ".join(told)
 
 
 def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarray, str]:
@@ -158,11 +160,15 @@ def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarr
     return np.array(moved.exterior.coords)[:-1], ""
 
 
-def _clipped(outline: np.ndarray, lines: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """Inner lines within an outline, and how many had to be cut."""
+def _clipped(
+    outline: np.ndarray, holes: tuple[np.ndarray, ...], lines: tuple[np.ndarray, ...]
+) -> tuple[tuple[np.ndarray, ...], int]:
+    """Inner lines within an outline and outside its holes, and how many had to be cut."""
     shape = shapely.Polygon(outline)
     if not shape.is_valid or not lines:
         return lines, 0
+    for hole in holes:
+        shape = shapely.difference(shape, shapely.Polygon(hole))
     found: list[np.ndarray] = []
     cut = 0
     grown = shapely.buffer(shape, 1e-9)
