@@ -130,6 +130,10 @@ class _Draft:
             left_out["closed lines within holes"] += len(inner.inside)
         left_out += Counter()
 
+    def may_lie_within(self, area: float) -> bool:
+        """Whether the outline may be the sewing line of a piece of that area [m2]."""
+        return self.seam is None and self.contour.role in ("", "sew") and self.contour.area > LEAST * area
+
     def take_around(self, outer: Contour) -> None:
         """Lie within a cutting line that was found around it."""
         self.seam, self.contour = self.contour, outer
@@ -207,27 +211,18 @@ def _cut_on_fold(
     tree = shapely.STRtree([draft.contour.shape for draft in drafts])
     kept = []
     for stroke, role in lines:
-        rim = replace(stroke, closed=True)
         around = _goes_around(stroke) if role == "" and not stroke.filled and len(stroke.points) > 3 else None
-        inside = tree.query(around, predicate="covers").tolist() if around is not None else []
-        mine = [k for k in inside if drafts[k].seam is None and drafts[k].contour.area > LEAST * around.area]
-        draft = drafts[mine[0]] if len(mine) == 1 else None
-        outer = (
-            Contour(rim, "cut", around.area, around, "", owner_of(rim))
-            if draft and around is not None
-            else None
-        )
-        if draft is None or outer is None or draft.contour.role not in ("", "sew"):
+        inside = [drafts[k] for k in tree.query(around, predicate="covers").tolist()] if around else []
+        area = float(around.area) if around else 0.0
+        mine = [draft for draft in inside if draft.may_lie_within(area)]
+        outer = Contour(replace(stroke, closed=True), "cut", area, around, "", owner_of(stroke))
+        outer.inside += [draft.contour for draft in mine]
+        if len(mine) == 1 and seam_inside(outer) is mine[0].contour:
+            mine[0].take_around(outer)
+            name = piece_name(outer.owner) or "a piece"
+            remarks.append(f"{name}: an open line around it is taken for its cut line")
+        else:
             kept.append((stroke, role))
-            continue
-        outer.inside.append(draft.contour)
-        if seam_inside(outer) is not draft.contour:
-            kept.append((stroke, role))
-            continue
-        draft.take_around(outer)
-        remarks.append(
-            f"{piece_name(outer.owner) or 'a piece'}: an open line around it is taken for its cut line"
-        )
     return kept
 
 
