@@ -51,6 +51,11 @@ def _room_command(room: str):
         raise
 
 
+def _pattern_code(path: Path):
+    """What a pattern file cuts, for `simcore mesh`: that room lies below the garments' and cannot ask there itself."""
+    return import_module("sim_core.garment.pattern_code").read_pattern_code(path)
+
+
 def _wanted_rooms(arguments: list[str]) -> tuple[str, ...]:
     """Only the room that is called is imported; the general help needs all of them."""
     named = tuple(word for word in arguments if not word.startswith("-"))[:1]
@@ -70,6 +75,8 @@ def _parser(arguments: list[str]) -> argparse.ArgumentParser:
         if module is not None:
             module.add_parser(subparsers)
             subparsers.choices[room].set_defaults(run=module.run)
+        if room == "mesh":
+            subparsers.choices[room].set_defaults(pattern_code=_pattern_code)
     bench = subparsers.add_parser(
         "bench",
         help="time and error of the engines",

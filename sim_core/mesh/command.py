@@ -19,7 +19,7 @@ Triangulate a pattern panel: equal steps along the outline that keep its corners
 The outline file is JSON in metres, y down; either direction, first point repeated or not:
   {"outline": [[0, 0], [0.6, 0], [0.6, 0.9], [0, 0.9]], "holes": [[[0.2, 0.2], [0.4, 0.2], [0.3, 0.4]]],
    "constraints": [[[0.1, 0], [0.1, 0.9]]]}
-or a pattern sheet (.svg, .dxf, or GarmentCode's .json) with one piece or many:
+or a pattern sheet (.svg, .dxf, GarmentCode's .json, or a pattern file .toml) with one piece or many:
   --list                 name the pieces: layer or material, size in mm, holes, notches, grain; --picture draws them
   --piece NAME           the piece to mesh, where there are several
   --line cut|sew         along its cutting line (default) or its sewing line
@@ -55,6 +55,7 @@ examples:
   simcore mesh shirt.svg --list --picture shirt.png
   simcore mesh shirt.svg --piece sleeve --line sew --edge 0.01 --out sleeve.npz
   simcore mesh shirt.dxf --pattern shirt.toml --line sew
+  simcore mesh beizi.toml --pattern beizi.json
 """
 
 
@@ -66,7 +67,9 @@ def add_parser(subparsers) -> None:
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", type=Path, metavar="OUTLINE", help="outline or sheet: .json, .svg, .dxf")
+    parser.add_argument(
+        "file", type=Path, metavar="OUTLINE", help="outline or sheet: .json, .svg, .dxf, .toml"
+    )
     parser.add_argument(
         "--edge",
         type=number(1e-9, 1e6, " m"),
@@ -91,7 +94,10 @@ def add_parser(subparsers) -> None:
         "--out", type=ending(".npz", ".ply", ".obj"), metavar="FILE", help="mesh file: .npz, .ply or .obj"
     )
     parser.add_argument(
-        "--picture", type=ending(".png"), metavar="FILE.png", help="picture of the mesh, coloured by quality"
+        "--picture",
+        type=ending(".png", ".jpg"),
+        metavar="FILE",
+        help="picture (.png, .jpg) of the mesh, coloured by quality, or of a sheet's pieces",
     )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
@@ -173,12 +179,15 @@ def _tell_compiling() -> None:
 def _drawing(args: argparse.Namespace) -> tuple:
     """What is to be meshed, and the warnings of its reader."""
     from sim_core.errors import OutlineWarning
-    from sim_core.mesh.sheets.reading import Choice
-    from sim_core.mesh.writing import read_outline
+    from sim_core.mesh.sheets.reading import Choice, sheet_of_code
+    from sim_core.mesh.writing import drawing_of, read_outline
 
     choice = Choice(args.piece, args.line, args.layer, args.allowance / 1000)
     with warnings.catch_warnings(record=True) as read:
         warnings.simplefilter("always", OutlineWarning)
+        if args.file.suffix.lower() == ".toml":
+            sheet = sheet_of_code(args.file, args.pattern_code(args.file), args.layer)
+            return drawing_of(args.file, sheet, choice), read
         return read_outline(args.file, choice, args.units), read
 
 

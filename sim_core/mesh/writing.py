@@ -11,10 +11,11 @@ import numpy as np
 from sim_core.errors import FileProblem, OutlineWarning
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.numbers import check_numbers
+from sim_core.mesh.sheets.model import Sheet
 from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
 from sim_core.reading import read_json, shown
 
-__all__ = ["Drawing", "read_outline", "write_mesh", "write_picture"]
+__all__ = ["Drawing", "drawing_of", "read_outline", "write_mesh", "write_picture"]
 
 
 class Drawing(NamedTuple):
@@ -34,11 +35,7 @@ def read_outline(path: Path, choice: Choice | None = None, units: str | None = N
     """
     choice = choice or Choice()
     if is_sheet(path):
-        sheet = read_sheet(path, units, choice.layer)
-        piece, remark = panel_of(path, sheet, choice)
-        for told in (*sheet.remarks, *filter(None, [remark])):
-            warnings.warn(told, OutlineWarning, stacklevel=2)
-        return Drawing(piece.cut, list(piece.holes), list(piece.lines))
+        return drawing_of(path, read_sheet(path, units, choice.layer), choice)
     shape = 'it must hold {"outline": [[x, y], ...], "holes": [...], "constraints": [...]} in metres'
     values = read_json(path, f"an outline file (JSON): {shape}")
     if not isinstance(values, dict) or "outline" not in values:
@@ -56,6 +53,14 @@ def read_outline(path: Path, choice: Choice | None = None, units: str | None = N
     return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
 
 
+def drawing_of(path: Path, sheet: Sheet, choice: Choice) -> Drawing:
+    """The piece of a sheet that is chosen; remarks are OutlineWarnings. Raises FileProblem."""
+    piece, remark = panel_of(path, sheet, choice)
+    for told in (*sheet.remarks, *filter(None, [remark])):
+        warnings.warn(told, OutlineWarning, stacklevel=3)
+    return Drawing(piece.cut, list(piece.holes), list(piece.lines))
+
+
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
     """Write a mesh as .npz (arrays as they are), .ply or .obj (y turned up, z = 0).
 
@@ -69,10 +74,13 @@ def write_mesh(path: Path, mesh: PanelMesh) -> None:
 
 
 def write_picture(path: Path, picture: np.ndarray) -> None:
-    """Write a picture (n, m, 3) uint8 as .png, as `write_mesh` writes; raises FileProblem."""
+    """Write a picture (n, m, 3) uint8 as .png or .jpg, as `write_mesh` writes; raises FileProblem."""
     from PIL import Image
 
-    _replaced(path, lambda stream: Image.fromarray(picture).save(stream, format="png"))
+    kind = "jpeg" if path.suffix.lower() == ".jpg" else "png"
+    _replaced(
+        path, lambda stream: Image.fromarray(picture).save(stream, format=kind, quality=88, optimize=True)
+    )
 
 
 def _replaced(path: Path, write: Callable[[IO[bytes]], None]) -> None:

@@ -5,6 +5,7 @@ import json
 import sys
 import warnings
 from pathlib import Path
+from unicodedata import combining, east_asian_width
 
 import numpy as np
 
@@ -13,27 +14,30 @@ from sim_core.mesh.sheets.drawing import sheet_picture
 from sim_core.mesh.sheets.garment_code import GarmentCode, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.mesh.sheets.pattern_file import code_of, write_pattern
-from sim_core.mesh.sheets.reading import Choice, is_sheet, outline_along, read_sheet
+from sim_core.mesh.sheets.reading import Choice, is_sheet, outline_along, read_sheet, sheet_of_code
 from sim_core.mesh.writing import write_picture
 from sim_core.reading import read_json
 
 __all__ = ["run_sheet"]
 
-EDGE = 0.01  # [m] of a pattern file's mesh unless --edge says otherwise
-
 
 def run_sheet(args: argparse.Namespace) -> int:
     """List the pieces of a sheet, draw them, write them as a pattern file; returns the exit status."""
-    if not is_sheet(args.file):
+    own = args.file.suffix.lower() == ".toml"
+    if not own and not is_sheet(args.file):
         raise FileProblem(
-            f"{args.file}: not a pattern sheet – give a .svg or .dxf, or a .json of GarmentCode"
+            f"{args.file}: not a pattern sheet – give a .svg, .dxf or .toml, or a .json of GarmentCode"
         )
+    code = args.pattern_code(args.file) if own else None
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", OutlineWarning)
-        sheet = read_sheet(args.file, args.units, args.layer)
-    remarks = [*(str(warning.message) for warning in told), *sheet.remarks]
+        if code is None:
+            sheet = read_sheet(args.file, args.units, args.layer)
+        else:
+            sheet = sheet_of_code(args.file, code, args.layer)
+    remarks = [*(str(warning.message) for warning in told), *sheet.remarks, *sheet.notes]
     if args.pattern:
-        remarks += _write(args, sheet)
+        remarks += _write(args, sheet, code)
     if args.picture:
         write_picture(args.picture, sheet_picture(sheet))
     for remark in remarks:
@@ -47,16 +51,19 @@ def run_sheet(args: argparse.Namespace) -> int:
     return 0
 
 
-def _write(args: argparse.Namespace, sheet: Sheet) -> list[str]:
-    """Write the pattern file; returns remarks."""
+def _write(args: argparse.Namespace, sheet: Sheet, code: GarmentCode | None) -> list[str]:
+    """Write the pattern file; returns remarks. code: of a file that is one already."""
     remarks: list[str] = []
-    if is_garment_code(args.file) and not (args.piece or args.layer or args.allowance):
+    chosen = args.piece or args.layer or args.allowance
+    if code is not None and not chosen:
+        pass
+    elif is_garment_code(args.file) and not chosen:
         code = read_garment_code(args.file, read_json(args.file, "a pattern of GarmentCode (JSON)"))
     else:
         code = _code(
             args.file, sheet, Choice(args.piece, args.line, args.layer, args.allowance / 1000), remarks
         )
-    return [*remarks, *write_pattern(args.pattern, code, args.edge or EDGE)]
+    return [*remarks, *write_pattern(args.pattern, code, args.edge)]
 
 
 def _code(path: Path, sheet: Sheet, choice: Choice, remarks: list[str]) -> GarmentCode:
@@ -96,12 +103,18 @@ def _row(piece: Piece) -> dict:
         "inner_lines": len(piece.lines),
         "notches": len(piece.notches),
         "grain_deg": grain,
+        "on_fold": piece.fold is not None,
     }
+
+
+def _wide(text: str) -> int:
+    """Columns of a terminal: Chinese signs take two, accents that are put on letters none."""
+    return sum(0 if combining(c) else 2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
 def _table(path: Path, rows: list[dict]) -> str:
     """The list for people."""
-    head = ("piece", "layer", "width", "height", "lines", "holes", "inner", "notches", "grain")
+    head = ("piece", "layer", "width", "height", "lines", "holes", "inner", "notches", "grain", "fold")
     cells = [
         (
             row["piece"],
@@ -113,11 +126,13 @@ def _table(path: Path, rows: list[dict]) -> str:
             str(row["inner_lines"]),
             str(row["notches"]),
             "-" if row["grain_deg"] is None else f"{row['grain_deg']:.0f} deg",
+            "half" if row["on_fold"] else "-",
         )
         for row in rows
     ]
-    widths = [max(len(line[k]) for line in (head, *cells)) for k in range(len(head))]
+    widths = [max(_wide(line[k]) for line in (head, *cells)) for k in range(len(head))]
     lines = []
     for line in (head, *cells):
-        lines.append("  ".join(text.ljust(wide) for text, wide in zip(line, widths, strict=True)).rstrip())
+        padded = (text + " " * (wide - _wide(text)) for text, wide in zip(line, widths, strict=True))
+        lines.append("  ".join(padded).rstrip())
     return "\n".join([f"{path}: {len(rows)} piece{'s' * (len(rows) != 1)}", *lines])

@@ -18,6 +18,8 @@ NARROWEST = 0.002  # [m] of a piece both ways
 SLACK = 5e-4  # [m] by which a line inside may leave its outline
 LOOPS = 0.02  # most of the area in loops
 WIDEST = 0.06  # [m] most of a seam allowance
+TWIN = 0.98  # least share of the area in a line drawn twice
+MOST_STEPS = 4000  # along what sticks out of an outline
 GENERIC = {"pieces", "piece", "pattern", "patterns", "sheet", "drawing", "main", "model", "parts", "outline"}
 
 
@@ -60,7 +62,7 @@ def contours(strokes: list[tuple[Stroke, Role]], remarks: list[str], left_out: C
             found.append(Contour(stroke, role, float(shape.area), shape, material, owner))
         else:
             left_out["closed lines of less than 2 mm"] += 1
-    return _nested(found)
+    return _nested(found, left_out)
 
 
 def _without_loops(stroke: Stroke, remarks: list[str]) -> tuple[Stroke, Any]:
@@ -84,28 +86,58 @@ def _without_loops(stroke: Stroke, remarks: list[str]) -> tuple[Stroke, Any]:
     return replace(stroke, points=np.array(largest.exterior.coords)[:-1]), largest
 
 
-def _nested(found: list[Contour]) -> list[Contour]:
-    """Every contour put into the least one around it; returns those within none."""
+def _nested(found: list[Contour], left_out: Counter[str]) -> list[Contour]:
+    """Every contour put into the least one around it; returns those within none, or within a frame."""
     order = {id(contour): k for k, contour in enumerate(found)}
     found = sorted(found, key=lambda contour: (-contour.area, contour.role != "cut"))
-    grown = [shapely.buffer(contour.shape, SLACK) for contour in found]
-    for each in grown:
-        shapely.prepare(each)
+    for each in found:
+        shapely.prepare(each.shape)
     tree = shapely.STRtree([contour.shape for contour in found])
-    outermost = []
+    outermost, twins = [], set()
     for k, contour in enumerate(found):
         around = tree.query(contour.shape, predicate="intersects")
-        holders = [m for m in sorted(around.tolist(), reverse=True) if m < k and _may_hold(found[m], contour)]
-        holder = next((m for m in holders if grown[m].covers(contour.shape)), None)
+        holders = [
+            m
+            for m in sorted(around.tolist(), reverse=True)
+            if m < k and m not in twins and _may_hold(found[m], contour)
+        ]
+        holder = next((m for m in holders if _holds(found[m].shape, contour.shape)), None)
         if holder is None:
             outermost.append(contour)
+        elif _twin(found[holder], contour):
+            found[holder].role = found[holder].role or contour.role
+            left_out["outlines drawn twice"] += 1
+            twins.add(k)
         else:
             found[holder].inside.append(contour)
             contour.within = found[holder].within + 1
     kept = [c for c in outermost if not _frame(c)]
     for frame in (c for c in outermost if _frame(c)):
         kept += frame.inside
+        left_out["frame around pieces"] += 1
     return sorted(kept, key=lambda contour: order[id(contour)])
+
+
+def _holds(outer: Any, inner: Any) -> bool:
+    """Whether an area lies in another, or leaves it by no more than SLACK. (An outline of many teeth cannot be grown
+    by SLACK in bounded time, so what sticks out of it is measured instead.)"""
+    if outer.covers(inner):
+        return True
+    low, high = np.array(outer.bounds).reshape(2, 2)
+    least, most = np.array(inner.bounds).reshape(2, 2)
+    if (least < low - SLACK).any() or (most > high + SLACK).any():
+        return False
+    out = shapely.difference(inner, outer)
+    step = max(SLACK, out.length / MOST_STEPS)
+    points = shapely.points(shapely.get_coordinates(shapely.segmentize(out, step)))
+    return bool(shapely.dwithin(outer, points, SLACK).all())
+
+
+def _twin(outer: Contour, inner: Contour) -> bool:
+    """Whether it is the same line again, such as a fill and its rim; a cut and a seam in one place are two."""
+    if inner.area < TWIN * outer.area or (outer.role and inner.role and outer.role != inner.role):
+        return False
+    return _holds(inner.shape, outer.shape)
 
 
 def _may_hold(outer: Contour, inner: Contour) -> bool:
@@ -121,7 +153,12 @@ def _frame(contour: Contour) -> bool:
     if contour.role or len(contour.stroke.points) != 4 or len(contour.inside) < 2:
         return False
     told = sum(inner.role in ("cut", "sew") for inner in contour.inside)
-    return told > 1 or len({inner.owner for inner in contour.inside}) > 1
+    if told > 1 or len({inner.owner for inner in contour.inside}) > 1:
+        return True
+    names = {
+        inner.stroke.name for inner in contour.inside if inner.role == "" and not speaks(inner.stroke.name)
+    }
+    return not contour.stroke.name and len(names) > 1
 
 
 def seam_inside(outer: Contour) -> Contour | None:

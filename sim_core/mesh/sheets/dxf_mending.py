@@ -2,10 +2,42 @@
 
 import re
 
-__all__ = ["mended"]
+__all__ = ["mended", "spelled_out"]
 
 MARKS = {"LWPOLYLINE": "AcDbPolyline", "SPLINE": "AcDbSpline", "ELLIPSE": "AcDbEllipse"}
+HANZI = re.compile(rb"[\xa1-\xa3\xb0-\xf7][\xa1-\xfe]")  # signs and Chinese characters of GB 2312
+RARE = re.compile("[\u0180-\u036f]")  # letters that hardly any name of a piece has
 COMMON = {"5", "6", "8", "48", "60", "62", "67", "330", "370", "420"}  # tags that every entity may have
+
+
+def spelled_out(text: bytes) -> bytes:
+    """The same drawing, signs beyond ASCII as \\U+4E2D, where it names no code page and is UTF-8 or Chinese (GBK).
+
+    Without a word ezdxf takes such a drawing for Western European, as AutoCAD did.
+    """
+    if text.isascii() or b"$DWGCODEPAGE" in text:
+        return text
+    chinese = HANZI.sub(b"", text).isascii()
+    try:
+        signs = text.decode("utf-8")
+        chinese = (
+            chinese and RARE.search(signs) is not None
+        )  # two Chinese signs may be bytes of UTF-8 by accident
+    except UnicodeDecodeError:
+        if not chinese:
+            return text
+        signs = ""
+    if chinese:
+        signs = text.decode("gb18030", "replace")
+    return b"".join(
+        c.encode() if c.isascii() else b"".join(rb"\U+%04X" % unit for unit in _units(c)) for c in signs
+    )
+
+
+def _units(sign: str) -> list[int]:
+    """A sign in UTF-16: one unit, or two where it lies beyond the first 65,536."""
+    pair = sign.encode("utf-16-be", "surrogatepass")
+    return [int.from_bytes(pair[k : k + 2], "big") for k in range(0, len(pair), 2)]
 
 
 def mended(text: bytes) -> bytes:

@@ -7,6 +7,8 @@ with a bound on their number, to leave out what is hidden, and to keep the layer
 from __future__ import annotations
 
 import logging
+import re
+import struct
 from collections import Counter
 from collections.abc import Iterator
 from io import BytesIO
@@ -16,9 +18,10 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.left_out import MOST_VISITED, visited, warn_left_out
-from sim_core.mesh.sheets.dxf_mending import mended
-from sim_core.mesh.sheets.strokes import Stroke
+from sim_core.mesh.left_out import MOST_VISITED, visited
+from sim_core.mesh.outline import LARGEST
+from sim_core.mesh.sheets.dxf_mending import mended, spelled_out
+from sim_core.mesh.sheets.strokes import Drawn, Stroke
 from sim_core.mesh.sheets.words import spoken
 from sim_core.reading import read_bytes
 
@@ -27,38 +30,71 @@ __all__ = ["dxf_strokes"]
 METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 14: 0.1}
 DRAWN = ("LWPOLYLINE", "POLYLINE", "LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 BINARY = b"AutoCAD Binary DXF"
+SAID = re.compile(r"\s*units?\s*[:=]\s*([a-z]+)\b", re.IGNORECASE)  # AAMA-292 and ASTM D6673 say it in a text
+SAYING = {
+    "METRIC": 1e-3,
+    "ENGLISH": 0.0254,
+    "MM": 1e-3,
+    "CM": 1e-2,
+    "INCH": 0.0254,
+    "INCHES": 0.0254,
+    "IN": 0.0254,
+}
 SAG = 0.02  # [mm] most between a curve and its steps
+MOST_POINTS = 5_000_000
 WHAT = "a pattern drawn as DXF"
 
 
-def dxf_strokes(path: Path, metres: float | None = None) -> list[Stroke]:
+def dxf_strokes(path: Path, metres: float | None = None) -> Drawn:
     """The lines of a DXF file [m], y down; raises FileProblem.
 
-    metres: of a drawing unit; without it $INSUNITS counts, and where that is silent a millimetre.
+    metres: of a drawing unit; without it a text such as "UNITS: ENGLISH" counts, then $INSUNITS, and where both are
+    silent a millimetre.
     """
     text = read_bytes(path, WHAT)
     if b"SECTION" not in text and not text.startswith(BINARY):
         raise FileProblem(f"{path}: not a DXF file (no section in it) – give {WHAT}")
     document, lost = _document(path, text)
     unit = document.header.get("$INSUNITS", 0)
-    scale = metres or METRES.get(unit)
+    scale = metres or _said(document) or METRES.get(unit)
     if scale is None:
         raise FileProblem(f"{path}: $INSUNITS {unit} – say the unit with --units, such as --units mm")
-    walk = _Walk(document, SAG * 1e-3 / scale)
+    walk = _Walk(document, scale)
     walk.left_out["INSERT of no block"] += lost
     try:
         with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
             found = list(walk.strokes(document.modelspace(), ()))
+            blocks = [] if found else _pieces_of(document)
+            for block in blocks:
+                found += walk.strokes(block, (block.name,))
     except (ValueError, TypeError, AttributeError, ArithmeticError) as error:
         reason = " ".join(str(error).split())[:120]
-        raise FileProblem(f"{path}: an entity cannot be read ({reason}) – draw it as polylines") from error
+        told = reason if " – " in reason else f"an entity cannot be read ({reason}) – draw it as polylines"
+        raise FileProblem(f"{path}: {told}") from error
     walk.left_out["in paper space"] += sum(
         len(layout) for layout in document.layouts if layout.name != "Model"
     )
-    warn_left_out(path, +walk.left_out)
+    remarks = (
+        ("nothing is inserted in its model space, its blocks are taken for the pieces",) if blocks else ()
+    )
     with np.errstate(all="ignore"):
         turned = np.array([scale, -scale])
-        return [Stroke(points * turned, closed, *rest) for points, closed, *rest in found]
+        strokes = [Stroke(points * turned, closed, *rest) for points, closed, *rest in found]
+    return Drawn(strokes, walk.left_out, remarks)
+
+
+def _said(document: Any) -> float | None:
+    """Metres of a drawing unit, from the text in which an AAMA or ASTM file says its units."""
+    blocks = [document.modelspace(), *_pieces_of(document)]
+    for entity in (e for block in blocks for e in block if e.dxftype() == "TEXT"):
+        if (found := SAID.match(str(entity.dxf.get("text", "")))) is not None:
+            return SAYING.get(found[1].upper())
+    return None
+
+
+def _pieces_of(document: Any) -> list[Any]:
+    """The blocks that people made, not those of layouts and dimensions."""
+    return [block for block in document.blocks if not block.name.startswith("*")]
 
 
 def _document(path: Path, text: bytes) -> tuple[Any, int]:
@@ -74,9 +110,20 @@ def _document(path: Path, text: bytes) -> tuple[Any, int]:
     try:
         if text.startswith(BINARY):
             return readfile(path), 0
-        document, audit = recover.read(BytesIO(mended(text)))
+        if b"\n" not in text:
+            text = text.replace(b"\r", b"\n")  # as old Macintoshes end lines
+        document, audit = recover.read(BytesIO(mended(spelled_out(text))))
         return document, sum(fix.code == AuditError.UNDEFINED_BLOCK for fix in audit.fixes)
-    except (DXFError, ValueError, KeyError, IndexError, AttributeError, TypeError, OSError) as error:
+    except (
+        DXFError,
+        ValueError,
+        KeyError,
+        IndexError,
+        AttributeError,
+        TypeError,
+        OSError,
+        struct.error,
+    ) as error:
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise FileProblem(f"{path}: not a DXF file ({reason}) – give {WHAT}") from error
     except (RecursionError, OverflowError, MemoryError, ArithmeticError) as error:
@@ -86,8 +133,9 @@ def _document(path: Path, text: bytes) -> tuple[Any, int]:
 class _Walk:
     """A way through a drawing, inserts followed into their blocks."""
 
-    def __init__(self, document: Any, sag: float) -> None:
-        self.document, self.sag, self.visits = document, sag, 0
+    def __init__(self, document: Any, scale: float) -> None:
+        self.document, self.sag, self.far = document, SAG * 1e-3 / scale, LARGEST / scale
+        self.visits = self.points = 0
         self.left_out: Counter[str] = Counter()
         self.dark = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
 
@@ -119,7 +167,17 @@ class _Walk:
             self.left_out["POLYLINE mesh"] += 1
             return
         curve = curves.make_path(entity)
+        corners = [c for v in curve.control_vertices() for c in (v.x, v.y)]
+        if not all(
+            abs(c) <= self.far for c in corners
+        ):  # before it is cut into steps without end; false for NaN too
+            raise ValueError(
+                f"a line leaves the range of {LARGEST:g} m – draw it nearer to the origin, or say --units"
+            )
         points = np.array([(p.x, p.y) for p in curve.flattening(self.sag)]).reshape(-1, 2)
+        self.points += len(points)
+        if self.points > MOST_POINTS:
+            raise ValueError(f"its curves need more than {MOST_POINTS} points – say the unit with --units")
         closed = len(points) > 3 and bool(getattr(entity, "is_closed", False) or curve.is_closed)
         if closed and np.allclose(points[0], points[-1], rtol=0, atol=1e-9 * (1 + np.abs(points).max())):
             points = points[:-1]

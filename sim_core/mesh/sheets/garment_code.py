@@ -8,6 +8,8 @@ beginning of the other, so that right side meets right side; the word "right_wro
 
 from __future__ import annotations
 
+import hashlib
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
@@ -87,6 +89,12 @@ class GarmentCode:
         ]
         return {"pattern": {"panels": panels, "stitches": stitches, **self.pattern_rest}, **self.rest}
 
+    def digest(self) -> str:
+        """Of panels and stitches: the same only while nobody has changed them."""
+        held = self.to_dict()["pattern"]
+        text = json.dumps([held["panels"], held["stitches"]], sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
     def leg(self, panel: str, number: int) -> np.ndarray:
         """The points of an edge (n, 2) [m], y down, both ends included."""
         held = self.panels[panel]
@@ -143,14 +151,15 @@ def read_garment_code(path: Path, values: Any) -> GarmentCode:
     """The specification that a JSON file holds; raises FileProblem naming panel, edge or stitch and the remedy."""
     try:
         pattern = dict(values["pattern"])
-        panels = {str(name): _panel(str(name), panel) for name, panel in pattern.pop("panels").items()}
-        per_metre = float((values.get("properties") or {}).get("units_in_meter", 100))
+        properties = values.get("properties") or {}
+        per_metre = float(properties.get("units_in_meter", 100))
         if not 1e-3 <= per_metre <= 1e6:
             raise ValueError(f"properties.units_in_meter: {per_metre:g} – 100 for centimetres")
-        if (values.get("properties") or {}).get("curvature_coords", "relative") != "relative":
-            raise ValueError(
-                "properties.curvature_coords: only 'relative' is read – save it anew with GarmentCode"
-            )
+        coords = properties.get("curvature_coords", "relative")
+        if coords not in ("relative", "absolute"):
+            raise ValueError(f"properties.curvature_coords: {shown(coords)} – 'relative' or 'absolute'")
+        given = pattern.pop("panels").items()
+        panels = {str(name): _panel(str(name), panel, coords == "absolute") for name, panel in given}
         stitches = tuple(_stitch(k, stitch, panels) for k, stitch in enumerate(pattern.pop("stitches", [])))
         rest = {key: value for key, value in values.items() if key != "pattern"}
         return GarmentCode(panels, stitches, per_metre, rest, pattern)
@@ -161,11 +170,15 @@ def read_garment_code(path: Path, values: Any) -> GarmentCode:
         raise FileProblem(f"{path}: {text}" + ("" if "–" in text else f" – {REMEDY}")) from error
 
 
-def _panel(name: str, values: dict[str, Any]) -> CodePanel:
+def _panel(name: str, values: dict[str, Any], absolute: bool) -> CodePanel:
     vertices = tuple(_pair(f"panel {name}: vertex {k}", v) for k, v in enumerate(values["vertices"]))
+    if len(set(vertices)) < 2:
+        raise ValueError(f"panel {name}: its vertices all lie in one place – give it a size")
     edges = tuple(
-        _edge(f"panel {name}: edge {k}", edge, len(vertices)) for k, edge in enumerate(values["edges"])
+        _edge(f"panel {name}: edge {k}", edge, vertices, absolute) for k, edge in enumerate(values["edges"])
     )
+    if len({edge.start for edge in edges}) < len(edges):
+        raise ValueError(f"panel {name}: its edges come twice through a vertex – go around once")
     ends = [(edge.end, edges[(k + 1) % len(edges)].start) for k, edge in enumerate(edges)]
     if len(edges) < 2 or any(end != start for end, start in ends):
         raise ValueError(f"panel {name}: its edges do not follow each other around – order them end to start")
@@ -178,8 +191,11 @@ def _pair(what: str, values: Any) -> tuple[float, float]:
     return values[0], values[1]
 
 
-def _edge(what: str, values: dict[str, Any], count: int) -> CodeEdge:
+def _edge(
+    what: str, values: dict[str, Any], vertices: tuple[tuple[float, float], ...], absolute: bool
+) -> CodeEdge:
     start, end = values["endpoints"]
+    count = len(vertices)
     if not all(type(v) is int and 0 <= v < count for v in (start, end)) or start == end:
         raise ValueError(f"{what}: endpoints {shown([start, end])} – two different numbers below {count}")
     rest = {key: value for key, value in values.items() if key not in ("endpoints", "curvature")}
@@ -189,7 +205,12 @@ def _edge(what: str, values: dict[str, Any], count: int) -> CodeEdge:
             start, end, "line", (), rest if "curvature" not in values else {**rest, "curvature": None}
         )
     if isinstance(bent, list):  # files before 2023: one control point
-        return CodeEdge(start, end, "quadratic", (_pair(what, bent),), {**rest, "curvature": bent})
+        point = _pair(what, bent)
+        if absolute:
+            point = _relative(point, vertices[start], vertices[end])
+        return CodeEdge(start, end, "quadratic", (point,), {**rest, "curvature": bent})
+    if absolute:
+        raise ValueError(f"{what}: curvature {shown(bent)} of absolute coordinates – give one control point")
     kind, params = bent["type"], bent["params"]
     if kind == "circle":
         radius = params[0]
@@ -203,6 +224,17 @@ def _edge(what: str, values: dict[str, Any], count: int) -> CodeEdge:
     return CodeEdge(start, end, kind, tuple(_pair(what, p) for p in params), rest)
 
 
+def _relative(
+    point: tuple[float, float], start: tuple[float, float], end: tuple[float, float]
+) -> tuple[float, float]:
+    """A point as shares of the edge, along it and to its left."""
+    along, away = complex(*end) - complex(*start), complex(*point) - complex(*start)
+    if not along:
+        raise ValueError(f"edge from {shown(start)} to itself – give it a length")
+    share = away / along
+    return share.real, share.imag
+
+
 def _stitch(number: int, values: list[Any], panels: dict[str, CodePanel]) -> Stitch:
     sides = []
     for side in values[:2]:
@@ -214,6 +246,8 @@ def _stitch(number: int, values: list[Any], panels: dict[str, CodePanel]) -> Sti
         raise ValueError(
             f"stitch {number}: {shown(values[2:])} – two sides, and 'right_wrong' or nothing after them"
         )
+    if sides[0] == sides[1]:
+        raise ValueError(f"stitch {number}: {shown(values[0])} to itself – name two edges")
     return Stitch(sides[0], sides[1], bool(values[2:]))
 
 

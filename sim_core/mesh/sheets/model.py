@@ -16,7 +16,8 @@ class Piece:
 
     cut, sew: the line it is cut along and the line it is sewn along, (n, 2) [m], y down, not closed; None where the
     sheet does not draw it.  layer: of the outline (SVG: its class).  holes, lines: closed and open lines inside,
-    (n, 2) [m].  notches: (k, 2) [m].  grain: both ends of the grain line, (2, 2) [m].
+    (n, 2) [m].  notches: (k, 2) [m].  grain: both ends of the grain line, (2, 2) [m].  fold: both ends of the line that
+    half a piece is mirrored about, (2, 2) [m].
     """
 
     name: str
@@ -27,6 +28,7 @@ class Piece:
     lines: tuple[np.ndarray, ...] = ()
     notches: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))
     grain: np.ndarray | None = None
+    fold: np.ndarray | None = None
 
     @property
     def outline(self) -> np.ndarray:
@@ -39,8 +41,9 @@ class Piece:
 @dataclass(frozen=True)
 class Sheet:
     """pieces: in the order of the file.  left_out: what is no part of a piece, by name, and how often.  remarks: what
-    was changed or guessed."""
+    was changed or guessed.  notes: what is as drawn but worth a look, such as a unit that the sheet does not say."""
 
     pieces: tuple[Piece, ...]
     left_out: dict[str, int] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()

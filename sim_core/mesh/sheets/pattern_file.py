@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -11,27 +13,48 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.garment_code import CodeEdge, CodePanel, GarmentCode
 from sim_core.mesh.sheets.legs import Leg, cubic_through, legs_of
+from sim_core.mesh.sheets.toml_text import toml_text
 
 __all__ = ["code_of", "pattern_text", "write_pattern"]
 
+EDGE = 0.01  # [m] of a pattern file's mesh unless somebody says otherwise
 EASE = 0.02  # sides of a seam may differ by this share in a pattern file
 MOST_LEGS = 200
 
 
-def write_pattern(path: Path, code: GarmentCode, edge: float) -> list[str]:
+def write_pattern(path: Path, code: GarmentCode, edge: float | None = None) -> list[str]:
     """Write a specification as .toml (a pattern file, meshed at `edge` [m]) or .json; returns remarks.
 
+    What was a pattern file and has not been changed since becomes that file again, without its comments.
     Raises FileProblem for another kind of file, or one that cannot be written.
     """
     text, remarks = (json.dumps(code.to_dict(), indent=2) + "\n", [])
     if path.suffix.lower() == ".toml":
-        text, remarks = pattern_text(path.stem, code, edge)
+        text, remarks = _kept_text(code, edge)
+        if not text:
+            text, made = pattern_text(path.stem, code, edge or EDGE)
+            remarks += made
     try:
         path.write_text(text, "utf-8")
     except OSError as error:
         remedy = "give a file in a folder that can be"
         raise FileProblem(f"{path}: cannot be written ({error.strerror}) – {remedy}") from error
     return remarks
+
+
+def _kept_text(code: GarmentCode, edge: float | None) -> tuple[str, list[str]]:
+    """The pattern file that a specification was made from, or nothing; and a remark where it has been changed since."""
+    kept = code.rest.get("pattern_file")
+    if not isinstance(kept, dict) or not isinstance(tables := kept.get("tables"), dict):
+        return "", []
+    if kept.get("digest") == code.digest():
+        if edge is not None:
+            tables = {**tables, "edge": edge}
+        with suppress(TypeError, ValueError):
+            text = toml_text(tables)
+            if tomllib.loads(text) == tables:
+                return text, []
+    return "", ["changed since it was a pattern file, so names of corners, measures and layers are not kept"]
 
 
 def code_of(outlines: dict[str, np.ndarray]) -> GarmentCode:

@@ -14,16 +14,17 @@ from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.left_out import warn_left_out
 from sim_core.mesh.outline import LARGEST
 from sim_core.mesh.sheets.dxf_strokes import dxf_strokes
-from sim_core.mesh.sheets.garment_code import code_sheet, is_garment_code, read_garment_code
+from sim_core.mesh.sheets.garment_code import GarmentCode, code_sheet, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet, Which
 from sim_core.mesh.sheets.sorting import sorted_sheet
 from sim_core.mesh.sheets.svg_strokes import svg_strokes
 from sim_core.reading import read_json
 
-__all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet"]
+__all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_code"]
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
 SHOWN = 12  # names in a message
+SMALL, LARGE = 0.02, 10.0  # [m] a sheet's largest piece is hardly beyond
 
 
 @dataclass(frozen=True)
@@ -49,19 +50,16 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
     """
     metres = UNITS[units] if units else None
     if path.suffix.lower() not in (".svg", ".dxf"):
-        return _on(
-            path,
-            code_sheet(read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))),
-            layer,
-        )
-    strokes = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
-    for stroke in strokes:
+        code = read_garment_code(path, read_json(path, "a pattern of GarmentCode (JSON)"))
+        return sheet_of_code(path, code, layer)
+    drawn = (svg_strokes if path.suffix.lower() == ".svg" else dxf_strokes)(path, metres)
+    for stroke in drawn.strokes:
         if not (np.abs(stroke.points) <= LARGEST).all():  # false for NaN too
             raise FileProblem(
-                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin"
+                f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin, or say --units"
             )
     try:
-        sheet = sorted_sheet(strokes)
+        sheet = sorted_sheet(drawn.strokes)
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise FileProblem(
             f"{path}: its lines cannot be sorted ({error}) – draw plain closed outlines"
@@ -71,8 +69,31 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
         remedy = "say what a drawing unit is, such as --units in" if small else "close the outline"
         what = "only closed lines of less than 2 mm" if small else "no closed line in it that may be a piece"
         raise FileProblem(f"{path}: {what} – {remedy}")
-    warn_left_out(path, Counter(sheet.left_out))
-    return _on(path, sheet, layer)
+    left_out = +(drawn.left_out + Counter(sheet.left_out))
+    warn_left_out(path, left_out)
+    remarks, notes = (*drawn.remarks, *sheet.remarks), (*drawn.notes, *_noted(sheet))
+    return _on(path, replace(sheet, left_out=dict(left_out), remarks=remarks, notes=notes), layer)
+
+
+def _noted(sheet: Sheet) -> list[str]:
+    """What may be wrong with a sheet that can be read."""
+    widest = max(float(np.ptp(piece.outline, axis=0).max()) for piece in sheet.pieces)
+    found = []
+    if not SMALL <= widest <= LARGE:
+        size = f"{1000 * widest:.0f} mm" if widest < 1 else f"{widest:.0f} m"
+        found.append(
+            f"its largest piece measures {size} – if that is wrong, say what a drawing unit is with --units"
+        )
+    halves = [piece.name for piece in sheet.pieces if piece.fold is not None]
+    if halves:
+        named = ", ".join(halves[:SHOWN]) + (", …" if len(halves) > SHOWN else "")
+        found.append(f"to be cut on the fold, half of it is drawn: {named}")
+    return found
+
+
+def sheet_of_code(path: Path, code: GarmentCode, layer: str | None = None) -> Sheet:
+    """The panels of a specification as pieces; raises FileProblem where none is on the layer."""
+    return _on(path, code_sheet(code), layer)
 
 
 def _on(path: Path, sheet: Sheet, layer: str | None) -> Sheet:
@@ -102,12 +123,14 @@ def panel_of(path: Path, sheet: Sheet, choice: Choice) -> tuple[Piece, str]:
         outline, remark = outline_along(piece, choice.line, choice.allowance)
     except OutlineError as error:
         raise FileProblem(f"{path}: {error}") from error
-    lines, cut = _clipped(outline, piece.lines)
+    holes = tuple(hole for hole in piece.holes if shapely.Polygon(hole).is_valid)
+    lines, cut = _clipped(outline, holes, piece.lines)
+    told = [remark] if remark else []
+    if lost := len(piece.holes) - len(holes):
+        told.append(f"{lost} holes cross themselves and are left out")
     if cut:
-        remark = "; ".join(
-            [*filter(None, [remark]), f"{cut} inner lines are cut off where they leave the outline"]
-        )
-    return replace(piece, cut=outline, sew=None, lines=lines), remark
+        told.append(f"{cut} inner lines are cut off where they leave the cloth")
+    return replace(piece, cut=outline, sew=None, holes=holes, lines=lines), "; ".join(told)
 
 
 def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarray, str]:
@@ -137,11 +160,15 @@ def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarr
     return np.array(moved.exterior.coords)[:-1], ""
 
 
-def _clipped(outline: np.ndarray, lines: tuple[np.ndarray, ...]) -> tuple[tuple[np.ndarray, ...], int]:
-    """Inner lines within an outline, and how many had to be cut."""
+def _clipped(
+    outline: np.ndarray, holes: tuple[np.ndarray, ...], lines: tuple[np.ndarray, ...]
+) -> tuple[tuple[np.ndarray, ...], int]:
+    """Inner lines within an outline and outside its holes, and how many had to be cut."""
     shape = shapely.Polygon(outline)
     if not shape.is_valid or not lines:
         return lines, 0
+    for hole in holes:
+        shape = shapely.difference(shape, shapely.Polygon(hole))
     found: list[np.ndarray] = []
     cut = 0
     grown = shapely.buffer(shape, 1e-9)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -10,7 +12,7 @@ import shapely
 from sim_core.mesh.sheets.contours import Contour, contours, owner_of, piece_name, seam_inside
 from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.mesh.sheets.strokes import Stroke, joined
-from sim_core.mesh.sheets.words import Role, role_of, speaks
+from sim_core.mesh.sheets.words import Role, layer_name, role_of, speaks
 
 __all__ = ["sorted_sheet"]
 
@@ -18,6 +20,8 @@ NEAR = 0.005  # [m] a mark may lie outside its piece
 TOUCHES, APART = 5e-4, 0.003  # [m] from a notch to the outline; between two notches
 SHORT = 0.015, 0.05  # [m] most of a notch, and of its piece's diagonal
 SLENDER = 8  # how many times longer than wide a filled arrow is
+LEAST, HAIR = 0.6, 1e-6  # of a cutting line's area: least of its seam's; [m]
+ARROW = 0.05  # of its piece's diagonal: least length of a filled arrow
 
 
 def sorted_sheet(strokes: list[Stroke]) -> Sheet:
@@ -32,7 +36,7 @@ def sorted_sheet(strokes: list[Stroke]) -> Sheet:
     for stroke in joined(strokes):
         role: Role = role_of(stroke.layer, stroke.words, numbered=numbered)
         if role in ("mark", "hidden"):
-            left_out[_called(stroke, role)] += 1
+            left_out[_called(stroke, role, numbered=numbered)] += 1
         elif _may_close(stroke, role):
             outlines.append((stroke, role))
         else:
@@ -41,6 +45,7 @@ def sorted_sheet(strokes: list[Stroke]) -> Sheet:
     outermost = contours(outlines, remarks, left_out)
     drafts = [_Draft(contour) for contour in outermost if contour.role not in ("hole", "inner")]
     drafts = _paired(drafts)
+    others = _cut_on_fold(drafts, others, remarks)
     for draft in drafts:
         draft.take(left_out)
     _assign(drafts, others, left_out)
@@ -55,8 +60,10 @@ def _numbered(strokes: list[Stroke]) -> bool:
     return bool(layers & {"1", "14"}) and all(layer.isdigit() for layer in layers)
 
 
-def _called(stroke: Stroke, role: Role) -> str:
-    return "hidden (visibility)" if role == "hidden" else f"{stroke.layer or stroke.name or role}"
+def _called(stroke: Stroke, role: Role, *, numbered: bool) -> str:
+    if role == "hidden":
+        return "hidden (visibility)"
+    return layer_name(stroke.layer, numbered=numbered) or stroke.name or "text drawn as outlines"
 
 
 def _may_close(stroke: Stroke, role: Role) -> bool:
@@ -108,6 +115,7 @@ class _Draft:
         self.diagonal = float(np.hypot(*np.ptp(contour.stroke.points, axis=0)))
         shapely.prepare(self.edge)
         self.grain: np.ndarray | None = None
+        self.fold: np.ndarray | None = None
 
     def take(self, left_out: Counter[str]) -> None:
         """Sort what lies inside the outline."""
@@ -122,9 +130,23 @@ class _Draft:
             left_out["closed lines within holes"] += len(inner.inside)
         left_out += Counter()
 
+    def may_lie_within(self, area: float) -> bool:
+        """Whether the outline may be the sewing line of a piece of that area [m2]."""
+        return self.seam is None and self.contour.role in ("", "sew") and self.contour.area > LEAST * area
+
+    def take_around(self, outer: Contour) -> None:
+        """Lie within a cutting line that was found around it."""
+        self.seam, self.contour = self.contour, outer
+        self.edge = shapely.boundary(outer.shape)
+        shapely.prepare(self.edge)
+
     def put(self, stroke: Stroke, role: Role, length: float, left_out: Counter[str]) -> None:
         """Take an open line or a mark as what it is. length: [m] of the line."""
         points = stroke.points
+        if len(points) > 1 and self.fold is None and (role == "fold" or "cutonfold" in stroke.words):
+            self.fold = points[[0, -1]]
+        if role == "fold":
+            return
         ends = shapely.distance(self.edge, shapely.points(points[[0, -1]]))
         short = len(points) > 1 and length < min(SHORT[0], SHORT[1] * self.diagonal) and ends.min() < TOUCHES
         if role == "notch" or (role == "" and (len(points) == 1 or short)):
@@ -133,7 +155,7 @@ class _Draft:
                 place = points[0 if ends[0] <= ends[1] else -1]
             cell = (round(place[0] / APART), round(place[1] / APART))
             self.notches.setdefault(cell, place)
-        elif (role == "grain" and len(points) > 1) or (role == "" and stroke.filled and _slender(points)):
+        elif (role == "grain" and len(points) > 1) or (role == "" and stroke.filled and self._arrow(points)):
             if self.grain is None:
                 longest = int(np.argmax(np.hypot(*np.diff(points, axis=0).T)))  # not the heads of its arrow
                 self.grain = points[longest : longest + 2]
@@ -141,6 +163,10 @@ class _Draft:
             left_out["cut lines along a part of a piece"] += 1
         elif len(points) > 1 and not stroke.filled:
             self.lines.append(np.vstack([points, points[:1]]) if stroke.closed else points)
+
+    def _arrow(self, points: np.ndarray) -> bool:
+        """Whether a filled area is a grain line with its heads: long as no letter is, and slender."""
+        return float(np.hypot(*np.ptp(points, axis=0))) > ARROW * self.diagonal and _slender(points)
 
     def piece(self, name: str) -> Piece:
         stroke, seam = self.contour.stroke, self.seam
@@ -154,6 +180,7 @@ class _Draft:
             tuple(self.lines),
             np.array(list(self.notches.values())).reshape(-1, 2),
             self.grain,
+            self.fold,
         )
 
 
@@ -174,6 +201,43 @@ def _paired(drafts: list[_Draft]) -> list[_Draft]:
                     gone.add(id(draft))
                     break
     return [draft for draft in drafts if id(draft) not in gone]
+
+
+def _cut_on_fold(
+    drafts: list[_Draft], lines: list[tuple[Stroke, Role]], remarks: list[str]
+) -> list[tuple[Stroke, Role]]:
+    """Lines that say nothing, but those that run around a piece at the distance of an allowance and end at its fold:
+    closed straight, they are its cutting line, and the outline that lay there is its sewing line."""
+    tree = shapely.STRtree([draft.contour.shape for draft in drafts])
+    kept = []
+    for stroke, role in lines:
+        around = _goes_around(stroke) if role == "" and not stroke.filled and len(stroke.points) > 3 else None
+        inside = [drafts[k] for k in tree.query(around, predicate="covers").tolist()] if around else []
+        area = float(around.area) if around else 0.0
+        mine = [draft for draft in inside if draft.may_lie_within(area)]
+        outer = Contour(replace(stroke, closed=True), "cut", area, around, "", owner_of(stroke))
+        outer.inside += [draft.contour for draft in mine]
+        if len(mine) == 1 and seam_inside(outer) is mine[0].contour:
+            mine[0].take_around(outer)
+            name = piece_name(outer.owner) or "a piece"
+            remarks.append(f"{name}: an open line around it is taken for its cut line")
+        else:
+            kept.append((stroke, role))
+    return kept
+
+
+def _goes_around(stroke: Stroke) -> Any:
+    """The area of an open line closed straight, grown by a hair, or None where it is none."""
+    steps = np.hypot(*np.diff(stroke.points, axis=0).T)
+    gap = float(np.hypot(*(stroke.points[0] - stroke.points[-1])))
+    shape = shapely.Polygon(stroke.points)
+    if (
+        gap > 0.8 * steps.sum()
+        or not shape.is_valid
+        or shape.area < 0.2 * np.ptp(stroke.points, axis=0).prod()
+    ):
+        return None
+    return shapely.buffer(shape, HAIR, join_style="mitre")
 
 
 def _assign(drafts: list[_Draft], lines: list[tuple[Stroke, Role]], left_out: Counter[str]) -> None:

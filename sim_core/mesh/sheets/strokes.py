@@ -1,11 +1,12 @@
 """What is drawn on a pattern sheet before anyone says what it is: lines with the names that stand around them."""
 
-from dataclasses import dataclass, replace
+from collections import Counter
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import KDTree
 
-__all__ = ["Stroke", "joined"]
+__all__ = ["Drawn", "Stroke", "joined"]
 
 NEAR = 1e-6  # of the drawing's extent: ends this near are joined
 
@@ -28,6 +29,16 @@ class Stroke:
     filled: bool = False
     dashed: bool = False
     name: str = ""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What a reader found: lines, what it left out (name: how often); remarks and notes as in `Sheet`."""
+
+    strokes: list[Stroke]
+    left_out: Counter[str] = field(default_factory=Counter)
+    remarks: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def joined(drawn: list[Stroke]) -> list[Stroke]:

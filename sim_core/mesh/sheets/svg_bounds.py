@@ -41,8 +41,12 @@ def check_bounds(root: ElementTree.Element) -> None:
     drawn(root, 0)
 
 
+def _href(element: ElementTree.Element) -> str:
+    return next((text for key, text in element.items() if key.rsplit("}", 1)[-1] == "href"), "")
+
+
 def _used(element: ElementTree.Element) -> str:
-    name = next((text for key, text in element.items() if key.rsplit("}", 1)[-1] == "href"), "")
+    name = _href(element)
     return name.removeprefix("#") if name.startswith("#") else ""
 
 
@@ -62,5 +66,5 @@ def left_out_of(root: ElementTree.Element) -> Counter[str]:
         elif element.get("clip-path"):
             found["clip-path"] += 1
         elif tag == "use" and _used(element) not in named:
-            found[f"<use> of #{_used(element) or 'nothing'}"] += 1
+            found[f"<use> of {_href(element) or 'nothing'}"] += 1
     return found

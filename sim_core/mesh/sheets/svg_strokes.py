@@ -1,12 +1,11 @@
 """Lines of an SVG drawing, read by svgelements: shapes, paths, transforms, units, viewports, `<use>`, style sheets.
 
-Checked before it is handed over: entities that multiply themselves, and `<use>` of `<use>` without end.
+Checked before it is handed over: `<use>` of `<use>` without end (`svg_bounds.py`); entities end in `svg_text.py`.
 """
 
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
@@ -16,72 +15,64 @@ from xml.etree import ElementTree
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.left_out import warn_left_out
-from sim_core.mesh.sheets.strokes import Stroke
+from sim_core.mesh.sheets.strokes import Drawn, Stroke
 from sim_core.mesh.sheets.svg_bounds import check_bounds, left_out_of
+from sim_core.mesh.sheets.svg_text import svg_root
 from sim_core.mesh.sheets.svg_viewports import LENGTHS, NUMBER, flatten_viewports
 from sim_core.mesh.sheets.words import speaks, spoken
-from sim_core.reading import read_text
 
 __all__ = ["svg_strokes"]
 
 PIXEL = 0.0254 / 96  # [m]
-WHAT = "a pattern drawn as SVG"
+PIXELS = "no size in units of length: a drawing unit is taken for 0.2646 mm (a CSS pixel) – if it is not, say --units"
 UNNAMED = re.compile(
-    r"(svg|g|layer|path|use|group|rect|polygon|fs|_|xmlid|text|_?x)*[\s_-]*[\d_-]*", re.IGNORECASE
+    r"(svg|g|layer|path|use|group|rect|polygon|fs|_|xmlid|text|surface|clip|source|_?x)*[\s_-]*[\d_-]*",
+    re.IGNORECASE,
 )
+GLYPH = re.compile(r"#?(glyph|font)[\d_-]*\d")  # as cairo and MuPDF name the letters they draw as outlines
 PAINT = ("fill", "stroke", "stroke-dasharray", "visibility")
 NAMING = ("class", "id", "label", "href", "marker", "text")
+LETTERS = ("id", "href", "xlink:href", "data-symbol")
 STEPS, TURN = 24, 0.05  # of a curve piece; [rad] most of an arc in one step
 Shape = tuple[np.ndarray, bool]
 
 
-def svg_strokes(path: Path, metres: float | None = None) -> list[Stroke]:
+def svg_strokes(path: Path, metres: float | None = None) -> Drawn:
     """The lines of an SVG file [m], y down; raises FileProblem.
 
-    metres: of a user unit; without it the width counts, and without that a user unit is a CSS pixel.
+    metres: of a user unit; without it the width counts, and without that a user unit is a CSS pixel (FreeSewing: a
+    millimetre).
     """
-    text = read_text(path, WHAT)
-    try:
-        root = ElementTree.fromstring(_plain(path, text))
-    except (ElementTree.ParseError, ValueError) as error:
-        raise FileProblem(f"{path}: not valid SVG ({error}) – give {WHAT}") from error
-    if (tag := str(root.tag).rsplit("}", 1)[-1]) != "svg":
-        raise FileProblem(f"{path}: its root is <{tag[:40]}> – give {WHAT}")
+    root = svg_root(path)
+    left_out = left_out_of(root)
     try:
         check_bounds(root)
-        drawing = _drawing(root, metres)
+        drawing, guessed = _drawing(root, metres)
         with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
             found = list(_strokes(drawing))
     except RecursionError as error:
         raise FileProblem(f"{path}: groups nested too deep – take shapes out of their groups") from error
     except (ValueError, IndexError, KeyError, TypeError, AttributeError, ArithmeticError) as error:
         reason = " ".join(str(error).split())[:120] or type(error).__name__
-        raise FileProblem(f"{path}: {reason} – give paths, polygons, rectangles or circles") from error
-    warn_left_out(path, left_out_of(root) + Counter())
-    return found
+        remedy = "" if "–" in reason else " – give paths, polygons, rectangles or circles"
+        raise FileProblem(f"{path}: {reason}{remedy}") from error
+    return Drawn(found, left_out, notes=(PIXELS,) if guessed else ())
 
 
-def _plain(path: Path, text: str) -> str:
-    """The text, its entities no more than names of short texts, as Illustrator writes its name spaces."""
-    declared = dict(re.findall(r"<!ENTITY\s+([\w.-]+)\s+[\"']([^\"']*)[\"']\s*>", text))
-    grown = sum(len(value) * text.count(f"&{name};") for name, value in declared.items())
-    others = text.count("<!ENTITY") - len(declared)
-    if others or grown > 1_000_000 or any("&" in value or "%" in value for value in declared.values()):
-        raise FileProblem(f"{path}: declares entities within entities – save it as plain SVG without them")
-    return text
-
-
-def _drawing(root: ElementTree.Element, metres: float | None) -> Any:
-    """The drawing in CSS pixels, the size of its own viewport worked out here, to the last bit."""
+def _drawing(root: ElementTree.Element, metres: float | None) -> tuple[Any, bool]:
+    """The drawing in CSS pixels, the size of its own viewport worked out here, to the last bit; and whether its unit is
+    a guess."""
     from svgelements import SVG
 
     box = [float(v) for v in re.split(r"[\s,]+", root.get("viewBox", "").strip()) if v]
-    width = root.get("width", "").strip()
+    width, height = (root.get(side, "").strip() for side in ("width", "height"))
     unit = 1.0 if metres is None else metres / PIXEL
-    if metres is None and len(box) == 4 and box[2] > 0 and width and not width.endswith("%"):
+    sized = bool(width) and not width.endswith("%")
+    guessed = metres is None and (not sized or re.fullmatch(NUMBER.pattern, width) is not None)
+    if metres is None and not sized and root.get("freesewing"):
+        unit, guessed = 1e-3 / PIXEL, False
+    if metres is None and len(box) == 4 and box[2] > 0 and sized:
         unit = _pixels(width) / box[2]
-    height = root.get("height", "").strip()
     if len(box) != 4:
         ends = [_pixels(v) / unit if v and not v.endswith("%") else float("nan") for v in (width, height)]
         flatten_viewports(root, (ends[0], ends[1]))
@@ -94,14 +85,16 @@ def _drawing(root: ElementTree.Element, metres: float | None) -> Any:
     root.set("width", repr(box[2] * unit))
     root.set("height", repr(box[3] * unit))
     root.set("preserveAspectRatio", "none")
-    return SVG.parse(StringIO(ElementTree.tostring(root, "unicode")), reify=True, ppi=96)
+    return SVG.parse(StringIO(ElementTree.tostring(root, "unicode")), reify=True, ppi=96), guessed
 
 
 def _pixels(text: str) -> float:
     """A length in CSS pixels; raises ValueError."""
-    match = re.fullmatch(rf"\s*({NUMBER.pattern})\s*([a-z]*)\s*", text)
+    match = re.fullmatch(rf"\s*({NUMBER.pattern})\s*([a-z]*)\s*", text.lower())
     if match is None or match[2] not in LENGTHS:
-        raise ValueError(f"length {text[:30]!r} is not a number with a unit such as mm")
+        raise ValueError(
+            f"length {text[:30]!r} has no unit of length – say it with --units, such as --units mm"
+        )
     if not (pixels := float(match[1]) * LENGTHS[match[2]]) > 0:
         raise ValueError(f"width {text[:30]!r} is not positive")
     return pixels
@@ -117,6 +110,8 @@ def _strokes(drawing: Any) -> Iterator[Stroke]:
     while waiting:
         element, groups, said, paint = waiting.pop()
         paint = {**paint, **_paint(element)}
+        if _lettering(element):
+            said = (*said, "text")
         if isinstance(element, Drawn):
             yield from _shape(element, Curves(element).reify(), groups, said, paint)
         elif isinstance(element, list):
@@ -131,6 +126,14 @@ def _strokes(drawing: Any) -> Iterator[Stroke]:
                     *(n for n in _titles(element) if speaks(n)),
                 )
             waiting += [(child, groups, said, paint) for child in reversed(element)]
+
+
+def _lettering(element: Any) -> bool:
+    """Whether an element is text drawn as outlines: cairo and MuPDF name letters, Inkscape keeps what they say."""
+    own = (getattr(element, "values", None) or {}).get("attributes") or {}
+    if any(GLYPH.fullmatch(str(v)) for k, v in own.items() if str(k).rsplit("}", 1)[-1] in LETTERS):
+        return True
+    return "aria-label" in own and "font-" in str(own.get("style", ""))
 
 
 def _paint(element: Any) -> dict[str, str]:

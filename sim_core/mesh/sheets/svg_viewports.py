@@ -21,6 +21,7 @@ LENGTHS = {
     "in": 96,
     "pt": 4 / 3,
     "pc": 16,
+    "q": 24 / 25.4,
 }
 ALIGNED = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 PLACED = ("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "transform")
@@ -65,6 +66,8 @@ def _group(placed: ElementTree.Element, held: ElementTree.Element, size: Size, s
     frame = f"matrix({scale[0]!r} 0 0 {scale[1]!r} {x + shift[0]!r} {y + shift[1]!r})"
     before = [placed.get("transform", ""), frame, held.get("transform", "") if held is not placed else ""]
     kept = {key: value for key, value in placed.items() if key not in PLACED and not key.endswith("href")}
+    if held is not placed and "id" in held.keys():  # noqa: SIM118 - an element, no mapping
+        kept["data-symbol"] = held.get("id", "")  # tells letters that a printer drew from pieces
     group = ElementTree.Element(f"{space}g", {**kept, "transform": " ".join(filter(None, before))})
     group.extend(list(held))
     return group, inner
@@ -92,7 +95,7 @@ def _pair(element: ElementTree.Element, names: tuple[str, str], size: Size, miss
     found = []
     for name, whole, default in zip(names, size, missing, strict=True):
         text = element.get(name, "").strip()
-        number = re.fullmatch(rf"({NUMBER.pattern})\s*([a-z%]*)", text)
+        number = re.fullmatch(rf"({NUMBER.pattern})\s*([a-z%]*)", text.lower())
         if not text or text == "auto":
             found.append(default)
         elif number is None or number[2] not in (*LENGTHS, "%"):

@@ -4,22 +4,29 @@ AAMA-292 and ASTM D6673 number the layers of a pattern DXF; FreeSewing, Valentin
 """
 
 import re
+from functools import cache
 from typing import Literal
 
-__all__ = ["MATERIALS", "Role", "material_of", "role_of", "speaks", "spoken"]
+__all__ = ["MATERIALS", "Role", "layer_name", "material_of", "role_of", "speaks", "spoken"]
 
-Role = Literal["cut", "sew", "hole", "inner", "notch", "grain", "mark", "hidden", ""]
+Role = Literal["cut", "sew", "hole", "inner", "notch", "grain", "fold", "mark", "hidden", ""]
 
 AAMA: dict[str, Role] = {
-    "1": "cut", "2": "mark", "3": "mark", "4": "notch", "5": "mark", "6": "inner", "7": "grain", "8": "inner",
+    "1": "cut", "2": "mark", "3": "mark", "4": "notch", "5": "mark", "6": "fold", "7": "grain", "8": "inner",
     "9": "mark", "10": "mark", "11": "hole", "12": "mark", "13": "mark", "14": "sew", "15": "mark",
     "80": "notch", "81": "notch", "82": "notch", "83": "notch", "84": "mark", "85": "mark", "86": "mark", "87": "mark",
+}  # fmt: skip
+AAMA_MARKS = {
+    "2": "turn points", "3": "curve points", "5": "grade references", "9": "stripes", "10": "plaids",
+    "13": "drill holes", "15": "annotation", "84": "quality curves",
+    "85": "quality curves", "86": "quality curves", "87": "quality curves",
 }  # fmt: skip
 MATERIALS = ("lining", "interfacing", "canvas", "interlining", "fabric", "various")
 SAID: tuple[tuple[Role, str], ...] = (
     ("hidden", "hidden invisible"),
     ("notch", "notch notches bnotch passmark passmarks balance"),
     ("grain", "grain grainline grainlinefrom grainlineto"),
+    ("fold", "cutonfold onfold mirror mirrorline"),
     (
         "mark",
         "note notes mark marks help logo scalebox grid title text label labels annotation annotations dimension",
@@ -29,6 +36,16 @@ SAID: tuple[tuple[Role, str], ...] = (
     ("inner", "inner internal dart darts pleat pleats fold placement pocketplacement quilting"),
     ("cut", "cut cutting cutline sa allowance seamallowance boundary"),
     ("sew", "sew sewing sewline seam seamline stitch stitching stitchline"),
+)
+CHINESE: tuple[tuple[Role, str], ...] = (  # parts of words, since nothing stands between those
+    ("notch", "刀口 剪口 对位"),
+    ("grain", "纱向 布纹 经向 丝缕"),
+    ("fold", "对折 连折 对称线"),
+    ("mark", "标注 文字 说明 钻孔"),
+    ("hole", "挖空 镂空 扣眼"),
+    ("inner", "内线 内部 省道 褶 折线"),
+    ("cut", "毛样 毛缝 毛边 裁剪 裁切 裁线 外轮廓"),
+    ("sew", "净样 净缝 净边 缝线 缝合 缝纫"),
 )
 
 BESIDES = {"line", "lines", "layer", "ebene", "calque", "and", "the", "of", "pieces", "piece", "all", "main"}
@@ -54,6 +71,9 @@ def role_of(layer: str, words: tuple[str, ...], *, numbered: bool) -> Role:
     for role, known in SAID:
         if any(word in words or f"{word}s" in words for word in known.split()):
             return role
+    for role, known in CHINESE:
+        if any(part in word for part in known.split() for word in words):
+            return role
     if any(word in words for word in MATERIALS):
         lined = any(word in words for word in ("dashed", "dotted", "lashed", "help"))
         return "inner" if lined else "sew"
@@ -65,9 +85,25 @@ def material_of(words: tuple[str, ...]) -> str:
     return next((material for material in MATERIALS if material in words), "")
 
 
+def layer_name(layer: str, *, numbered: bool) -> str:
+    """A layer as it is told to people: AAMA/ASTM numbers with what they stand for."""
+    stands = AAMA_MARKS.get(layer.strip()) if numbered else None
+    return f"on layer {layer.strip()} ({stands})" if stands else layer
+
+
+@cache
+def _kinds() -> frozenset[str]:
+    """Words for kinds of lines, and any two of them run together."""
+    known = {word for _, words in SAID for word in words.split()} | set(MATERIALS) | BESIDES
+    known |= {f"{word}s" for word in known}
+    return frozenset(known | {a + b for a in known for b in known})
+
+
 def speaks(name: str) -> bool:
     """Whether a name says what kind of line it is and nothing else, so it is no piece's: "Cut lines", "layer 2"."""
     parts = {part for part in spoken(name) if not part.isdigit()}
-    known = {word for _, words in SAID for word in words.split()} | set(MATERIALS) | BESIDES
-    known |= {f"{word}s" for word in known}
-    return all(part in known or part in {a + b for a in known for b in known} for part in parts)
+    return all(part in _kinds() or _chinese_kind(part) for part in parts)
+
+
+def _chinese_kind(part: str) -> bool:
+    return any(word in part for _, words in CHINESE for word in words.split())
