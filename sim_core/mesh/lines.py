@@ -30,7 +30,8 @@ class _Chains:
         self.owner = np.repeat(np.arange(len(chains)), counts)
         self.step = np.concatenate([np.arange(count) for count in counts])
         behind = [chain[: len(steps)] for chain, steps in zip(chains, ahead, strict=True)]
-        self.tree = STRtree(linestrings(np.stack([np.concatenate(behind), np.concatenate(ahead)], axis=1)))
+        drawn = linestrings(np.stack([np.concatenate(behind), np.concatenate(ahead)], axis=1))
+        self.tree = STRtree(np.asarray(drawn))
         self.put: dict[int, list[tuple[float, np.ndarray]]] = {}
 
     def ends(self, step: int) -> tuple[int, int, int]:

@@ -11,6 +11,7 @@ from sim_core.mesh.angles import small_angles
 from sim_core.mesh.crossings import crossed_steps, first_crossing
 from sim_core.mesh.growth import PATIENCE, grow_points
 from sim_core.mesh.incremental import inner_faces, joined_points
+from sim_core.mesh.nearest import nearest_others, size_boxes
 from sim_core.mesh.outline import clean_contours
 from sim_core.mesh.quality import quality
 from sim_core.mesh.report import deviation
@@ -244,6 +245,22 @@ def test_the_sweep_tells_simple_polygons(seed):
         points = np.array([[0.0, 0], [1, 0], [0, 1]])
     found = first_crossing(points, np.roll(np.arange(len(points)), -1))
     assert (found == (-1, -1)) == Polygon(points).is_valid
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_nearest_of_others_is_found(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 300))
+    points = rng.integers(0, 20, (count, 2)) / 20 if seed % 2 else rng.random((count, 2)) ** 5
+    places, reach = rng.random((50, 2)), rng.random(50) * 0.3
+    known = points[rng.integers(0, count, (50, 4))]
+    boxes = size_boxes(points, np.zeros(count))
+    found = nearest_others(places, reach, known, boxes.points, boxes.boxes, boxes.first)
+    away = np.hypot(*(boxes.points - places[:, None]).transpose(2, 0, 1))
+    away[(boxes.points == known[:, :, None]).all(axis=3).any(axis=1)] = np.inf
+    least = away.min(axis=1)
+    assert ((found >= 0) == (least < reach)).all()
+    assert (away[np.arange(50), found] == least)[found >= 0].all()
 
 
 @pytest.mark.parametrize("shape", SHAPES)
