@@ -5,12 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim_core.mesh.angles import small_angles
 from sim_core.mesh.graded import graded_points
 from sim_core.mesh.growth import CLOSED, Growth, grow_points
 from sim_core.mesh.lattice import staggered_points
 from sim_core.mesh.layer import apart, layer_points
 from sim_core.mesh.raycast import distance_below, inside, keep_points
-from sim_core.mesh.refinement import refined, small_angles
+from sim_core.mesh.refinement import refined
 from sim_core.mesh.repair import SPOTS, repaired
 from sim_core.mesh.sampling import Rim
 from sim_core.mesh.sizes import SizeField
@@ -28,7 +29,7 @@ PASSES = 1  # of smoothing, each of SWEEPS rounds over the band, and growth agai
 SWEEPS = 5
 ADDED, ADDED_AT_LEAST = (
     32,
-    10_000,
+    100_000,
 )  # points put in where angles are small: by the point there is, and in any case
 GRADED_PASSES = 4
 POLISHES = 4

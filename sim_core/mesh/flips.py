@@ -11,11 +11,24 @@ from numba import njit
 
 from sim_core.mesh.exact import incircle, orient
 
-__all__ = ["KEPT", "Flips", "corner_of", "fix", "flip", "legal", "walk", "with_point", "with_point_on"]
+__all__ = [
+    "KEPT",
+    "Flips",
+    "corner_of",
+    "enlarged",
+    "fix",
+    "flip",
+    "legal",
+    "longer",
+    "walk",
+    "with_point",
+    "with_point_on",
+]
 
 AHEAD = (1, 2, 0)
 LONGEST = 1_000_000  # faces that a walk may pass
 KEPT = -2
+OF_FACES = ("faces", "across", "fixed", "inner", "slot")
 
 
 class Flips(NamedTuple):
@@ -35,6 +48,23 @@ class Flips(NamedTuple):
     queue: np.ndarray
     count: np.ndarray
     stack: np.ndarray
+
+
+def longer(array: np.ndarray, length: int, filled) -> np.ndarray:
+    """An array of this length that begins with another one."""
+    found = np.full((length, *array.shape[1:]), filled, array.dtype)
+    found[: len(array)] = array
+    return found
+
+
+def enlarged(f: Flips, vertices: int) -> Flips:
+    """The same triangulation with room for so many vertices. The queue must be empty: it gets more room too."""
+    faces = len(f.faces) + 2 * (vertices - len(f.places))
+    filled = {"across": -1, "slot": -1}
+    found = {name: longer(getattr(f, name), faces, filled.get(name, 0)) for name in OF_FACES}
+    found |= {"places": longer(f.places, vertices, 0), "at": longer(f.at, vertices, 0)}
+    queue, stack = np.zeros((3 * faces, 2), np.int32), np.zeros(6 * faces, np.int32)
+    return Flips(**found, queue=queue, count=f.count, stack=stack)
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,4 +1,5 @@
-"""The least of size + gradation * distance over many points: boxes within boxes, so that most are never looked at."""
+"""The least of size + gradation * distance over many points, and the nearest of them: boxes within boxes, so that most
+are never looked at."""
 
 from typing import NamedTuple
 
@@ -6,7 +7,7 @@ import numpy as np
 from numba import njit
 from scipy.spatial import KDTree
 
-__all__ = ["SizeBoxes", "least_sizes", "size_boxes"]
+__all__ = ["SizeBoxes", "least_sizes", "nearest_others", "size_boxes"]
 
 FANOUT = 8  # points in a box, boxes in a wider box
 
@@ -76,6 +77,54 @@ def least_sizes(places, most, gradation, points, sizes, boxes, first):
                 top += 1
         found[k] = best
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def nearest_others(places, reach, known, points, boxes, first):
+    """Per place (n, 2) [m] the nearest point that is nearer than reach (n,) [m] and at none of its known places
+    (n, k, 2), or -1; the rest as `SizeBoxes`. (n,) int64
+
+    Not by scipy's KDTree: where thousands lie just outside the reach, as along a star's rings, it looks at most.
+    """
+    found = np.full(places.shape[0], -1)
+    levels = first.size - 1
+    waiting = np.zeros((levels * FANOUT + 1, 2), np.int64)
+    for k in range(places.shape[0]):
+        x, y, best = places[k, 0], places[k, 1], reach[k]
+        waiting[0, 0], waiting[0, 1] = levels - 1, 0
+        top = 1
+        while top > 0:
+            top -= 1
+            level, number = waiting[top, 0], waiting[top, 1]
+            begin = number * FANOUT
+            if level > 0:
+                from_box = first[level - 1]
+                for m in range(begin, min(begin + FANOUT, first[level] - from_box)):
+                    if _away(boxes, from_box + m, x, y) < best:
+                        waiting[top, 0], waiting[top, 1] = level - 1, m
+                        top += 1
+                continue
+            for m in range(begin, min(begin + FANOUT, points.shape[0])):
+                away = np.hypot(points[m, 0] - x, points[m, 1] - y)
+                if away < best and not _among(known[k], points[m]):
+                    best, found[k] = away, m
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def _among(places, point):
+    for k in range(places.shape[0]):
+        if places[k, 0] == point[0] and places[k, 1] == point[1]:
+            return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def _away(boxes, box, x, y):
+    """The distance to a box; a little less, for rounding."""
+    dx = max(boxes[box, 0] - x, max(x - boxes[box, 2], 0.0))
+    dy = max(boxes[box, 1] - y, max(y - boxes[box, 3], 0.0))
+    return np.sqrt(dx * dx + dy * dy) * (1 - 1e-14)
 
 
 @njit(cache=True, error_model="numpy")

@@ -12,17 +12,30 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.flips import AHEAD, KEPT, Flips, corner_of, legal, walk, with_point, with_point_on
+from sim_core.mesh.angles import edge_keys, sharp_corners
+from sim_core.mesh.flips import (
+    AHEAD,
+    KEPT,
+    Flips,
+    corner_of,
+    enlarged,
+    legal,
+    longer,
+    walk,
+    with_point,
+    with_point_on,
+)
 from sim_core.mesh.incremental import joined_points
 
-__all__ = ["Refined", "refined", "small_angles"]
+__all__ = ["Refined", "refined"]
 
 WANTED = np.cos(np.radians(30.5))
 OFF = 0.475 * np.sqrt((1 + WANTED) / (1 - WANTED))  # of the shortest side: height of an off-centre above it
-SHARP = np.radians(60.0)
 FINER = 16.0  # times: from one round to the next sides get shorter
-ROUNDS = 5
-HOPELESS = 6  # times the points that may be put in: a round that seems to need so many is not begun
+ROUNDS = 7  # the last goes down to 4e-9 of the edge: contours have no points nearer than 1e-7 of their extent
+HOPELESS = 4  # times the points that may be put in: a round that seems to need so many is not begun
+DOUBLING = 8  # points put in for each time that sides double away from a short one
+ROOM = 4096  # points there is room for at first
 SAME = 1e-5  # distances from a corner that differ by less than this share are one
 
 
@@ -41,28 +54,34 @@ def refined(
 
     places: (V, 2), y up, different.  steps: (m, 2) directed, the cloth on their left, inner lines both ways.
     kept: (m,) bool, steps that must not be divided.  edge: [m] wanted; triangles with a side below a 16th of it get
-    no points in the first round; that falls to a 16th in each of five.  most: points that may be put in; a round that
+    no points in the first round; that falls to a 16th in each of seven.  most: points that may be put in; a round that
     takes more, as long slits do that are far narrower than the edge, is undone and the last.
     Returns None where the steps are no edges of a triangulation.
     """
-    flips, lost = joined_points(places, steps, most)
+    flips, lost = joined_points(places, steps, min(most, ROOM))
     if lost >= 0:
         return None
     count = len(places)
     _keep(flips, steps[kept])
-    sharp = np.zeros(len(flips.places), bool)
-    sharp[:count] = _sharp_corners(places, steps)
-    divided = np.zeros((most, 3), np.int64)
+    sharp = longer(sharp_corners(places, steps), len(flips.places), False)
     corner = np.full(len(flips.places), -1, np.int64)
     for a, b in ((0, 1), (1, 0)):
         legs = sharp[steps[:, a]]
         corner[steps[legs, b]] = steps[legs, a]
+    divided = np.zeros((len(flips.places) - count, 3), np.int64)
     made, end, least = 0, count + 4, edge
     for _ in range(ROUNDS):
         least /= FINER
         if _needed(flips, least) > HOPELESS * most:
             break
-        more, closed = _refine(flips, sharp, corner, divided, made, least, count + 4 + most)
+        more, closed = made, False
+        while not closed and flips.count[0] < count + 4 + most:
+            if flips.count[0] == len(flips.places):
+                room = min(count + 4 + most, 2 * len(flips.places))
+                flips = enlarged(flips, room)
+                sharp, corner = longer(sharp, room, False), longer(corner, room, -1)
+                divided = longer(divided, room - count, 0)
+            more, closed = _refine(flips, sharp, corner, divided, more, least)
         if not closed:
             break
         made, end = more, int(flips.count[0])
@@ -72,52 +91,16 @@ def refined(
     return Refined(np.concatenate([places, new]), number[divided[:made]])
 
 
-def small_angles(places: np.ndarray, faces: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Faces (F,) bool with an angle below 30 degrees that is none of a corner between two steps (m, 2)."""
-    count = len(places)
-    corners = places[faces]
-    sides = np.roll(corners, -1, axis=1) - corners  # from each corner to the next
-    length = np.hypot(sides[..., 0], sides[..., 1])
-    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
-    on = np.isin(_keys(ends, count), _keys(steps, count))
-    behind = np.roll(sides, 1, axis=1)
-    cosine = -(sides * behind).sum(axis=2) / (length * np.roll(length, 1, axis=1))
-    given = on & np.roll(on, 1, axis=1)
-    return ((cosine > np.cos(np.radians(30.0))) & ~given).any(axis=1)
-
-
-def _keys(ends: np.ndarray, count: int) -> np.ndarray:
-    """One number for each undirected edge (..., 2) between `count` points."""
-    return np.sort(ends, axis=-1).astype(np.int64) @ (count, 1)
-
-
-def _sharp_corners(places: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Points (V,) bool where two steps meet at less than 60 degrees."""
-    pairs = np.unique(np.sort(steps, axis=1), axis=0)
-    both = np.concatenate([pairs, pairs[:, ::-1]])
-    along = places[both[:, 1]] - places[both[:, 0]]
-    angle = np.arctan2(along[:, 1], along[:, 0])
-    order = np.lexsort((angle, both[:, 0]))
-    owner, angle = both[order, 0], angle[order]
-    first = np.flatnonzero(np.append(True, owner[1:] != owner[:-1]))
-    last = np.append(first[1:], len(owner)) - 1
-    ahead = np.append(angle[1:], 0.0)
-    ahead[last] = angle[first] + 2 * np.pi
-    sharp = np.zeros(len(places), bool)
-    sharp[owner[ahead - angle < SHARP]] = True
-    return sharp
-
-
 def _keep(f: Flips, steps: np.ndarray) -> None:
     """Mark steps (m, 2) that must not be divided, on both sides."""
     made, count = int(f.count[1]), len(f.places)
     ends = np.stack([f.faces[:made], np.roll(f.faces[:made], -1, axis=1)], axis=2)
-    f.slot[:made][np.isin(_keys(ends, count), _keys(steps, count))] = KEPT
+    f.slot[:made][np.isin(edge_keys(ends, count), edge_keys(steps, count))] = KEPT
 
 
 @njit(cache=True, error_model="numpy")
-def _refine(f, sharp, corner, divided, made, least, most):
-    """Put points in; returns how many steps are divided, and whether all was done with at most `most` vertices.
+def _refine(f, sharp, corner, divided, made, least):
+    """Put points in; returns how many steps are divided, and whether all was done in the room there is.
 
     corner: (n,) of points of divided steps the sharp corner whose circle they lie on, or -1.
     """
@@ -127,7 +110,7 @@ def _refine(f, sharp, corner, divided, made, least, most):
     for t in range(f.count[1]):
         _note(f, t, least, waiting)
     done = 0
-    while len(waiting) and f.count[0] < most:
+    while len(waiting) and f.count[0] < f.places.shape[0]:
         square, t, a, b, c = heappop(waiting)  # the shortest side first: that makes the fewest points
         done += 1
         if f.faces[t, 0] != a or f.faces[t, 1] != b or f.faces[t, 2] != c:
@@ -166,14 +149,32 @@ def _refine(f, sharp, corner, divided, made, least, most):
 
 @njit(cache=True, error_model="numpy")
 def _needed(f, least):
-    """About how many points the small angles need at most: what a slit as long and narrow as each face needs."""
+    """About how many points the small angles need."""
     waiting, total = [(0.0, 0, 0, 0, 0)], 0.0
     for t in range(f.count[1]):
         waiting.clear()
         _note(f, t, least, waiting)
         if len(waiting):
-            _, square, _, both = _shortest(f, t)
-            total += np.sqrt(both / square)
+            total += _needed_along(f, t)
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def _needed_along(f, t):
+    """What a face with a short side needs: a few points for each time that sides double away from it, and where a
+    long side is a step, so that the face is a piece of a slit, one for each width that the slit is long there."""
+    k, square, _, both = _shortest(f, t)
+    short, long_ = np.sqrt(square), np.sqrt(both / 2)
+    total = DOUBLING * np.log2(max(long_ / short, 2.0))
+    i, j = AHEAD[k], AHEAD[AHEAD[k]]
+    if f.fixed[t, i] != f.fixed[t, j]:
+        # the slit is as wide at the far end as the next face's side from the apex to the other wall
+        over = j if f.fixed[t, i] else i
+        u, apex = f.across[t, over], f.faces[t, j]
+        far = f.faces[u, AHEAD[AHEAD[corner_of(f.faces, u, f.faces[t, AHEAD[over]])]]]
+        wide = np.hypot(f.places[far, 0] - f.places[apex, 0], f.places[far, 1] - f.places[apex, 1])
+        ratio = wide / short
+        total += long_ / short * (np.log(ratio) / (ratio - 1) if abs(ratio - 1) > 1e-6 else 1.0)
     return total
 
 

@@ -8,6 +8,7 @@ from exact_delaunay import delaunay_faults
 
 from sim_core.errors import FileProblem, OutlineError, OutlineWarning
 from sim_core.mesh import SizeField, panel_mesh, quality, staggered_points
+from sim_core.mesh import lines as inner_lines
 from sim_core.mesh.graded import lattice_near
 from sim_core.mesh.outline import clean_contours, sharpest_corner
 from sim_core.mesh.sizes import read_size_field
@@ -68,6 +69,48 @@ BAD_LINES = {
 def test_bad_lines_are_named(message):
     with pytest.raises(OutlineError, match=message):
         panel_mesh(RECTANGLE, edge=0.05, constraints=BAD_LINES[message])
+
+
+def spokes(count: int) -> list:
+    """Lines that meet at one point."""
+    t = np.arange(count) * 2 * np.pi / count
+    return [[[0.5, 0.35], [0.5 + 0.3 * np.cos(a), 0.35 + 0.3 * np.sin(a)]] for a in t]
+
+
+CROWDS = {
+    "at one point": spokes,
+    "on one side": lambda count: [[[x, 0], [x, 0.3]] for x in np.linspace(0.01, 0.99, count)],
+    "on one line": lambda count: (
+        [[[0.01, 0.3], [0.99, 0.3]]] + [[[x, 0.3], [x, 0.6]] for x in np.linspace(0.02, 0.98, count)]
+    ),
+    "apart": lambda count: [[[x, 0.1], [x, 0.6]] for x in np.linspace(0.01, 0.99, count)],
+}
+
+
+@pytest.mark.parametrize("name", CROWDS)
+def test_lines_are_not_compared_with_all_others(name, monkeypatch):
+    """Each end with each line: 8 million comparisons for two thousand lines."""
+    tried = []
+    foot = inner_lines._Chains.foot
+    monkeypatch.setattr(inner_lines._Chains, "foot", lambda *given: tried.append(1) or foot(*given))
+    lines, contours, kept = inner_lines.clean_lines(CROWDS[name](2000), clean_contours(RECTANGLE, ()))
+    assert len(tried) <= 8 * 2000
+    assert len(kept) == len(contours[0]) - 4 == (2000 if name == "on one side" else 0)
+    assert len(lines) == {"on one line": 2000 + 1999 + 2}.get(name, 2000)
+
+
+@pytest.mark.parametrize("name", CROWDS)
+def test_crowds_of_lines_are_meshed(name):
+    assert_sound(panel_mesh(RECTANGLE, edge=0.05, constraints=CROWDS[name](60)))
+
+
+def test_a_line_that_is_given_twice_is_one():
+    line = [[0.1, 0.1], [0.5, 0.6]]
+    for lines in ([line, line], [line, line[::-1]], [line, [line[0], [0.3, 0.35]]]):
+        found = inner_lines.clean_lines(lines, clean_contours(RECTANGLE, ()))[0]
+        assert sum(np.hypot(*np.diff(part, axis=0).T).sum() for part in found) == pytest.approx(
+            np.hypot(0.4, 0.5)
+        )
 
 
 def test_lines_do_not_go_with_sampled_contours():

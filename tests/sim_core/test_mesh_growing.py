@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 from exact_delaunay import delaunay_faults
 from growing_shapes import SHAPES, small_holes
+from mesh_polygons import random_panel
 
-from sim_core.mesh import SizeField, panel_mesh, triangulate
+from sim_core.mesh import SizeField, panel_mesh, refinement, triangulate
+from sim_core.mesh.angles import small_angles
 from sim_core.mesh.crossings import crossed_steps, first_crossing
 from sim_core.mesh.growth import PATIENCE, grow_points
 from sim_core.mesh.incremental import inner_faces, joined_points
+from sim_core.mesh.nearest import nearest_others, size_boxes
 from sim_core.mesh.outline import clean_contours
 from sim_core.mesh.quality import quality
-from sim_core.mesh.refinement import small_angles
 from sim_core.mesh.report import deviation
 from sim_core.mesh.sampling import sampled_rim
 from sim_core.mesh.verify import mesh_fault
@@ -131,6 +133,49 @@ def test_sizes_grade_away_from_small_holes():
     assert np.array_equal(again.vertices, mesh.vertices)
 
 
+NARROW = {
+    "a side of a millionth of the edge": 180,
+    "two of them, beside other small angles": 381,
+    "corners that nearly meet": 385,
+    "strips": (455, 534, 550, 606, 678),  # up to fourteen thousand times longer than wide
+}
+
+
+@pytest.mark.parametrize("name", NARROW)
+def test_short_sides_and_strips_get_the_points_they_need(name):
+    for seed in np.atleast_1d(NARROW[name]).tolist():
+        outline, holes, edge, _ = random_panel(seed)
+        mesh = panel_mesh(outline, holes=holes, edge=edge, quality="best")
+        assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary) is None
+        assert not small_angles(mesh.vertices, mesh.faces, outline_of(mesh)).any(), seed
+        assert len(mesh.vertices) < 25_000
+
+
+def test_a_slit_that_would_need_hundreds_of_thousands_of_points_stays():
+    """Cloth between two teeth of a hole: 0.7 edges long, 2.6e-6 edges wide where it is widest."""
+    outline, holes, edge, _ = random_panel(621)
+    mesh = panel_mesh(outline, holes=holes, edge=edge, quality="best")
+    assert mesh_fault(mesh.vertices, mesh.faces, mesh.boundary) is None
+    small = small_angles(mesh.vertices, mesh.faces, outline_of(mesh))
+    sides = mesh.vertices[mesh.faces[small]]
+    assert (np.hypot(*(sides - np.roll(sides, 1, axis=1)).transpose(2, 0, 1)).min(axis=1) < 3e-6 * edge).all()
+    assert small.sum() <= 5
+
+
+def test_refinement_takes_room_as_it_needs_it(monkeypatch):
+    """Room for all points that may be put in was 2 GB for a small hole in a panel of a million points."""
+    rooms = []
+
+    def watched(places, steps, room):
+        rooms.append(room)
+        return joined_points(places, steps, room)
+
+    monkeypatch.setattr(refinement, "joined_points", watched)
+    outline, holes, edge = small_holes(100)
+    panel_mesh(outline, holes=holes, edge=edge, quality="best")
+    assert 0 < max(rooms) <= 4096
+
+
 def test_sharp_corners_keep_their_own_angle_and_no_more():
     outline = np.array([[0.0, 0], [1, 0], [1, 0.1]])  # 5.7 degrees at one corner
     mesh = panel_mesh(outline, edge=0.1, quality="best")
@@ -200,6 +245,22 @@ def test_the_sweep_tells_simple_polygons(seed):
         points = np.array([[0.0, 0], [1, 0], [0, 1]])
     found = first_crossing(points, np.roll(np.arange(len(points)), -1))
     assert (found == (-1, -1)) == Polygon(points).is_valid
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_nearest_of_others_is_found(seed):
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(1, 300))
+    points = rng.integers(0, 20, (count, 2)) / 20 if seed % 2 else rng.random((count, 2)) ** 5
+    places, reach = rng.random((50, 2)), rng.random(50) * 0.3
+    known = points[rng.integers(0, count, (50, 4))]
+    boxes = size_boxes(points, np.zeros(count))
+    found = nearest_others(places, reach, known, boxes.points, boxes.boxes, boxes.first)
+    away = np.hypot(*(boxes.points - places[:, None]).transpose(2, 0, 1))
+    away[(boxes.points == known[:, :, None]).all(axis=3).any(axis=1)] = np.inf
+    least = away.min(axis=1)
+    assert ((found >= 0) == (least < reach)).all()
+    assert (away[np.arange(50), found] == least)[found >= 0].all()
 
 
 @pytest.mark.parametrize("shape", SHAPES)
