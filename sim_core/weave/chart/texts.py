@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim_core.weave.words import ASSUMED
+from sim_core.weave.sources import ASSUMED
 
 if TYPE_CHECKING:
     from sim_core.weave.chart.values import Swatch, View, Window
