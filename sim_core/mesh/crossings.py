@@ -1,4 +1,4 @@
-"""Where segments meet that should not: of the contours that are given, and of their samples. Exact.
+"""Where segments meet that should not, of contours or their samples; which contours are close, and which lie in which.
 
 A line sweeps from left to right over the segments and keeps those it cuts in order of height, in a treap; only
 neighbours in that order are tried (Shamos and Hoey 1976), so n segments take n log n however long they are.
@@ -11,7 +11,7 @@ from numba import njit
 
 from sim_core.mesh.exact import orient
 
-__all__ = ["crossed_steps", "first_crossing"]
+__all__ = ["close_contours", "crossed_steps", "enclosing", "first_crossing"]
 
 NONE = -1
 
@@ -59,6 +59,44 @@ def crossed_steps(lines: list[np.ndarray]) -> list[np.ndarray]:
     return np.split(crossed, np.cumsum([len(line) - 1 for line in lines])[:-1])
 
 
+def close_contours(contours: list[np.ndarray], near: float) -> np.ndarray:
+    """Numbers of the contours (n, 2) [m], each simple, that meet another or come within `near` [m] of it.
+
+    Of contours that cross, one of each pair at least is named; of others, both.
+    """
+    owner = np.repeat(np.arange(len(contours)), [len(contour) for contour in contours])
+    crossed = np.concatenate(crossed_steps([np.vstack([contour, contour[:1]]) for contour in contours]))
+    a = np.concatenate(contours)
+    b = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
+    found = {*owner[crossed].tolist(), *_near_corners(a, owner, 2 * near)}
+    # What does not cross any more is swept twice: a steep side beside a corner is not under the line that stands there.
+    a, b, owner = a[~crossed], b[~crossed], owner[~crossed]
+    for axes in ([0, 1], [1, 0]):
+        sweep, events = _swept(a[:, axes], b[:, axes], np.zeros((0, 2)), np.zeros(0, np.int64))
+        found |= set(owner[_beside(sweep, events, owner, near)].tolist())
+    return np.array(sorted(found), np.int64)
+
+
+def _near_corners(points: np.ndarray, owner: np.ndarray, near: float) -> set[int]:
+    """Contours that have a point (n, 2) within `near` of one of another's."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
+    return set(owner[pairs[owner[pairs[:, 0]] != owner[pairs[:, 1]]]].ravel().tolist())
+
+
+def enclosing(contours: list[np.ndarray]) -> np.ndarray:
+    """Number of the innermost contour around each of contours (n, 2) [m] that do not meet; -1: none."""
+    owner = np.repeat(np.arange(len(contours)), [len(contour) for contour in contours])
+    a = np.concatenate(contours)
+    b = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
+    x, y = a.T
+    area = np.bincount(owner, x * b[:, 1] - b[:, 0] * y)
+    sweep, events = _swept(a, b, np.zeros((0, 2)), np.zeros(0, np.int64))
+    ahead = (sweep.left == a).all(axis=1)
+    return _around(sweep, events, owner, ahead == (area[owner] > 0), len(contours))
+
+
 def _swept(a, b, points, following) -> tuple[_Sweep, np.ndarray]:
     """Segments a b (n, 2) ready to be swept, and the order of their ends: k ends, n + k begins."""
     turned = (a[:, 0] > b[:, 0]) | ((a[:, 0] == b[:, 0]) & (a[:, 1] > b[:, 1]))
@@ -104,6 +142,57 @@ def _meeting(s, events, every):
                 held[high] = False
                 high = beyond
     return NONE, NONE, marked
+
+
+@njit(cache=True)
+def _beside(s, events, owner, near):
+    """Marks of the segments that have an end of another contour's within `near`, and of the segment it ends."""
+    count = s.left.shape[0]
+    marked, held = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
+    for event in events:
+        k = event % count
+        if event >= count:
+            held[k] = _enter(s, k) < 0
+        if not held[k]:
+            continue
+        end = s.left[k] if event >= count else s.right[k]
+        for other in (s.below[k], s.over[k]):
+            if (
+                other >= 0
+                and owner[other] != owner[k]
+                and _distance2(end, s.left[other], s.right[other]) <= near * near
+            ):
+                marked[k] = marked[other] = True
+        if event < count:
+            _leave(s, k)
+    return marked
+
+
+@njit(cache=True)
+def _around(s, events, owner, cloth_above, contours):
+    """The innermost contour around each: of the segment below its first point, the one whose inside lies above it."""
+    count = s.left.shape[0]
+    around, begun = np.full(contours, NONE, np.int64), np.zeros(contours, np.bool_)
+    for event in events:
+        k = event % count
+        if event < count:
+            _leave(s, k)
+            continue
+        _enter(s, k)
+        mine, low = owner[k], s.below[k]
+        if not begun[mine]:
+            begun[mine] = True
+            if low >= 0:
+                around[mine] = owner[low] if cloth_above[low] else around[owner[low]]
+    return around
+
+
+@njit(cache=True)
+def _distance2(p, a, b):
+    """Squared distance of a point from a segment."""
+    ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], p[0] - a[0], p[1] - a[1]
+    t = min(max((ux * vx + uy * vy) / max(ux * ux + uy * uy, 1e-300), 0.0), 1.0)
+    return (vx - t * ux) ** 2 + (vy - t * uy) ** 2
 
 
 @njit(cache=True)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim_core.errors import OutlineError, OutlineWarning
+from sim_core.mesh.crossings import close_contours
 
 __all__ = ["Merged", "merged"]
 
@@ -69,10 +70,16 @@ def _touching(cloth, holes: list, near: float) -> list[int]:
     """Holes that touch the outline, or another hole without one lying in the other."""
     from shapely import STRtree
 
-    found = set(STRtree([cloth.exterior]).query(holes, predicate="dwithin", distance=near)[0].tolist())
-    one, other = STRtree(holes).query(holes, predicate="dwithin", distance=near)
-    for k, m in zip(one[one < other].tolist(), other[one < other].tolist(), strict=True):
-        if not holes[k].contains(holes[m]) and not holes[m].contains(holes[k]):
+    # Boxes of holes may overlap, each with each, where none is close: they are asked only of those that are.
+    close = close_contours([np.array(shape.exterior.coords)[:-1] for shape in (cloth, *holes)], near)
+    close = close[close > 0] - 1
+    if not close.size:
+        return []
+    asked = np.array(holes)[close]
+    found = set(close[STRtree([cloth.exterior]).query(asked, predicate="dwithin", distance=near)[0]].tolist())
+    one, other = STRtree(holes).query(asked, predicate="dwithin", distance=near)
+    for k, m in zip(close[one].tolist(), other.tolist(), strict=True):
+        if k != m and not holes[k].contains(holes[m]) and not holes[m].contains(holes[k]):
             found |= {k, m}
     return sorted(found)
 

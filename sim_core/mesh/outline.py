@@ -5,7 +5,7 @@ from math import fsum, isfinite, sqrt
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.crossings import first_crossing
+from sim_core.mesh.crossings import enclosing, first_crossing
 from sim_core.mesh.merging import merged
 
 __all__ = [
@@ -190,25 +190,12 @@ def _check_crossings(named: list[tuple[str, np.ndarray]]) -> None:
 
 
 def _check_nesting(names: list[str], contours: list[np.ndarray]) -> None:
-    from shapely import STRtree, box, points
-
-    from sim_core.mesh.raycast import inside
-
-    if len(contours) == 1:
-        return
-    first = np.array([contour[0] for contour in contours[1:]])
-    outside = np.flatnonzero(~inside(first, contours[:1]))
-    if outside.size:
+    around = enclosing(contours)[1:]
+    if (outside := np.flatnonzero(around < 0)).size:
         raise OutlineError(f"{names[outside[0] + 1]}: lies outside the outline – holes belong inside it")
-    rims = [(*contour.min(axis=0), *contour.max(axis=0)) for contour in contours[1:]]
-    point, other = STRtree(box(*np.array(rims).T)).query(points(first))
-    for m in np.unique(other[point != other]):
-        within = point[(other == m) & (point != m)]
-        nested = within[inside(first[within], [contours[m + 1]])]
-        if nested.size:
-            raise OutlineError(
-                f"{names[nested[0] + 1]}: lies inside {names[m + 1]} – holes must not be nested"
-            )
+    if (nested := np.flatnonzero(around > 0)).size:
+        inner, outer = names[nested[0] + 1], names[around[nested[0]]]
+        raise OutlineError(f"{inner}: lies inside {outer} – holes must not be nested")
 
 
 def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:
