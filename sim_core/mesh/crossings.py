@@ -79,9 +79,9 @@ def close_contours(contours: list[np.ndarray], near: float) -> np.ndarray:
 
 def _near_corners(points: np.ndarray, owner: np.ndarray, near: float) -> set[int]:
     """Contours that have a point (n, 2) within `near` of one of another's."""
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
+    pairs = KDTree(points).query_pairs(near, output_type="ndarray")
     return set(owner[pairs[owner[pairs[:, 0]] != owner[pairs[:, 1]]]].ravel().tolist())
 
 
