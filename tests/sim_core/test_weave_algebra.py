@@ -16,8 +16,9 @@ from sim_core.weave.generators import (
     satin_of_six,
     weft_faced,
 )
+from sim_core.weave.sources import dressed
 from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.words import draft_of_words, dressed, motif_of
+from sim_core.weave.words import draft_of_words, motif_of
 
 RNG = np.random.default_rng(5)
 

@@ -12,7 +12,7 @@ from sim_core.weave.lines import resampled
 from sim_core.weave.particle_forces import STATIC, contact_forces
 from sim_core.weave.particles import NotAtRest, is_figure
 from sim_core.weave.relaxation import beam_stiffness
-from sim_core.weave.words import dressed
+from sim_core.weave.sources import dressed
 
 NOTHING = np.zeros((0, 0, 2))
 

@@ -4,7 +4,7 @@ from time import monotonic, sleep
 
 from sim_core.weave import plain, relax_particles
 from sim_core.weave.progress import shown
-from sim_core.weave.words import dressed
+from sim_core.weave.sources import dressed
 
 
 def heard(capsys, words: str, patience: float = 60.0) -> bool:
