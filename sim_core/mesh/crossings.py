@@ -64,10 +64,8 @@ def close_contours(contours: list[np.ndarray], near: float) -> np.ndarray:
 
     Of contours that cross, one of each pair at least is named; of others, both.
     """
-    owner = np.repeat(np.arange(len(contours)), [len(contour) for contour in contours])
+    a, b, owner = _steps(contours)
     crossed = np.concatenate(crossed_steps([np.vstack([contour, contour[:1]]) for contour in contours]))
-    a = np.concatenate(contours)
-    b = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
     found = {*owner[crossed].tolist(), *_near_corners(a, owner, 2 * near)}
     # What does not cross any more is swept twice: a steep side beside a corner is not under the line that stands there.
     a, b, owner = a[~crossed], b[~crossed], owner[~crossed]
@@ -87,14 +85,19 @@ def _near_corners(points: np.ndarray, owner: np.ndarray, near: float) -> set[int
 
 def enclosing(contours: list[np.ndarray]) -> np.ndarray:
     """Number of the innermost contour around each of contours (n, 2) [m] that do not meet; -1: none."""
-    owner = np.repeat(np.arange(len(contours)), [len(contour) for contour in contours])
-    a = np.concatenate(contours)
-    b = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
+    a, b, owner = _steps(contours)
     x, y = a.T
     area = np.bincount(owner, x * b[:, 1] - b[:, 0] * y)
     sweep, events = _swept(a, b, np.zeros((0, 2)), np.zeros(0, np.int64))
     ahead = (sweep.left == a).all(axis=1)
     return _around(sweep, events, owner, ahead == (area[owner] > 0), len(contours))
+
+
+def _steps(contours: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Both ends (n, 2) [m] of every step of closed contours, and the number (n,) of its contour."""
+    owner = np.repeat(np.arange(len(contours)), [len(contour) for contour in contours])
+    ends = np.concatenate([np.roll(contour, -1, axis=0) for contour in contours])
+    return np.concatenate(contours), ends, owner
 
 
 def _swept(a, b, points, following) -> tuple[_Sweep, np.ndarray]:

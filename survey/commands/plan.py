@@ -29,22 +29,20 @@ Told = tuple[dict[str, Any], list[str]]
 
 
 def _share(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0.0 < value < 1.0:
-        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no figure between 0 and 1")
-    return value
+    return _figure(text, 1.0, "between 0 and 1")
 
 
 def _above(text: str) -> float:
+    return _figure(text, 1e6, "above 0")
+
+
+def _figure(text: str, below: float, wanted: str) -> float:
     try:
         value = float(text)
     except ValueError:
         value = -1.0
-    if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no figure above 0")
+    if not 0.0 < value < below:
+        raise argparse.ArgumentTypeError(f"{text[:20]!r} is no figure {wanted}")
     return value
 
 

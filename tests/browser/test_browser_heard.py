@@ -2,7 +2,7 @@
 
 import pytest
 from bench.axe import violations
-from bench.browser import CHOOSE, PATIENCE
+from bench.browser import CHOOSE, PATIENCE, stand_before
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
@@ -81,15 +81,7 @@ def test_hall(page):
 
 def test_near_an_exhibit(page):
     closed(page)
-    page.evaluate(
-        """async (id) => {
-        const {standBefore} = await import("/static/ui/map_geometry.js");
-        const scene = await (await fetch("/api/scene")).json();
-        const {x, z, yaw} = standBefore(scene.exhibits.find((exhibit) => exhibit.id === id), scene);
-        hall.goTo(x, z, yaw);
-    }""",
-        EXHIBIT,
-    )
+    stand_before(page, EXHIBIT)
     page.locator("[data-testid=caption]").wait_for()
     assert heard(page, "near") == []
 

@@ -7,7 +7,7 @@ import sys
 import urllib.request
 
 import pytest
-from bench.browser import displayed, enter, pose, soon
+from bench.browser import displayed, enter, pose, soon, stand_before
 from bench.track import place, walk, watch
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
@@ -122,21 +122,9 @@ def test_walks_and_is_stopped(page):
     assert displayed(page) == pytest.approx(still, abs=1e-3)
 
 
-def stand_before(page) -> None:
-    page.evaluate(
-        """async (id) => {
-        const {standBefore} = await import("/static/ui/map_geometry.js");
-        const scene = await (await fetch("/api/scene")).json();
-        const {x, z, yaw} = standBefore(scene.exhibits.find((exhibit) => exhibit.id === id), scene);
-        hall.goTo(x, z, yaw);
-    }""",
-        GARMENT,
-    )
-
-
 def test_near_an_exhibit_its_caption_appears_and_enter_opens_it(page):
     closed(page)
-    stand_before(page)
+    stand_before(page, GARMENT)
     page.locator("[data-testid=caption]", has_text="pibo").wait_for(timeout=60_000)
     page.keyboard.press("Enter")
     page.locator("[data-testid=panel]").wait_for(timeout=60_000)
@@ -314,7 +302,7 @@ def test_escape_closes_a_window_over_the_close_up_first(page):
 def test_enter_opens_the_exhibit_one_has_walked_to(page):
     """A window gives the focus back to its button; walking gives it back to the hall."""
     closed(page)
-    stand_before(page)
+    stand_before(page, GARMENT)
     page.focus("[data-testid=settings]")
     page.keyboard.press("Enter")
     page.locator("dialog[open]").wait_for()

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 import os
 import shutil
 import time
-from collections.abc import Coroutine
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import event_loop
 import pytest
 from build_processes import with_scarf
 from content_house import edit, make_house
@@ -30,12 +28,6 @@ from hall_app.tidying import tidy
 
 SHIPPED = Path(__file__).parents[2] / "assets/exhibits/pibo/baked"
 NEWEST = 3  # of a kind are kept
-
-
-def alone(work: Coroutine[Any, Any, None]) -> None:
-    """asyncio.run in a thread of its own: a browser test before may have left its loop in the main thread."""
-    with ThreadPoolExecutor(1) as pool:
-        pool.submit(asyncio.run, work).result()
 
 
 def store_bake(data: Path, name: str, key: str) -> Path:
@@ -87,7 +79,7 @@ def test_a_finished_bake_is_owed_until_it_is_shown(tmp_path: Path, monkeypatch, 
         assert house.models("scarf") is not None
 
     try:
-        alone(story())
+        event_loop.run(story())
     finally:
         house.close()
 
@@ -118,7 +110,7 @@ def test_an_edit_whose_showing_failed_is_shown_at_the_next_look(tmp_path: Path, 
         assert len(shown) == 1
 
     try:
-        alone(story())
+        event_loop.run(story())
     finally:
         house.close()
 
@@ -193,6 +185,6 @@ def test_a_data_folder_that_is_edited_on_and_on_does_not_grow(tmp_path: Path):
         assert len(list((house.data / "bakes").iterdir())) <= NEWEST + 1
 
     try:
-        alone(story())
+        event_loop.run(story())
     finally:
         house.close()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import io
 import threading
-from concurrent.futures import ThreadPoolExecutor
 
+import event_loop
 import pytest
 
 from hall_app import cli
@@ -101,19 +101,13 @@ def test_progress_on_a_terminal_is_written_over():
     assert screen.getvalue().count("\n") == 2
 
 
-def run_alone(work):
-    """asyncio.run in a thread of its own: a browser test before this one leaves its loop running in the main thread."""
-    with ThreadPoolExecutor(1) as pool:
-        return pool.submit(asyncio.run, work).result()
-
-
 def test_work_beside_the_loop_gives_and_raises():
     async def both() -> int:
         with pytest.raises(ZeroDivisionError):
             await beside(broken)
         return await beside(divmod, 7, 2)
 
-    assert run_alone(both()) == (3, 1)
+    assert event_loop.run(both()) == (3, 1)
 
 
 def test_work_beside_the_loop_does_not_keep_it_from_ending():
@@ -127,7 +121,7 @@ def test_work_beside_the_loop_does_not_keep_it_from_ending():
         with pytest.raises(asyncio.TimeoutError):
             await asyncio.wait_for(beside(slow), 0.05)
 
-    run_alone(impatient())
+    event_loop.run(impatient())
     assert not ended.is_set()
     go.set()
     assert ended.wait(30)

@@ -5,19 +5,11 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
-from collections.abc import Coroutine
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
+import event_loop
 import pytest
 
 from hall_app.server.answers import Answers, Work
-
-
-def alone(work: Coroutine[Any, Any, None]) -> None:
-    """asyncio.run in a thread of its own: a browser test before may have left its loop in the main thread."""
-    with ThreadPoolExecutor(1) as pool:
-        pool.submit(asyncio.run, work).result()
 
 
 def test_who_asks_for_the_same_waits_for_the_same():
@@ -35,7 +27,7 @@ def test_who_asks_for_the_same_waits_for_the_same():
         await work.of("key", make)
         assert len(calls) == 2, "what is done is nobody's business here"
 
-    alone(story())
+    event_loop.run(story())
 
 
 def test_few_things_are_done_at_once():
@@ -55,7 +47,7 @@ def test_few_things_are_done_at_once():
         await asyncio.gather(*(work.of(key, make) for key in range(30)))
         assert most == 2
 
-    alone(story())
+    event_loop.run(story())
 
 
 def test_a_failure_belongs_to_all_who_wait_and_is_not_kept():
@@ -73,7 +65,7 @@ def test_a_failure_belongs_to_all_who_wait_and_is_not_kept():
         assert [type(e) for e in await asyncio.gather(*asked, return_exceptions=True)] == [LookupError] * 3
         assert await answers.of(1, "key", lambda: "well") == "well"
 
-    alone(story())
+    event_loop.run(story())
 
 
 def test_who_leaves_takes_nothing_from_the_others():
@@ -90,7 +82,7 @@ def test_who_leaves_takes_nothing_from_the_others():
         go.set()
         assert await second is True
 
-    alone(story())
+    event_loop.run(story())
 
 
 def test_what_comes_late_is_no_answer_of_the_next_state():
@@ -106,4 +98,4 @@ def test_what_comes_late_is_no_answer_of_the_next_state():
         assert await answers.of("new", "key", lambda: "made again") == "new"
         assert await answers.of("old", "key", lambda: "made again") == "made again", "forgotten"
 
-    alone(story())
+    event_loop.run(story())
