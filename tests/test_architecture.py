@@ -11,6 +11,8 @@ ROOT = Path(__file__).parent.parent
 ROOMS = ("sim_core", "survey", "hall_app")
 ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}
 HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib"}
+DOZEN = 12
+UNCOUNTED = {"__init__.py", "__init__.pyi", "__main__.py", "__pycache__", "cli.py", "README.md"}
 
 
 def modules(room: str) -> list[Path]:
@@ -46,10 +48,7 @@ def named(path: Path) -> str:
 
 def imports_within(room: str) -> dict[str, set[str]]:
     """Module -> modules of the same package that it imports, at its top, within functions or for its types."""
-    names = {
-        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path
-        for path in modules(room)
-    }
+    names = {named(path): path for path in modules(room)}
     arrows: dict[str, set[str]] = {}
     for name, path in names.items():
         home = name.split(".") if path.name == "__init__.py" else name.split(".")[:-1]
@@ -74,6 +73,51 @@ def test_no_circle_between_modules(room):
         for name in ground:
             del arrows[name]
     assert not arrows, f"these import one another, or stand on such: {', '.join(sorted(arrows))}"
+
+
+def folders(room: str) -> list[Path]:
+    return sorted({path.parent for path in modules(room)})
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_dozen_lie_side_by_side(room):
+    crowded = {}
+    for folder in folders(room):
+        inside = [path.name for path in folder.iterdir() if path.name not in UNCOUNTED]
+        if len(inside) > DOZEN:
+            crowded[str(folder.relative_to(ROOT))] = len(inside)
+    assert not crowded
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_arrow_upwards_in_a_folder(room):
+    arrows = imports_within(room)
+    for folder in folders(room):
+        home = named(folder / "__init__.py")
+        depth = home.count(".") + 2
+        floors: dict[str, set[str]] = {}
+        for name, targets in arrows.items():
+            if name.startswith(f"{home}."):
+                child = ".".join(name.split(".")[:depth])
+                below = {".".join(t.split(".")[:depth]) for t in targets if t.startswith(f"{home}.")}
+                floors.setdefault(child, set()).update(below - {child})
+        while ground := [child for child, below in floors.items() if not below & set(floors)]:
+            for child in ground:
+                del floors[child]
+        assert not floors, f"{home}: these stand on one another: {', '.join(sorted(floors))}"
+
+
+def test_tests_go_through_public_faces():
+    """A regrouping within a package touches no test: they import packages, rooms of one file and a `cli`."""
+    packages = {named(folder / "__init__.py") for room in ROOMS for folder in folders(room)}
+    inner = set()
+    for path in sorted((ROOT / "tests").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] in ROOMS:
+                alone = node.module.count(".") == 1 or node.module.endswith(".cli")
+                if node.module not in packages and not alone:
+                    inner.add(f"{path.relative_to(ROOT)}: {node.module}")
+    assert not inner, "\n".join(sorted(inner))
 
 
 @pytest.mark.parametrize("room", ROOMS)
