@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from survey.analysis import Analysis, analyse
-    from survey.answer import Answer
-    from survey.api import router
-    from survey.content import QuestionnaireFolder, content_folder, read_questionnaire
     from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError, SurveyError
-    from survey.form import Clip, form_router
-    from survey.mounting import Mounted, mount
-    from survey.questionnaire import Questionnaire
+    from survey.questionnaire.answer import Answer
+    from survey.questionnaire.definition import Questionnaire
+    from survey.questionnaire.files import QuestionnaireFolder, content_folder, read_questionnaire
     from survey.store import Receipt, Store
+    from survey.web.api import router
+    from survey.web.form import Clip, form_router
+    from survey.web.mounting import Mounted, mount
 
 __all__ = [
     "Analysis",
@@ -44,21 +44,21 @@ __all__ = [
 _HOME = {
     "Analysis": "survey.analysis",
     "analyse": "survey.analysis",
-    "Answer": "survey.answer",
-    "router": "survey.api",
-    "QuestionnaireFolder": "survey.content",
-    "content_folder": "survey.content",
-    "read_questionnaire": "survey.content",
+    "Answer": "survey.questionnaire.answer",
+    "router": "survey.web.api",
+    "QuestionnaireFolder": "survey.questionnaire.files",
+    "content_folder": "survey.questionnaire.files",
+    "read_questionnaire": "survey.questionnaire.files",
     "AnswerError": "survey.errors",
     "Problem": "survey.errors",
     "QuestionnaireError": "survey.errors",
     "StoreError": "survey.errors",
     "SurveyError": "survey.errors",
-    "Clip": "survey.form",
-    "form_router": "survey.form",
-    "Mounted": "survey.mounting",
-    "mount": "survey.mounting",
-    "Questionnaire": "survey.questionnaire",
+    "Clip": "survey.web.form",
+    "form_router": "survey.web.form",
+    "Mounted": "survey.web.mounting",
+    "mount": "survey.web.mounting",
+    "Questionnaire": "survey.questionnaire.definition",
     "Receipt": "survey.store",
     "Store": "survey.store",
 }

@@ -7,22 +7,9 @@ import os
 import sys
 from collections.abc import Sequence
 
-from survey.commands import (
-    analyse,
-    audit,
-    backup,
-    bench,
-    compare,
-    confirm,
-    export,
-    freeze,
-    grim,
-    plan,
-    privacy,
-    purge,
-    serve,
-    token,
-)
+from survey.commands import bench, privacy, serve
+from survey.commands.research import analyse, compare, confirm, grim, plan
+from survey.commands.storage import audit, backup, export, freeze, purge, token
 from survey.errors import SurveyError
 
 __all__ = ["main"]

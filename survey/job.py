@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection
 
     from survey.export.sheet import Sheet
-    from survey.questionnaire import Questionnaire
-    from survey.store.archive import Archive
+    from survey.questionnaire.definition import Questionnaire
+    from survey.store.answers.archive import Archive
 
 __all__ = ["HEADER", "NICE", "main", "sheet_of"]
 
@@ -64,8 +64,8 @@ def _end_with_input(folder: Path) -> None:
 
 def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
     """Write what is asked for; what its response's header says of it. Raises AnswerError, StoreError."""
-    from survey.questionnaire import Questionnaire
-    from survey.store.archive import Archive
+    from survey.questionnaire.definition import Questionnaire
+    from survey.store.answers.archive import Archive
 
     archive = Archive(Path(job["data"]) if "data" in job else job["db"])
     asked, task = Questionnaire.model_validate(job["questionnaire"]), job["task"]
@@ -107,7 +107,7 @@ def sheet_of(connection: Connection, questionnaire: Questionnaire, k: int | None
 
     from survey.export.anonymity import hide
     from survey.export.sheet import anonymous, of_columns, of_rows
-    from survey.store.columns import read_columns, read_heads, read_texts
+    from survey.store.answers.columns import read_columns, read_heads, read_texts
 
     if kind == "codebook" and k is None:
         return of_rows(questionnaire, ())
@@ -125,10 +125,10 @@ def sheet_of(connection: Connection, questionnaire: Questionnaire, k: int | None
 def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) -> dict[str, Any]:
     from survey.analysis import analyse
     from survey.analysis.errors import AnalysisError
-    from survey.analysis.pipeline import Settings
-    from survey.analysis.summary import summary
+    from survey.analysis.procedure.json_summary import summary
+    from survey.analysis.procedure.pipeline import Settings
     from survey.errors import AnswerError
-    from survey.working import dropped, reverse_keyed, stated_groups, stored_scores
+    from survey.scores.sources import dropped, reverse_keyed, stated_groups, stored_scores
 
     table = stored_scores(whole, archive, texts=False)
     factors = wanted["factors"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from survey.questionnaire import Questionnaire
+from survey.questionnaire.definition import Questionnaire
 from survey.store import Store
 
 __all__ = ["Published"]

@@ -1,9 +1,21 @@
 """The statistics of a questionnaire: arrays in, arrays out. README.md holds the formulas and their sources."""
 
-from survey.analysis.adequacy import Adequacy, Bartlett, adequacy, adequacy_by_factor_analyzer, adequacy_of
-from survey.analysis.bootstrap import Bootstrap, bootstrap
-from survey.analysis.components import Components, principal_components
-from survey.analysis.correlation import Correlation, correlate, correlate_pairwise, stars
+from survey.analysis.components.extraction import Components, principal_components
+from survey.analysis.components.oblique_rotation import oblimin
+from survey.analysis.components.orthogonal_rotation import varimax
+from survey.analysis.components.resampling import Bootstrap, bootstrap
+from survey.analysis.components.retention import Average, Parallel, minimum_average_partial, parallel_analysis
+from survey.analysis.components.sampling_adequacy import (
+    Adequacy,
+    Bartlett,
+    adequacy,
+    adequacy_by_factor_analyzer,
+    adequacy_of,
+)
+from survey.analysis.consistency.cronbach import Reliability, reliability, reliability_of
+from survey.analysis.consistency.mcdonald import Omega, omega_of
+from survey.analysis.correlation.ordinal import polychoric
+from survey.analysis.correlation.pearson import Correlation, correlate, correlate_pairwise, stars
 from survey.analysis.errors import (
     AllEqual,
     AnalysisError,
@@ -23,17 +35,11 @@ from survey.analysis.errors import (
     UnknownItem,
     WrongShape,
 )
-from survey.analysis.flags import duplicates, hasty, straight_liners
-from survey.analysis.grim import grim, least_n
-from survey.analysis.oblimin import oblimin
-from survey.analysis.omega import Omega, omega_of
-from survey.analysis.pipeline import Analysis, Settings, analyse
-from survey.analysis.polychoric import polychoric
-from survey.analysis.reliability import Reliability, reliability, reliability_of
-from survey.analysis.retention import Average, Parallel, minimum_average_partial, parallel_analysis
-from survey.analysis.scales import Group, Scale
-from survey.analysis.summary import summary
-from survey.analysis.varimax import varimax
+from survey.analysis.granularity import grim, least_n
+from survey.analysis.procedure.json_summary import summary
+from survey.analysis.procedure.pipeline import Analysis, Settings, analyse
+from survey.analysis.procedure.scales import Group, Scale
+from survey.analysis.screening.careless import duplicates, hasty, straight_liners
 
 __all__ = [
     "Adequacy",

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.confirmatory.gaps import patterns_of, saturated
-from survey.analysis.correlation import Correlation, two_tailed
+from survey.analysis.correlation.missing_data import patterns_of, saturated
+from survey.analysis.correlation.pearson import Correlation, two_tailed
 
 __all__ = ["correlate_likely"]
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from survey.analysis.components import Components
+from survey.analysis.components.extraction import Components
 
 __all__ = ["homes", "proposed_modules"]
 

@@ -8,8 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from survey.reading import ScoreTable
-    from survey.report.chapter import Further
+    from survey.report.chapters.chapter import Further
+    from survey.scores.csv_table import ScoreTable
 
 __all__ = ["Beyond", "beyond_asked"]
 
@@ -25,14 +25,14 @@ class Beyond:
 
 def beyond_asked(args: argparse.Namespace, table: ScoreTable) -> Beyond:
     """Both, where they are asked for. Raises what `confirm` and `compare` raise."""
-    from survey.analysis.comparison_summary import comparison_printed, comparison_summary
+    from survey.analysis.comparison.summary import comparison_printed, comparison_summary
     from survey.analysis.confirmatory import confirmation_summary
     from survey.analysis.confirmatory.summary import confirmation_printed
-    from survey.commands.compare import compared
-    from survey.commands.confirm import confirmed
-    from survey.commands.sources import turned_source
-    from survey.report.comparison import comparison_chapter
-    from survey.report.confirmation import confirmation_chapter
+    from survey.commands.research.compare import compared
+    from survey.commands.research.confirm import confirmed
+    from survey.commands.research.sources import turned_source
+    from survey.report.chapters.comparison import comparison_chapter
+    from survey.report.chapters.confirmation import confirmation_chapter
 
     summary: dict[str, Any] = {}
     printed, chapters = [], []

@@ -70,7 +70,8 @@ def positive(text: str) -> int:
 def existing_store(args: argparse.Namespace):
     """The store that the arguments name. Raises SurveyError where none was made yet: no command makes an empty one."""
     from survey.errors import SurveyError
-    from survey.store import Store, tables
+    from survey.store import Store
+    from survey.store.database import tables
 
     file = tables.sqlite_file(where(args))
     if file is not None and not file.is_file():

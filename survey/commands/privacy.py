@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from survey.commands.options import add_content, add_store, declare, existing_store
-from survey.questionnaire import LANGUAGES
+from survey.questionnaire.definition import LANGUAGES
 
 __all__ = ["add"]
 
@@ -43,10 +43,10 @@ def add(commands) -> argparse.ArgumentParser:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.content import QuestionnaireFolder, content_folder
     from survey.errors import SurveyError
-    from survey.privacy.page import privacy_page
-    from survey.privacy.record import Running, record_of
+    from survey.questionnaire.files import QuestionnaireFolder, content_folder
+    from survey.web.privacy.page import privacy_page
+    from survey.web.privacy.record import Running, record_of
 
     content = content_folder(args.content)
     with closing(existing_store(args)) as store:

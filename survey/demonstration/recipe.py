@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from survey.demonstration.indicators import primary, sample_name
-from survey.demonstration.primary import primary_sample
+from survey.demonstration.opinions import primary_sample
 from survey.demonstration.table3 import (
     CHI2,
     CLOSE,

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import BinaryIO
 
-from survey.answer import ever_asked
 from survey.export.cells import safe_cell
 from survey.export.codebook import write_codebook
 from survey.export.csv_file import put_csv, write_csv
@@ -18,7 +17,8 @@ from survey.export.sheet import Sheet, of_rows, pseudonym
 from survey.export.sheet import columns as csv_columns
 from survey.export.spss import put_sav
 from survey.export.xlsx import put_xlsx
-from survey.questionnaire import Questionnaire
+from survey.questionnaire.answer import ever_asked
+from survey.questionnaire.definition import Questionnaire
 from survey.store import Stored
 
 __all__ = [

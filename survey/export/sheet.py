@@ -7,12 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from survey.questionnaire import META_COLUMNS, NOT_ASKED, Questionnaire, suggestion_column
+from survey.questionnaire.definition import META_COLUMNS, NOT_ASKED, Questionnaire, suggestion_column
 from survey.store import Stored
 
 if TYPE_CHECKING:
     from survey.export.anonymity import Anonymity, Hidden
-    from survey.store.columns import Columns, Heads
+    from survey.store.answers.columns import Columns, Heads
 
 __all__ = ["Record", "Sheet", "anonymous", "columns", "of_columns", "of_rows", "pseudonym"]
 
@@ -99,7 +99,7 @@ def _of_columns(found: Columns, heads: Heads, texts: Iterator[tuple[bytes, str, 
 def anonymous(found: Columns, heads: Heads, hidden: Hidden) -> Sheet:
     """A sheet that keeps no more of anybody than k share; without pseudonyms and suggestions, in a random order."""
     from survey.export.anonymity import LEFT_OUT
-    from survey.store.columns import ABSENT
+    from survey.store.answers.columns import ABSENT
 
     levels, asked = hidden.anonymity.levels, found.questionnaire
     if levels["asked"] == LEFT_OUT:
@@ -120,7 +120,7 @@ def anonymous(found: Columns, heads: Heads, hidden: Hidden) -> Sheet:
 
 def _cells(found: Columns, rows: Sequence[int]) -> Iterator[Record]:
     """The scores of those answers as cells."""
-    from survey.store.columns import ABSENT, UNSCORED
+    from survey.store.answers.columns import ABSENT, UNSCORED
 
     names: dict[int, str | int | None] = {UNSCORED: None, ABSENT: NOT_ASKED}
     for low in range(0, len(rows), _SCORES):

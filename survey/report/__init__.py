@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from survey.analysis import Analysis
-from survey.analysis.summary import descriptives, summary
+from survey.analysis.procedure.json_summary import descriptives, summary
 from survey.errors import SurveyError
 from survey.export.cells import safe_cell
 from survey.export.r_script import write_r
-from survey.reading import ScoreTable
-from survey.report.chapter import Further
+from survey.report.chapters.chapter import Further
 from survey.report.page import Part, Report, build
+from survey.scores.csv_table import ScoreTable
 
 __all__ = ["Part", "Report", "build", "write_report"]
 

@@ -11,7 +11,7 @@ from survey.analysis import Analysis, correlate, reliability
 from survey.demonstration import sample_file
 from survey.demonstration.indicators import Primary, intermediate, merged, primary, sample_name
 from survey.demonstration.table3 import CLOSE
-from survey.reading import read_scores
+from survey.scores.csv_table import read_scores
 
 __all__ = ["Evidence", "Pair", "Way", "evidence", "way_of"]
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from survey.analysis import Analysis
-from survey.questionnaire import LANGUAGES
-from survey.reading import ScoreTable
-from survey.report.article import Article
-from survey.report.chapter import Further
+from survey.questionnaire.definition import LANGUAGES
+from survey.report.chapters.chapter import Further
 from survey.report.document import document
 from survey.report.platform import Part
 from survey.report.sections import sections_of
+from survey.report.sections.article import Article
+from survey.scores.csv_table import ScoreTable
 
 __all__ = ["Part", "Report", "build"]
 

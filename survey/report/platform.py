@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from survey.analysis.platform import Profile
-from survey.questionnaire import Language, Questionnaire
-from survey.reading import ScoreTable
-from survey.report.tables import Table
+from survey.analysis.procedure.profiles import Profile
+from survey.questionnaire.definition import Language, Questionnaire
+from survey.report.tables.table import Table
 from survey.report.words import Words, decimal
+from survey.scores.csv_table import ScoreTable
 
 __all__ = ["PAPER_FIGURES", "Part", "platform_table", "suggestions_html", "written_by_module"]
 

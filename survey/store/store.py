@@ -12,21 +12,21 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, func, select, update
 from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError
 
-from survey.answer import Answer
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire import Questionnaire
-from survey.store import tables
+from survey.questionnaire.answer import Answer
+from survey.questionnaire.definition import Questionnaire
+from survey.store.answers.rows import Stored, given_answer, standing, stored_rows
 from survey.store.audit import Audit, in_utc, note
-from survey.store.backup import write_copy
-from survey.store.committing import Entry, Receipt, commit_batch, freeze_version, now
-from survey.store.erasure import Eraser, add_trace, clear_traces, rewrite_tables, traces
-from survey.store.leftovers import Erased, everything
-from survey.store.place import Place
-from survey.store.publishing import Public, Publishing, forget
-from survey.store.removal import Overdue, erase, overdue, withdraw
-from survey.store.stored import Stored, given_answer, standing, stored_rows
+from survey.store.commit.batch import Entry, Receipt, commit_batch, freeze_version, now
+from survey.store.commit.writer import Writer
+from survey.store.database import tables
+from survey.store.database.backup import write_copy
+from survey.store.database.place import Place
+from survey.store.erasure.eraser import Eraser, add_trace, clear_traces, rewrite_tables, traces
+from survey.store.erasure.leftovers import Erased, everything
+from survey.store.erasure.removal import Overdue, erase, overdue, withdraw
+from survey.store.publication.steps import Public, Publishing, forget
 from survey.store.tokens import Tokens
-from survey.store.writer import Writer
 
 __all__ = ["PATIENCE", "Receipt", "Store"]
 

@@ -13,9 +13,9 @@ from datetime import date, datetime, timedelta
 from sqlalchemy import Connection, delete, select, update
 
 from survey.errors import AnswerError, StoreError
-from survey.store import tables
 from survey.store.audit import in_utc, note
-from survey.store.committing import now
+from survey.store.commit.batch import now
+from survey.store.database import tables
 
 __all__ = ["DAYS", "Token", "Tokens"]
 

@@ -19,8 +19,8 @@ import numpy as np
 from survey_service import ASSETS, ROOT, Service, submission
 
 from survey import Store, read_questionnaire
-from survey.questionnaire import Questionnaire
-from survey.store import tables
+from survey.questionnaire.definition import Questionnaire
+from survey.store.database import tables
 
 KEY, ITEMS = "wide", 25
 FORMATS = ("csv", "xlsx", "sav", "json")

@@ -14,7 +14,7 @@ from sqlalchemy import create_engine, text
 from survey.demonstration import sample_file
 from survey.demonstration.recipe import drawn_sample
 from survey.demonstration.table3 import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS
-from survey.reading import read_scores
+from survey.scores.csv_table import read_scores
 
 __all__ = [
     "ALPHA",

@@ -32,7 +32,7 @@ from survey.analysis import (
     reliability,
     varimax,
 )
-from survey.analysis.summary import KEYS, descriptives, summary
+from survey.analysis.procedure.json_summary import KEYS, descriptives, summary
 from survey.report.words import Words
 
 STATIC = ("static_drape", "static_overall")

@@ -26,7 +26,7 @@ from survey.cli import main
 from survey.export import FORMATS, pseudonym, put
 from survey.export.anonymity import LEFT_OUT, LEVELS, TooFew, hide
 from survey.export.sheet import anonymous
-from survey.store.columns import ABSENT, Columns, Heads
+from survey.store.answers.columns import ABSENT, Columns, Heads
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")

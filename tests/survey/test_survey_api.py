@@ -15,10 +15,10 @@ from fastapi.testclient import TestClient
 from survey_samples import looked_up, submission
 
 import survey
-from survey.answer import TEXT_LIMIT
-from survey.api import Limit
 from survey.errors import StoreError
 from survey.export import pseudonym
+from survey.questionnaire.answer import TEXT_LIMIT
+from survey.web.api import Limit
 
 BASE = "/api/v1/questionnaires"
 
@@ -285,7 +285,7 @@ def test_a_withdrawn_answer_is_gone_and_cannot_come_back(hall):
 
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_a_locked_or_broken_store_answers_503_and_recovers(hall, monkeypatch):
-    from survey.store import tables
+    from survey.store.database import tables
 
     with sqlite3.connect(hall.data / "survey.sqlite") as database:
         database.execute("PRAGMA busy_timeout=0")

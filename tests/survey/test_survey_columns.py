@@ -14,11 +14,11 @@ from survey_samples import ASSETS, submission
 from survey import Answer, Store, read_questionnaire
 from survey.errors import StoreError
 from survey.export.sheet import of_columns, of_rows
-from survey.store import columns as bulk
-from survey.store import tables
-from survey.store.archive import Archive
-from survey.store.columns import ABSENT, UNSCORED, read_columns, read_heads, read_texts
-from survey.working import stored_scores
+from survey.scores.sources import stored_scores
+from survey.store.answers import columns as bulk
+from survey.store.answers.archive import Archive
+from survey.store.answers.columns import ABSENT, UNSCORED, read_columns, read_heads, read_texts
+from survey.store.database import tables
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")

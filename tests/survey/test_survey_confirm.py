@@ -8,7 +8,7 @@ from lavaan_record import rows_with, write_rows
 from survey_samples import likert_sample
 
 from survey.analysis.confirmatory import Measurement, confirm, parsed, saturated
-from survey.analysis.confirmatory.gaps import patterns_of
+from survey.analysis.correlation.missing_data import patterns_of
 from survey.analysis.errors import BadModel
 from survey.cli import main
 from survey.demonstration import sample_file
@@ -238,7 +238,7 @@ def test_em_ends_where_the_likelihood_is_greatest():
     scores = gappy(likert_sample(120, seed=2)[:, :5], 0.15, seed=4)
     seen = patterns_of(scores, "abcde")
     best = saturated(seen, "abcde")
-    from survey.analysis.confirmatory.gaps import misfit_of
+    from survey.analysis.correlation.missing_data import misfit_of
 
     _, by_sigma, by_mean, _ = misfit_of(seen, best.mean, best.covariance)
     assert np.abs(by_sigma).max() < 1e-7

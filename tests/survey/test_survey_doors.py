@@ -19,8 +19,9 @@ from survey_samples import ASSETS, looked_up, submission
 
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.questionnaire import Questionnaire
-from survey.store import schema
+from survey.questionnaire.definition import Questionnaire
+from survey.store import migrations
+from survey.store.database import schema
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires"
@@ -96,7 +97,7 @@ def test_what_is_made_is_for_its_owner_alone_whatever_the_umask(tmp_path, umask)
 
 def test_a_backup_is_for_its_owner_alone_while_it_is_written(tmp_path, monkeypatch):
     seen = []
-    monkeypatch.setattr("survey.store.backup._check", lambda part: seen.append(rights(part)) or 0)
+    monkeypatch.setattr("survey.store.database.backup._check", lambda part: seen.append(rights(part)) or 0)
     with closing(Store(tmp_path / "data")) as store:
         store.copy_to(tmp_path / "copy.sqlite")
     assert seen == [0o600]
@@ -562,5 +563,5 @@ def test_the_clock_s_word_goes_with_yes(tmp_path, capsys):
 
 
 def test_the_newest_step_is_the_head():
-    files = sorted((Path(schema.__file__).parent / "migrations" / "versions").glob("0*.py"))
+    files = sorted((Path(migrations.__file__).parent / "versions").glob("0*.py"))
     assert files[-1].name.startswith(schema.HEAD)

@@ -20,8 +20,8 @@ from test_survey_pressure import URL, Service
 
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.questionnaire import Questionnaire
-from survey.store import leftovers
+from survey.questionnaire.definition import Questionnaire
+from survey.store.erasure import leftovers
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires/garment"
@@ -226,7 +226,7 @@ def test_a_purge_leaves_nothing_in_any_file_while_the_service_runs(tmp_path, cap
 
 
 def test_a_purge_that_somebody_holds_up_fails_and_the_next_one_is_done(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("survey.commands.purge.SETTLING", 0.3)
+    monkeypatch.setattr("survey.commands.storage.purge.SETTLING", 0.3)
     bodies, data = [a_body(1)], tmp_path / "data"
     filled(data, kept_until("2001-01-01"), bodies)
     with closing(Store(data)), held(data):  # the service; without it the last to go would take the WAL along

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS
 
 import survey
-from survey.form.page import FOLDER, form_page, words
+from survey.web.form.page import FOLDER, form_page, words
 
 PAGE = "/questionnaires/garment"
 

@@ -27,9 +27,9 @@ from openpyxl import load_workbook
 from survey_samples import ASSETS, submission
 
 from survey import Answer, Store, StoreError, read_questionnaire
-from survey.api import jobs
 from survey.export import exported, pseudonym
 from survey.job import NICE
+from survey.web.api import jobs
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires/garment"
@@ -163,7 +163,7 @@ def test_the_service_does_none_of_it_itself(hall, monkeypatch):
     def refuse(*_args, **_more):
         raise AssertionError("the service itself was at work")
 
-    for name in ("survey.export.put", "survey.job.main", "survey.working.stored_scores"):
+    for name in ("survey.export.put", "survey.job.main", "survey.scores.sources.stored_scores"):
         monkeypatch.setattr(name, refuse)
     for path in ("rows", "suggestions", "export/csv", "export/xlsx", "analysis"):
         reply = hall.client.get(f"{BASE}/{path}", headers=researcher)

@@ -18,12 +18,12 @@ from survey_samples import ASSETS
 
 import survey
 from survey.cli import main
-from survey.content import read_questionnaire
 from survey.errors import QuestionnaireError
 from survey.export import exported
-from survey.questionnaire import NEEDS
-from survey.reading import read_scores
-from survey.working import load_scores
+from survey.questionnaire.definition import NEEDS
+from survey.questionnaire.files import read_questionnaire
+from survey.scores.csv_table import read_scores
+from survey.scores.sources import load_scores
 
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")
 HALL = [f"hall_{side.id}" for side in USER.dimensions]

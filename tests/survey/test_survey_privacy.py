@@ -16,9 +16,9 @@ from survey_samples import ASSETS, submission
 import survey
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.form.page import words
-from survey.privacy import page as page_module
-from survey.privacy.controller import FILE, Controller, read_controller
+from survey.web.form.page import words
+from survey.web.privacy import page as page_module
+from survey.web.privacy.controller import FILE, Controller, read_controller
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 WHOLE = """\

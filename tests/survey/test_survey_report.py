@@ -18,15 +18,15 @@ from survey_samples import ASSETS
 
 import survey.report
 from survey.analysis import Settings, analyse, varimax
-from survey.analysis.platform import profile
+from survey.analysis.procedure.profiles import profile
 from survey.cli import main
-from survey.content import read_questionnaire
-from survey.reading import ScoreTable
+from survey.questionnaire.files import read_questionnaire
 from survey.report import Part, build, write_report
-from survey.report.paper import rows
-from survey.report.sheets import as_csv, matrix_csv
-from survey.report.tables import Table
+from survey.report.tables.csv_text import as_csv, matrix_csv
+from survey.report.tables.paper import rows
+from survey.report.tables.table import Table
 from survey.report.words import Words, coefficient
+from survey.scores.csv_table import ScoreTable
 
 STATIC = ("static_overall", "static_drape")
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
@@ -243,7 +243,7 @@ def test_an_item_without_communality_stays_where_it_is():
 
 
 def test_the_form_s_settings_cannot_end_their_script_element():
-    from survey.form.page import form_page
+    from survey.web.form.page import form_page
 
     title = GARMENT.title.model_copy(update={"zh": "</script><b>x"})
     page = form_page(GARMENT.model_copy(update={"title": title}), "zh", "</script><img src=x>")

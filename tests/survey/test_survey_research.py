@@ -16,10 +16,10 @@ from survey_samples import ASSETS, likert_sample, submission
 
 from survey import Answer
 from survey.analysis import Settings, analyse, summary
-from survey.analysis.summary import KEYS
+from survey.analysis.procedure.json_summary import KEYS
 from survey.cli import main
 from survey.export import FORMATS
-from survey.working import stated_groups
+from survey.scores.sources import stated_groups
 
 BASE = "/api/v1/questionnaires"
 GUARDED = ["rows", "suggestions", "analysis", *(f"export/{kind}" for kind in FORMATS)]
@@ -238,7 +238,7 @@ def test_the_service_starts_without_the_statistics():
         "pyreadstat",
     )
     code = (
-        "import sys, survey.serving, survey.api, survey.form;"
+        "import sys, survey.web.service, survey.web.api, survey.web.form;"
         f"print([name for name in {heavy} if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -15,10 +15,11 @@ from alembic.config import Config
 from sqlalchemy import event, text
 from survey_samples import submission
 
-from survey.answer import Answer
-from survey.disclosure import Figure
 from survey.errors import StoreError
-from survey.store import schema, tables
+from survey.questionnaire.answer import Answer
+from survey.store import migrations
+from survey.store.database import schema, tables
+from survey.store.publication.disclosure import Figure
 
 URL = "/api/v1/questionnaires/garment/results"
 
@@ -165,7 +166,7 @@ def test_an_upgrade_publishes_what_the_last_release_showed(hall):
         ).one()
     hall.store.close()
     config = Config()
-    config.set_main_option("script_location", str(Path(schema.__file__).parent / "migrations"))
+    config.set_main_option("script_location", str(Path(migrations.__file__).parent))
     engine = tables.open_engine(hall.data)
     with engine.begin() as connection:
         config.attributes["connection"] = connection
@@ -213,7 +214,7 @@ def test_nobody_waits_while_a_step_over_many_answers_is_taken(hall, statements, 
         assert {future.result(30).n for future in asked} == {12}
         assert len([sent for sent in statements if "GROUP BY" in sent]) == 1
         fill(hall.store, hall.garment, 12, 15)
-        monkeypatch.setattr("survey.store.publishing.MANY", 12)
+        monkeypatch.setattr("survey.store.publication.steps.MANY", 12)
         slow.clear()
         asked = [pool.submit(hall.store.public, hall.garment) for _ in range(12)]
         assert {future.result(30).n for future in asked} == {12}

@@ -28,7 +28,7 @@ from survey.demonstration.table3 import (
     deviations,
     kmo_of,
 )
-from survey.reading import read_scores
+from survey.scores.csv_table import read_scores
 
 STATIC = ("static_overall", "static_drape")
 

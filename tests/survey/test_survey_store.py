@@ -15,10 +15,11 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire import Questionnaire
-from survey.store import Receipt, Store, schema, tables
-from survey.store.committing import now
-from survey.store.writer import MOST, Writer
+from survey.questionnaire.definition import Questionnaire
+from survey.store import Receipt, Store, migrations
+from survey.store.commit.batch import now
+from survey.store.commit.writer import MOST, Writer
+from survey.store.database import schema, tables
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 
@@ -49,7 +50,7 @@ def columns(file: Path) -> dict[str, set[tuple]]:
 
 
 def test_the_head_is_the_newest_migration():
-    files = sorted((Path(schema.__file__).parent / "migrations" / "versions").glob("0*.py"))
+    files = sorted((Path(migrations.__file__).parent / "versions").glob("0*.py"))
     assert files[-1].name.partition("_")[0] == schema.HEAD
 
 

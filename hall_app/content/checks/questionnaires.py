@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from survey.content import FOLDER, QuestionnaireFolder
-from survey.privacy.controller import read_controller
+from survey.questionnaire.files import FOLDER, QuestionnaireFolder
+from survey.web.privacy.controller import read_controller
 
 from ..folder import Content
 from ..problems import Problem

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from survey.analysis.confirmatory.hints import Hint
-from survey.analysis.confirmatory.indices import Fit
-from survey.analysis.confirmatory.measurement import Measurement
-from survey.analysis.confirmatory.structure import Structure
-from survey.analysis.preparation import Note
+from survey.analysis.confirmatory.covariance_structure import Structure
+from survey.analysis.confirmatory.fit_indices import Fit
+from survey.analysis.confirmatory.measurement_model import Measurement
+from survey.analysis.confirmatory.modification_indices import Hint
+from survey.analysis.screening.preparation import Note
 
 __all__ = ["LEVEL", "Confirmation", "Parameter", "Standard", "parameters_of", "standardised"]
 

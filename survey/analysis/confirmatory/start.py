@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.confirmatory.structure import Structure
+from survey.analysis.confirmatory.covariance_structure import Structure
 
 __all__ = ["start_of"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from survey.analysis.confirmatory.confirmation import Confirmation, Parameter
-from survey.analysis.confirmatory.indices import Fit
+from survey.analysis.confirmatory.fit_indices import Fit
 
 __all__ = ["SHOWN", "confirmation_printed", "confirmation_summary"]
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from survey.questionnaire import Questionnaire
-from survey.report.article import Article
+from survey.questionnaire.definition import Questionnaire
 from survey.report.sections.adequacy import adequacy
+from survey.report.sections.article import Article
 from survey.report.sections.correlation import correlation
 from survey.report.sections.further import further
 from survey.report.sections.items import items

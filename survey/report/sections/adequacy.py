@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from survey.report.article import Article
+from survey.report.sections.article import Article
 from survey.report.words import coefficient, decimal, probability
 
 __all__ = ["adequacy"]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from survey.report import figures, matrix
-from survey.report.article import Article
-from survey.report.sheets import matrix_csv
+from survey.report import figures
+from survey.report.sections.article import Article
+from survey.report.tables.csv_text import matrix_csv
 
 __all__ = ["correlation"]
 
@@ -27,7 +27,7 @@ def correlation(article: Article) -> Iterator[str]:
     yield article.draw(
         "correlation",
         caption,
-        matrix.correlations(found.r, found.p, labels, article.name("correlation"), caption),
+        figures.correlations(found.r, found.p, labels, article.name("correlation"), caption),
         f"{article.link('correlation', matrix_csv(found.r, labels), ' r')} "
         f"{article.link('probability', matrix_csv(found.p, labels), ' p')}",
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from survey.report.article import Article
+from survey.report.sections.article import Article
 
 __all__ = ["items"]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from html import escape
 
 from survey.report import figures
-from survey.report.article import Article
-from survey.report.tables import MANY
+from survey.report.sections.article import Article
+from survey.report.tables.table import MANY
 
 __all__ = ["loadings"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from survey.report.article import Article
-from survey.report.paper import paper_table
+from survey.report.sections.article import Article
+from survey.report.tables.paper import paper_table
 
 __all__ = ["paper"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from survey.analysis.platform import Profile, profile
+from survey.analysis.procedure.profiles import Profile, profile
 from survey.report import figures
-from survey.report.article import Article
 from survey.report.platform import PAPER_FIGURES, Part, platform_table
+from survey.report.sections.article import Article
 
 __all__ = ["platform"]
 

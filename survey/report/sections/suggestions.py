@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from survey.report.article import Article
 from survey.report.platform import suggestions_html
+from survey.report.sections.article import Article
 
 __all__ = ["suggestions"]
 

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from html import escape
 
 from survey.demonstration.indicators import intermediate, questionnaire_id, sample_name
-from survey.report.article import Article
-from survey.report.flow import flow
+from survey.report.figures.flow_chart import flow
 from survey.report.indicators import Way, evidence, way_of
-from survey.report.tables import Table
+from survey.report.sections.article import Article
+from survey.report.tables.table import Table
 from survey.report.words import Words, coefficient, whole
 
 __all__ = ["way"]

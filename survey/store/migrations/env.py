@@ -1,4 +1,4 @@
-"""Alembic's door: the steps run on the connection, and in the transaction, that `survey.store.schema` hands over."""
+"""Alembic's door: the steps run on the connection, and in the transaction, that `database.schema` hands over."""
 
 from alembic import context
 

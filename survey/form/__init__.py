@@ -1,6 +1,0 @@
-"""The page on which a visitor answers: HTML from the server, one script, one style sheet, nothing from elsewhere."""
-
-from survey.form.clip import Clip
-from survey.form.routes import form_router
-
-__all__ = ["Clip", "form_router"]

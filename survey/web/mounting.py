@@ -1,0 +1,126 @@
+"""Putting the survey into a web application: its own or the hall's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from survey.errors import Problem, QuestionnaireError, StoreError
+from survey.published import Published
+from survey.questionnaire.definition import Offers
+from survey.questionnaire.files import QuestionnaireFolder
+from survey.store import Store
+from survey.web.privacy.controller import read_controller
+from survey.web.privacy.record import Record, Running, record_of
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+    from survey.web.api import Jobs
+    from survey.web.form.clip import ClipOf
+    from survey.web.form.page import Home
+
+__all__ = ["Mounted", "mount"]
+
+PATIENCE = 0.2  # seconds until a changed questionnaire shows
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """What was mounted. `questionnaires` reloads its files; whoever stops the app calls close()."""
+
+    store: Store
+    questionnaires: QuestionnaireFolder
+    jobs: Jobs
+    content: Path
+    offers: Offers = None
+    running: Running = field(default_factory=Running)
+
+    def asks(self, key: str) -> bool:
+        """Whether there is a questionnaire of that id that has anything to ask here."""
+        found = self.questionnaires.get(key)
+        return found is not None and bool(found.asking(self.offers).items)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """What is wrong now: faulty files, versions changed after their first answer, a store that is lost."""
+        try:
+            changed = _changed(self.store, self.questionnaires)
+        except StoreError as error:
+            what, _, fix = error.problem.partition(" – ")
+            changed = (Problem(error.place, "", what, fix or "see that the database is there"),)
+        return (*self.questionnaires.problems, *read_controller(self.content).faults, *changed)
+
+    @property
+    def hints(self) -> tuple[Problem, ...]:
+        """What is not stated yet, and should be before visitors answer."""
+        return read_controller(self.content).gaps if self.questionnaires else ()
+
+    def record(self) -> Record:
+        """What is processed here, and how, as of now. Raises StoreError."""
+        asked = tuple(found for found in self.questionnaires.values() if found.asking(self.offers).items)
+        return record_of(self.content, self.store, asked, self.running, datetime.now(UTC).date())
+
+    def close(self) -> None:
+        """End exports and analyses under way, then write what waits."""
+        self.jobs.close()
+        self.store.close()
+
+
+def mount(
+    app: FastAPI,
+    *,
+    content: Path,
+    data: Path | str,
+    problems: list[Problem] | None = None,
+    per_minute: int | None = None,
+    clip_of: ClipOf | None = None,
+    offers: Offers = None,
+    home: Home | None = None,
+    proxies: Sequence[str] | None = None,
+) -> Mounted:
+    """Add the API (/api/v1/…), the form page (/questionnaires/…) and the record of processing (/privacy) to an app.
+
+    content: folder that holds questionnaires/*.toml. data: data folder, or a database URL.
+    problems: where to report what is wrong; the good questionnaires are served then. Without it, the first
+    problem raises QuestionnaireError naming file and key. Raises StoreError when the store cannot be opened.
+    per_minute: new answers that one address may give in a minute; 0: any number; None: the usual.
+    clip_of: the film of an exhibit, shown beside items on motion. offers: which of questionnaire.NEEDS the place has;
+    what needs another is not asked, None: everything is. home: where a visitor goes on from the thanks page.
+    proxies: whose word on visitors' addresses the app believes, for the record alone; None: not known.
+    """
+    from survey.web.api import Jobs, Limit, router
+    from survey.web.form import form_router
+
+    questionnaires = QuestionnaireFolder(content, patience=PATIENCE)
+    if problems is None and questionnaires.problems:
+        raise QuestionnaireError(questionnaires.problems)
+    limit = Limit() if per_minute is None else Limit(per_minute)
+    running = Running(limit.per_minute, None if proxies is None else tuple(proxies))
+    mounted = Mounted(Store(data), questionnaires, Jobs(data), content, offers, running)
+    found = mounted.problems
+    if problems is not None:
+        problems.extend(found)
+    elif found:
+        mounted.close()
+        raise QuestionnaireError(found)
+    asked = Published(questionnaires, mounted.store)
+    app.include_router(router(mounted.store, asked, limit, offers, mounted.jobs))
+    app.include_router(form_router(asked, clip_of, offers=offers, home=home, record=mounted.record))
+    return mounted
+
+
+def _changed(store: Store, questionnaires: QuestionnaireFolder) -> tuple[Problem, ...]:
+    return tuple(
+        Problem(
+            f"{questionnaires.folder.name}/{found.id}.toml",
+            "version",
+            f"version {found.version} was changed after its first answer",
+            f"write version = {found.version + 1}, or take the change back",
+        )
+        for found in list(questionnaires.values())
+        if store.changed(found)
+    )
