@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import errno
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
-__all__ = ["AnswerError", "ContentMissing", "Problem", "QuestionnaireError", "StoreError", "SurveyError"]
+__all__ = [
+    "AnswerError",
+    "ContentMissing",
+    "Problem",
+    "QuestionnaireError",
+    "StoreError",
+    "SurveyError",
+    "is_full",
+    "room_in",
+]
 
 
 class SurveyError(ValueError):
@@ -62,3 +74,24 @@ class StoreError(SurveyError):
     def __init__(self, problem: str, place: str = "") -> None:
         self.problem, self.place = problem, place
         super().__init__(f"{place}: {problem}" if place else problem)
+
+
+_FULL = {errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)}  # the disk, or its user's share of it
+
+
+def is_full(error: OSError) -> bool:
+    """Whether it says that there is no room."""
+    return error.errno in _FULL
+
+
+@contextmanager
+def room_in(folder: Path | str) -> Iterator[None]:
+    """Raises StoreError where what is written into a temporary folder finds no room there."""
+    try:
+        yield
+    except OSError as error:
+        if not is_full(error):
+            raise
+        # The folder is named to whoever asks as well: he has a token, and passes it on to whoever can free some.
+        problem = f"no room in the temporary folder {folder} – free some, or set TMPDIR"
+        raise StoreError(problem) from None

@@ -18,13 +18,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 # All that costs time to import is imported where it is needed, after the process has made way for others.
 if TYPE_CHECKING:
-    from sqlalchemy import Connection
-
     from survey.export.sheet import Sheet
     from survey.questionnaire.definition import Questionnaire
     from survey.store.answers.archive import Archive
 
-__all__ = ["HEADER", "NICE", "main", "sheet_of"]
+__all__ = ["HEADER", "NICE", "main"]
 
 HEADER = "Survey-Anonymity"  # says of a k-anonymous file what was made coarse
 NICE = 10  # how far behind the service it stands for the processor
@@ -38,8 +36,7 @@ def main() -> int:
     job = json.loads(sys.stdin.buffer.readline())
     folder = Path(job["folder"])
     threading.Thread(target=_end_with_input, args=(folder,), daemon=True).start()
-    from survey.errors import AnswerError, StoreError
-    from survey.room import room_in
+    from survey.errors import AnswerError, StoreError, room_in
 
     told: dict[str, Any]
     try:
@@ -75,10 +72,11 @@ def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
         return {}
     from survey.errors import AnswerError
     from survey.export.anonymity import TooFew
+    from survey.export.sheet import stored_sheet
 
     try:
         with archive.snapshot() as connection:
-            sheet = sheet_of(connection, asked, job.get("k"), task)
+            sheet = stored_sheet(connection, asked, job.get("k"), task)
             _put(task, sheet, out, folder)
     except TooFew as error:
         problem, _, remedy = str(error).partition(" – ")
@@ -94,32 +92,6 @@ def _put(task: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
         (put_rows if task == "rows" else put_suggestions)(sheet, out)
     else:
         put(task, sheet, out, folder)
-
-
-def sheet_of(connection: Connection, questionnaire: Questionnaire, k: int | None, kind: str) -> Sheet:
-    """All standing answers to a version, read while the sheet is written. connection: of a snapshot.
-
-    k: so many answers share all that is told of a visitor beside the scores, None: everything is told. kind: of what
-    the sheet becomes; a script ("r") is for the items that somebody was asked, and a "codebook" tells of no answer
-    unless k made them coarse. Raises TooFew where there are fewer than k answers.
-    """
-    import numpy as np
-
-    from survey.export.anonymity import hide
-    from survey.export.sheet import anonymous, of_columns, of_rows
-    from survey.store.answers.columns import read_columns, read_heads, read_texts
-
-    if kind == "codebook" and k is None:
-        return of_rows(questionnaire, ())
-    columns = read_columns(connection, questionnaire)
-    heads = read_heads(connection, questionnaire)
-    if kind == "r" and columns.asked.any():
-        there = {item for item, n in zip(questionnaire.item_ids, columns.asked, strict=True) if n}
-        columns = columns.of(questionnaire.asked(there))
-    if k is None:
-        return of_columns(columns, heads, read_texts(connection, questionnaire))
-    # Drawn from the system's own source of chance: nobody can put the rows back into the order of their arrival.
-    return anonymous(columns, heads, hide(columns, heads, k, np.random.default_rng()))
 
 
 def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) -> dict[str, Any]:

@@ -11,10 +11,12 @@ from survey.questionnaire.definition import META_COLUMNS, NOT_ASKED, Questionnai
 from survey.store import Stored
 
 if TYPE_CHECKING:
+    from sqlalchemy import Connection
+
     from survey.export.anonymity import Anonymity, Hidden
     from survey.store.answers.columns import Columns, Heads
 
-__all__ = ["Record", "Sheet", "anonymous", "columns", "of_columns", "of_rows", "pseudonym"]
+__all__ = ["Record", "Sheet", "anonymous", "columns", "of_columns", "of_rows", "pseudonym", "stored_sheet"]
 
 Record = list[str | int | None]
 _SCORES = 1000  # answers whose scores become Python's numbers at a time
@@ -116,6 +118,31 @@ def anonymous(found: Columns, heads: Heads, hidden: Hidden) -> Sheet:
     cells = _cells(found.of(asked), hidden.rows.tolist())
     records = ([*head, *line] for head, line in zip(told, cells, strict=True))
     return Sheet(asked, records, meta, anonymity=hidden.anonymity)
+
+
+def stored_sheet(connection: Connection, questionnaire: Questionnaire, k: int | None, kind: str) -> Sheet:
+    """All standing answers to a version, read while the sheet is written. connection: of a snapshot.
+
+    k: so many answers share all that is told of a visitor beside the scores, None: everything is told. kind: of what
+    the sheet becomes; a script ("r") is for the items that somebody was asked, and a "codebook" tells of no answer
+    unless k made them coarse. Raises TooFew where there are fewer than k answers.
+    """
+    import numpy as np
+
+    from survey.export.anonymity import hide
+    from survey.store.answers.columns import read_columns, read_heads, read_texts
+
+    if kind == "codebook" and k is None:
+        return of_rows(questionnaire, ())
+    columns = read_columns(connection, questionnaire)
+    heads = read_heads(connection, questionnaire)
+    if kind == "r" and columns.asked.any():
+        there = {item for item, n in zip(questionnaire.item_ids, columns.asked, strict=True) if n}
+        columns = columns.of(questionnaire.asked(there))
+    if k is None:
+        return of_columns(columns, heads, read_texts(connection, questionnaire))
+    # Drawn from the system's own source of chance: nobody can put the rows back into the order of their arrival.
+    return anonymous(columns, heads, hide(columns, heads, k, np.random.default_rng()))
 
 
 def _cells(found: Columns, rows: Sequence[int]) -> Iterator[Record]:

@@ -12,10 +12,17 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from survey.errors import ContentMissing, Problem, QuestionnaireError
+from survey.errors import ContentMissing, Problem, QuestionnaireError, SurveyError
 from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire.keys import is_slug
 
-__all__ = ["QuestionnaireFolder", "content_folder", "problem_of", "read_questionnaire"]
+__all__ = [
+    "QuestionnaireFolder",
+    "content_folder",
+    "find_questionnaire_file",
+    "problem_of",
+    "read_questionnaire",
+]
 
 FOLDER = "questionnaires"
 
@@ -65,6 +72,16 @@ def read_questionnaire(path: Path) -> Questionnaire:
         what = f"{questionnaire.id!r} is not the file's name"
         raise QuestionnaireError((Problem(file, "id", what, f'write id = "{path.stem}" or rename the file'),))
     return questionnaire
+
+
+def find_questionnaire_file(content: Path | None, key: str) -> Questionnaire:
+    """The questionnaire of that id. Raises SurveyError naming those there are."""
+    folder = content_folder(content) / FOLDER
+    path = folder / f"{key}.toml"
+    if not is_slug(key) or not path.is_file():
+        known = ", ".join(found.stem for found in sorted(folder.glob("*.toml"))) or "none"
+        raise SurveyError(f"{key[:60]}: no such questionnaire in {folder} – choose one of: {known}")
+    return read_questionnaire(path)
 
 
 def problem_of(file: str, entry: Mapping) -> Problem:

@@ -14,8 +14,7 @@ from survey.demonstration import sample_file
 from survey.demonstration.indicators import intermediate, merged, questionnaire_id, sample_name
 from survey.errors import SurveyError
 from survey.questionnaire.definition import Questionnaire
-from survey.questionnaire.files import content_folder, read_questionnaire
-from survey.questionnaire.keys import is_slug
+from survey.questionnaire.files import content_folder, find_questionnaire_file, read_questionnaire
 from survey.scores.columns import Choice
 from survey.scores.csv_table import ScoreTable, read_scores
 from survey.store import Store
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "dropped",
-    "find_questionnaire_file",
     "listed",
     "load_scores",
     "open_stored",
@@ -38,16 +36,6 @@ __all__ = [
     "stated_groups",
     "stored_scores",
 ]
-
-
-def find_questionnaire_file(content: Path | None, key: str) -> Questionnaire:
-    """The questionnaire of that id. Raises SurveyError naming those there are."""
-    folder = content_folder(content) / "questionnaires"
-    path = folder / f"{key}.toml"
-    if not is_slug(key) or not path.is_file():
-        known = ", ".join(found.stem for found in sorted(folder.glob("*.toml"))) or "none"
-        raise SurveyError(f"{key[:60]}: no such questionnaire in {folder} – choose one of: {known}")
-    return read_questionnaire(path)
 
 
 @contextmanager

@@ -10,9 +10,8 @@ from datetime import date, datetime
 from pathlib import Path
 
 from sqlalchemy import Connection, Engine, func, select, update
-from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError
 
-from survey.errors import AnswerError, StoreError
+from survey.errors import AnswerError
 from survey.questionnaire.answer import Answer
 from survey.questionnaire.definition import Questionnaire
 from survey.store.answers.rows import Stored, given_answer, standing, stored_rows
@@ -21,7 +20,7 @@ from survey.store.commit.batch import Entry, Receipt, commit_batch, freeze_versi
 from survey.store.commit.writer import Writer
 from survey.store.database import tables
 from survey.store.database.backup import write_copy
-from survey.store.database.place import Place
+from survey.store.database.place import Place, explained
 from survey.store.erasure.eraser import Eraser, add_trace, clear_traces, rewrite_tables, traces
 from survey.store.erasure.leftovers import Erased, everything
 from survey.store.erasure.removal import Overdue, erase, overdue, withdraw
@@ -284,22 +283,6 @@ class Store:
             self._place.check()
             with self._engine.connect() as connection:
                 yield connection
-
-
-@contextmanager
-def explained(place: str) -> Iterator[None]:
-    """Turn the database's errors into a StoreError of one line that names the place."""
-    try:
-        yield
-    except StoreError as error:
-        raise StoreError(error.problem, error.place or place) from None
-    except (DataError, IntegrityError):
-        raise  # a row that cannot be, not a database that does not answer
-    except SQLAlchemyError as error:
-        cause = error.orig if isinstance(error, DBAPIError) else error
-        first = str(cause).strip().splitlines()[0] if str(cause).strip() else type(error).__name__
-        problem = f"the database refuses: {first} – see that it is there, free and not full"
-        raise StoreError(problem, place) from None
 
 
 _OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))

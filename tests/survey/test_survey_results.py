@@ -18,7 +18,7 @@ from survey_samples import submission
 from survey.errors import StoreError
 from survey.questionnaire.answer import Answer
 from survey.store import migrations
-from survey.store.database import schema, tables
+from survey.store.database import tables
 from survey.store.publication.disclosure import Figure
 
 URL = "/api/v1/questionnaires/garment/results"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,7 +13,16 @@ from survey.analysis.components.oblique_rotation import oblimin
 from survey.analysis.components.orthogonal_rotation import varimax
 from survey.analysis.errors import NoComponents, WrongShape
 
-__all__ = ["ROTATIONS", "Components", "Rotation", "eigenvalues", "kaiser_count", "principal_components"]
+__all__ = [
+    "ROTATIONS",
+    "Components",
+    "Rotation",
+    "eigenvalues",
+    "homes",
+    "kaiser_count",
+    "principal_components",
+    "proposed_modules",
+]
 
 Rotation = Literal["varimax", "oblimin", "none"]
 ROTATIONS: tuple[Rotation, ...] = ("varimax", "oblimin", "none")
@@ -98,3 +108,28 @@ def principal_components(
         return Components(values, unrotated, *oblimin(unrotated), rotation)
     turned = varimax(unrotated) if rotation == "varimax" else unrotated
     return Components(values, unrotated, turned, straight, rotation)
+
+
+def homes(components: Components) -> list[int]:
+    """(p,) the component on which each item loads most."""
+    return np.abs(components.loadings).argmax(axis=1).tolist()
+
+
+def proposed_modules(
+    components: Components, items: Sequence[str], module_of: Mapping[str, str]
+) -> list[str | None]:
+    """(k,) per component the module with the most squared loading among the items at home there, or None.
+
+    A module that would name two components names the one it fills more.
+    """
+    home, squares = homes(components), components.loadings**2
+    weight: dict[tuple[int, str], float] = {}
+    for row, item in enumerate(items):
+        if item in module_of:
+            key = (home[row], module_of[item])
+            weight[key] = weight.get(key, 0.0) + float(squares[row, home[row]])
+    names: list[str | None] = [None] * components.kept
+    for (column, module), _ in sorted(weight.items(), key=lambda entry: -entry[1]):
+        if names[column] is None and module not in names:
+            names[column] = module
+    return names

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from survey.analysis.confirmatory.measurement_model import Measurement
 
-__all__ = ["Metric", "Structure", "structure_of"]
+__all__ = ["Metric", "Structure", "start_of", "structure_of"]
 
 Metric = Literal["marker", "unit"]
+START_MOST = 0.85  # of a correlation of two factors at the start
+
 Cells = tuple[tuple[int, int], ...]
 
 
@@ -129,3 +131,23 @@ def structure_of(
     return Structure(
         model, items, tuple(cell for cell in cells if cell not in fixed), tuple(spread), tuple(own), fixed, ordinal
     )  # fmt: skip
+
+
+def start_of(unit: Structure, r: NDArray[np.float64]) -> NDArray[np.float64]:
+    """θ (q,) in "unit" metric of items with correlations r (p, p)."""
+    p, k = len(r), len(unit.model.factors)
+    weights, loads = np.zeros((p, k)), np.zeros((p, k))
+    for factor in range(k):
+        own = [row for row, col in unit.loadings if col == factor]
+        values, vectors = np.linalg.eigh(r[np.ix_(own, own)])
+        leading = vectors[:, -1] * (1.0 if vectors[:, -1].sum() >= 0.0 else -1.0)
+        weights[own, factor] = leading
+        # What a component holds beside the common part would make every item look better than it is.
+        share = np.sqrt(max((values[-1] - 1.0) / max(len(own) - 1, 1), 0.05))
+        loads[own, factor] = np.clip(leading * np.sqrt(len(own)) * share, -0.9, 0.9)
+    across = weights.T @ r @ weights
+    spread = np.sqrt(np.diag(across))
+    factors = np.clip(across / np.outer(spread, spread), -START_MOST, START_MOST)
+    common = loads**2 @ np.ones(k)
+    rest = np.diag(np.clip(1.0 - common, 0.2, 1.0))
+    return unit.parameters(loads, factors, rest)

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.confirmatory.covariance_structure import Structure, structure_of
+from survey.analysis.confirmatory.covariance_structure import Structure, start_of, structure_of
 from survey.analysis.confirmatory.fisher_scoring import scored, solved
 from survey.analysis.confirmatory.fit_indices import Fit, Tested, fit_of
 from survey.analysis.confirmatory.measurement_model import Measurement
 from survey.analysis.confirmatory.modification_indices import Hint, hints_of
-from survey.analysis.confirmatory.start import start_of
 from survey.analysis.correlation.missing_data import Patterns, Saturated, misfit_of, patterns_of, saturated
 
 __all__ = ["Likelihood", "likelihood"]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.analysis.checks import DEPENDENT, constant_columns, dependent_columns
+from survey.analysis.correlation.pearson import Correlation, two_tailed
 from survey.analysis.errors import (
     ConstantItem,
     DependentItems,
@@ -20,7 +21,7 @@ from survey.analysis.errors import (
     TooFewRows,
 )
 
-__all__ = ["Patterns", "Saturated", "misfit_of", "patterns_of", "saturated"]
+__all__ = ["Patterns", "Saturated", "correlate_likely", "misfit_of", "patterns_of", "saturated"]
 
 ROUNDS, REST = 20_000, 1e-10
 
@@ -179,3 +180,20 @@ def _expected(
         if moved < REST:
             return mean, sigma
     raise NotConverged("the covariances of answers with gaps do not come to rest – leave those answers out")
+
+
+def correlate_likely(table: NDArray[np.float64], names: Sequence[str]) -> Correlation:
+    """Of scores (n, p), NaN missing: the correlations of one normal distribution that all scores make likeliest.
+
+    Right where gaps depend on nothing but what was answered. There is no honest single n for such a matrix; counts are
+    the answers that have both items of a pair, so that tests err on the careful side.
+    Raises what `patterns_of` and `saturated` raise.
+    """
+    seen = patterns_of(table, names)
+    sigma = saturated(seen, names).covariance
+    spread = np.sqrt(np.diag(sigma))
+    r = np.clip(sigma / np.outer(spread, spread), -1.0, 1.0)
+    np.fill_diagonal(r, 1.0)
+    there = (~np.isnan(table)).astype(np.int64)
+    counts = there.T @ there
+    return Correlation(r, two_tailed(r, counts), counts)

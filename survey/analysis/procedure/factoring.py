@@ -20,6 +20,7 @@ from survey.analysis.components.retention import Average, Parallel, minimum_aver
 from survey.analysis.components.sampling_adequacy import Adequacy, adequacy, adequacy_of
 from survey.analysis.consistency.cronbach import Reliability, reliability, reliability_of
 from survey.analysis.consistency.mcdonald import HEYWOOD, Omega, omega_of
+from survey.analysis.correlation.missing_data import correlate_likely
 from survey.analysis.correlation.ordinal import polychoric
 from survey.analysis.correlation.pearson import (
     Correlation,
@@ -28,7 +29,6 @@ from survey.analysis.correlation.pearson import (
     covariance_pairwise,
 )
 from survey.analysis.errors import AnalysisError, GapsLeft, NoComponents
-from survey.analysis.likely import correlate_likely
 from survey.analysis.screening.preparation import Note, Prepared, named
 
 __all__ = ["Factored", "Method", "correlation_of", "covariance_of", "factor", "step"]

@@ -12,11 +12,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.components.extraction import Components
+from survey.analysis.components.extraction import Components, homes
 from survey.analysis.consistency.cronbach import Reliability, reliability_of
 from survey.analysis.consistency.mcdonald import Omega, omega_of
 from survey.analysis.correlation.pearson import Correlation
-from survey.analysis.naming import homes
 from survey.analysis.procedure.factoring import step
 from survey.analysis.screening.preparation import Note
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from survey.commands.beyond import Beyond, beyond_asked
 from survey.commands.options import declare, where
 from survey.commands.research.progress import counted
 from survey.commands.research.sources import ALL, add_sources, list_demonstrations, points_of, table_asked
@@ -17,9 +17,20 @@ from survey.commands.research.sources import ALL, add_sources, list_demonstratio
 if TYPE_CHECKING:
     from survey.analysis.errors import AnalysisError
     from survey.analysis.procedure.pipeline import Analysis, Settings
+    from survey.report.chapters.chapter import Further
     from survey.scores.csv_table import ScoreTable
 
 __all__ = ["add"]
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """summary: keys for --json. printed: texts for the terminal. chapters: of the report."""
+
+    summary: dict[str, Any]
+    printed: tuple[str, ...]
+    chapters: tuple[Further, ...]
+
 
 _MORE = """\
 The procedure of the paper: means, Pearson correlations with stars, pairs too close to keep both, KMO, Bartlett's
@@ -96,7 +107,7 @@ def _run(args: argparse.Namespace) -> int:
         # What visitors wrote stands in the report only.
         table = table_asked(args, texts=args.report is not None, labels=args.compare is not None)
         analysis = _analysed(table, args)
-        beyond = beyond_asked(args, table)
+        beyond = _beyond(args, table)
     except AnalysisError as error:
         if args.json:
             told = {"error": {"code": error.code, "items": list(error.items), "message": str(error)}}
@@ -133,7 +144,7 @@ def _report_of_the_sample(args: argparse.Namespace, error: AnalysisError) -> int
     print(f"survey: {args.questionnaire}: {problem}; the report is of the synthetic sample {sample_name()}",
           file=sys.stderr)  # fmt: skip
     table = sample_scores(sample_name(), args.content)
-    _write_report(args, table, _analysed(table, args), beyond_asked(args, table))
+    _write_report(args, table, _analysed(table, args), _beyond(args, table))
     return 0
 
 
@@ -186,3 +197,30 @@ def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:
         seed=args.seed,
         reverse=reverse_keyed(args.reverse, table),
     )
+
+
+def _beyond(args: argparse.Namespace, table: ScoreTable) -> Beyond:
+    """--confirm and --compare, where they are asked for. Raises what `confirm` and `compare` raise."""
+    from survey.analysis.comparison.summary import comparison_printed, comparison_summary
+    from survey.analysis.confirmatory import confirmation_summary
+    from survey.analysis.confirmatory.summary import confirmation_printed
+    from survey.commands.research.compare import compared
+    from survey.commands.research.confirm import confirmed
+    from survey.commands.research.sources import turned_source
+    from survey.report.chapters.comparison import comparison_chapter
+    from survey.report.chapters.confirmation import confirmation_chapter
+
+    summary: dict[str, Any] = {}
+    printed, chapters = [], []
+    if args.confirm is not None:
+        found = confirmed(turned_source(table, args), args, args.confirm)
+        summary["confirmation"] = confirmation_summary(found)
+        printed.append(confirmation_printed(found))
+        chapters.append(partial(confirmation_chapter, found))
+    if args.compare is not None:
+        made = compared(table, args, args.compare)
+        both = made.found  # the analysis tells of the table itself
+        summary["comparison"] = comparison_summary(both)
+        printed.append(comparison_printed(both))
+        chapters.append(partial(comparison_chapter, both, made.names))
+    return Beyond(summary, tuple(printed), tuple(chapters))

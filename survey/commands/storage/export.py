@@ -63,7 +63,7 @@ def _k(text: str) -> int:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.room import room_in
+    from survey.errors import room_in
     from survey.scores.sources import open_stored
 
     ending = "" if args.out is None else args.out.suffix.lower().lstrip(".")
@@ -93,12 +93,12 @@ def _make(
 ) -> tuple[int, tuple[str, str]]:
     """Write the file; how many answers are in it, and what to say of it."""
     from survey.export import put
-    from survey.job import sheet_of
+    from survey.export.sheet import stored_sheet
     from survey.scores.sources import other_versions
     from survey.store.answers.archive import Archive
 
     with Archive(where(args)).snapshot() as connection, tempfile.TemporaryDirectory() as folder:
-        sheet = sheet_of(connection, asked, args.k, kind)
+        sheet = stored_sheet(connection, asked, args.k, kind)
         put(kind, sheet, made, Path(folder))
     made.flush()
     if sheet.anonymity is None:

@@ -79,7 +79,7 @@ def _run(args: argparse.Namespace) -> int:
 
 def _see_that_there_is(args: argparse.Namespace) -> None:
     """A misspelt one would be noticed by the researcher only. It may have left the content and still have answers."""
-    from survey.scores.sources import find_questionnaire_file
+    from survey.questionnaire.files import find_questionnaire_file
     from survey.store import Store
     from survey.store.database import tables
 

@@ -5,23 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from survey.questionnaire.definition import Questionnaire
-from survey.report.sections.adequacy import adequacy
-from survey.report.sections.article import Article
-from survey.report.sections.correlation import correlation
-from survey.report.sections.further import further
-from survey.report.sections.items import items
-from survey.report.sections.loadings import loadings
-from survey.report.sections.method import method
-from survey.report.sections.notes import notes
-from survey.report.sections.paper import paper
-from survey.report.sections.platform import platform
-from survey.report.sections.reliability import reliability
-from survey.report.sections.retention import retention
-from survey.report.sections.suggestions import suggestions
-from survey.report.sections.variance import variance
-from survey.report.sections.way import way
+from survey.report.sections.article import Article, Part
+from survey.report.sections.closing import further, method, notes
+from survey.report.sections.components import loadings, retention, variance
+from survey.report.sections.consistency import reliability
+from survey.report.sections.item_statistics import adequacy, correlation, items
+from survey.report.sections.platform_survey import platform, suggestions
+from survey.report.sections.published_paper import paper, way
 
-__all__ = ["Section", "sections_of"]
+__all__ = ["Article", "Part", "Section", "sections_of"]
 
 Section = Callable[[Article], Iterator[str]]
 

@@ -4,19 +4,32 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 
 from survey.analysis import Analysis
-from survey.questionnaire.definition import Language
+from survey.questionnaire.definition import Language, Questionnaire
 from survey.report.chapters.chapter import Further
-from survey.report.platform import Part
 from survey.report.sections.headline import component_names, head
 from survey.report.tables.csv_text import as_csv
 from survey.report.tables.table import Table, as_html, tables_of
 from survey.report.words import Words
 from survey.scores.csv_table import ScoreTable
 
-__all__ = ["Article"]
+__all__ = ["Article", "Part"]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A table of answers beside the analysed one, such as the other role's."""
+
+    table: ScoreTable
+    questionnaire: Questionnaire
+
+    @property
+    def sides(self) -> tuple[int, int]:
+        """How many modules, and from how many sides each is judged."""
+        return len(self.questionnaire.modules), len(self.questionnaire.dimensions)
 
 
 class Article:

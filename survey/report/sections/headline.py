@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from survey.analysis import Analysis
-from survey.analysis.naming import proposed_modules
+from survey.analysis.components.extraction import proposed_modules
 from survey.questionnaire.definition import Questionnaire
 from survey.report.words import Words, coefficient, whole
 from survey.scores.csv_table import ScoreTable

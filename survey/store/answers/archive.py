@@ -12,7 +12,7 @@ from sqlalchemy.pool import NullPool
 
 from survey.errors import StoreError
 from survey.store.database import tables
-from survey.store.store import explained
+from survey.store.database.place import explained
 
 __all__ = ["Archive"]
 

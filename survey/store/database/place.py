@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from sqlalchemy import Engine
+from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError
 
 from survey.errors import StoreError
 from survey.store.database.permissions import tighten
 from survey.store.database.schema import bring_up_to_date, has_tables
 
-__all__ = ["Place"]
+__all__ = ["Place", "explained"]
 
 
 class Place:
@@ -100,3 +103,19 @@ class Place:
         except OSError:
             return None
         return found.st_dev, found.st_ino
+
+
+@contextmanager
+def explained(place: str) -> Iterator[None]:
+    """Turn the database's errors into a StoreError of one line that names the place."""
+    try:
+        yield
+    except StoreError as error:
+        raise StoreError(error.problem, error.place or place) from None
+    except (DataError, IntegrityError):
+        raise  # a row that cannot be, not a database that does not answer
+    except SQLAlchemyError as error:
+        cause = error.orig if isinstance(error, DBAPIError) else error
+        first = str(cause).strip().splitlines()[0] if str(cause).strip() else type(error).__name__
+        problem = f"the database refuses: {first} – see that it is there, free and not full"
+        raise StoreError(problem, place) from None

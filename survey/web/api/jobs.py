@@ -20,8 +20,7 @@ from fastapi import Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from survey.errors import AnswerError, StoreError
-from survey.room import room_in
+from survey.errors import AnswerError, StoreError, room_in
 
 __all__ = ["MOST", "MOST_OPEN", "Jobs"]
 

@@ -1,4 +1,4 @@
-"""Correlations of all items (the paper's Fig. 6), pairs too close to keep both, their scatter matrix (Fig. 7)."""
+"""The items: means and spread, correlations (the paper's Fig. 6 and 7), and whether these may be factored."""
 
 from __future__ import annotations
 
@@ -8,8 +8,16 @@ from html import escape
 from survey.report import figures
 from survey.report.sections.article import Article
 from survey.report.tables.csv_text import matrix_csv
+from survey.report.words import coefficient, decimal, probability
 
-__all__ = ["correlation"]
+__all__ = ["adequacy", "correlation", "items"]
+
+
+def items(article: Article) -> Iterator[str]:
+    """One table."""
+    yield article.section("section_items")
+    yield article.set(article.tables["items"])
+
 
 SCATTERED = 5  # items that a scatter matrix shows legibly
 
@@ -43,3 +51,20 @@ def correlation(article: Article) -> Iterator[str]:
     yield article.draw(
         "scatter", caption, figures.scatter_matrix(scores, labels, article.name("scatter"), caption)
     )
+
+
+def adequacy(article: Article) -> Iterator[str]:
+    """The two tests and the KMO of each item, or that they could not be computed."""
+    yield article.section("section_adequacy")
+    found, say = article.found.adequacy, article.say
+    if found is None:
+        yield f"<p>{escape(say('adequacy_none'))}</p>"
+        return
+    test = found.bartlett
+    grade = say(f"grade_{min(int(10 * found.kmo), 9) if found.kmo >= 0.5 else 0}")
+    text = say(
+        "adequacy_text", kmo=coefficient(found.kmo), grade=grade, df=test.df, chi2=decimal(test.chi2, 2),
+        p=probability(test.p),
+    )  # fmt: skip
+    yield f"<p>{escape(text)}</p>"
+    yield article.set(article.tables["kmo"], "narrow")

@@ -1,4 +1,4 @@
-"""Loadings sorted within components (the paper's Table 3)."""
+"""The components: how many each criterion keeps, the variance they explain (Table 2), their loadings (Table 3)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,33 @@ from survey.report import figures
 from survey.report.sections.article import Article
 from survey.report.tables.table import MANY
 
-__all__ = ["loadings"]
+__all__ = ["loadings", "retention", "variance"]
+
+
+def retention(article: Article) -> Iterator[str]:
+    """Nothing without components."""
+    found, say = article.found, article.say
+    if found.components is None:
+        return
+    yield article.section("section_retention")
+    yield article.set(article.tables["retention"], "narrow")
+    chance, boot = found.parallel, found.bootstrap
+    caption = say(
+        "scree_caption", draws=0 if chance is None else chance.draws,
+        quantile=95 if chance is None else f"{100 * chance.level:.0f}",
+    )  # fmt: skip
+    svg = figures.scree(
+        found.components.eigenvalues, None if chance is None else chance.upper,
+        None if boot is None else boot.eigenvalues, say, article.name("scree"), caption,
+    )  # fmt: skip
+    yield article.draw("scree", caption, svg)
+
+
+def variance(article: Article) -> Iterator[str]:
+    """Nothing without components."""
+    if article.found.components is not None:
+        yield article.section("section_variance")
+        yield article.set(article.tables["variance"])
 
 
 def loadings(article: Article) -> Iterator[str]:

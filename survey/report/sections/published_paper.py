@@ -1,4 +1,4 @@
-"""From 25 indicators to 12 and to 10: the paper's pruning (III.B.1–3), on the garment questionnaire."""
+"""The paper's own: from 25 indicators to 12 and to 10 (III.B.1–3), and what it printed beside what was computed."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from survey.demonstration.indicators import intermediate, questionnaire_id, samp
 from survey.report.figures.flow_chart import flow
 from survey.report.indicators import Way, evidence, way_of
 from survey.report.sections.article import Article
+from survey.report.tables.paper import paper_table
 from survey.report.tables.table import Table
 from survey.report.words import Words, coefficient, whole
 
-__all__ = ["way"]
+__all__ = ["paper", "way"]
 
 
 def way(article: Article) -> Iterator[str]:
@@ -61,3 +62,11 @@ def _fates(seen: Way, say: Words) -> Table:
         rows.append((f"{number} {say.either(one.name)}", became, why, said))
     head = (say("way_primary"), say("way_became"), say("way_why"), say("synthetic_short"))
     return Table("way", say("way_table_caption", sample=sample_name()), head, tuple(rows), left=4)
+
+
+def paper(article: Article) -> Iterator[str]:
+    """One table."""
+    yield article.section("section_paper")
+    yield f"<p>{escape(article.say('paper_intro'))}</p>"
+    comparable = article.found if article.asked is not None and article.asked.id == "garment" else None
+    yield article.set(paper_table(comparable, article.say), "paper")
