@@ -125,6 +125,7 @@ def mount(
     """
     from survey.web.api import Jobs, Limit, router
     from survey.web.form import form_router
+    from survey.web.privacy.routes import privacy_router
 
     questionnaires = QuestionnaireFolder(content, patience=PATIENCE)
     if problems is None and questionnaires.problems:
@@ -140,7 +141,8 @@ def mount(
         raise QuestionnaireError(found)
     asked = Published(questionnaires, mounted.store)
     app.include_router(router(mounted.store, asked, limit, offers, mounted.jobs))
-    app.include_router(form_router(asked, clip_of, offers=offers, home=home, record=mounted.record))
+    app.include_router(form_router(asked, clip_of, offers=offers, home=home, privacy=True))
+    app.include_router(privacy_router(mounted.record))
     return mounted
 
 

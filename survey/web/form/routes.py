@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
 from fastapi.responses import HTMLResponse, Response
@@ -15,10 +15,7 @@ from survey.questionnaire.keys import is_slug
 from survey.web.form.clip import ClipOf
 from survey.web.form.page import ASSETS, FOLDER, Home, form_page, list_page, notice_page
 
-if TYPE_CHECKING:
-    from survey.web.privacy.record import Record
-
-__all__ = ["form_router"]
+__all__ = ["HEADERS", "PageRoute", "Preferred", "Wanted", "chosen_language", "form_router"]
 
 _POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
@@ -26,7 +23,7 @@ _POLICY = (
     "form-action 'self'; base-uri 'none'; frame-ancestors 'self'"
 )
 RETRY_SECONDS = 5
-_HEADERS = {
+HEADERS = {
     "Content-Security-Policy": _POLICY,
     "Cache-Control": "no-cache",
     "Referrer-Policy": "no-referrer",
@@ -51,8 +48,8 @@ class PageRoute(APIRoute):
                     request.query_params.get("lang"),
                     request.headers.get("accept-language", ""),
                 )
-                headers = _HEADERS | {"Retry-After": str(RETRY_SECONDS)}
-                return HTMLResponse(notice_page("unavailable", _language(asked, preferred)), 503, headers)
+                headers = HEADERS | {"Retry-After": str(RETRY_SECONDS)}
+                return HTMLResponse(notice_page("unavailable", chosen_language(asked, preferred)), 503, headers)
 
         return showing
 
@@ -63,29 +60,29 @@ def form_router(
     *,
     offers: Offers = None,
     home: Home | None = None,
-    record: Callable[[], Record] | None = None,
+    privacy: bool = False,
 ) -> APIRouter:
-    """GET /questionnaires, /questionnaires/{id} and the script and style they use; /privacy where there is a record.
+    """GET /questionnaires, /questionnaires/{id} and the script and style they use.
 
     clip_of: the host's film of an exhibit, shown beside items on motion. `?preview` sends and keeps nothing.
-    offers: what the place has, None: everything is asked. home: where the thanks page leads back to. record: of
-    processing, as it is when it is asked for.
+    offers: what the place has, None: everything is asked. home: where the thanks page leads back to. privacy:
+    whether there is a page on it, which the consent then names.
     """
     routes = APIRouter(include_in_schema=False, route_class=PageRoute)
 
     @routes.get("/questionnaires")
     def listed(lang: Wanted = None, preferred: Preferred = "") -> Response:
         asked = [found for found in questionnaires.values() if found.asking(offers).items]
-        return HTMLResponse(list_page(asked, _language(lang, preferred)), headers=_HEADERS)
+        return HTMLResponse(list_page(asked, chosen_language(lang, preferred)), headers=HEADERS)
 
     @routes.get("/questionnaires/{key}")
     def form(request: Request, key: str, lang: Wanted = None, preferred: Preferred = "") -> Response:
-        language, questionnaire = _language(lang, preferred), questionnaires.get(key)
+        language, questionnaire = chosen_language(lang, preferred), questionnaires.get(key)
         if questionnaire is None:
-            return HTMLResponse(notice_page("missing", language), 404, _HEADERS)
+            return HTMLResponse(notice_page("missing", language), 404, HEADERS)
         questionnaire = questionnaire.asking(offers)
         if not questionnaire.items:
-            return HTMLResponse(notice_page("nothing", language), 404, _HEADERS)
+            return HTMLResponse(notice_page("nothing", language), 404, HEADERS)
         exhibit = request.query_params.get("exhibit")
         # A mistyped exhibit must not keep a visitor from answering; the answer then stands without it.
         known = exhibit if exhibit is not None and is_slug(exhibit) else None
@@ -93,24 +90,12 @@ def form_router(
         preview = "preview" in request.query_params
         back = home(language, known) if home is not None else None
         page = form_page(
-            questionnaire, language, known, clip=clip, preview=preview, home=back, privacy=record is not None
+            questionnaire, language, known, clip=clip, preview=preview, home=back, privacy=privacy
         )
-        return HTMLResponse(page, headers=_HEADERS)
-
-    if record is not None:
-        _add_privacy(routes, record)
+        return HTMLResponse(page, headers=HEADERS)
 
     routes.get("/survey-static/{name}")(_static)
     return routes
-
-
-def _add_privacy(routes: APIRouter, record: Callable[[], Record]) -> None:
-    @routes.get("/privacy")
-    def privacy(request: Request, lang: Wanted = None, preferred: Preferred = "") -> Response:
-        from survey.web.privacy.page import privacy_page
-
-        page = privacy_page(record(), _language(lang, preferred), scheme=request.url.scheme)
-        return HTMLResponse(page, headers=_HEADERS)
 
 
 def _static(name: str) -> Response:
@@ -120,7 +105,7 @@ def _static(name: str) -> Response:
     return Response((FOLDER / name).read_bytes(), headers=headers, media_type=ASSETS[name])
 
 
-def _language(wanted: str | None, preferred: str) -> Language:
+def chosen_language(wanted: str | None, preferred: str) -> Language:
     """The language asked for, else the first of the browser's that we have, else Chinese."""
     offers = [wanted or "", *(part.split(";")[0] for part in preferred.split(","))]
     for offer in offers:

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 
 from survey.questionnaire.definition import Language, Questionnaire, Text
-from survey.web.api.results import LEAST
+from survey.store.publication.disclosure import STEP
 from survey.web.form.page import document, heading
 from survey.web.privacy.controller import FILE, Contact
 from survey.web.privacy.record import Record
@@ -137,7 +137,7 @@ class _Page:
         return self.list(
             [
                 self.said("tokens", n=self.record.tokens),
-                self.said("public", n=LEAST),
+                self.said("public", n=STEP),
                 self.labelled("others", others.recipients),
                 self.labelled("transfers", others.transfers),
                 self.say["profiling"],
