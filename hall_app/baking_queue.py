@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from .beside import beside
+from hall_app.beside import beside
 
 __all__ = ["Bake", "BakingQueue", "Build", "Decision", "decide"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from .visitors import Visitor
+from hall_app.visitors import Visitor
 
 __all__ = ["BEHAVIOURS", "Behaviour", "Stage", "behaviour"]
 

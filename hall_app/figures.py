@@ -7,14 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .bake.places import key_now
-from .content.files import is_there
-from .content.floor import foot_height
-from .content.folder import Content, Exhibit
-from .content.glb import GlbError, read_glb
-from .content.problems import Problem
-from .models import ExhibitModels, models_of
-from .scene.nodes import Figure
+from hall_app.bake.places import key_now
+from hall_app.content.files import is_there
+from hall_app.content.floor import foot_height
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.glb import GlbError, read_glb
+from hall_app.content.problems import Problem
+from hall_app.models import ExhibitModels, models_of
+from hall_app.scene.nodes import Figure
 
 __all__ = ["Drawn", "drawn_exhibits"]
 

@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-from .walking import Floor, Grid, Pose, UnreachableError, cached_grid
+from hall_app.walking import Floor, Grid, Pose, UnreachableError, cached_grid
 
 __all__ = ["grid_beside", "ready_grid"]
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 
-from .baking_queue import BakingQueue
-from .beside import beside
-from .content.problems import Problem
-from .content.reload import Watcher
-from .house import House
-from .preparing import wanted_bakes
-from .tidying import tidy
+from hall_app.baking_queue import BakingQueue
+from hall_app.beside import beside
+from hall_app.content.problems import Problem
+from hall_app.content.reload import Watcher
+from hall_app.house import House
+from hall_app.preparing import wanted_bakes
+from hall_app.tidying import tidy
 
 __all__ = ["Following"]
 

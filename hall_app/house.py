@@ -10,25 +10,25 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal
 
-from .baking_queue import Bake
-from .beside import beside
-from .content.folder import Content, Exhibit
-from .content.problems import Problem
-from .content.views import yaw_of
-from .content.walkable import walking_floor
-from .figures import Drawn, drawn_exhibits
-from .floor_grid import grid_beside, ready_grid
-from .latest import Latest
-from .models import ExhibitModels
-from .places import Places
-from .preparing import ROOM
-from .room.key import room_key
-from .room.places import data_room
-from .room.showing import ShownRoom, shown_room, still_right
-from .scene.nodes import HallScene
-from .stage import Actor, Stage
-from .visitors import Visitor, Visitors
-from .walking import Floor, Grid, Pose, WalkSession
+from hall_app.baking_queue import Bake
+from hall_app.beside import beside
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.problems import Problem
+from hall_app.content.views import yaw_of
+from hall_app.content.walkable import walking_floor
+from hall_app.figures import Drawn, drawn_exhibits
+from hall_app.floor_grid import grid_beside, ready_grid
+from hall_app.latest import Latest
+from hall_app.models import ExhibitModels
+from hall_app.places import Places
+from hall_app.preparing import ROOM
+from hall_app.room.key import room_key
+from hall_app.room.places import data_room
+from hall_app.room.showing import ShownRoom, shown_room, still_right
+from hall_app.scene.nodes import HallScene
+from hall_app.stage import Actor, Stage
+from hall_app.visitors import Visitor, Visitors
+from hall_app.walking import Floor, Grid, Pose, WalkSession
 
 __all__ = ["House"]
 
@@ -296,6 +296,6 @@ class House:
 
 def walk_constants(radius: float, skin: float) -> dict[str, float]:
     """Speed and sizes the page predicts with: the server's own."""
-    from .walking import MAX_INPUT_DT, SPEED
+    from hall_app.walking import MAX_INPUT_DT, SPEED
 
     return {"speed": SPEED, "radius": radius, "skin": skin, "max_dt": MAX_INPUT_DT}

@@ -6,10 +6,9 @@ import argparse
 import socket
 from typing import TYPE_CHECKING
 
+from hall_app.places import MOST_VISITORS
+from hall_app.server.addresses import Addresses
 from survey.commands.options import add_proxy
-
-from .places import MOST_VISITORS
-from .server.addresses import Addresses
 
 if TYPE_CHECKING:
     import uvicorn
@@ -36,9 +35,9 @@ def server(
     """uvicorn behind the hall's door, its limits narrowed; connections: how many at a time."""
     import uvicorn
 
-    from .server.lines import LONGEST, Socket, line_class
-    from .server.listener import AT_A_TIME, Listener
-    from .server.open_lines import OpenLines
+    from hall_app.server.lines import LONGEST, Socket, line_class
+    from hall_app.server.listener import AT_A_TIME, Listener
+    from hall_app.server.open_lines import OpenLines
 
     lines = OpenLines(connections)
     mapped = [

@@ -12,7 +12,7 @@ import contextlib
 import ctypes
 import gc
 
-from .beside import beside
+from hall_app.beside import beside
 
 __all__ = ["Tidying", "settle"]
 

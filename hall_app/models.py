@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from .bake.places import bake_folder
-from .content.folder import Content, Exhibit
-from .content.glb import read_glb
+from hall_app.bake.places import bake_folder
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.glb import read_glb
 
 __all__ = ["ExhibitModels", "models_of"]
 

@@ -12,10 +12,10 @@ import sys
 import threading
 from pathlib import Path
 
-from .bake.places import bake_folder, bake_work, data_bake, key_now, read_record
-from .baking_queue import Bake
-from .content.folder import Content, Exhibit
-from .ending import undisturbed
+from hall_app.bake.places import bake_folder, bake_work, data_bake, key_now, read_record
+from hall_app.baking_queue import Bake
+from hall_app.content.folder import Content, Exhibit
+from hall_app.ending import undisturbed
 
 __all__ = ["ROOM", "Preparation", "bake_places", "forsake", "stale_garments", "wanted_bakes"]
 
@@ -39,8 +39,8 @@ def wanted_bakes(content: Content, data: Path, *, light: bool) -> tuple[Bake, ..
 
     Reads and hashes files, some 5 ms of them: to be called beside the event loop.
     """
-    from .room.key import room_key
-    from .room.places import room_folder
+    from hall_app.room.key import room_key
+    from hall_app.room.places import room_folder
 
     keys = ((exhibit.id, key_now(content, exhibit)) for exhibit in stale_garments(content, data))
     garments = tuple(Bake(name, key) for name, key in keys if key is not None)
@@ -52,7 +52,7 @@ def wanted_bakes(content: Content, data: Path, *, light: bool) -> tuple[Bake, ..
 
 def bake_places(bake: Bake, data: Path) -> tuple[Path, Path]:
     """Where a bake keeps its state while it is under way, and where what it makes is kept."""
-    from .room.places import data_room, room_work
+    from hall_app.room.places import data_room, room_work
 
     if bake.name == ROOM:
         return room_work(data, bake.key), data_room(data, bake.key)
@@ -61,7 +61,7 @@ def bake_places(bake: Bake, data: Path) -> tuple[Path, Path]:
 
 def forsake(bake: Bake, data: Path) -> None:
     """Remove what a bake that was ended has left: its state, and files in its place that make no whole bake."""
-    from .room.places import room_record
+    from hall_app.room.places import room_record
 
     work, target = bake_places(bake, data)
     shutil.rmtree(work, ignore_errors=True)

@@ -11,27 +11,26 @@ from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .baking_queue import BakingQueue
-from .content.folder import Content
-from .content.loading import load
-from .content.lookup import content_folder
-from .content.problems import ContentError
-from .data_folder import make_data_folder
-from .descriptors import connections, raise_limit, shortage
-from .ending import at_once
-from .listening import add_limits, check_port, port, server
-from .memory import settle
-from .places import Places
-from .preparing import Preparation, forsake, wanted_bakes
-from .progress_line import ProgressLine
-from .server.addresses import Addresses
+from hall_app.baking_queue import BakingQueue
+from hall_app.content.folder import Content
+from hall_app.content.loading import load
+from hall_app.content.lookup import content_folder
+from hall_app.content.problems import ContentError
+from hall_app.data_folder import make_data_folder
+from hall_app.descriptors import connections, raise_limit, shortage
+from hall_app.ending import at_once
+from hall_app.listening import add_limits, check_port, port, server
+from hall_app.memory import settle
+from hall_app.places import Places
+from hall_app.preparing import Preparation, forsake, wanted_bakes
+from hall_app.progress_line import ProgressLine
+from hall_app.server.addresses import Addresses
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
+    from hall_app.house import House
     from survey import Clip
-
-    from .house import House
 
 __all__ = ["add_parser", "run"]
 
@@ -127,10 +126,9 @@ def _end(number: int, frame: object) -> None:
 
 
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
+    from hall_app.house import House
+    from hall_app.server.app import create_app
     from survey import mount
-
-    from .house import House
-    from .server.app import create_app
 
     _say("Opening the hall …")
 
@@ -167,7 +165,7 @@ async def _living(
     house: House, arguments: argparse.Namespace, close: Callable[[], None]
 ) -> AsyncIterator[None]:
     """The hall while it is open: it follows the content and bakes. close: what else ends with it."""
-    from .following import Following
+    from hall_app.following import Following
 
     loop = asyncio.get_running_loop()
     # The server knows two signals; the third, of a closed terminal, ends it in the same way.
@@ -195,9 +193,8 @@ async def _living(
 
 def _film(house: House, key: str) -> Clip | None:
     """The exhibit's film, for the questionnaire's items on motion; None where it has none (yet)."""
+    from hall_app.content.views import exhibit_json
     from survey import Clip
-
-    from .content.views import exhibit_json
 
     models = house.models(key)
     shown = exhibit_json(house.content, key, baked=models.baked if models else None) or {"media": ()}

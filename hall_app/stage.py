@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from .behaviours import BEHAVIOURS
-from .visitors import Visitor, Visitors
+from hall_app.behaviours import BEHAVIOURS
+from hall_app.visitors import Visitor, Visitors
 
 __all__ = ["Actor", "Figures", "Stage"]
 

@@ -8,15 +8,15 @@ import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from .bake.key import KEY_DIGITS
-from .bake.places import RECORD as BAKE_RECORD
-from .bake.places import bake_folder, bake_work, data_bake, key_now
-from .baking_queue import Bake
-from .content.folder import Content
-from .preparing import ROOM, bake_places
-from .room.key import room_key
-from .room.places import RECORD as ROOM_RECORD
-from .room.places import former_room
+from hall_app.bake.key import KEY_DIGITS
+from hall_app.bake.places import RECORD as BAKE_RECORD
+from hall_app.bake.places import bake_folder, bake_work, data_bake, key_now
+from hall_app.baking_queue import Bake
+from hall_app.content.folder import Content
+from hall_app.preparing import ROOM, bake_places
+from hall_app.room.key import room_key
+from hall_app.room.places import RECORD as ROOM_RECORD
+from hall_app.room.places import former_room
 
 __all__ = ["tidy"]
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .walking import WalkSession
+    from hall_app.walking import WalkSession
 
 __all__ = ["Marks", "Visitor", "Visitors"]
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..content.folder import Content, Exhibit
-from ..content.glb import read_glb
-from ..sealing import FILES, seal, text_of
-from .encode import film_possible
-from .film import filming, stills
-from .places import RECORD
-from .recipe import Inputs, Recipe, read_inputs
-from .recipes import RECIPES
+from hall_app.bake.encode import film_possible
+from hall_app.bake.film import filming, stills
+from hall_app.bake.places import RECORD
+from hall_app.bake.recipe import Inputs, Recipe, read_inputs
+from hall_app.bake.recipes import RECIPES
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.glb import read_glb
+from hall_app.sealing import FILES, seal, text_of
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment
@@ -146,7 +146,7 @@ def _drape(
 
 def _sound() -> np.ndarray:
     """The film's music, mono at 48 kHz."""
-    from ..media.music import falling_gauze
+    from hall_app.media.music import falling_gauze
 
     return falling_gauze().mean(axis=1).astype(np.float32)
 

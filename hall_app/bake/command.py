@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..content.folder import Content, Exhibit
-from ..content.loading import load
-from ..content.lookup import content_folder
-from ..data_folder import make_data_folder
-from .places import bake_fault, bake_work, baked_here, data_bake, read_record
+from hall_app.bake.places import bake_fault, bake_work, baked_here, data_bake, read_record
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.loading import load
+from hall_app.content.lookup import content_folder
+from hall_app.data_folder import make_data_folder
 
 __all__ = ["add_parser", "run"]
 
@@ -61,11 +61,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(arguments: argparse.Namespace) -> int:
     """Bake; 1 when an exhibit that was asked for cannot be baked."""
-    from .key import bake_key
+    from hall_app.bake.key import bake_key
 
     folder = content_folder(arguments.content)
     if arguments.media:
-        from ..media import make_media
+        from hall_app.media import make_media
 
         with _progress(arguments.json, "media") as progress:
             make_media(folder, progress)
@@ -91,8 +91,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _build_room(content: Content, arguments: argparse.Namespace) -> None:
     """The room, if the plan or what is written in it changed."""
-    from ..room.key import room_key
-    from ..room.places import data_room, room_here, room_record, room_work
+    from hall_app.room.key import room_key
+    from hall_app.room.places import data_room, room_here, room_record, room_work
 
     key = room_key(content, arguments.data)
     target = data_room(arguments.data, key) if arguments.into_data else room_here(content.folder)
@@ -100,7 +100,7 @@ def _build_room(content: Content, arguments: argparse.Namespace) -> None:
     if record is not None and record.get("key") == key and not arguments.force:
         _tell(arguments.json, {"room": key, "state": "up to date"}, "room: up to date")
         return
-    from ..room.bake import bake_room
+    from hall_app.room.bake import bake_room
 
     make_data_folder(arguments.data)
     work = room_work(arguments.data, key)
@@ -131,7 +131,7 @@ def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
 
 
 def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
-    from .bake import bake_garment
+    from hall_app.bake.bake import bake_garment
 
     make_data_folder(arguments.data)
     work = bake_work(arguments.data, exhibit.id, key)

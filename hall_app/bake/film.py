@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .encode import encode_film
+from hall_app.bake.encode import encode_film
 
 __all__ = ["Film", "Look", "SIZE", "Solid", "filming", "stills"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 
-from ..content.folder import Content, Exhibit
+from hall_app.content.folder import Content, Exhibit
 
 __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key"]
 

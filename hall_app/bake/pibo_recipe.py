@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .film import Look, Solid
-from .recipe import Inputs, OnFrame, Progress, cover, shown_colour
-from .robe_recipe import RobeOnFigure
+from hall_app.bake.film import Look, Solid
+from hall_app.bake.recipe import Inputs, OnFrame, Progress, cover, shown_colour
+from hall_app.bake.robe_recipe import RobeOnFigure
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment

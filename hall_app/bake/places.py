@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..content.folder import Content, Exhibit
-from ..sealing import Fault, seal_fault
-from .key import KEY_DIGITS, bake_key
+from hall_app.bake.key import KEY_DIGITS, bake_key
+from hall_app.content.folder import Content, Exhibit
+from hall_app.sealing import Fault, seal_fault
 
 __all__ = [
     "NEEDED",

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ..content.exhibit_file import GarmentRecipe
-from ..content.folder import Content, Exhibit
-from ..content.loading import load
-from .limits import PIBO, limits_of, writer
-from .places import bake_fault, baked_here, key_now, read_record
-from .stored import Measured, measured_again
+from hall_app.bake.limits import PIBO, limits_of, writer
+from hall_app.bake.places import bake_fault, baked_here, key_now, read_record
+from hall_app.bake.stored import Measured, measured_again
+from hall_app.content.exhibit_file import GarmentRecipe
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.loading import load
 
 __all__ = ["Line", "figure_lines", "garment_lines", "garments_checked", "table"]
 
@@ -109,8 +109,8 @@ def _told(record: Numbers) -> dict[str, Any]:
 
 def _budgets(recipe: GarmentRecipe) -> dict[str, float]:
     """How far a hall model may be from the close one [m], p99: what the recipe was thinned to."""
-    from .bake import budget
-    from .pibo_recipe import HALL_ROBE
+    from hall_app.bake.bake import budget
+    from hall_app.bake.pibo_recipe import HALL_ROBE
 
     own = {"hall_hausdorff_p99": budget(recipe.nearest, recipe.hall_error_px)}
     return own | ({"robe_hall_hausdorff_p99": HALL_ROBE} if recipe.recipe == PIBO else {})

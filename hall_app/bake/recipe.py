@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ..content.exhibit_file import GarmentRecipe
-from .film import Look
+from hall_app.bake.film import Look
+from hall_app.content.exhibit_file import GarmentRecipe
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment, Pattern

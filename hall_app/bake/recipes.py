@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from .pibo_recipe import PiboOnFigure
-from .recipe import Inputs, Recipe
-from .robe_recipe import RobeOnFigure
-from .scarf_recipe import ScarfOnStand
+from hall_app.bake.pibo_recipe import PiboOnFigure
+from hall_app.bake.recipe import Inputs, Recipe
+from hall_app.bake.robe_recipe import RobeOnFigure
+from hall_app.bake.scarf_recipe import ScarfOnStand
 
 __all__ = ["RECIPES"]
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .film import Look, Solid
-from .recipe import LACQUER, Inputs, OnFrame, Progress, cover, shown_colour
+from hall_app.bake.film import Look, Solid
+from hall_app.bake.recipe import LACQUER, Inputs, OnFrame, Progress, cover, shown_colour
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment

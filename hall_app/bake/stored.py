@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..content.exhibit_file import GarmentRecipe
-from ..content.glb import open_glb, read_glb
-from ..content.glb_arrays import accessor
+from hall_app.content.exhibit_file import GarmentRecipe
+from hall_app.content.glb import open_glb, read_glb
+from hall_app.content.glb_arrays import accessor
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment

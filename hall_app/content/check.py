@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from .checks import CHECKS
-from .checks.questionnaires import unstated
-from .folder import Content
-from .loading import load, load_exhibit_problems
-from .problems import ContentError, Problem
+from hall_app.content.checks import CHECKS
+from hall_app.content.checks.questionnaires import unstated
+from hall_app.content.folder import Content
+from hall_app.content.loading import load, load_exhibit_problems
+from hall_app.content.problems import ContentError, Problem
 
 __all__ = ["check", "hints"]
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .glb import open_glb
-from .glb_arrays import accessor
-from .pictures import LARGEST, PictureError, picture_size
+from hall_app.content.glb import open_glb
+from hall_app.content.glb_arrays import accessor
+from hall_app.content.pictures import LARGEST, PictureError, picture_size
 
 __all__ = ["difference", "hex_of", "main_colour"]
 

@@ -7,8 +7,8 @@ import json
 import sys
 from pathlib import Path
 
-from .lookup import content_folder
-from .problems import ContentError, Problem
+from hall_app.content.lookup import content_folder
+from hall_app.content.problems import ContentError, Problem
 
 __all__ = ["add_parser", "run"]
 
@@ -48,7 +48,7 @@ def add_parser(subparsers: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Check the folder and write the result: 0 no problem, 1 problems."""
-    from .check import check, hints
+    from hall_app.content.check import check, hints
 
     problems: list[Problem]
     advice: list[Problem] = []
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         folder = content_folder(folder)
         if args.garments:
-            from ..bake.quality import garments_checked
+            from hall_app.bake.quality import garments_checked
 
             text, status = garments_checked(folder, as_json=args.json)
             sys.stdout.write(text)

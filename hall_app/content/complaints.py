@@ -11,7 +11,7 @@ from typing import Any, Union
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from .problems import Problem
+from hall_app.content.problems import Problem
 
 Location = tuple[int | str, ...]
 

@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from ..behaviours import BEHAVIOURS
-from .values import Bilingual, ContentPath, Metres, Table, Text
+from hall_app.behaviours import BEHAVIOURS
+from hall_app.content.values import Bilingual, ContentPath, Metres, Table, Text
 
 
 def _known_behaviour(name: str) -> str:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from .exhibit_file import ExhibitFile
-from .folder import Exhibit
-from .plan_file import PlanFile, Solid, Wall
-from .values import Point
+from hall_app.content.exhibit_file import ExhibitFile
+from hall_app.content.folder import Exhibit
+from hall_app.content.plan_file import PlanFile, Solid, Wall
+from hall_app.content.values import Point
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .pictures import PictureError, picture_size
+from hall_app.content.pictures import PictureError, picture_size
 
 # The page has no decoder for these: it would look for one on the network, and the hall works without.
 REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")

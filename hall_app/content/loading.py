@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from .complaints import schema_problems, toml_problem
-from .exhibit_file import ExhibitFile
-from .files import (
+from hall_app.content.complaints import schema_problems, toml_problem
+from hall_app.content.exhibit_file import ExhibitFile
+from hall_app.content.files import (
     LEAVES,
     TEXTS,
     exhibit_files,
@@ -21,14 +21,14 @@ from .files import (
     recipe_files,
     revision,
 )
-from .floor import body_footprint
-from .folder import Content, Exhibit
-from .glb import GlbError, read_glb
-from .hall_file import HallFile
-from .places import place_faults, plan_problems, start_problems
-from .plan_file import PlanFile
-from .problems import ContentError, Problem
-from .values import Table
+from hall_app.content.floor import body_footprint
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.glb import GlbError, read_glb
+from hall_app.content.hall_file import HallFile
+from hall_app.content.places import place_faults, plan_problems, start_problems
+from hall_app.content.plan_file import PlanFile
+from hall_app.content.problems import ContentError, Problem
+from hall_app.content.values import Table
 
 RESERVED = ("hall",)  # /media/hall/ is the hall's own
 ID_FORM = "abcdefghijklmnopqrstuvwxyz0123456789-"

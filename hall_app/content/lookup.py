@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .problems import ContentError, Problem
+from hall_app.content.problems import ContentError, Problem
 
 PACKAGE = Path(__file__).resolve().parent.parent
 

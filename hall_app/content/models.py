@@ -1,9 +1,20 @@
 """The schemas of a content folder in one place: hall.toml, plan.toml, exhibit.toml."""
 
-from .exhibit_file import Body, ExhibitFile, GarmentRecipe, Media, Models, Place, Record
-from .hall_file import Eye, HallFile, Start
-from .plan_file import Bay, Curtain, Lantern, Laylight, Opening, PlanFile, Round, Sign, Solid, Wall
-from .values import Bilingual, Table
+from hall_app.content.exhibit_file import Body, ExhibitFile, GarmentRecipe, Media, Models, Place, Record
+from hall_app.content.hall_file import Eye, HallFile, Start
+from hall_app.content.plan_file import (
+    Bay,
+    Curtain,
+    Lantern,
+    Laylight,
+    Opening,
+    PlanFile,
+    Round,
+    Sign,
+    Solid,
+    Wall,
+)
+from hall_app.content.values import Bilingual, Table
 
 __all__ = [
     "Bay",

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from .exhibit_file import ExhibitFile
-from .floor import Footprint, body_footprint, plan_footprints, solid_footprint
-from .hall_file import HallFile
-from .plan_file import PlanFile
-from .problems import Problem
-from .values import Point
+from hall_app.content.exhibit_file import ExhibitFile
+from hall_app.content.floor import Footprint, body_footprint, plan_footprints, solid_footprint
+from hall_app.content.hall_file import HallFile
+from hall_app.content.plan_file import PlanFile
+from hall_app.content.problems import Problem
+from hall_app.content.values import Point
 
 STANDING = ("booth", "dais", "stand")  # kinds an exhibit can stand on
 FARTHEST = 200.0  # [m] from the hall's middle; the studio of close-ups stands at 500 m
@@ -97,7 +97,7 @@ def start_problems(hall: HallFile, plan: PlanFile, bodies: Iterable[Footprint] =
     from shapely import Point as Spot
     from shapely import Polygon
 
-    from ..walking import BODY
+    from hall_app.walking import BODY
 
     reach = BODY.radius + BODY.skin
     start = hall.start

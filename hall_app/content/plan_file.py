@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from .values import Bilingual, Metres, Point, Ring, Table, Text
+from hall_app.content.values import Bilingual, Metres, Point, Ring, Table, Text
 
 
 class Wall(Table):

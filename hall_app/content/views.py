@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from .exhibit_file import Media, Record
-from .files import BAKED, digest, is_there
-from .floor import plan_footprints
-from .folder import Content, Exhibit
-from .measured import measured_lines
-from .record_labels import RECORD_LABELS
-from .text import html_of
+from hall_app.content.exhibit_file import Media, Record
+from hall_app.content.files import BAKED, digest, is_there
+from hall_app.content.floor import plan_footprints
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.measured import measured_lines
+from hall_app.content.record_labels import RECORD_LABELS
+from hall_app.content.text import html_of
 
 # Named here and not asked of the system: what `mimetypes` knows differs from machine to machine.
 TYPES = {

@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .floor import Footprint, solids_of
-from .folder import Content, Exhibit
-from .plan_file import PlanFile
+from hall_app.content.floor import Footprint, solids_of
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.plan_file import PlanFile
 
 if TYPE_CHECKING:
-    from ..walking import Floor, Prism, Round
+    from hall_app.walking import Floor, Prism, Round
 
 SEEN_OVER = 1.2  # [m] a visitor looks over what is lower than this
 
 
 def walking_floor(plan: PlanFile, exhibits: Iterable[Exhibit]) -> Floor:
     """Outline, walls, solids and exhibits' bodies as a floor of hall_app.walking."""
-    from ..walking import Floor
+    from hall_app.walking import Floor
 
     return Floor(plan.outline, tuple(walking_solid(footprint) for footprint in solids_of(plan, exhibits)))
 
 
 def walking_solid(footprint: Footprint) -> Prism | Round:
     """One footprint as a solid of hall_app.walking."""
-    from ..walking import Prism, Round
+    from hall_app.walking import Prism, Round
 
     if footprint.round:
         return Round(*footprint.round, footprint.height)
@@ -41,7 +41,7 @@ def reached_spots(content: Content) -> np.ndarray:
 
 @lru_cache(maxsize=2)
 def _reached(floor: Floor, x: float, z: float) -> np.ndarray:
-    from ..walking import bake, flood
+    from hall_app.walking import bake, flood
 
     grid = bake(floor)
     rows, columns = np.nonzero(flood(grid, (x, z)))

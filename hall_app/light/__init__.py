@@ -4,9 +4,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .baking import bake_light
-    from .encode import light_jpeg
-    from .model import LightError, LightMap, Spot, Surfaces
+    from hall_app.light.baking import bake_light
+    from hall_app.light.encode import light_jpeg
+    from hall_app.light.model import LightError, LightMap, Spot, Surfaces
 
 __all__ = ["LightError", "LightMap", "Spot", "Surfaces", "bake_light", "light_jpeg"]
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .lamps import SpotRows
-from .model import Surfaces
+from hall_app.light.lamps import SpotRows
+from hall_app.light.model import Surfaces
 
 __all__ = ["State", "key_of", "load", "save"]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .packing import Atlas
+from hall_app.light.packing import Atlas
 
 __all__ = ["fill", "frame_charts", "frame_numbers", "smooth"]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import LightError, Surfaces
+from hall_app.light.model import LightError, Surfaces
 
 __all__ = ["BORDER", "Atlas", "atlas_of", "pack"]
 

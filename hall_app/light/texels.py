@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .model import Surfaces
-from .packing import Atlas
+from hall_app.light.model import Surfaces
+from hall_app.light.packing import Atlas
 
 __all__ = ["FINE", "Places", "face_normals", "places_of"]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .bvh import WIDTH, Tree
+from hall_app.light.bvh import WIDTH, Tree
 
 __all__ = ["FAR", "cast", "lanes", "nearest", "occluded", "stack"]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .strings import RATE, Touch, harmonic, pluck, room, wooden
+from hall_app.media.strings import RATE, Touch, harmonic, pluck, room, wooden
 
 DEGREES = {"1": 0, "2": 2, "3": 4, "5": 7, "6": 9}  # gong mode, semitones over the key note
 KEY = 174.61  # [Hz] F below middle C

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from ..content.folder import Content
-from ..sealing import FILES, seal, text_of
-from .charts import surfaces
-from .drawn import room_glb
-from .environment import environment_jpeg, seen
-from .key import built_key
-from .lamps import spots_of
-from .occluders import exhibit_solids
-from .places import BUILT, ENVIRONMENT, GLB, RECORD
-from .raising import raise_room
+from hall_app.content.folder import Content
+from hall_app.room.charts import surfaces
+from hall_app.room.drawn import room_glb
+from hall_app.room.environment import environment_jpeg, seen
+from hall_app.room.key import built_key
+from hall_app.room.lamps import spots_of
+from hall_app.room.occluders import exhibit_solids
+from hall_app.room.places import BUILT, ENVIRONMENT, GLB, RECORD
+from hall_app.room.raising import raise_room
+from hall_app.sealing import FILES, seal, text_of
 
 __all__ = ["bake_room"]
 
@@ -48,7 +48,7 @@ def bake_room(
     out.mkdir(parents=True, exist_ok=True)
     progress(0.0, "geometry")
     room = raise_room(content.plan, content.hall.title, content.exhibits)
-    from ..light import bake_light
+    from hall_app.light import bake_light
 
     walls = surfaces(room.patches, exhibit_solids(content, data))
     light = bake_light(

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .frame import JOIST, beams_of
-from .patch import Frame, Patch, box, panel, quad
-from .regions import Region, Regions
+from hall_app.room.frame import JOIST, beams_of
+from hall_app.room.patch import Frame, Patch, box, panel, quad
+from hall_app.room.regions import Region, Regions
 
 if TYPE_CHECKING:
-    from ..content.models import Laylight, PlanFile
+    from hall_app.content.models import Laylight, PlanFile
 
 __all__ = ["ceilings", "floor"]
 

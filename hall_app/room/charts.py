@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .palette import MATERIALS, linear
-from .patch import Patch
+from hall_app.room.palette import MATERIALS, linear
+from hall_app.room.patch import Patch
 
 if TYPE_CHECKING:
-    from ..light.model import Surfaces
+    from hall_app.light.model import Surfaces
 
 __all__ = ["Charts", "charts_of", "surfaces"]
 
@@ -52,7 +52,7 @@ def surfaces(
     patches: Sequence[Patch], occluders: Sequence[tuple[Floats, NDArray[np.int32]]] = ()
 ) -> Surfaces:
     """The room for the light: every patch with its chart, albedo and glow; `occluders` (vertices, faces) have none."""
-    from ..light.model import Surfaces
+    from hall_app.light.model import Surfaces
 
     charts = charts_of(patches)
     counts = [len(patch.faces) for patch in patches]

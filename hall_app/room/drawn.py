@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hall_app.room.palette import MATERIALS, linear
+from hall_app.room.patch import Patch
+from hall_app.room.raising import Room
+from hall_app.room.textures import texture
 from sim_core.garment.glb_file import GlbFile
 
-from .palette import MATERIALS, linear
-from .patch import Patch
-from .raising import Room
-from .textures import texture
-
 if TYPE_CHECKING:
-    from ..light.model import LightMap
+    from hall_app.light.model import LightMap
 
 __all__ = ["room_glb"]
 
@@ -132,7 +131,7 @@ def _corners(room: Room, light: LightMap) -> list[Floats]:
 
 def _add_light(glb: GlbFile, light: LightMap) -> None:
     """The light map, carried by a triangle of a millimetre deep under the floor."""
-    from ..light import light_jpeg
+    from hall_app.light import light_jpeg
 
     data = light_jpeg(light)
     look = {"baseColorTexture": glb.picture(data, "image/jpeg"), "metallicFactor": 0.0}

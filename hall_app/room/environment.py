@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .palette import MATERIALS, linear
+from hall_app.room.palette import MATERIALS, linear
 
 if TYPE_CHECKING:
-    from ..content.models import PlanFile
-    from ..light.model import LightMap, Surfaces
+    from hall_app.content.models import PlanFile
+    from hall_app.light.model import LightMap, Surfaces
 
 __all__ = ["environment_jpeg", "painted", "seen"]
 
@@ -34,8 +34,8 @@ def environment_jpeg(picture: NDArray[np.float64]) -> bytes:
 
 def seen(plan: PlanFile, walls: Surfaces, light: LightMap) -> NDArray[np.float64]:
     """(256, 512, 3) linear light: the lit room round the middle of its largest bay, four rays a pixel."""
-    from ..light.bvh import build_tree
-    from ..light.tracing import cast
+    from hall_app.light.bvh import build_tree
+    from hall_app.light.tracing import cast
 
     eye = np.array([*_middle(plan)])
     inside = walls.chart >= 0  # the room without the exhibits: none shall mirror itself

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .regions import Regions
+from hall_app.room.regions import Regions
 
 if TYPE_CHECKING:
-    from ..content.models import PlanFile, Solid
+    from hall_app.content.models import PlanFile, Solid
 
 __all__ = ["JOIST", "Beam", "Column", "beams_of", "columns_of"]
 

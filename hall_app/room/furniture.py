@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .patch import Frame, Patch, box, disc, panel, strip, tube
+from hall_app.room.patch import Frame, Patch, box, disc, panel, strip, tube
 
 if TYPE_CHECKING:
-    from ..content.models import PlanFile, Solid
+    from hall_app.content.models import PlanFile, Solid
 
 __all__ = ["furniture"]
 

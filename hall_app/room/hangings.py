@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame import beams_of
-from .patch import Frame, Patch, disc, quad, strip, tube
-from .regions import Regions
-from .timber import BAND
+from hall_app.room.frame import beams_of
+from hall_app.room.patch import Frame, Patch, disc, quad, strip, tube
+from hall_app.room.regions import Regions
+from hall_app.room.timber import BAND
 
 if TYPE_CHECKING:
-    from ..content.models import Curtain, Lantern, PlanFile
+    from hall_app.content.models import Curtain, Lantern, PlanFile
 
 __all__ = ["TIE", "hangings"]
 

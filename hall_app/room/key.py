@@ -7,10 +7,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..content.files import digest
-from ..content.folder import Content, Exhibit
-from ..content.plan_file import PlanFile
-from ..models import models_of
+from hall_app.content.files import digest
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.plan_file import PlanFile
+from hall_app.models import models_of
 
 __all__ = ["ROOM_VERSION", "built_key", "room_key"]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .palette import linear
-from .patch import Frame
-from .regions import Regions
+from hall_app.room.palette import linear
+from hall_app.room.patch import Frame
+from hall_app.room.regions import Regions
 
 if TYPE_CHECKING:
-    from ..content.folder import Exhibit
-    from ..content.models import PlanFile, Solid
-    from ..light.model import Spot
+    from hall_app.content.folder import Exhibit
+    from hall_app.content.models import PlanFile, Solid
+    from hall_app.light.model import Spot
 
 __all__ = ["spots_of"]
 
@@ -23,7 +23,7 @@ _PALE = 0.15  # of it before a pale backdrop, which the room alone lights nearly
 
 def spots_of(plan: PlanFile, exhibits: Sequence[Exhibit] = ()) -> list[Spot]:
     """One spot for each place where exhibits stand, from the ceiling before it down to the height of a breast."""
-    from ..light.model import Spot
+    from hall_app.light.model import Spot
 
     regions = Regions(plan)
     spots = []

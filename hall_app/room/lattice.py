@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .patch import Frame, Patch, box
+from hall_app.room.patch import Frame, Patch, box
 
 __all__ = ["bars", "screen"]
 

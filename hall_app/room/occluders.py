@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..content.floor import foot_height
-from ..content.folder import Content
-from ..models import models_of
-from .patch import Frame
+from hall_app.content.floor import foot_height
+from hall_app.content.folder import Content
+from hall_app.models import models_of
+from hall_app.room.patch import Frame
 
 __all__ = ["exhibit_solids"]
 

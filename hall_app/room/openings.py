@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .lattice import bars
-from .patch import UP, Frame, Patch, box, panel, quad
+from hall_app.room.lattice import bars
+from hall_app.room.patch import UP, Frame, Patch, box, panel, quad
 
 __all__ = ["door", "window"]
 

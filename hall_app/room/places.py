@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..content.folder import Content
-from ..sealing import Fault, seal_fault
-from .key import built_key, room_key
+from hall_app.content.folder import Content
+from hall_app.room.key import built_key, room_key
+from hall_app.sealing import Fault, seal_fault
 
 __all__ = [
     "BUILT",

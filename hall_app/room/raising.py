@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .ceiling import ceilings, floor
-from .furniture import furniture
-from .hangings import hangings
-from .lettering import Sheet, write
-from .patch import Patch
-from .regions import Regions
-from .signs import boards_of, signs
-from .timber import timber
-from .walls import walls
+from hall_app.room.ceiling import ceilings, floor
+from hall_app.room.furniture import furniture
+from hall_app.room.hangings import hangings
+from hall_app.room.lettering import Sheet, write
+from hall_app.room.patch import Patch
+from hall_app.room.regions import Regions
+from hall_app.room.signs import boards_of, signs
+from hall_app.room.timber import timber
+from hall_app.room.walls import walls
 
 if TYPE_CHECKING:
-    from ..content.folder import Exhibit
-    from ..content.models import Bilingual, PlanFile
+    from hall_app.content.folder import Exhibit
+    from hall_app.content.models import Bilingual, PlanFile
 
 __all__ = ["Room", "raise_room"]
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
-    from ..content.models import Bay, PlanFile
+    from hall_app.content.models import Bay, PlanFile
 
 __all__ = ["Region", "Regions", "bay_height"]
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ..content.folder import Content
-from .drawn import room_glb
-from .environment import environment_jpeg, painted
-from .key import built_key, room_key
-from .lettering import MissingFontError
-from .places import ENVIRONMENT, GLB, broken_room, former_room, room_folder
-from .raising import raise_room
+from hall_app.content.folder import Content
+from hall_app.room.drawn import room_glb
+from hall_app.room.environment import environment_jpeg, painted
+from hall_app.room.key import built_key, room_key
+from hall_app.room.lettering import MissingFontError
+from hall_app.room.places import ENVIRONMENT, GLB, broken_room, former_room, room_folder
+from hall_app.room.raising import raise_room
 
 __all__ = ["ShownRoom", "shown_room", "still_right"]
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .frame import beams_of, columns_of
-from .lettering import Sheet, Writing
-from .patch import Frame, Patch, box, quad, strip, tube
-from .regions import Regions, bay_height
+from hall_app.room.frame import beams_of, columns_of
+from hall_app.room.lettering import Sheet, Writing
+from hall_app.room.patch import Frame, Patch, box, quad, strip, tube
+from hall_app.room.regions import Regions, bay_height
 
 if TYPE_CHECKING:
-    from ..content.folder import Exhibit
-    from ..content.models import Bay, Bilingual, PlanFile, Sign
+    from hall_app.content.folder import Exhibit
+    from hall_app.content.models import Bay, Bilingual, PlanFile, Sign
 
 __all__ = ["Board", "boards_of", "signs"]
 

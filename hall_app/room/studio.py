@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from hall_app.room.palette import linear
 from sim_core.garment.glb_file import GlbFile
-
-from .palette import linear
 
 __all__ = ["studio_glb"]
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .frame import Beam, Column, beams_of, columns_of
-from .patch import Frame, Patch, box, disc, prism, quad, tube
-from .regions import Regions
+from hall_app.room.frame import Beam, Column, beams_of, columns_of
+from hall_app.room.patch import Frame, Patch, box, disc, prism, quad, tube
+from hall_app.room.regions import Regions
 
 if TYPE_CHECKING:
-    from ..content.models import PlanFile
+    from hall_app.content.models import PlanFile
 
 __all__ = ["timber"]
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .lattice import screen
-from .openings import door, window
-from .patch import Frame, Patch, box, panel
-from .regions import Regions
+from hall_app.room.lattice import screen
+from hall_app.room.openings import door, window
+from hall_app.room.patch import Frame, Patch, box, panel
+from hall_app.room.regions import Regions
 
 if TYPE_CHECKING:
-    from ..content.models import Opening, PlanFile, Wall
+    from hall_app.content.models import Opening, PlanFile, Wall
 
 __all__ = ["DATUM", "WAINSCOT", "walls"]
 

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ..room.studio import studio_glb
-from ..visitors import Marks, Visitor
-from .pieces import Pieces
+from hall_app.room.studio import studio_glb
+from hall_app.scene.pieces import Pieces
+from hall_app.visitors import Marks, Visitor
 
 if TYPE_CHECKING:
     import viser

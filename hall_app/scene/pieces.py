@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
 
-from ..zstd import best_frame
+from hall_app.zstd import best_frame
 
 __all__ = ["LEAN", "Pieces", "split"]
 

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable
 from time import monotonic
 
-from .budgets import Bucket, Rate
+from hall_app.server.budgets import Bucket, Rate
 
 __all__ = ["Addresses", "Silent", "name_of"]
 

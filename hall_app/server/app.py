@@ -17,23 +17,23 @@ from fastapi.responses import FileResponse, HTMLResponse, Response
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from ..content.views import exhibit_json, media_file, media_type, scene_json, yaw_of
-from ..house import House
-from ..scene.pieces import Pieces
-from .addresses import Addresses
-from .answers import SLOW, Answers
-from .catalogue import Small, catalogue_html, shown_language
-from .doorkeeper import Doorkeeper
-from .origin import key_of, with_key
-from .packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
-from .page import content_security_policy, door_page
-from .portions import Portions
-from .relay import Views, add_relay
-from .static import page_files
-from .still import still_jpeg
-from .thumbnails import Thumbnails
-from .viser_client import viser_client
-from .walk_socket import add_walk_socket
+from hall_app.content.views import exhibit_json, media_file, media_type, scene_json, yaw_of
+from hall_app.house import House
+from hall_app.scene.pieces import Pieces
+from hall_app.server.addresses import Addresses
+from hall_app.server.answers import SLOW, Answers
+from hall_app.server.catalogue import Small, catalogue_html, shown_language
+from hall_app.server.doorkeeper import Doorkeeper
+from hall_app.server.origin import key_of, with_key
+from hall_app.server.packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
+from hall_app.server.page import content_security_policy, door_page
+from hall_app.server.portions import Portions
+from hall_app.server.relay import Views, add_relay
+from hall_app.server.static import page_files
+from hall_app.server.still import still_jpeg
+from hall_app.server.thumbnails import Thumbnails
+from hall_app.server.viser_client import viser_client
+from hall_app.server.walk_socket import add_walk_socket
 
 __all__ = ["create_app"]
 

@@ -12,10 +12,10 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from ..content.folder import Content, Exhibit
-from ..content.text import html_of
-from ..content.views import exhibit_json, own_picture, thumbnail
-from .page import ICON
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.text import html_of
+from hall_app.content.views import exhibit_json, own_picture, thumbnail
+from hall_app.server.page import ICON
 
 __all__ = ["Small", "catalogue_html", "shown_language"]
 

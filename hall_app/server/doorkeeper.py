@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from .addresses import Addresses, name_of
+from hall_app.server.addresses import Addresses, name_of
 
 __all__ = ["Doorkeeper", "address_of"]
 

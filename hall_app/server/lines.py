@@ -9,9 +9,9 @@ from typing import Any
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
-from .addresses import Addresses, name_of
-from .budgets import Bucket, Rate
-from .open_lines import OpenLine, OpenLines
+from hall_app.server.addresses import Addresses, name_of
+from hall_app.server.budgets import Bucket, Rate
+from hall_app.server.open_lines import OpenLine, OpenLines
 
 __all__ = ["LONGEST", "Socket", "line_class"]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import uvicorn
 
-from .open_lines import OpenLines
+from hall_app.server.open_lines import OpenLines
 
 __all__ = ["AT_A_TIME", "Listener"]
 

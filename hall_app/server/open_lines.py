@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from time import monotonic
 from typing import Protocol
 
-from .addresses import name_of
+from hall_app.server.addresses import name_of
 
 __all__ = ["MOST_OF_ONE_ADDRESS", "OpenLine", "OpenLines"]
 

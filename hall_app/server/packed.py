@@ -12,8 +12,8 @@ from typing import Literal
 from fastapi import Request
 from fastapi.responses import Response
 
-from ..zstd import best_frame
-from .answers import SLOW
+from hall_app.server.answers import SLOW
+from hall_app.zstd import best_frame
 
 __all__ = ["FOR_GOOD", "PRIVATE", "REVALIDATED", "Coding", "Packed", "accepted"]
 

@@ -11,9 +11,9 @@ from html import escape
 from string import Template
 from typing import Any
 
-from ..content.hall_file import HallFile
-from .static import AHEAD, REST, SCRIPT, PageFiles
-from .viser_client import viser_client
+from hall_app.content.hall_file import HallFile
+from hall_app.server.static import AHEAD, REST, SCRIPT, PageFiles
+from hall_app.server.viser_client import viser_client
 
 __all__ = ["ICON", "content_security_policy", "door_page"]
 

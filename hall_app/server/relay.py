@@ -12,15 +12,15 @@ import msgspec
 from fastapi import FastAPI
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from ..memory import Tidying
-from ..places import WAITING_OF_ONE_ADDRESS, Places
-from ..scene.pieces import Pieces
-from .addresses import Addresses, name_of
-from .budgets import RELAY, Allowance
-from .doorkeeper import address_of
-from .lines import LONGEST
-from .origin import key_of, same_origin, with_key
-from .together import until_first
+from hall_app.memory import Tidying
+from hall_app.places import WAITING_OF_ONE_ADDRESS, Places
+from hall_app.scene.pieces import Pieces
+from hall_app.server.addresses import Addresses, name_of
+from hall_app.server.budgets import RELAY, Allowance
+from hall_app.server.doorkeeper import address_of
+from hall_app.server.lines import LONGEST
+from hall_app.server.origin import key_of, same_origin, with_key
+from hall_app.server.together import until_first
 
 if TYPE_CHECKING:
     from websockets.asyncio.client import ClientConnection

@@ -11,8 +11,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from .modules import one_module
-from .packed import Packed
+from hall_app.server.modules import one_module
+from hall_app.server.packed import Packed
 
 __all__ = ["PAGE_FOLDER", "PageFiles", "page_files"]
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from ..content.files import digest
-from ..content.pictures import LARGEST
+from hall_app.content.files import digest
+from hall_app.content.pictures import LARGEST
 
 __all__ = ["EDGE", "Thumbnails"]
 

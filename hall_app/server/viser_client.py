@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .packed import Packed
+from hall_app.server.packed import Packed
 
 __all__ = ["VISER_VERSION", "ViserClient", "viser_client"]
 

@@ -13,15 +13,15 @@ import msgspec
 from fastapi import FastAPI
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from ..house import House
-from ..places import KEPT, Places, Ticket
-from ..visitors import Visitor
-from .addresses import Addresses
-from .budgets import WALK, Allowance
-from .doorkeeper import address_of
-from .origin import key_of, known_key, same_origin, with_key
-from .relay import Views
-from .together import until_first
+from hall_app.house import House
+from hall_app.places import KEPT, Places, Ticket
+from hall_app.server.addresses import Addresses
+from hall_app.server.budgets import WALK, Allowance
+from hall_app.server.doorkeeper import address_of
+from hall_app.server.origin import key_of, known_key, same_origin, with_key
+from hall_app.server.relay import Views
+from hall_app.server.together import until_first
+from hall_app.visitors import Visitor
 
 __all__ = ["add_walk_socket"]
 

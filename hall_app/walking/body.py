@@ -14,7 +14,7 @@ from typing import Any
 import fcl  # pyright: ignore[reportMissingImports] (compiled, without stubs)
 import numpy as np
 
-from .solids import Floor, Prism, Solid
+from hall_app.walking.solids import Floor, Prism, Solid
 
 HEIGHT = 2.0  # [m] of every solid in the collision world; the probe sits at half of it
 _EDGE = 1e-6  # [m] thickness of the slabs that stand for polygon edges

@@ -16,8 +16,8 @@ import numpy as np
 import shapely
 from scipy import ndimage
 
-from .body import BODY, Body, world_of
-from .solids import Floor, Prism
+from hall_app.walking.body import BODY, Body, world_of
+from hall_app.walking.solids import Floor, Prism
 
 CELL = 0.04  # [m] see README.md: error against bytes
 SCALE = 1e-4  # [m] per unit of int16: clearances up to 3.27 m, beyond that they are cut

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from .body import BODY, Body, World, world_of
-from .solids import Floor
+from hall_app.walking.body import BODY, Body, World, world_of
+from hall_app.walking.solids import Floor
 
 SPEED = 1.6  # [m/s] a calm walk
 MAX_DT = 5.0  # [s] longer silences are cut: nobody walks 8 m between two frames

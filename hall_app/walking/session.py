@@ -9,10 +9,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from .body import BODY, Body, world_of
-from .grid import Grid, Reach, UnreachableError
-from .mover import SPEED, Keys, Pose, step
-from .solids import Floor
+from hall_app.walking.body import BODY, Body, world_of
+from hall_app.walking.grid import Grid, Reach, UnreachableError
+from hall_app.walking.mover import SPEED, Keys, Pose, step
+from hall_app.walking.solids import Floor
 
 Mode = Literal["predict", "server"]
 

@@ -2,20 +2,20 @@
 
 from collections.abc import Callable
 
-from ..folder import Content
-from ..problems import Problem
-from .backdrops import backdrop_problems
-from .bakes import bake_problems
-from .budget import budget_problems
-from .figures import figure_problems
-from .fittings import fitting_problems
-from .media import media_problems
-from .questionnaires import questionnaire_problems
-from .reach import reach_problems
-from .rooms import room_problems
-from .scale import scale_problems
-from .unused import unused_problems
-from .words import word_problems
+from hall_app.content.checks.backdrops import backdrop_problems
+from hall_app.content.checks.bakes import bake_problems
+from hall_app.content.checks.budget import budget_problems
+from hall_app.content.checks.figures import figure_problems
+from hall_app.content.checks.fittings import fitting_problems
+from hall_app.content.checks.media import media_problems
+from hall_app.content.checks.questionnaires import questionnaire_problems
+from hall_app.content.checks.reach import reach_problems
+from hall_app.content.checks.rooms import room_problems
+from hall_app.content.checks.scale import scale_problems
+from hall_app.content.checks.unused import unused_problems
+from hall_app.content.checks.words import word_problems
+from hall_app.content.folder import Content
+from hall_app.content.problems import Problem
 
 __all__ = ["CHECKS"]
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ...room.palette import BACKDROPS, linear
-from ..colours import difference, hex_of, main_colour
-from ..folder import Content, Exhibit
-from ..plan_file import Solid
-from ..problems import Problem
+from hall_app.content.colours import difference, hex_of, main_colour
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.plan_file import Solid
+from hall_app.content.problems import Problem
+from hall_app.room.palette import BACKDROPS, linear
 
 LEAST = 40.0  # ΔE76: what is nearer sinks into the backdrop
 

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ...bake.key import bake_key
-from ...bake.places import bake_fault
-from ..files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
-from ..folder import Content, Exhibit
-from ..problems import Problem
+from hall_app.bake.key import bake_key
+from hall_app.bake.places import bake_fault
+from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.problems import Problem
 
 FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}
 KINDS = {"pattern": "patterns", "weave": "weaves", "mannequin": "mannequins"}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..files import walk_files
-from ..folder import Content
-from ..glb import GlbError, read_glb
-from ..problems import Problem
+from hall_app.content.files import walk_files
+from hall_app.content.folder import Content
+from hall_app.content.glb import GlbError, read_glb
+from hall_app.content.problems import Problem
 
 MB = 1_000_000
 TRIANGLES = {"hall": 15_000, "close": 300_000}

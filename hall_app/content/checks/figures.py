@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from ..files import walk_files
-from ..folder import Content
-from ..problems import Problem
+from hall_app.content.files import walk_files
+from hall_app.content.folder import Content
+from hall_app.content.problems import Problem
 
 FOLDER, NAME = "mannequins", "README.md"
 LICENCE = re.compile(r"licen[cs]e|CC0|CC[ -]BY|public domain|许可|放弃权利", re.IGNORECASE)

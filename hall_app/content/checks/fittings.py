@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...room.regions import Regions
-from ..folder import Content
-from ..plan_file import Curtain, Opening, PlanFile, Sign, Wall
-from ..problems import Problem
-from ..values import Point
+from hall_app.content.folder import Content
+from hall_app.content.plan_file import Curtain, Opening, PlanFile, Sign, Wall
+from hall_app.content.problems import Problem
+from hall_app.content.values import Point
+from hall_app.room.regions import Regions
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -129,7 +129,7 @@ def _above(plan: PlanFile, regions: Regions) -> Iterator[Fault]:
 def _curtains(plan: PlanFile, regions: Regions) -> Iterator[Fault]:
     import shapely
 
-    from ..floor import solid_footprint
+    from hall_app.content.floor import solid_footprint
 
     columns = [solid_footprint(solid).shape() for solid in plan.solid if solid.kind == "column"]
     held: Any = shapely.union_all([*columns, *_bodies(plan), regions.floor.boundary])

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..files import TEXTS, hall_files, is_there
-from ..folder import Content, Exhibit
-from ..pictures import FORMATS, picture_fault
-from ..problems import Problem
-from ..text import pictures_in
-from ..views import own_file
+from hall_app.content.files import TEXTS, hall_files, is_there
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.pictures import FORMATS, picture_fault
+from hall_app.content.problems import Problem
+from hall_app.content.text import pictures_in
+from hall_app.content.views import own_file
 
 # Where a container's mark stands, and the mark; an .mp3 has two, see _begins.
 MARKS: dict[str, tuple[int, bytes]] = {

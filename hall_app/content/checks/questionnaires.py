@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from hall_app.content.folder import Content
+from hall_app.content.problems import Problem
 from survey.content import FOLDER, QuestionnaireFolder
 from survey.privacy.controller import read_controller
-
-from ..folder import Content
-from ..problems import Problem
 
 
 def questionnaire_problems(content: Content) -> list[Problem]:

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from ..folder import Content, Exhibit
-from ..places import overlapping_bodies
-from ..problems import Problem
-from ..walkable import facing_spots, reached_spots
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.places import overlapping_bodies
+from hall_app.content.problems import Problem
+from hall_app.content.walkable import facing_spots, reached_spots
 
 WITHIN = 2.2  # [m] from the exhibit's body: nearer than a visitor has to be for its caption
 FRONT = math.cos(math.radians(75))  # an exhibit is faced from within this angle to its front

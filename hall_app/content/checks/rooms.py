@@ -5,12 +5,12 @@ from __future__ import annotations
 import io
 from pathlib import Path
 
-from ...room.key import room_key
-from ...room.places import ENVIRONMENT, GLB, RECORD, room_fault, room_here, room_record
-from ..folder import Content
-from ..glb import GlbError, GlbInfo, open_glb, read_glb
-from ..pictures import picture_fault
-from ..problems import Problem
+from hall_app.content.folder import Content
+from hall_app.content.glb import GlbError, GlbInfo, open_glb, read_glb
+from hall_app.content.pictures import picture_fault
+from hall_app.content.problems import Problem
+from hall_app.room.key import room_key
+from hall_app.room.places import ENVIRONMENT, GLB, RECORD, room_fault, room_here, room_record
 
 MB = 1_000_000
 TRIANGLES, BYTES = 40_000, 1.8 * MB

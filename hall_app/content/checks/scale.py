@@ -5,11 +5,11 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-from ...bake.places import bake_fault
-from ..files import BAKED
-from ..folder import Content, Exhibit
-from ..glb import GlbError, GlbInfo, read_glb
-from ..problems import Problem
+from hall_app.bake.places import bake_fault
+from hall_app.content.files import BAKED
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.glb import GlbError, GlbInfo, read_glb
+from hall_app.content.problems import Problem
 
 FOOT = 0.05  # [m] a ready-made model's lowest point may be off its own floor
 MIDDLE = 0.5  # [m] its middle may be off its own origin

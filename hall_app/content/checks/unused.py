@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import posixpath
 
-from ..files import BAKED, TEXTS, exhibit_files, walk_files
-from ..folder import Content, Exhibit
-from ..problems import Problem
-from ..text import pictures_in
+from hall_app.content.files import BAKED, TEXTS, exhibit_files, walk_files
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.problems import Problem
+from hall_app.content.text import pictures_in
 
 
 def unused_problems(content: Content) -> list[Problem]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ..exhibit_file import ExhibitFile
-from ..files import TEXTS, shortened
-from ..folder import Content, Exhibit
-from ..problems import Problem
-from ..text import pictures_in, raw_html_in
-from ..views import own_picture
+from hall_app.content.exhibit_file import ExhibitFile
+from hall_app.content.files import TEXTS, shortened
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.problems import Problem
+from hall_app.content.text import pictures_in, raw_html_in
+from hall_app.content.views import own_picture
 
 
 def word_problems(content: Content) -> list[Problem]:
