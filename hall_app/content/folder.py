@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from hall_app.content.exhibit_file import ExhibitFile
 from hall_app.content.files import is_there
-from hall_app.content.hall_file import HallFile
-from hall_app.content.plan_file import PlanFile
 from hall_app.content.problems import Problem
+from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.hall import HallFile
+from hall_app.content.schema.plan import PlanFile
 
 __all__ = ["Content", "Exhibit"]
 

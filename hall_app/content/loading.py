@@ -8,8 +8,6 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from hall_app.content.complaints import schema_problems, toml_problem
-from hall_app.content.exhibit_file import ExhibitFile
 from hall_app.content.files import (
     LEAVES,
     TEXTS,
@@ -21,14 +19,16 @@ from hall_app.content.files import (
     recipe_files,
     revision,
 )
-from hall_app.content.floor import body_footprint
+from hall_app.content.floor.footprints import body_footprint
+from hall_app.content.floor.placement import place_faults, plan_problems, start_problems
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.glb import GlbError, read_glb
-from hall_app.content.hall_file import HallFile
-from hall_app.content.places import place_faults, plan_problems, start_problems
-from hall_app.content.plan_file import PlanFile
+from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.problems import ContentError, Problem
-from hall_app.content.values import Table
+from hall_app.content.schema.complaints import schema_problems, toml_problem
+from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.hall import HallFile
+from hall_app.content.schema.plan import PlanFile
+from hall_app.content.schema.values import Table
 
 RESERVED = ("hall",)  # /media/hall/ is the hall's own
 ID_FORM = "abcdefghijklmnopqrstuvwxyz0123456789-"

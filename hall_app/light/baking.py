@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hall_app.light.bvh import build_tree
+from hall_app.light.atlas.filters import fill, frame_charts, smooth
+from hall_app.light.atlas.packing import Atlas, atlas_of
+from hall_app.light.atlas.texels import Places, places_of
 from hall_app.light.checkpoint import State, key_of, load, save
 from hall_app.light.encode import show
-from hall_app.light.filters import fill, frame_charts, smooth
 from hall_app.light.gather import Scene, gather
 from hall_app.light.lamps import lamps_of, spot_rows
 from hall_app.light.model import LightError, LightMap, Spot, Surfaces
-from hall_app.light.packing import Atlas, atlas_of
+from hall_app.light.rays.bvh import build_tree
 from hall_app.light.spots import gather_spots
-from hall_app.light.texels import Places, places_of
 
 __all__ = ["bake_light", "scene_of"]
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hall_app.light.filters import frame_numbers
+from hall_app.light.atlas.filters import frame_numbers
+from hall_app.light.atlas.packing import Atlas
+from hall_app.light.atlas.texels import face_normals
 from hall_app.light.model import LightMap, Surfaces
-from hall_app.light.packing import Atlas
-from hall_app.light.texels import face_normals
 
 __all__ = ["Shown", "light_jpeg", "show"]
 

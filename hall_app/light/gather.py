@@ -15,11 +15,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hall_app.light.bvh import Tree
+from hall_app.light.atlas.texels import Places
 from hall_app.light.lamps import Lamps
-from hall_app.light.sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
-from hall_app.light.texels import Places
-from hall_app.light.tracing import FAR, lanes, nearest, occluded, stack
+from hall_app.light.rays.bvh import Tree
+from hall_app.light.rays.sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
+from hall_app.light.rays.tracing import FAR, lanes, nearest, occluded, stack
 
 __all__ = ["Scene", "gather"]
 

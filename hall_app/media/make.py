@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hall_app.content.exhibit_file import ExhibitFile
 from hall_app.content.loading import read_table
 from hall_app.content.problems import ContentError
+from hall_app.content.schema.exhibit import ExhibitFile
 
 if TYPE_CHECKING:
     from hall_app.media.drawings import Interlacing

@@ -5,7 +5,7 @@ const REST = 500; // [ms] between two looks at rest
 const NET = 20000; // [ms] between two pictures that nobody asked for
 
 /**
- * Calls `frame(now)` ahead of viser's renderer (server/page.py): what it sets is drawn in the same frame.
+ * Calls `frame(now)` ahead of viser's renderer (web/pages/door.py): what it sets is drawn in the same frame.
  * Returns {wake(ms), rest()}: go on every frame for so long; from now on only while something moves.
  */
 export function createBeat(frame) {

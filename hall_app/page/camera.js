@@ -4,7 +4,7 @@
 import { requestRender, viser as mutable } from "./hooks.js";
 
 const ROTATE = 1, DOLLY = 16, TOUCH_ROTATE = 64, TOUCH_DOLLY = 1024;
-const LENS = 58; // [deg] vertical field of view: scene/nodes.py
+const LENS = 58; // [deg] vertical field of view: show/scene.py
 const NARROWEST = 40; // [deg] of width on an upright screen
 const WIDEST = 78; // [deg] of height there
 const PITCH_LIMIT = (75 * Math.PI) / 180;

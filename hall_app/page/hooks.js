@@ -1,4 +1,4 @@
-// viser's page hooks, no public API: pinned to viser 1.1.1 (server/page.py) and asserted in tests/browser.
+// viser's page hooks, no public API: pinned to viser 1.1.1 (web/pages/client.py) and asserted in tests/browser.
 
 export const viser = () => window.__viserMutable;
 

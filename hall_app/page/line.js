@@ -1,5 +1,5 @@
 // What is large comes by address and not through viser's socket: it can be told of while it is under way, is kept for
-// the next visit and is packed once for all visitors. The server leaves names in viser's messages (scene/pieces.py);
+// the next visit and is packed once for all visitors. The server leaves names in viser's messages (show/pieces.py);
 // in viser's worker this puts the bytes in again. Runs before viser's script.
 //
 // viser's view may also have to wait: where the hall is full, the socket opens and nothing comes until it is this

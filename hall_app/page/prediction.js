@@ -1,5 +1,5 @@
 // Walking ahead of the server's word: how far the page may, what it still has to send, and whether it has waited too
-// long for an answer. Pure like walkmath.js: no DOM, no socket, the clock is handed in. See hall_app/walking/README.md.
+// long for an answer. Pure like walkmath.js: no DOM, no socket, the clock is handed in. See hall_app/walk/README.md.
 
 import { Predictor } from "./walkmath.js";
 

@@ -1,5 +1,5 @@
 // Walking in the page: the server's mover on samples of its clearance grid, and the prediction on top of it.
-// No DOM, no network: the tests run this very file. The maths is explained in hall_app/walking/README.md.
+// No DOM, no network: the tests run this very file. The maths is explained in hall_app/walk/README.md.
 
 export const WALK = {
   speed: 1.6, // [m/s]

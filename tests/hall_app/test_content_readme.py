@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from hall_app.behaviours import BEHAVIOURS
-from hall_app.content.complaints import table_of
-from hall_app.content.models import Bilingual, ExhibitFile, HallFile, PlanFile
+from hall_app.content import BEHAVIOURS
+from hall_app.content.schema import Bilingual, ExhibitFile, HallFile, PlanFile, table_of
 from survey.privacy.controller import Controller
 from survey.questionnaire import Text
 

@@ -8,11 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from light_rooms import box, level, quads
 
-from hall_app.light import LightError, Spot, bake_light, light_jpeg
-from hall_app.light.bvh import build_tree
-from hall_app.light.encode import SHOULDER, WALL, show
-from hall_app.light.packing import atlas_of, pack
-from hall_app.light.tracing import cast
+from hall_app.light import SHOULDER, WALL, LightError, Spot, bake_light, light_jpeg, show
+from hall_app.light.atlas import atlas_of, pack
+from hall_app.light.rays import build_tree, cast
 
 PLAIN = {"fill_light": 0.0, "filtered": False}
 

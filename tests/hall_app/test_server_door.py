@@ -16,12 +16,10 @@ from plain_hall import write_plain_hall
 from running_hall import running_hall
 from websockets.sync.client import connect
 
-from hall_app.scene.pieces import LEAN, PICTURE, Pieces, split
-from hall_app.server import viser_client as unpacking
-from hall_app.server.modules import one_module
-from hall_app.server.packed import accepted
-from hall_app.server.static import PAGE_FOLDER, PageFiles, page_files
-from hall_app.server.viser_client import viser_client
+from hall_app.show import LEAN, PICTURE, Pieces, split
+from hall_app.web.answers import accepted
+from hall_app.web.pages import PAGE_FOLDER, PageFiles, one_module, page_files, viser_client
+from hall_app.web.pages import client as unpacking
 
 FIRST_FLIGHT = 14_600  # [bytes] ten packets: what a server may send before the first acknowledgement
 

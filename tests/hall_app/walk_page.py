@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hall_app.walking import Floor, Grid, Keys, Pose, WalkSession
+from hall_app.walk import Floor, Grid, Keys, Pose, WalkSession
 
 PAGE = Path(__file__).parents[2] / "hall_app" / "page"
 WALKMATH = PAGE / "walkmath.js"
