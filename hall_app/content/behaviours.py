@@ -48,12 +48,12 @@ def glow_when_near(stage: Stage[Any], exhibit: str) -> None:
 
 @behaviour
 def turn_slowly(stage: Stage[Any], exhibit: str) -> None:
-    """The model turns on its stand while a visitor sees it; each page turns it for itself (page/turning.js)."""
+    """The model turns on its stand while a visitor sees it; each page turns it for itself (page/look/turning.js)."""
 
 
 @behaviour
 def play_clip(stage: Stage[Any], exhibit: str) -> None:
-    """The exhibit's first film starts, muted, above its text when its close-up opens (page/ui/panel_media.js).
+    """The exhibit's first film starts, muted, above its text when its close-up opens (page/ui/panel/media.js).
 
     Whoever asked the system for less motion finds it there standing still, to be started by hand.
     """

@@ -225,7 +225,7 @@
   const page = element("script", { type: "module", src: files.page });
   const styles = Promise.all([style(files.rest), element("link", { rel: "stylesheet", href: files.viewer.style })]);
   const viewer = Promise.all([fetched, decoder, ahead, styles]).then(([, module]) => {
-    globalThis.__viserZstdWasm = module;
+    window.HALL.giveDecoder(module); // viser/first.js
     return element("script", { type: "module", src: files.viewer.script });
   });
   for (const part of [viewer, models, scene, words, page]) part.catch(failedToLoad);

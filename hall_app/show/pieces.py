@@ -2,7 +2,7 @@
 
 viser makes every visitor's messages anew, models and all, and sends them over its socket: nothing is shared, kept for
 a reload or told of while it is under way. So viser is given a stand-in for what is large; the relay leaves names in its
-place, the page fetches the bytes by these and puts them in (page/line.js). A piece travels as a frame of zstd. A
+place, the page fetches the bytes by these and puts them in (page/viser/line.js). A piece travels as a frame of zstd. A
 message's body is zstd as well, and frames may follow each other: what the page hands to viser is put together from
 frames, not decoded and coded anew.
 """

@@ -1,15 +1,15 @@
-"""What viser draws: room, exhibits, lights, and one studio for close-ups. The only module that talks to viser."""
+"""What viser draws: room, exhibits, lights, and one studio for close-ups. With its adapter, all that talks to viser."""
 
 from __future__ import annotations
 
 import math
-import socket
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from hall_app.room.picture.studio import studio_glb
 from hall_app.show.pieces import Pieces
+from hall_app.show.viser_adapter import open_viser, queue_environment
 from hall_app.visit.visitors import Marks, Visitor
 
 if TYPE_CHECKING:
@@ -47,27 +47,13 @@ def about_y(angle: float) -> tuple[float, float, float, float]:
     return (math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0)
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class HallScene:
     """viser's server on a port of its own behind 127.0.0.1, with the hall in it."""
 
     def __init__(self) -> None:
-        import rich
-        import viser
-
-        # viser announces its beginning and, from a thread of its own, its end, whatever `verbose` says.
-        # Nobody else in a serving process prints through rich's own console.
-        rich.get_console().quiet = True
-        self.server: viser.ViserServer = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
+        self.server: viser.ViserServer = open_viser()
         self.port: int = self.server.get_port()
         self.pieces = Pieces()
-        # A few nodes a message: the page draws the first while it fetches and reads the others.
-        self.server._websock_server.get_message_buffer().max_window_size = 8
         self.marks = Marks()
         self._handles: dict[str, viser.GlbHandle] = {}
         self._figures: dict[str, Figure] = {}
@@ -115,27 +101,11 @@ class HallScene:
         add("/studio", studio, position=STUDIO, cast_shadow=False, receive_shadow=False)
 
     def show_environment(self, jpeg: bytes | None) -> None:
-        """What silk and metal reflect: a plain equirectangular JPEG of the room; None: nothing.
-
-        viser's own call takes its presets only, so its message is queued directly (pinned, asserted in tests).
-        """
-        from viser import _messages
-
+        """What silk and metal reflect: a plain equirectangular JPEG of the room; None: nothing."""
         if jpeg is None:
             self.pieces.hide("environment")
         picture = None if jpeg is None else self.pieces.show("environment", jpeg)
-        upright = (1.0, 0.0, 0.0, 0.0)
-        self.server.scene._websock_interface.queue_message(
-            _messages.EnvironmentMapMessage(
-                hdri_data=picture,
-                background=False,
-                background_blurriness=0.0,
-                background_intensity=1.0,
-                background_wxyz=upright,
-                environment_intensity=ENVIRONMENT,
-                environment_wxyz=upright,
-            )
-        )
+        queue_environment(self.server, picture, ENVIRONMENT)
 
     def place_camera(self, x: float, z: float, yaw: float, eye: float) -> None:
         """Where a page that has not said hello yet looks from."""
@@ -181,7 +151,7 @@ class HallScene:
         """Names of all nodes a page waits for."""
         return ["/room", *(node_name(exhibit) for exhibit in self._figures)]
 
-    # What a behaviour may ask for (stage.Figures).
+    # What a behaviour may ask for (show.Figures).
 
     def node(self, exhibit: str) -> str:
         return node_name(exhibit)

@@ -205,7 +205,7 @@ def test_codings_are_those_asked_for(header, best):
 
 def test_a_changed_file_has_another_address():
     sources = page_files().sources
-    changed = PageFiles(sources | {"judge.js": sources["judge.js"] + "\n// changed\n"})
+    changed = PageFiles(sources | {"picture/judge.js": sources["picture/judge.js"] + "\n// changed\n"})
     assert changed.stamp != page_files().stamp
 
 
@@ -260,7 +260,7 @@ def test_all_modules_of_the_page_are_in_it():
 
     script = one_module(read, "hall.js")
     told = re.findall(r"^// (\S+\.js)$", script, re.MULTILINE)
-    inline = {"first.js", "line.js", "door.js"}
+    inline = {"viser/first.js", "viser/line.js", "door.js"}
     assert (
         set(told) == {path.relative_to(PAGE_FOLDER).as_posix() for path in PAGE_FOLDER.rglob("*.js")} - inline
     )

@@ -29,7 +29,7 @@ _DECODER = re.compile(r'const gzWasm="((?:[^"\\]|\\.)*)"')
 # The sorter for Gaussian splats, four times. The hall has none, and its policy forbids what the sorter needs.
 _SORTER = re.compile(rb"(data:application/wasm;base64,)[A-Za-z0-9+/=]{1000,}")
 
-# What the page counts on: the worker that holds the socket (line.js), and where it finds the decoder (door.js).
+# What the page counts on (page/viser): the worker that holds the socket, and where it finds the decoder.
 _COUNTED_ON = (
     b"WebSocket worker: got",
     b"new WebSocket(e,[o])",

@@ -80,7 +80,7 @@ def _background(jpeg: bytes) -> str:
 
 
 class _Both:
-    """Text in both languages; style shows the one of the document (ui/enter.css)."""
+    """Text in both languages; style shows the one of the document (ui/enter/enter.css)."""
 
     def __init__(self, texts: Mapping[str, Any]) -> None:
         self.texts = texts

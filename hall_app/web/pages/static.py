@@ -22,9 +22,9 @@ LOOK_EVERY = 1.0  # [s] between two looks at the files
 SCRIPT, AHEAD, REST = "hall.packed.js", "hall.ahead.js", "hall.rest.css"  # made here, not files
 _TYPES = {".js": "text/javascript; charset=utf-8", ".css": "text/css; charset=utf-8"}
 _TAKEN_IN = re.compile(r'^@import url\("([^"]+)"\);\n', re.MULTILINE)
-_AHEAD = ("first.js", "line.js")  # what must have run when viser's script begins
+_AHEAD = ("viser/first.js", "viser/line.js")  # what must have run when viser's script begins
 _NEEDED = ("door.html", "door.js", "texts.toml")  # what the door is made of
-_FIRST = ("ui/enter.css",)  # what the door is painted with, beside hall.css itself
+_FIRST = ("ui/enter/enter.css",)  # what the door is painted with, beside hall.css itself
 
 
 class PageFiles:
