@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from hall_app.light.baking import bake_light
     from hall_app.light.encode import SHOULDER, WALL, light_jpeg, show
-    from hall_app.light.model import LightError, LightMap, Spot, Surfaces
+    from hall_app.light.model import LightError, LightMap, Sampling, Spot, Surfaces
 
 __all__ = [
     "SHOULDER",
     "WALL",
     "LightError",
     "LightMap",
+    "Sampling",
     "Spot",
     "Surfaces",
     "bake_light",
@@ -30,6 +31,7 @@ _HOME = {
     "WALL": "encode",
     "LightError": "model",
     "LightMap": "model",
+    "Sampling": "model",
     "Spot": "model",
     "Surfaces": "model",
     "bake_light": "baking",

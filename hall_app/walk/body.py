@@ -19,6 +19,7 @@ from hall_app.walk.solids import Floor, Prism, Solid
 HEIGHT = 2.0  # [m] of every solid in the collision world; the probe sits at half of it
 _EDGE = 1e-6  # [m] thickness of the slabs that stand for polygon edges
 _BOUNDARY = 0.05  # [m] thickness of the invisible walls along the outline
+Contact = tuple[float, float, float]  # clearance [m], nx, nz: the unit normal away from the nearest solid
 _MIDDLE = np.array([0.0, 0.0, HEIGHT / 2])
 
 
@@ -78,8 +79,8 @@ class World:
         """Distance [m] from the body's circle at (x, z) to the nearest solid; -radius if the core is inside."""
         return self._distance(x, z, self._ask_far)[0]
 
-    def contact(self, x: float, z: float) -> tuple[float, float, float]:
-        """(clearance [m], nx, nz): the unit normal away from the nearest solid, (0, 0) if the core is inside."""
+    def contact(self, x: float, z: float) -> Contact:
+        """Clearance and normal at (x, z); -radius and (0, 0) if the core is inside."""
         clearance, result = self._distance(x, z, self._ask_near)
         if clearance <= self.body.core - self.body.radius:
             return -self.body.radius, 0.0, 0.0

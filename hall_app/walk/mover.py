@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from hall_app.walk.body import BODY, Body, World, world_of
+from hall_app.walk.body import BODY, Body, Contact, World, world_of
 from hall_app.walk.solids import Floor
 
 SPEED = 1.6  # [m/s] a calm walk
@@ -15,6 +16,8 @@ SLIDE = 0.025  # [m] of wished path per step along a contact: one frame at 60 Hz
 STEEP = 1e-4  # sin² between the wish and the surface's normal below which the visitor rests (0.6°)
 _TINY = 1e-6  # [m]
 _TRIES = 5
+
+Point = tuple[float, float]  # x, z [m]
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,7 @@ def step(pose: Pose, keys: Keys, dt: float, floor: Floor, *, body: Body = BODY, 
     if strength == 0 or dt == 0:
         return pose
     world = world_of(floor, body)
-    x, z = _travel(world, pose.x, pose.z, wx, wz, strength * speed * min(dt, MAX_DT))
+    x, z = _travel(world, (pose.x, pose.z), (wx, wz), strength * speed * min(dt, MAX_DT))
     return replace(pose, x=x, z=z)
 
 
@@ -61,73 +64,80 @@ def direction(keys: Keys, yaw: float) -> tuple[float, float, float]:
     return -f * sin + r * cos, -f * cos - r * sin, min(length, 1.0)
 
 
-def _travel(world: World, x: float, z: float, wx: float, wz: float, left: float) -> tuple[float, float]:
-    """Walk `left` [m] towards the unit vector (wx, wz); returns the last safe place."""
-    start = x, z
-    body = world.body
-    c, nx, nz = world.contact(x, z)
-    if c < 0:
+class _Slid(NamedTuple):
+    """One step along a contact: where it leads, how much of the path it used [m], the contact there."""
+
+    at: Point
+    used: float
+    contact: Contact
+
+
+def _travel(world: World, start: Point, wish: Point, left: float) -> Point:
+    """Walk `left` [m] towards the unit vector `wish`; returns the last safe place."""
+    (x, z), (wx, wz), skin = start, wish, world.body.skin
+    contact = world.contact(x, z)
+    if contact[0] < 0:
         return start
     for _ in range(16 + int(left / 0.01)):
         if left <= _TINY:
             break
-        if 0.9 * (c - body.skin) >= left:  # a translation below the clearance cannot collide
+        free = contact[0] - skin
+        if 0.9 * free >= left:  # a translation below the clearance cannot collide
             x, z = x + left * wx, z + left * wz
             break
-        if c - body.skin > TOUCH:
-            h, c, nx, nz = _approach(world, x, z, wx, wz, left, c, nx, nz)
+        if free > TOUCH:
+            h, contact = _approach(world, (x, z), wish, left, contact)
             x, z, left = x + h * wx, z + h * wz, left - h
             continue
-        moved = _slide(world, x, z, wx, wz, left, c, nx, nz)
+        moved = _slide(world, (x, z), wish, left, contact)
         if moved is None:
             break
-        x, z, used, c, nx, nz = moved
+        (x, z), used, contact = moved
         left -= used
     return start if world.collides(x, z) else (x, z)
 
 
-def _approach(
-    world: World, x: float, z: float, wx: float, wz: float, left: float, c: float, nx: float, nz: float
-) -> tuple[float, float, float, float]:
+def _approach(world: World, at: Point, wish: Point, left: float, contact: Contact) -> tuple[float, Contact]:
     """Longest tried straight step whose end is clear by the skin: (h [m], contact there)."""
-    body = world.body
-    safe = 0.9 * (c - body.skin)
-    h = max(safe, min(left, body.leap))
+    (x, z), (wx, wz), (c, *_), skin = at, wish, contact, world.body.skin
+    safe = 0.9 * (c - skin)
+    h = max(safe, min(left, world.body.leap))
     for _ in range(_TRIES):
-        c2, nx2, nz2 = world.contact(x + h * wx, z + h * wz)
-        if c2 >= body.skin and (nx2 or nz2):
-            return h, c2, nx2, nz2
+        there = world.contact(x + h * wx, z + h * wz)
+        c2, nx2, nz2 = there
+        if c2 >= skin and (nx2 or nz2):
+            return h, there
         # Secant to the place where the clearance equals the skin, a little short of it (half of TOUCH).
-        h *= (c - body.skin - TOUCH / 2) / (c - min(c2, body.skin - _TINY))
+        h *= (c - skin - TOUCH / 2) / (c - min(c2, skin - _TINY))
         if h <= safe:
             break
-    return safe, *world.contact(x + safe * wx, z + safe * wz)
+    return safe, world.contact(x + safe * wx, z + safe * wz)
 
 
-def _slide(
-    world: World, x: float, z: float, wx: float, wz: float, left: float, c: float, nx: float, nz: float
-) -> tuple[float, float, float, float, float, float] | None:
-    """One step along the contact: (x, z, path used, contact there), or None where the visitor rests."""
-    body = world.body
+def _slide(world: World, at: Point, wish: Point, left: float, contact: Contact) -> _Slid | None:
+    """One step along the contact, None where the visitor rests."""
+    (x, z), (wx, wz), (c, nx, nz), skin = at, wish, contact, world.body.skin
     into = min(0.0, wx * nx + wz * nz)
     tx, tz = wx - into * nx, wz - into * nz
     share = math.hypot(tx, tz)
     if share * share <= STEEP:
         return None
     tx, tz = tx / share, tz / share
-    least = min(c, body.skin) - 1e-9
+    least = min(c, skin) - 1e-9
     h = min(left, SLIDE) * share
     for _ in range(_TRIES):
         x2, z2 = x + h * tx, z + h * tz
-        c2, nx2, nz2 = world.contact(x2, z2)
-        gap = body.skin - c2
+        there = world.contact(x2, z2)
+        c2, nx2, nz2 = there
+        gap = skin - c2
         # Back to the skin: out of what is hit next, or round a convex curve while still pressing against it.
         if (nx2 or nz2) and (gap > 0 or wx * nx2 + wz * nz2 < 0) and abs(gap) < h:
             x2, z2 = x2 + gap * nx2, z2 + gap * nz2
-            c2, nx2, nz2 = world.contact(x2, z2)
+            there = world.contact(x2, z2)
+            c2, nx2, nz2 = there
         if c2 >= least and (nx2 or nz2):
             # Towards the wish, not counting the return from where p itself was off the skin: none in a wedge.
-            progress = (x2 - x) * wx + (z2 - z) * wz - (body.skin - c) * (nx * wx + nz * wz)
-            return (x2, z2, h / share, c2, nx2, nz2) if progress > 1e-3 * h else None
+            progress = (x2 - x) * wx + (z2 - z) * wz - (skin - c) * (nx * wx + nz * wz)
+            return _Slid((x2, z2), h / share, there) if progress > 1e-3 * h else None
         h /= 2
     return None

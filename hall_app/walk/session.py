@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from hall_app.walk.body import BODY, Body, world_of
 from hall_app.walk.grid import Grid, Reach, UnreachableError
@@ -103,31 +103,28 @@ class WalkSession:
         self._refill(now)
         refused = 0
         for count, item in enumerate(items):
-            parsed = _parse(item) if count < MAX_BATCH else None
-            if parsed is None or parsed[0] <= self._seq:
+            asked = _parse(item) if count < MAX_BATCH else None
+            if asked is None or asked.seq <= self._seq:
                 refused += 1
                 continue
-            seq, dt, keys, yaw, eye = parsed
-            self._seq = seq
-            self.pose = replace(self.pose, yaw=yaw, eye=eye)
+            self._take(asked)
             if self.mode == "server":
                 continue
-            allowed = min(dt, self._budget)
-            refused += allowed < dt
+            allowed = min(asked.dt, self._budget)
+            refused += allowed < asked.dt
             self._budget -= allowed
-            self._walk(keys, allowed)
+            self._walk(asked.keys, allowed)
         return self.reply(refused)
 
     def keys(self, forward: Any, right: Any, yaw: Any, eye: Any, now: float) -> WalkReply:
         """Server mode: hold these keys for HOLD (walks the old ones up to now first, or forgets it)."""
         reply = self.tick(now)
         self._walked_until = max(self._walked_until, now - TICK)  # many that come at once make up for it once
-        parsed = _parse([self._seq + 1, TICK, forward, right, yaw, eye])
-        if parsed is None:
+        asked = _parse([self._seq + 1, TICK, forward, right, yaw, eye])
+        if asked is None:
             return replace(reply, refused=1)
-        self._seq, _, self._held, yaw, eye = parsed
-        self._held_until = now + HOLD
-        self.pose = replace(self.pose, yaw=yaw, eye=eye)
+        self._take(asked)
+        self._held, self._held_until = asked.keys, now + HOLD
         return self.reply()
 
     def tick(self, now: float) -> WalkReply:
@@ -167,6 +164,10 @@ class WalkSession:
         self.pose = replace(self.pose, x=x, z=z)
         return True
 
+    def _take(self, asked: _Input) -> None:
+        self._seq = asked.seq
+        self.pose = replace(self.pose, yaw=asked.yaw, eye=asked.eye)
+
     def _refill(self, now: float) -> None:
         self._budget = min(BUCKET, self._budget + max(0.0, now - self._seen) * REFILL)
         self._seen = max(self._seen, now)
@@ -176,14 +177,25 @@ class WalkSession:
             self.pose = step(self.pose, keys, dt, self._floor, body=self._body, speed=self._speed)
 
 
-def _parse(item: Any) -> tuple[int, float, Keys, float, float] | None:
-    """(seq, dt, keys, yaw, eye) of one input, None if it is not valid; the eye is clamped."""
+class _Input(NamedTuple):
+    """What a page did in one frame: its number, how long [s], keys, heading [rad] and eye height [m]."""
+
+    seq: int
+    dt: float
+    keys: Keys
+    yaw: float
+    eye: float
+
+
+def _parse(item: Any) -> _Input | None:
+    """One input, None if it is not valid; the eye is clamped."""
     if not isinstance(item, Sequence) or len(item) != 6 or not all(map(_number, item)):
         return None
     seq, dt, forward, right, yaw, eye = item
     if seq != int(seq) or not 0 < dt <= MAX_INPUT_DT or abs(forward) > 1 or abs(right) > 1:
         return None
-    return int(seq), float(dt), Keys(forward, right), float(yaw), min(max(float(eye), EYE_MIN), EYE_MAX)
+    eye = min(max(float(eye), EYE_MIN), EYE_MAX)
+    return _Input(int(seq), float(dt), Keys(forward, right), float(yaw), eye)
 
 
 def _number(value: Any) -> bool:

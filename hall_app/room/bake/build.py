@@ -48,13 +48,13 @@ def bake_room(
     out.mkdir(parents=True, exist_ok=True)
     progress(0.0, "geometry")
     room = raise_room(content.plan, content.hall.title, content.exhibits)
-    from hall_app.light import bake_light
+    from hall_app.light import Sampling, bake_light
 
     walls = surfaces(room.patches, exhibit_solids(content, data))
     light = bake_light(
         walls,
         spots_of(content.plan, content.exhibits),
-        rays=rays,
+        Sampling(tuple(rays)),
         progress=lambda share, label: progress(0.02 + 0.93 * share, label),
         checkpoint=work / "light.npz",
     )
