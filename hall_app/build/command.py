@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
         _tell(
             arguments.json,
             {"exhibit": exhibit.id, "state": "baked", **summary},
-            _sentence(exhibit.id, summary),
+            f"{exhibit.id}: baked in {summary['seconds']['all']:.0f} s",
         )
     if arguments.exhibit is None:
         _build_room(content, arguments)
@@ -163,10 +163,3 @@ def _progress(as_json: bool, what: str) -> Iterator[Progress]:
 
 def _tell(as_json: bool, summary: dict, sentence: str) -> None:
     print(json.dumps(summary, ensure_ascii=False) if as_json else sentence, flush=True)
-
-
-def _sentence(exhibit: str, summary: dict) -> str:
-    parts = [f"{name} {value}" for name, value in summary.get("facts", {}).items()]
-    return f"{exhibit}: baked in {summary['seconds']['all']:.0f} s" + (
-        f" ({', '.join(parts)})" if parts else ""
-    )

@@ -185,7 +185,6 @@ def cached_grid(
     floor: Floor,
     folder: Path,
     *,
-    body: Body = BODY,
     cell: float = CELL,
     progress: Progress | None = None,
 ) -> Grid:
@@ -193,24 +192,24 @@ def cached_grid(
 
     A read-only folder is no obstacle: the grid is then baked each time.
     """
-    key = grid_key(floor, body=body, cell=cell)
+    key = grid_key(floor, cell=cell)
     path = Path(folder) / f"walk-{key[:16]}.grid"
-    found = _read(path, key, body)
+    found = _read(path, key)
     if found is not None:
         return found
-    grid = bake(floor, body=body, cell=cell, progress=progress)
+    grid = bake(floor, cell=cell, progress=progress)
     _write(path, key, grid)
     return grid
 
 
-def _read(path: Path, key: str, body: Body) -> Grid | None:
+def _read(path: Path, key: str) -> Grid | None:
     try:
         head, payload = path.read_bytes().split(b"\n", 1)
         meta = json.loads(head)
         if meta["key"] != key or meta["sha256"] != hashlib.sha256(payload).hexdigest():
             return None
         samples = np.frombuffer(payload, dtype="<i2").astype(np.int16).reshape(meta["nz"], meta["nx"])
-        return Grid(samples, meta["x0"], meta["z0"], meta["cell"], meta["scale"], body)
+        return Grid(samples, meta["x0"], meta["z0"], meta["cell"], meta["scale"], BODY)
     except (OSError, ValueError, KeyError, TypeError):  # missing, cut short, or not ours: bake again
         return None
 

@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from hall_app.content.bakes.key import bake_key
-from hall_app.content.bakes.store import bake_fault
+from hall_app.content.bakes.store import NEEDED, RECORD, bake_fault
 from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 
 FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}
 KINDS = {"pattern": "patterns", "weave": "weaves", "mannequin": "mannequins"}
-NEEDED = ("garment.npz", "hall.glb", "close.glb")
 
 
 def bake_problems(content: Content) -> list[Problem]:
@@ -76,7 +75,7 @@ def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | 
 
 
 def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
-    note = exhibit.folder / BAKED / "bake.json"
+    note = exhibit.folder / BAKED / RECORD
     fix = f"run: hall build --exhibit {exhibit.id}"
     try:
         key = json.loads(note.read_text("utf-8"))["key"]

@@ -143,10 +143,10 @@ def _cast(tree, origins, directions, limit, opened, room, face, distance, bary):
         bary[i, 0], bary[i, 1] = hit[1], hit[2]
 
 
-def cast(tree: Tree, origins, directions, limit: float = float(FAR)):
+def cast(tree: Tree, origins, directions):
     """face (N,) int32 (−1: none), distance (N,) [m], barycentric (N, 2) of the nearest hits of rays (N, 3)."""
     o, d = (np.ascontiguousarray(a, np.float32) for a in (origins, directions))
     face, distance = np.zeros(len(o), np.int32), np.zeros(len(o), np.float32)
-    bary, most = np.zeros((len(o), 2), np.float32), np.full(len(o), limit, np.float32)
+    bary, most = np.zeros((len(o), 2), np.float32), np.full(len(o), FAR, np.float32)
     _cast(tree, o, d, most, stack(tree), lanes(), face, distance, bary)
     return face, distance, bary

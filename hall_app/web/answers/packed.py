@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import threading
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Literal
@@ -61,15 +60,13 @@ class Packed:
                 )
             return self._coded[coding]
 
-    async def answer(
-        self, request: Request, cache: str = REVALIDATED, headers: Mapping[str, str] | None = None
-    ) -> Response:
+    async def answer(self, request: Request, cache: str = REVALIDATED) -> Response:
         """200 or, where the browser has it already, 304."""
         coding = accepted(request.headers.get("accept-encoding", ""))[0]
         if len(self.body) < _SMALL:
             coding = "identity"
         tag = f'"{self.digest}-{coding}"'
-        told = {"ETag": tag, "Vary": "Accept-Encoding", "Cache-Control": cache, **(headers or {})}
+        told = {"ETag": tag, "Vary": "Accept-Encoding", "Cache-Control": cache}
         if tag in (
             name.strip().removeprefix("W/") for name in request.headers.get("if-none-match", "").split(",")
         ):

@@ -67,10 +67,10 @@ _PATIENCE = Rate(200, 5)  # dropped messages until the socket is closed
 class Allowance:
     """One socket's buckets: says of each message whether it is served, dropped, or one too many."""
 
-    def __init__(self, rates: Mapping[str, Rate], now: float, patience: Rate = _PATIENCE) -> None:
-        self._rates, self._patience = rates, patience
+    def __init__(self, rates: Mapping[str, Rate], now: float) -> None:
+        self._rates = rates
         self._buckets = {kind: Bucket(rate.burst, now) for kind, rate in rates.items()}
-        self._left = Bucket(patience.burst, now)
+        self._left = Bucket(_PATIENCE.burst, now)
 
     def take(self, kind: str, now: float, amount: float = 1.0) -> Verdict:
         """Take `amount` of `kind` at the time `now` [s]."""
@@ -79,5 +79,5 @@ class Allowance:
             self._buckets[kind] = bucket.less(amount)
             return "serve"
         self._buckets[kind] = bucket
-        self._left = self._left.filled(self._patience, now).less(1.0)
+        self._left = self._left.filled(_PATIENCE, now).less(1.0)
         return "drop" if self._left.left >= 0 else "leave"
