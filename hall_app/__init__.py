@@ -4,11 +4,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from hall_app.behaviours import BEHAVIOURS, behaviour
     from hall_app.content import Content, ContentError, Problem, load
-    from hall_app.house import House
-    from hall_app.server.app import create_app
-    from hall_app.walking import Floor, Keys, Pose, step
+    from hall_app.content.behaviours import BEHAVIOURS, behaviour
+    from hall_app.house.house import House
+    from hall_app.walk import Floor, Keys, Pose, step
+    from hall_app.web.app import create_app
 
 __all__ = [
     "BEHAVIOURS",
@@ -26,18 +26,18 @@ __all__ = [
 ]
 
 _HOME = {
-    "BEHAVIOURS": "hall_app.behaviours",
-    "behaviour": "hall_app.behaviours",
+    "BEHAVIOURS": "hall_app.content.behaviours",
+    "behaviour": "hall_app.content.behaviours",
     "Content": "hall_app.content",
     "ContentError": "hall_app.content",
     "Problem": "hall_app.content",
     "load": "hall_app.content",
-    "House": "hall_app.house",
-    "create_app": "hall_app.server.app",
-    "Floor": "hall_app.walking",
-    "Keys": "hall_app.walking",
-    "Pose": "hall_app.walking",
-    "step": "hall_app.walking",
+    "House": "hall_app.house.house",
+    "create_app": "hall_app.web.app",
+    "Floor": "hall_app.walk",
+    "Keys": "hall_app.walk",
+    "Pose": "hall_app.walk",
+    "step": "hall_app.walk",
 }
 
 

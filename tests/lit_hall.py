@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from lit_room import environment, lit_room  # noqa: E402
 
-from hall_app.scene.nodes import HallScene  # noqa: E402
+from hall_app.show import HallScene  # noqa: E402
 
 
 def _show_room(self, *args, **kwargs) -> None:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
-from .exhibit_file import ExhibitFile
-from .hall_file import HallFile
-from .problems import Problem
+from hall_app.content.problems import Problem
+from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.hall import HallFile
 
 BAKED = "baked/"  # written by hall build, absent before it
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}

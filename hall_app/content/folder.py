@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from .exhibit_file import ExhibitFile
-from .files import is_there
-from .hall_file import HallFile
-from .plan_file import PlanFile
-from .problems import Problem
+from hall_app.content.files import is_there
+from hall_app.content.problems import Problem
+from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.hall import HallFile
+from hall_app.content.schema.plan import PlanFile
 
 __all__ = ["Content", "Exhibit"]
 

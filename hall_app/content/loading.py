@@ -8,9 +8,7 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from .complaints import schema_problems, toml_problem
-from .exhibit_file import ExhibitFile
-from .files import (
+from hall_app.content.files import (
     LEAVES,
     TEXTS,
     exhibit_files,
@@ -21,14 +19,16 @@ from .files import (
     recipe_files,
     revision,
 )
-from .floor import body_footprint
-from .folder import Content, Exhibit
-from .glb import GlbError, read_glb
-from .hall_file import HallFile
-from .places import place_faults, plan_problems, start_problems
-from .plan_file import PlanFile
-from .problems import ContentError, Problem
-from .values import Table
+from hall_app.content.floor.footprints import body_footprint
+from hall_app.content.floor.placement import place_faults, plan_problems, start_problems
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.models.glb import GlbError, read_glb
+from hall_app.content.problems import ContentError, Problem
+from hall_app.content.schema.complaints import schema_problems, toml_problem
+from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.hall import HallFile
+from hall_app.content.schema.plan import PlanFile
+from hall_app.content.schema.values import Table
 
 RESERVED = ("hall",)  # /media/hall/ is the hall's own
 ID_FORM = "abcdefghijklmnopqrstuvwxyz0123456789-"

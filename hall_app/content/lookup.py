@@ -1,10 +1,14 @@
-"""Where the content folder is: --content, else ./assets, else the copy that came with the program."""
+"""The two folders of a hall: its content, which is looked for, and its data, which is made.
+
+The content folder is --content, else ./assets, else the copy that came with the program. The data folder holds
+answers, bakes and caches; whoever makes it closes it, before anything lies in it.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from .problems import ContentError, Problem
+from hall_app.content.problems import ContentError, Problem
 
 PACKAGE = Path(__file__).resolve().parent.parent
 
@@ -28,3 +32,13 @@ def content_folder(given: Path | None = None, *, here: Path | None = None) -> Pa
     places = ", ".join(str(candidate) for candidate in candidates)
     fix = "start in a folder that holds assets/, or give --content FOLDER"
     raise ContentError([Problem("hall.toml", "", f"not found in {places}", fix)])
+
+
+def make_data_folder(folder: Path) -> None:
+    """Make it for its owner alone; one that was there keeps its rights. Raises OSError naming the option."""
+    from survey.store.database.permissions import make_private
+
+    try:
+        make_private(folder)
+    except OSError as error:
+        raise OSError(f"--data {folder}: {error.strerror} – choose a folder that can be written") from error

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from .files import snapshot
-from .folder import Content
-from .loading import load
-from .problems import Problem
+from hall_app.content.files import snapshot
+from hall_app.content.folder import Content
+from hall_app.content.loading import load
+from hall_app.content.problems import Problem
 
 
 class Watcher:

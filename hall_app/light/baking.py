@@ -10,21 +10,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .bvh import build_tree
-from .checkpoint import State, key_of, load, save
-from .encode import show
-from .filters import fill, frame_charts, smooth
-from .gather import Scene, gather
-from .lamps import lamps_of, spot_rows
-from .model import LightError, LightMap, Spot, Surfaces
-from .packing import Atlas, atlas_of
-from .spots import gather_spots
-from .texels import Places, places_of
+from hall_app.light.atlas.filters import fill, frame_charts, smooth
+from hall_app.light.atlas.packing import Atlas, atlas_of
+from hall_app.light.atlas.texels import Places, places_of
+from hall_app.light.checkpoint import State, key_of, load, save
+from hall_app.light.encode import show
+from hall_app.light.gather import Scene, gather
+from hall_app.light.lamps import lamps_of, spot_rows
+from hall_app.light.model import LightError, LightMap, Sampling, Spot, Surfaces
+from hall_app.light.rays.bvh import build_tree
+from hall_app.light.spots import gather_spots
 
 __all__ = ["bake_light", "scene_of"]
 
 _INSIDE = 0.4  # points more of whose rays than this meet backs of faces lie inside a body
-_LAMP_SHARE = 1 / 3  # points on lamps for every ray
+_SAMPLING = Sampling()
 
 Singles = NDArray[np.float32]
 Progress = Callable[[float, str], None]
@@ -56,24 +56,22 @@ def scene_of(surfaces: Surfaces, atlas: Atlas) -> Scene:
 def bake_light(
     surfaces: Surfaces,
     spots: Sequence[Spot] = (),
+    sampling: Sampling = _SAMPLING,
     *,
-    rays: Sequence[int] = (36, 49, 324),
-    seed: int = 0,
     fill_light: float = 0.05,
-    lamp_share: float = _LAMP_SHARE,
     filtered: bool = True,
     progress: Progress | None = None,
     checkpoint: Path | None = None,
 ) -> LightMap:
     """The light on every chart, on one machine the same bits for the same input and seed on any number of cores.
 
-    rays: per texel and pass; the first pass finds direct light, each further one adds a bounce; fill_light: added
-    everywhere, for the bounces left out; lamp_share: points drawn on lamps per ray (0: none); filtered: smooth noise;
-    progress: called with the share done and a word; checkpoint: file the state is kept in after every pass and gone on
-    from when surfaces, spots and settings are the same. Raises LightError.
+    fill_light: added everywhere, for the bounces left out; filtered: smooth noise; progress: called with the share done
+    and a word; checkpoint: file the state is kept in after every pass and gone on from when surfaces, spots and
+    settings are the same. Raises LightError.
     """
-    if not len(rays) or min(rays) < 1 or len(surfaces.density) == 0:
-        raise LightError("light: rays, charts: none – give at least one ray a pass and one chart")
+    if len(surfaces.density) == 0:
+        raise LightError("light: charts: none – give at least one chart")
+    rays = sampling.rays
     began, cpu = time.perf_counter(), time.process_time()
     told = progress or (lambda share, label: None)
     told(0.0, "charts")
@@ -82,12 +80,12 @@ def bake_light(
     places = places_of(surfaces, atlas)
     scene, lamps, rows = scene_of(surfaces, atlas), lamps_of(surfaces), spot_rows(spots)
     corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
-    key = key_of(surfaces, rows, rays, seed, (fill_light, lamp_share, float(filtered)))
+    key = key_of(surfaces, rows, sampling, (fill_light, float(filtered)))
     state = load(checkpoint, key) or State(
         0, _dark(atlas, surfaces), np.zeros((*chart.shape, 3), np.float32), np.zeros(len(places.point), bool),
         np.zeros(4, np.int64), 0.0, 0.0,
     )  # fmt: skip
-    direct = gather_spots(scene.tree, rows, places, seed=seed)
+    direct = gather_spots(scene.tree, rows, places, seed=sampling.seed)
     total = float(sum(rays))
     for step in range(state.done, len(rays)):
         label, before = f"pass {step + 1} of {len(rays)}", float(sum(rays[:step]))
@@ -95,8 +93,7 @@ def bake_light(
         if 0 < step == len(rays) - 1:
             seen = _charted(seen, atlas)
         halves, backs, tally = gather(
-            scene, lamps, corners, seen, state.light, rays=rays[step],
-            drawn=round(lamp_share * rays[step]), seed=seed, step=step,
+            scene, lamps, corners, seen, state.light, sampling, step=step,
             told=lambda share, before=before, step=step, label=label: told(
                 0.03 + 0.92 * (before + share * rays[step]) / total, label
             ),

@@ -5,15 +5,14 @@ from __future__ import annotations
 import hashlib
 import os
 import zipfile
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .lamps import SpotRows
-from .model import Surfaces
+from hall_app.light.lamps import SpotRows
+from hall_app.light.model import Sampling, Surfaces
 
 __all__ = ["State", "key_of", "load", "save"]
 
@@ -35,12 +34,10 @@ class State:
     cpu: float
 
 
-def key_of(
-    surfaces: Surfaces, rows: SpotRows, rays: Sequence[int], seed: int, options: tuple[float, ...]
-) -> str:
+def key_of(surfaces: Surfaces, rows: SpotRows, sampling: Sampling, options: tuple[float, ...]) -> str:
     """Hash of all that decides about the result."""
     names = ("vertices", "faces", "chart", "chart_uv", "density", "albedo", "emission", "two_sided")
-    digest = hashlib.sha256(repr((VERSION, tuple(rays), seed, options)).encode())
+    digest = hashlib.sha256(repr((VERSION, sampling, options)).encode())
     for array in (*(getattr(surfaces, name) for name in names), *rows):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()

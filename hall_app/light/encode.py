@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .filters import frame_numbers
-from .model import LightMap, Surfaces
-from .packing import Atlas
-from .texels import face_normals
+from hall_app.light.atlas.filters import frame_numbers
+from hall_app.light.atlas.packing import Atlas
+from hall_app.light.atlas.texels import face_normals
+from hall_app.light.model import LightMap, Surfaces
 
 __all__ = ["Shown", "light_jpeg", "show"]
 
@@ -21,6 +21,7 @@ _WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in d
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
 SHOULDER = 0.88  # linear brightness from which highlights are rolled off
 _SCALE = 2.0  # the file holds light / 2
+_QUALITY = 92  # of JPEG
 _KNEE = 1.1  # light from which it is rolled off too, as the file ends at _SCALE
 
 Singles = NDArray[np.float32]
@@ -83,7 +84,7 @@ def show(surfaces: Surfaces, atlas: Atlas, image: Singles) -> Shown:
     return Shown(lit, shown, gain, rolled, dimmed)
 
 
-def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:
+def light_jpeg(light: LightMap) -> bytes:
     """8-bit sRGB of gain × light / 2 (lightMapIntensity 2π), 4:4:4; half a step of noise against banding.
 
     Lamps are cut off at white.
@@ -94,8 +95,8 @@ def light_jpeg(light: LightMap, *, quality: int = 92, seed: int = 0) -> bytes:
     srgb = np.where(
         stored <= 0.0031308, 12.92 * stored, 1.055 * np.maximum(stored, 1e-9) ** (1 / 2.4) - 0.055
     )
-    noise = np.random.default_rng(seed).uniform(-0.5, 0.5, (*stored.shape[:2], 1))
+    noise = np.random.default_rng(0).uniform(-0.5, 0.5, (*stored.shape[:2], 1))
     picture = np.clip(np.round(255 * srgb + noise), 0, 255).astype(np.uint8)
     file = io.BytesIO()
-    Image.fromarray(picture).save(file, "JPEG", quality=quality, subsampling=0, optimize=True)
+    Image.fromarray(picture).save(file, "JPEG", quality=_QUALITY, subsampling=0, optimize=True)
     return file.getvalue()

@@ -15,11 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .bvh import Tree
-from .lamps import Lamps
-from .sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
-from .texels import Places
-from .tracing import FAR, lanes, nearest, occluded, stack
+from hall_app.light.atlas.texels import Places
+from hall_app.light.lamps import Lamps
+from hall_app.light.model import Sampling
+from hall_app.light.rays.bvh import Tree
+from hall_app.light.rays.sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
+from hall_app.light.rays.tracing import FAR, lanes, nearest, occluded, stack
 
 __all__ = ["Scene", "gather"]
 
@@ -225,23 +226,22 @@ def gather(
     lamp_corners: NDArray[np.float32],
     places: Places,
     light: NDArray[np.float32],
+    sampling: Sampling,
     *,
-    rays: int,
-    drawn: int,
-    seed: int,
     step: int = 0,
     told: Callable[[float], None] | None = None,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.int64]]:
     """Light at every place from lamps, and from `light` (slots, 3) once more reflected where rays end.
 
-    rays: cosine-distributed, `drawn`: points on lamps (N per place). Returns light (N, 2, 3) of two independent halves,
-    per point (M,) how many rays met the inside of a body, and the tally: rays, missed, inside, lamp points.
+    step: number of the pass. Returns light (N, 2, 3) of two independent halves, per point (M,) how many rays met the
+    inside of a body, and the tally: rays, missed, inside, lamp points.
     """
-    count, drawn = len(places.slot), drawn if len(lamps.area) else 0
+    count, rays = len(places.slot), sampling.rays[step]
+    drawn = round(sampling.lamp_share * rays) if len(lamps.area) else 0
     out = np.zeros((count, 2, 3), np.float32)
     backs = np.zeros(len(places.point), np.int32)
     tallies: list[NDArray[np.int64]] = []
-    seeds = seeds_of(seed, step)
+    seeds = seeds_of(sampling.seed, step)
 
     def work(start: int, stop: int) -> None:
         tally = np.zeros(4, np.int64)

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import Spot, Surfaces
-from .texels import face_normals
+from hall_app.light.atlas.texels import face_normals
+from hall_app.light.model import Spot, Surfaces
 
 __all__ = ["Lamps", "SpotRows", "lamps_of", "spot_rows"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LightError", "LightMap", "Spot", "Surfaces"]
+__all__ = ["LightError", "LightMap", "Sampling", "Spot", "Surfaces"]
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -116,6 +116,23 @@ class Spot:
             )
         if not (0 <= self.power < np.inf and 0 <= self.radius < np.inf and float(self.colour.min()) >= 0):
             raise LightError("light: spot.power, radius, colour: negative or not finite – give values ≥ 0")
+
+
+@dataclass(frozen=True, slots=True)
+class Sampling:
+    """How finely light is gathered. Raises LightError without a ray a pass.
+
+    rays: per texel and pass; the first pass finds direct light, each further one adds a bounce; seed: of their
+    directions; lamp_share: points drawn on lamps per ray (0: none).
+    """
+
+    rays: tuple[int, ...] = (36, 49, 324)
+    seed: int = 0
+    lamp_share: float = 1 / 3
+
+    def __post_init__(self) -> None:
+        if not self.rays or min(self.rays) < 1:
+            raise LightError("light: sampling.rays: none – give at least one ray a pass")
 
 
 @dataclass(frozen=True)

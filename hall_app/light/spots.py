@@ -6,11 +6,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from .bvh import Tree
-from .lamps import SpotRows
-from .sampling import A1, A2, PI, SCALE, SHIFT, frame, in_threads, seeds_of
-from .texels import Places
-from .tracing import lanes, occluded, stack
+from hall_app.light.atlas.texels import Places
+from hall_app.light.lamps import SpotRows
+from hall_app.light.rays.bvh import Tree
+from hall_app.light.rays.sampling import A1, A2, PI, SCALE, SHIFT, frame, in_threads, seeds_of
+from hall_app.light.rays.tracing import lanes, occluded, stack
 
 __all__ = ["gather_spots"]
 

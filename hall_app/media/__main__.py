@@ -6,8 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..content.lookup import content_folder
-from .make import make_media
+from hall_app.content.lookup import content_folder
+from hall_app.media.make import make_media
 
 
 def main() -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image
 
-from .drawings import FAINT, INK, OVER, Sheet
+from hall_app.media.drawings import FAINT, INK, OVER, Sheet
 
 if TYPE_CHECKING:
     from sim_core.garment import Pattern

@@ -161,7 +161,7 @@ def _warp_arrow(sheet: Sheet, x: float, y: float, *, along: bool) -> None:
 
 def mirror_drawing() -> Image.Image:
     """The mirror's back in line: ink where its relief is steep, with the diameter."""
-    from .foreign import RADIUS, back_height
+    from hall_app.media.foreign import RADIUS, back_height
 
     size, span = 1000, 1.25 * RADIUS
     axis = np.linspace(-span, span, size * 2)

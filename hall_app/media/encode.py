@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .strings import RATE
+from hall_app.media.strings import RATE
 
 CODECS = {".webm": ("libopus", 56_000, "flt"), ".mp3": ("libmp3lame", 80_000, "fltp")}
 

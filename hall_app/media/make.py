@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..content.exhibit_file import ExhibitFile
-from ..content.loading import read_table
-from ..content.problems import ContentError
+from hall_app.content.loading import read_table
+from hall_app.content.problems import ContentError
+from hall_app.content.schema.exhibit import ExhibitFile
 
 if TYPE_CHECKING:
+    from hall_app.media.drawings import Interlacing
     from sim_core.weave import Weave
-
-    from .drawings import Interlacing
 
 Progress = Callable[[float, str], None]
 QUALITY = 88  # of JPEG
@@ -46,8 +45,8 @@ def _place(path: Path) -> Path:
 
 
 def _hall_music(folder: Path) -> None:
-    from .encode import write_sound
-    from .music import hall_music
+    from hall_app.media.encode import write_sound
+    from hall_app.media.music import hall_music
 
     sound = hall_music()
     for ending in (".webm", ".mp3"):
@@ -56,8 +55,8 @@ def _hall_music(folder: Path) -> None:
 
 def _scarf_music(folder: Path) -> None:
     """One piece for both garments: they hang in one hall."""
-    from .encode import write_sound
-    from .music import falling_gauze
+    from hall_app.media.encode import write_sound
+    from hall_app.media.music import falling_gauze
 
     sound = falling_gauze()
     for exhibit in DRAWN:
@@ -66,10 +65,9 @@ def _scarf_music(folder: Path) -> None:
 
 
 def _weaves(folder: Path) -> None:
+    from hall_app.media.drawings import weave_drawing
     from sim_core.garment import Pattern
     from sim_core.weave import Weave
-
-    from .drawings import weave_drawing
 
     for exhibit in DRAWN:
         pattern, weave = (folder / path for path in _recipe(folder, exhibit))
@@ -79,7 +77,7 @@ def _weaves(folder: Path) -> None:
 
 def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> Interlacing:
     """What the drawing needs of a weave; `dye`: sRGB 0..1 of the dyed cloth, else the yarns' own colours."""
-    from .drawings import Interlacing
+    from hall_app.media.drawings import Interlacing
 
     tones = [dye or yarn.colour for yarn in (weave.warp, weave.weft)]
     colours = ["#" + "".join(f"{round(255 * part):02x}" for part in tone) for tone in tones]
@@ -92,10 +90,9 @@ def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> 
 
 
 def _patterns(folder: Path) -> None:
+    from hall_app.media.cutting_plan import cutting_plan
+    from hall_app.media.drawings import pattern_drawing
     from sim_core.garment import Pattern
-
-    from .cutting_plan import cutting_plan
-    from .drawings import pattern_drawing
 
     for exhibit in DRAWN:
         pattern = Pattern.load(folder / _recipe(folder, exhibit)[0])
@@ -113,8 +110,8 @@ def _recipe(folder: Path, exhibit: str) -> tuple[str, str]:
 
 
 def _mirror(folder: Path) -> None:
-    from .drawings import mirror_drawing
-    from .foreign import write_mirror
+    from hall_app.media.drawings import mirror_drawing
+    from hall_app.media.foreign import write_mirror
 
     home = folder / "exhibits/mirror/media"
     home.mkdir(parents=True, exist_ok=True)

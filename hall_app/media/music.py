@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .strings import RATE, Touch, harmonic, pluck, room, wooden
+from hall_app.media.strings import RATE, Touch, harmonic, pluck, room, wooden
 
 DEGREES = {"1": 0, "2": 2, "3": 4, "5": 7, "6": 9}  # gong mode, semitones over the key note
 KEY = 174.61  # [Hz] F below middle C
@@ -63,7 +63,7 @@ def falling_gauze(seed: int = 11) -> np.ndarray:
 
 def _played(bars: Sequence[str], bass: Sequence[str], *, beat: float, seed: int) -> np.ndarray:
     random = np.random.default_rng(seed)
-    notes = [note for number, bar in enumerate(bars) for note in _notes(bar, 4.0 * number)]
+    notes = [note for number, bar in enumerate(bars) for note in bar_notes(bar, 4.0 * number)]
     low = [(4.0 * number, name) for number, name in enumerate(bass) if name != "."]
     out = np.zeros((int((4 * len(bars) * beat + 6.0) * RATE), 2))
     for start, name in low:
@@ -80,7 +80,7 @@ def _played(bars: Sequence[str], bass: Sequence[str], *, beat: float, seed: int)
     return 0.7 * out / np.abs(out).max()
 
 
-def _notes(bar: str, start: float) -> list[tuple[float, str]]:
+def bar_notes(bar: str, start: float) -> list[tuple[float, str]]:
     """(beat, name) of the notes of one bar; raises KeyError later for a name that is no degree."""
     notes = []
     for number, text in enumerate(bar.split()):

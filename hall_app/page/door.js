@@ -161,7 +161,7 @@
   const waiting = new Map(); // name -> call when it is there
   let index = null; // of the pack: [[name, bytes], …]
 
-  /** The pack's index and frames, as far as they have come; scene/pieces.py has the form. */
+  /** The pack's index and frames, as far as they have come; show/pieces.py has the form. */
   async function fetchModels() {
     let data = new Uint8Array(files.models.weight * 2), at = 0, next = 0;
     await read(files.models.pack, (chunk, got, total) => {
@@ -225,7 +225,7 @@
   const page = element("script", { type: "module", src: files.page });
   const styles = Promise.all([style(files.rest), element("link", { rel: "stylesheet", href: files.viewer.style })]);
   const viewer = Promise.all([fetched, decoder, ahead, styles]).then(([, module]) => {
-    globalThis.__viserZstdWasm = module;
+    window.HALL.giveDecoder(module); // viser/first.js
     return element("script", { type: "module", src: files.viewer.script });
   });
   for (const part of [viewer, models, scene, words, page]) part.catch(failedToLoad);

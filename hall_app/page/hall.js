@@ -1,14 +1,14 @@
 // The page: builds the overlay from the scene's description, waits for viser to draw it, then lets the visitor in.
 
-import { createBeat } from "./beat.js";
-import * as camera from "./camera.js";
-import { createConnection } from "./connection.js";
-import { framesDrawn, hooksPresent, requestRender } from "./hooks.js";
-import { LOAD_PATIENCE, loadClearance, loadHall, until, webglWorks } from "./loading.js";
-import { createQuality } from "./quality.js";
+import { createBeat } from "./picture/beat.js";
+import * as camera from "./look/camera.js";
+import { createConnection } from "./visit/connection.js";
+import { framesDrawn, hooksPresent, requestRender } from "./viser/viser_adapter.js";
+import { LOAD_PATIENCE, loadClearance, loadHall, until, webglWorks } from "./visit/loading.js";
+import { createQuality } from "./picture/quality.js";
 import { remember } from "./ui/words.js";
 import { createUi } from "./ui/ui.js";
-import { createVisit } from "./visit.js";
+import { createVisit } from "./visit/visit.js";
 
 const HOOK_PATIENCE = 8000; // [ms] before the page hands the camera to the server
 const DRAW_ON = 5000; // [ms] at a time, while the hall's nodes come

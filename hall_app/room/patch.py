@@ -205,7 +205,7 @@ def disc(frame: Frame, radius: float, material: str, *, sides: int = 24, up: boo
     return panel(frame.at, right, -front if up else front, shape, material)
 
 
-def prism(frame: Frame, outline: ArrayLike, depth: float, material: str, *, ends: bool = True) -> list[Patch]:
+def prism(frame: Frame, outline: ArrayLike, depth: float, material: str) -> list[Patch]:
     """A profile (N, 2) of local x, y drawn counter-clockwise, raised from -depth/2 to depth/2 along local z."""
     import shapely
 
@@ -216,9 +216,8 @@ def prism(frame: Frame, outline: ArrayLike, depth: float, material: str, *, ends
     for (x0, y0), (x1, y1) in zip(ring, ahead, strict=True):
         side = [(x0, y0, half), (x0, y0, -half), (x1, y1, -half), (x1, y1, half)]
         patches.append(quad(frame(side), material))
-    if ends:
-        right, _, front = frame.axes
-        for sign in (1, -1):
-            shape = shapely.Polygon(ring * [sign, 1])
-            patches += panel(frame.at + sign * half * front, right * sign, UP, shape, material)
+    right, _, front = frame.axes
+    for sign in (1, -1):
+        shape = shapely.Polygon(ring * [sign, 1])
+        patches += panel(frame.at + sign * half * front, right * sign, UP, shape, material)
     return patches

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .ceiling import ceilings, floor
-from .furniture import furniture
-from .hangings import hangings
-from .lettering import Sheet, write
-from .patch import Patch
-from .regions import Regions
-from .signs import boards_of, signs
-from .timber import timber
-from .walls import walls
+from hall_app.room.parts.ceiling import ceilings_of, floor_of
+from hall_app.room.parts.furniture import furniture_of
+from hall_app.room.parts.hangings import hangings_of
+from hall_app.room.parts.signs import boards_of, signs_of
+from hall_app.room.parts.timber import timber_of
+from hall_app.room.parts.walls import walls_of
+from hall_app.room.patch import Patch
+from hall_app.room.structure.regions import Regions
+from hall_app.room.surface.lettering import Sheet, write
 
 if TYPE_CHECKING:
-    from ..content.folder import Exhibit
-    from ..content.models import Bilingual, PlanFile
+    from hall_app.content.folder import Exhibit
+    from hall_app.content.schema import Bilingual, PlanFile
 
 __all__ = ["Room", "raise_room"]
 
@@ -46,12 +46,12 @@ def raise_room(
     boards = boards_of(plan, regions, title, exhibits)
     sheet = write([board.writing for board in boards], blank=blank)
     patches = [
-        *floor(plan, regions),
-        *ceilings(plan, regions),
-        *walls(plan, regions),
-        *timber(plan, regions),
-        *furniture(plan),
-        *hangings(plan, regions),
-        *signs(boards, sheet),
+        *floor_of(plan, regions),
+        *ceilings_of(plan, regions),
+        *walls_of(plan, regions),
+        *timber_of(plan, regions),
+        *furniture_of(plan),
+        *hangings_of(plan, regions),
+        *signs_of(boards, sheet),
     ]
     return Room(tuple(patches), sheet)

@@ -95,7 +95,7 @@ def stand(page, place: dict) -> None:
 def views(page) -> dict[str, dict]:
     """The entry, and the place before the first exhibit."""
     scene = page.evaluate("async () => (await fetch('/api/scene')).json()")
-    stands = """async (scene) => { const {standBefore} = await import("/static/ui/map_geometry.js");
+    stands = """async (scene) => { const {standBefore} = await import("/static/ui/map/geometry.js");
         return standBefore(scene.exhibits[0], scene); }"""
     return {"entry": scene["start"], "exhibit": page.evaluate(stands, scene)}
 

@@ -34,7 +34,7 @@ from bench.free_walk import measure_all  # noqa: E402
 from walk_moves import FLOOR, dense_floor, random_walk, room  # noqa: E402
 from walk_page import Page, hold  # noqa: E402
 
-from hall_app.walking import BODY, CELL, Floor, Keys, Pose, Round, bake, step, world_of  # noqa: E402
+from hall_app.walk import BODY, CELL, Floor, Keys, Pose, Round, bake, step, world_of  # noqa: E402
 
 PROCESSES = 2
 

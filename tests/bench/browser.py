@@ -67,7 +67,7 @@ def stand_before(page, exhibit: str) -> None:
     """Walk to where the map's list would lead: in front of the exhibit of that id."""
     page.evaluate(
         """async (id) => {
-        const {standBefore} = await import("/static/ui/map_geometry.js");
+        const {standBefore} = await import("/static/ui/map/geometry.js");
         const scene = await (await fetch("/api/scene")).json();
         const {x, z, yaw} = standBefore(scene.exhibits.find((exhibit) => exhibit.id === id), scene);
         hall.goTo(x, z, yaw);

@@ -20,7 +20,7 @@ from PIL import Image, ImageDraw
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
-from hall_app.content.glb import open_glb  # noqa: E402
+from hall_app.content.models import open_glb  # noqa: E402
 from sim_core.picture import Camera, Surface, lighting, render  # noqa: E402
 
 ANGLES = (18.0, 108.0, 198.0, 288.0)  # [deg] about +y from the front

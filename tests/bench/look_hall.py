@@ -12,7 +12,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from hall_app.scene.nodes import HallScene  # noqa: E402
+from hall_app.show import HallScene  # noqa: E402
 
 
 def for_lights(glb: bytes) -> bytes:

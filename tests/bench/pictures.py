@@ -20,7 +20,7 @@ DESK, PHONE = {"width": 1280, "height": 720}, {"width": 390, "height": 844}
 STANDS = """
 async () => {
   const scene = await (await fetch("/api/scene")).json();
-  const {standBefore} = await import("/static/ui/map_geometry.js");
+  const {standBefore} = await import("/static/ui/map/geometry.js");
   const found = {};
   for (const {id, polygon} of scene.bays) {
     // From the bay's edge on the side of the entry, looking through it.

@@ -193,8 +193,8 @@ def apart(errors: dict[str, float], prefix: str = "") -> str:
 
 def robe() -> list[tuple[str, str, str]]:
     """The robe under the scarf, measured from the shipped models: the record tells of the scarf's alone."""
-    from hall_app.bake.stored import measured_again
-    from hall_app.content.loading import load
+    from hall_app.check.garments import measured_again
+    from hall_app.content import load
 
     exhibit = load(ROOT / "assets").exhibit("pibo-figure")
     assert exhibit is not None

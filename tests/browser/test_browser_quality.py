@@ -7,7 +7,7 @@ from bench.browser import enter, soon
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 
-JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "judge.js"
+JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "picture" / "judge.js"
 FEED = """
 async ([source, level, runs, cautious]) => {
   const url = URL.createObjectURL(new Blob([source], {type: "text/javascript"}));

@@ -11,7 +11,7 @@ from bench.wire import wire
 from corridor_hall import write_corridor_hall
 from running_hall import running_hall
 
-from hall_app.walking.session import ARREARS
+from hall_app.walk import ARREARS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hall_app.room.lettering import MissingFontError, font_file
+from hall_app.room.surface import MissingFontError, font_file
 
 
 def _found() -> bool:

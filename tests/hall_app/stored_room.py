@@ -8,8 +8,8 @@ from pathlib import Path
 from lit_room import lit_room
 from PIL import Image
 
-from hall_app.content.glb import read_glb
-from hall_app.sealing import FILES, seal
+from hall_app.content.bakes import FILES, seal
+from hall_app.content.models import read_glb
 
 
 def store_room(folder: Path, key: str, **record: object) -> Path:

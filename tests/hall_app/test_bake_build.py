@@ -12,13 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hall_app.bake.bake import budget
-from hall_app.bake.encode import SOUND_RATE, encode_film, film_possible
-from hall_app.bake.key import bake_key
-from hall_app.bake.places import bake_folder, read_record
-from hall_app.content.check import check
-from hall_app.content.glb import read_glb
-from hall_app.content.loading import load
+from hall_app.build import SOUND_RATE, budget, encode_film, film_possible
+from hall_app.check import check
+from hall_app.content import load
+from hall_app.content.bakes import bake_folder, bake_key, read_record
+from hall_app.content.models import read_glb
 from sim_core.garment import Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"

@@ -11,16 +11,22 @@ from typing import Any
 import pytest
 from content_house import edit
 
-from hall_app.bake import bake as baking
-from hall_app.bake import quality
-from hall_app.bake.limits import PIBO, ROBE, SCARF
-from hall_app.bake.quality import figure_lines, garment_lines, table
-from hall_app.bake.stored import Measured, cloth_in
+from hall_app.check import check
+from hall_app.check.garments import (
+    PIBO,
+    ROBE,
+    SCARF,
+    Measured,
+    cloth_in,
+    figure_lines,
+    garment_lines,
+    quality,
+    table,
+)
 from hall_app.cli import main
-from hall_app.content.check import check
-from hall_app.content.exhibit_file import GarmentRecipe
-from hall_app.content.loading import load
-from hall_app.sealing import FILES, seal
+from hall_app.content import load
+from hall_app.content.bakes import FILES, publish, seal
+from hall_app.content.schema import GarmentRecipe
 
 ASSETS = Path(__file__).parents[2] / "assets"
 NOTHING = Measured("", {}, ())
@@ -296,5 +302,5 @@ def test_while_a_bake_is_put_in_place_the_old_record_is_gone(tmp_path: Path, mon
 
     monkeypatch.setattr(shutil, "copyfile", cut)
     with pytest.raises(KeyboardInterrupt):
-        baking._publish(out, target)
+        publish(out, target, "bake.json")
     assert not (target / "bake.json").exists()

@@ -8,10 +8,10 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hall_app.baking_queue import Bake, BakingQueue, Decision, decide
+from hall_app.house.baking import Bake, BakingQueue, Decision, decide
 
 ROBE, SCARF, LIGHT = Bake("robe", "1"), Bake("scarf", "1"), Bake("light", "1", patient=True)
 NEWER = Bake("robe", "2")
@@ -39,6 +39,7 @@ def test_what_to_do(case: str):
 bakes = st.builds(Bake, st.sampled_from("abc"), st.sampled_from("12"), st.booleans())
 
 
+@settings(deadline=None)
 @given(st.lists(bakes, unique=True), st.none() | bakes, st.sets(bakes))
 def test_everything_wanted_is_run_or_waits_or_has_failed(wanted, running, failed):
     found = decide(wanted, running, dict.fromkeys(failed, "why"))

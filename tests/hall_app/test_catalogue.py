@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from hall_app.content.text import html_of
-from hall_app.server.thumbnails import EDGE, Thumbnails
+from hall_app.content.views import html_of
+from hall_app.web.pages import EDGE, Thumbnails
 
 
 class Outline(HTMLParser):

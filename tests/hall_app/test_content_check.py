@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 from collections.abc import Callable
@@ -11,10 +10,10 @@ from pathlib import Path
 import pytest
 from content_house import EXHIBIT, add_exhibit, edit, make_house, rewritten, write_box
 
+from hall_app.check import check
+from hall_app.cli import main
 from hall_app.content import load
-from hall_app.content.check import check
-from hall_app.content.command import add_parser
-from hall_app.content.glb import GlbError, read_glb
+from hall_app.content.models import GlbError, read_glb
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -152,7 +151,7 @@ def test_too_large_a_folder(house: Path):
 
 
 def test_too_many_triangles(house: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("hall_app.content.checks.budget.TRIANGLES", {"hall": 11, "close": 12})
+    monkeypatch.setattr("hall_app.check.files.budget.TRIANGLES", {"hall": 11, "close": 12})
     (line,) = lines(house)
     assert "models.hall: 12 triangles, at most 11 – reduce the mesh" in line
 
@@ -268,10 +267,7 @@ def test_stale_and_missing_bakes(house: Path):
 
 
 def run(*words: str) -> int:
-    parser = argparse.ArgumentParser()
-    add_parser(parser.add_subparsers())
-    arguments = parser.parse_args(["check", *words])
-    return arguments.run(arguments)
+    return main(["check", *words])
 
 
 def test_command(house: Path, capsys: pytest.CaptureFixture[str]):

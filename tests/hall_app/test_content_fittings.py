@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from content_house import edit, make_house
 
-from hall_app.content import check as checking
-from hall_app.content.check import check
-from hall_app.content.checks.fittings import fitting_problems
-from hall_app.content.loading import load
+from hall_app.check import check
+from hall_app.check import folder as checking
+from hall_app.check.hall import fitting_problems
+from hall_app.content import load
 from hall_app.room import raise_room
 
 ASSETS = Path(__file__).parents[2] / "assets"

@@ -7,11 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hall_app.content.glb import read_glb
-from hall_app.media.drawings import Interlacing, pattern_drawing, weave_drawing
-from hall_app.media.foreign import FINENESS, RADIUS, back_height, mirror_glb
-from hall_app.media.music import FALLING_GAUZE, HALL_PIECE, _notes, falling_gauze
-from hall_app.media.strings import RATE, Touch, pluck
+from hall_app.content.models import read_glb
+from hall_app.media import (
+    FALLING_GAUZE,
+    FINENESS,
+    HALL_PIECE,
+    RADIUS,
+    RATE,
+    Interlacing,
+    Touch,
+    back_height,
+    bar_notes,
+    falling_gauze,
+    mirror_glb,
+    pattern_drawing,
+    pluck,
+    weave_drawing,
+)
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -49,7 +61,7 @@ def test_every_beat_of_the_pieces_is_written():
     for piece in (HALL_PIECE, FALLING_GAUZE):
         for bar in piece:
             assert len(bar.split()) == 4, bar
-            assert _notes(bar, 0.0), bar
+            assert bar_notes(bar, 0.0), bar
 
 
 def test_music_is_the_same_every_time_and_fades_out():

@@ -9,9 +9,10 @@ import pytest
 from content_house import edit, make_house, png_of
 from PIL import Image
 
+from hall_app.check import check
+from hall_app.check.files import AUDIO, VIDEO
 from hall_app.content import exhibit_json, load
-from hall_app.content.check import check
-from hall_app.content.checks.media import AUDIO, FORMATS, VIDEO
+from hall_app.content.models import FORMATS
 from hall_app.content.views import TYPES
 
 ASSETS = Path(__file__).parents[2] / "assets"

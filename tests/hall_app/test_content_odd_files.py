@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from content_house import EXHIBIT, add_exhibit, edit, make_house, png_of, rewritten, with_texture
 
+from hall_app.check import check
 from hall_app.content import ContentError, Watcher, exhibit_json, load
-from hall_app.content.check import check
 
 LONG = "x" * 300
 DEEP = "deep = " + "[" * 5000 + "]" * 5000

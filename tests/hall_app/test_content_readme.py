@@ -10,11 +10,10 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from hall_app.behaviours import BEHAVIOURS
-from hall_app.content.complaints import table_of
-from hall_app.content.models import Bilingual, ExhibitFile, HallFile, PlanFile
-from survey.questionnaire.definition import Text
-from survey.web.privacy.controller import Controller
+from hall_app.content import BEHAVIOURS
+from hall_app.content.schema import Bilingual, ExhibitFile, HallFile, PlanFile, table_of
+from survey.web.privacy import Controller
+from survey.questionnaire import Text
 
 ASSETS = Path(__file__).parents[2] / "assets"
 README = (ASSETS / "README.md").read_text("utf-8")

@@ -14,7 +14,7 @@ from markdown_it import MarkdownIt
 
 from hall_app.content import exhibit_json, load, scene_json, solids_of, walking_floor, yaw_of
 from hall_app.content.floor import foot_height, rectangle
-from hall_app.content.text import html_of, link_allowed
+from hall_app.content.views import html_of, link_allowed
 
 ASSETS = Path(__file__).parents[2] / "assets"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hall_app.data_folder import make_data_folder
+from hall_app.content import make_data_folder
 
 
 @pytest.fixture(params=[0o000, 0o022, 0o777])

@@ -15,16 +15,12 @@ from build_processes import with_scarf
 from content_house import edit, make_house
 from stored_room import store_room
 
-from hall_app import following
-from hall_app.bake.places import data_bake
-from hall_app.baking_queue import Bake, BakingQueue
 from hall_app.content import load
-from hall_app.following import Following
-from hall_app.house import House
-from hall_app.preparing import ROOM
-from hall_app.room.key import built_key, room_key
-from hall_app.room.places import data_room
-from hall_app.tidying import tidy
+from hall_app.content.bakes import data_bake
+from hall_app.house import Following, House
+from hall_app.house import edits as following
+from hall_app.house.baking import ROOM, Bake, BakingQueue, tidy
+from hall_app.room.bake import built_key, data_room, room_key
 
 SHIPPED = Path(__file__).parents[2] / "assets/exhibits/pibo/baked"
 NEWEST = 3  # of a kind are kept

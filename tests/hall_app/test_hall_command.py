@@ -10,8 +10,8 @@ import event_loop
 import pytest
 
 from hall_app import cli
-from hall_app.beside import beside
-from hall_app.progress_line import ProgressLine
+from hall_app.house import in_thread
+from hall_app.web import ProgressLine
 
 ORDERS = (["--debug", "check", "x"], ["check", "--debug", "x"], ["check", "x", "--debug"])
 
@@ -22,7 +22,7 @@ def broken(*arguments: object) -> None:
 
 @pytest.mark.parametrize("words", ORDERS)
 def test_debug_stands_before_or_behind_the_command(words: list[str], monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("hall_app.content.command.content_folder", broken)
+    monkeypatch.setattr("hall_app.check.command.content_folder", broken)
     with pytest.raises(ZeroDivisionError):
         cli.main(words)
 
@@ -30,7 +30,7 @@ def test_debug_stands_before_or_behind_the_command(words: list[str], monkeypatch
 def test_without_debug_an_error_is_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    monkeypatch.setattr("hall_app.content.command.content_folder", broken)
+    monkeypatch.setattr("hall_app.check.command.content_folder", broken)
     assert cli.main(["check", "x"]) == 1
     assert capsys.readouterr().err == "hall check: of the test\n"
 
@@ -104,8 +104,8 @@ def test_progress_on_a_terminal_is_written_over():
 def test_work_beside_the_loop_gives_and_raises():
     async def both() -> int:
         with pytest.raises(ZeroDivisionError):
-            await beside(broken)
-        return await beside(divmod, 7, 2)
+            await in_thread(broken)
+        return await in_thread(divmod, 7, 2)
 
     assert event_loop.run(both()) == (3, 1)
 
@@ -119,7 +119,7 @@ def test_work_beside_the_loop_does_not_keep_it_from_ending():
 
     async def impatient() -> None:
         with pytest.raises(asyncio.TimeoutError):
-            await asyncio.wait_for(beside(slow), 0.05)
+            await asyncio.wait_for(in_thread(slow), 0.05)
 
     event_loop.run(impatient())
     assert not ended.is_set()

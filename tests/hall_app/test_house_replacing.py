@@ -17,13 +17,11 @@ from build_processes import with_scarf
 from content_house import edit, make_house
 from stored_room import store_room
 
-from hall_app.bake.places import data_bake, key_now
 from hall_app.content import load
-from hall_app.figures import drawn_exhibits
-from hall_app.floor_grid import grid_beside
-from hall_app.house import House
-from hall_app.room.key import built_key, room_key
-from hall_app.room.showing import shown_room
+from hall_app.content.bakes import data_bake, key_now
+from hall_app.house import House, grid_beside
+from hall_app.room.bake import built_key, room_key, shown_room
+from hall_app.show import drawn_exhibits
 
 SHIPPED = Path(__file__).parents[2] / "assets/exhibits/pibo/baked"
 
@@ -184,7 +182,7 @@ def test_a_model_that_is_being_copied_leaves_the_last_whole_one(tmp_path: Path, 
 
 def test_what_fails_beside_takes_nothing_else_with_it(lit, monkeypatch):
     folder, house = lit
-    monkeypatch.setattr("hall_app.house.shown_room", broken_once(shown_room))
+    monkeypatch.setattr("hall_app.house.house.shown_room", broken_once(shown_room))
 
     async def story() -> None:
         grid = house.grid
@@ -210,7 +208,7 @@ def test_a_grid_that_failed_is_begun_again_once_and_then_told(lit, monkeypatch, 
         fail()
         return await grid_beside(*given)
 
-    monkeypatch.setattr("hall_app.house.grid_beside", failing)
+    monkeypatch.setattr("hall_app.house.house.grid_beside", failing)
 
     async def until(test: Callable[[], object]) -> None:
         end = time.monotonic() + 120

@@ -8,11 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from light_rooms import box, level, quads
 
-from hall_app.light import LightError, Spot, bake_light, light_jpeg
-from hall_app.light.bvh import build_tree
-from hall_app.light.encode import SHOULDER, WALL, show
-from hall_app.light.packing import atlas_of, pack
-from hall_app.light.tracing import cast
+from hall_app.light import SHOULDER, WALL, LightError, Sampling, Spot, bake_light, light_jpeg, show
+from hall_app.light.atlas import atlas_of, pack
+from hall_app.light.rays import build_tree, cast
 
 PLAIN = {"fill_light": 0.0, "filtered": False}
 
@@ -25,7 +23,7 @@ def lamp_free(light, surfaces):
 @pytest.mark.parametrize("bounces", [1, 2, 4])
 def test_furnace_sums_the_series(bounces):
     room = quads(box((0, 0, 0), (2, 1.5, 3), inward=True), albedo=0.5, emission=1.0, density=4)
-    light = bake_light(room, rays=(64,) * bounces, **PLAIN)
+    light = bake_light(room, sampling=Sampling((64,) * bounces), **PLAIN)
     expected = sum(0.5**k for k in range(bounces))
     found = lamp_free(light, room)
     assert found.mean() == pytest.approx(expected, rel=0.01)
@@ -35,7 +33,7 @@ def test_furnace_sums_the_series(bounces):
 
 def test_furnace_reaches_its_limit():
     room = quads(box((0, 0, 0), (1, 1, 1), inward=True), albedo=0.5, emission=1.0, density=4)
-    light = bake_light(room, rays=(36,) * 12, lamp_share=0.0, **PLAIN)
+    light = bake_light(room, sampling=Sampling((36,) * 12, lamp_share=0.0), **PLAIN)
     assert np.abs(lamp_free(light, room) - 2.0).max() < 0.001
 
 
@@ -44,7 +42,9 @@ def test_parallel_squares(share):
     # Two unit squares at distance 1: form factor 0.1998 (Howell, configuration C-11).
     floor, lamp = level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1, up=False)
     light = bake_light(
-        quads([floor, lamp], emission=[0, 1], density=[10, 4]), rays=(256,), lamp_share=share, **PLAIN
+        quads([floor, lamp], emission=[0, 1], density=[10, 4]),
+        sampling=Sampling((256,), lamp_share=share),
+        **PLAIN,
     )
     assert _chart(light, 0).mean() == pytest.approx(0.19982, rel=0.01)
 
@@ -53,7 +53,9 @@ def test_perpendicular_squares():
     # Two unit squares with a common edge: form factor 0.20004 (Howell, configuration C-14).
     floor = level(0, 1, 0, 1, 0)
     lamp = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
-    light = bake_light(quads([floor, lamp], emission=[0, 1], density=[20, 4]), rays=(256,), **PLAIN)
+    light = bake_light(
+        quads([floor, lamp], emission=[0, 1], density=[20, 4]), sampling=Sampling((256,)), **PLAIN
+    )
     assert _chart(light, 0).mean() == pytest.approx(0.20004, rel=0.015)
 
 
@@ -83,7 +85,7 @@ def test_sphere_hides_part_of_the_sky():
         albedo=np.r_[room.albedo, np.zeros((count, 3))].astype(np.float32),
         emission=np.r_[room.emission, np.zeros((count, 3))].astype(np.float32),
     )
-    light = bake_light(joined, rays=(4000,), **PLAIN)
+    light = bake_light(joined, sampling=Sampling((4000,)), **PLAIN)
     assert _chart(light, 6).mean() == pytest.approx(1 - 0.25, abs=0.01)
 
 
@@ -101,7 +103,7 @@ def test_disc_lamp_over_a_point():
         density=50.0,
         charted=[True] + [False] * 128,
     )
-    light = bake_light(lamp, rays=(2000,), **PLAIN)
+    light = bake_light(lamp, sampling=Sampling((2000,)), **PLAIN)
     assert _chart(light, 0).mean() == pytest.approx(1 / (1 + 1.5**2), rel=0.02)
 
 
@@ -111,7 +113,9 @@ def test_edge_of_a_spots_shadow():
     board = level(0.2, 2, -2, 2, 1)
     under = level(0.2, 2, -2, 2, 0.99, up=False)
     spot = Spot(np.array([0, 2.0, 0]), np.array([0, 0.0, 0]), np.ones(3), 4.0, 60.0, 10.0, radius=0.0)
-    light = bake_light(quads([floor, board, under], density=[40, 4, 4]), [spot], rays=(4,), **PLAIN)
+    light = bake_light(
+        quads([floor, board, under], density=[40, 4, 4]), [spot], sampling=Sampling((4,)), **PLAIN
+    )
     row = _chart(light, 0)[20, :, 0]
     x = (np.arange(160) + 0.5) / 40 - 2
     assert row[(x < 0.36)].min() > 0.3
@@ -125,7 +129,7 @@ def test_energy_is_never_gained():
     room = quads([*solid, lamp], albedo=0.9, emission=[0] * 12 + [1.0], density=5)
     last = 0.0
     for passes in (1, 2, 4):
-        light = bake_light(room, rays=(36,) * passes, fill_light=0.0)
+        light = bake_light(room, sampling=Sampling((36,) * passes), fill_light=0.0)
         mean = np.concatenate([_chart(light, k).reshape(-1, 3) for k in range(6)]).mean()
         assert last < mean < 1.0
         last = mean
@@ -135,7 +139,9 @@ def test_sheet_shows_the_mean_of_both_sides():
     sheet = level(0, 1, 0, 1, 1)
     lamp = level(-50, 50, -50, 50, 2, up=False)
     light = bake_light(
-        quads([sheet, lamp], emission=[0, 1], density=[4, 0.1], two_sided=[True, False]), rays=(128,), **PLAIN
+        quads([sheet, lamp], emission=[0, 1], density=[4, 0.1], two_sided=[True, False]),
+        sampling=Sampling((128,)),
+        **PLAIN,
     )
     assert _chart(light, 0).mean() == pytest.approx(0.5, rel=0.02)
 
@@ -143,7 +149,9 @@ def test_sheet_shows_the_mean_of_both_sides():
 def test_coplanar_charts_meet_without_a_seam():
     halves = [level(0, 2, 0, 4, 0), level(2, 4, 0, 4, 0)]
     lamp = level(0.5, 2.5, 1, 3, 2.5, up=False)
-    light = bake_light(quads([*halves, lamp], emission=[0, 0, 1], density=[10, 10, 2]), rays=(36, 144))
+    light = bake_light(
+        quads([*halves, lamp], emission=[0, 0, 1], density=[10, 10, 2]), sampling=Sampling((36, 144))
+    )
     left, right = _chart(light, 0), _chart(light, 1)
     left = left if left.shape[:2] == (40, 20) else left.transpose(1, 0, 2)
     right = right if right.shape[:2] == (40, 20) else right.transpose(1, 0, 2)
@@ -154,7 +162,7 @@ def test_coplanar_charts_meet_without_a_seam():
 def test_nothing_leaks_into_a_body():
     solid = np.concatenate([box((0, 0, 0), (4, 3, 4), inward=True), box((1, 0, 1), (2, 1, 2))])
     room = quads([*solid], albedo=0.5, emission=[1.0] * 5 + [0.0] * 7, density=10)
-    light = bake_light(room, rays=(36, 36), **PLAIN)
+    light = bake_light(room, sampling=Sampling((36, 36)), **PLAIN)
     floor = _chart(light, 5)
     assert floor.min() > 0.1  # texels under the box are filled, not black
     assert light.record["inside"] > 0
@@ -212,7 +220,9 @@ def test_packing_never_overlaps(sizes):
 
 
 def test_charts_keep_their_borders():
-    light = bake_light(quads(box((0, 0, 0), (1, 2, 3), inward=True), emission=1.0, density=5), rays=(4,))
+    light = bake_light(
+        quads(box((0, 0, 0), (1, 2, 3), inward=True), emission=1.0, density=5), sampling=Sampling((4,))
+    )
     height, width = light.covered.shape
     for k in range(6):
         corners = np.round(light.uv[2 * k : 2 * k + 2].reshape(-1, 2) * [width, height]).astype(int)
@@ -238,17 +248,19 @@ def test_the_state_of_another_bake_is_not_taken(tmp_path):
             raise Stopped
 
     with pytest.raises(Stopped):
-        bake_light(room, rays=(9, 9, 16), seed=3, progress=stop, checkpoint=kept)
+        bake_light(room, sampling=Sampling((9, 9, 16), seed=3), progress=stop, checkpoint=kept)
     state = kept.read_bytes()
     for surfaces, seed in ((room, 4), (other, 3)):
         kept.write_bytes(state)
-        resumed = bake_light(surfaces, rays=(9, 9, 16), seed=seed, checkpoint=kept)
-        assert np.array_equal(resumed.image, bake_light(surfaces, rays=(9, 9, 16), seed=seed).image)
+        resumed = bake_light(surfaces, sampling=Sampling((9, 9, 16), seed=seed), checkpoint=kept)
+        assert np.array_equal(
+            resumed.image, bake_light(surfaces, sampling=Sampling((9, 9, 16), seed=seed)).image
+        )
 
 
 def test_resumed_bake_has_the_same_bits(tmp_path):
     room = quads(box((0, 0, 0), (2, 2, 2), inward=True), albedo=0.5, emission=[1, 0, 0, 0, 0, 0], density=8)
-    whole = bake_light(room, rays=(9, 9, 16), seed=3)
+    whole = bake_light(room, sampling=Sampling((9, 9, 16), seed=3))
     kept = tmp_path / "light.npz"
 
     def stop(share, label):
@@ -256,22 +268,27 @@ def test_resumed_bake_has_the_same_bits(tmp_path):
             raise Stopped
 
     with pytest.raises(Stopped):
-        bake_light(room, rays=(9, 9, 16), seed=3, progress=stop, checkpoint=kept)
+        bake_light(room, sampling=Sampling((9, 9, 16), seed=3), progress=stop, checkpoint=kept)
     labels = []
     resumed = bake_light(
-        room, rays=(9, 9, 16), seed=3, progress=lambda share, label: labels.append(label), checkpoint=kept
+        room,
+        sampling=Sampling((9, 9, 16), seed=3),
+        progress=lambda share, label: labels.append(label),
+        checkpoint=kept,
     )
     assert np.array_equal(whole.image, resumed.image)
     assert "pass 2 of 3" not in labels
     kept.write_bytes(b"damaged")
-    assert np.array_equal(whole.image, bake_light(room, rays=(9, 9, 16), seed=3, checkpoint=kept).image)
-    assert not np.array_equal(whole.image, bake_light(room, rays=(9, 9, 16), seed=4).image)
+    assert np.array_equal(
+        whole.image, bake_light(room, sampling=Sampling((9, 9, 16), seed=3), checkpoint=kept).image
+    )
+    assert not np.array_equal(whole.image, bake_light(room, sampling=Sampling((9, 9, 16), seed=4)).image)
 
 
 def test_picture_stays_below_white_except_on_lamps():
     room = quads(box((0, 0, 0), (4, 3, 4), inward=True), albedo=0.8, emission=[0, 0, 0, 0, 3.0, 0], density=5)
     spot = Spot(np.array([2, 2.9, 2]), np.array([2, 0.0, 2]), np.ones(3), 50.0, 20.0, 10.0)
-    light = bake_light(room, [spot], rays=(16, 16))
+    light = bake_light(room, [spot], sampling=Sampling((16, 16)))
     for k in (0, 1, 2, 3, 5):
         height, width = light.covered.shape
         corners = np.round(light.uv[2 * k : 2 * k + 2].reshape(-1, 2) * [width, height]).astype(int)
@@ -311,8 +328,8 @@ def test_faces_without_chart_hide_and_reflect():
         density=5,
         charted=[True, True, False],
     )
-    light = bake_light(room, rays=(64, 64), **PLAIN)
-    bare = bake_light(quads([floor, lamp], emission=[0, 1], density=5), rays=(64,), **PLAIN)
+    light = bake_light(room, sampling=Sampling((64, 64)), **PLAIN)
+    bare = bake_light(quads([floor, lamp], emission=[0, 1], density=5), sampling=Sampling((64,)), **PLAIN)
     assert _chart(light, 0).mean() < 0.5 * _chart(bare, 0).mean()
     assert (light.uv[4:] == 0).all()
 
@@ -338,4 +355,4 @@ def test_errors_name_what_and_where(change, words):
 
 def test_only_triangles_without_area():
     room = quads(np.zeros((1, 4, 3)))
-    assert np.isfinite(bake_light(room, rays=(4,)).image).all()
+    assert np.isfinite(bake_light(room, sampling=Sampling((4,))).image).all()

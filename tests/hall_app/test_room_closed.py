@@ -7,15 +7,12 @@ import pytest
 import shapely
 from room_font import BLANK
 
+from hall_app.content import load
 from hall_app.content.floor import solids_of
-from hall_app.content.loading import load
-from hall_app.light.bvh import build_tree
-from hall_app.light.tracing import cast
-from hall_app.room import raise_room
-from hall_app.room.furniture import furniture
-from hall_app.room.patch import Frame, box
-from hall_app.room.regions import Regions
-from hall_app.room.signs import boards_of, signs
+from hall_app.light.rays import build_tree, cast
+from hall_app.room import Frame, box, raise_room
+from hall_app.room.parts import boards_of, furniture_of, signs_of
+from hall_app.room.structure import Regions
 
 ASSETS = Path(__file__).parents[2] / "assets"
 BODY = 0.3  # [m] a visitor keeps from everything
@@ -92,7 +89,7 @@ def _room_behind(tree, normals, point, way) -> np.ndarray:
 def test_nobody_looks_into_what_stands_on_the_floor(content):
     room = raise_room(content.plan, content.hall.title, content.exhibits, blank=BLANK)
     boards = boards_of(content.plan, Regions(content.plan), content.hall.title, content.exhibits)
-    near = [*furniture(content.plan), *signs(boards, room.sheet)]
+    near = [*furniture_of(content.plan), *signs_of(boards, room.sheet)]
     assert backs_seen([*near, *room.patches], eyes_of(content), len(near)) == []
 
 

@@ -10,20 +10,25 @@ from PIL import Image
 from room_font import BLANK, needs_font
 from stored_room import store_room
 
+from hall_app.check import check
 from hall_app.cli import main
-from hall_app.content.check import check
-from hall_app.content.colours import difference, hex_of, main_colour
-from hall_app.content.glb import open_glb, read_glb
-from hall_app.content.loading import load
-from hall_app.light.model import LightMap
-from hall_app.room import lettering, raise_room, room_glb
-from hall_app.room.environment import environment_jpeg, painted
-from hall_app.room.key import room_key
-from hall_app.room.lettering import MissingFontError, Writing, write
-from hall_app.room.palette import BACKDROPS, MATERIALS, linear
-from hall_app.room.places import room_folder
-from hall_app.room.showing import shown_room
-from hall_app.room.textures import TEXTURES, texture
+from hall_app.content import load
+from hall_app.content.models import difference, hex_of, main_colour, open_glb, read_glb
+from hall_app.light import LightMap
+from hall_app.room import raise_room, room_glb
+from hall_app.room.bake import room_folder, room_key, shown_room
+from hall_app.room.picture import environment_jpeg, painted
+from hall_app.room.surface import (
+    BACKDROPS,
+    MATERIALS,
+    TEXTURES,
+    MissingFontError,
+    Writing,
+    lettering,
+    linear,
+    texture,
+    write,
+)
 from sim_core.garment.glb_file import GlbFile
 
 ASSETS = Path(__file__).parents[2] / "assets"

@@ -7,16 +7,14 @@ import pytest
 import shapely
 from room_font import BLANK
 
+from hall_app.content import load
 from hall_app.content.floor import solids_of
-from hall_app.content.loading import load
-from hall_app.content.models import PlanFile
+from hall_app.content.schema import PlanFile
 from hall_app.room import raise_room
-from hall_app.room.charts import charts_of
-from hall_app.room.frame import beams_of
-from hall_app.room.lettering import Sheet
-from hall_app.room.palette import MATERIALS
-from hall_app.room.regions import Regions
-from hall_app.room.signs import boards_of, signs
+from hall_app.room.lighting import charts_of
+from hall_app.room.parts import boards_of, signs_of
+from hall_app.room.structure import Regions, beams_of
+from hall_app.room.surface import MATERIALS, Sheet
 
 ASSETS = Path(__file__).parents[2] / "assets"
 HEAD = 2.0  # [m] nobody walks into what hangs above
@@ -171,7 +169,7 @@ def test_every_solid_of_the_plan_is_drawn(shipped, content):
 
 
 def test_boxes_and_turned_bodies_face_outwards():
-    from hall_app.room.patch import Frame, box, disc, prism, tube
+    from hall_app.room import Frame, box, disc, prism, tube
 
     frame = Frame(np.array([2.0, 1.0, -3.0]), 35.0)
     bodies = [
@@ -272,7 +270,7 @@ def test_a_label_hides_the_end_of_its_post(content):
     posts = [board for board in boards if board.post]
     assert posts
     for board in posts:
-        (patches,) = [signs([board], Sheet(np.zeros((8, 8, 3), np.uint8), ((0.0, 0.0, 1.0, 1.0),)))]
+        (patches,) = [signs_of([board], Sheet(np.zeros((8, 8, 3), np.uint8), ((0.0, 0.0, 1.0, 1.0),)))]
         plate = patches[0].vertices
         front = np.cross(plate[1] - plate[0], plate[3] - plate[0])
         front /= np.linalg.norm(front)

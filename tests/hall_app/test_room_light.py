@@ -11,23 +11,16 @@ from content_house import make_house
 from PIL import Image
 from room_font import BLANK, needs_font
 
-from hall_app.content.check import check
-from hall_app.content.colours import difference
-from hall_app.content.glb import open_glb
-from hall_app.content.loading import load
-from hall_app.content.models import PlanFile
-from hall_app.light import bake_light
-from hall_app.light.encode import SHOULDER
+from hall_app.check import check
+from hall_app.content import load
+from hall_app.content.models import difference, open_glb
+from hall_app.content.schema import PlanFile
+from hall_app.light import SHOULDER, Sampling, bake_light
 from hall_app.room import raise_room
-from hall_app.room.bake import bake_room
-from hall_app.room.charts import surfaces
-from hall_app.room.key import room_key
-from hall_app.room.lamps import spots_of
-from hall_app.room.occluders import exhibit_solids
-from hall_app.room.palette import MATERIALS, linear
-from hall_app.room.places import room_here
-from hall_app.room.regions import Regions
-from hall_app.room.showing import shown_room
+from hall_app.room.bake import bake_room, room_here, room_key, shown_room
+from hall_app.room.lighting import exhibit_solids, spots_of, surfaces
+from hall_app.room.structure import Regions
+from hall_app.room.surface import MATERIALS, linear
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -116,7 +109,7 @@ def test_a_pale_backdrop_keeps_its_tone_under_its_spot(content):
     plan = PlanFile.model_validate(BOOTH)
     room = raise_room(plan, content.hall.title, (), blank=True)
     walls, spots = surfaces(room.patches), spots_of(plan)
-    light = bake_light(walls, spots, rays=(16, 16, 16))
+    light = bake_light(walls, spots, sampling=Sampling((16, 16, 16)))
     cloth = [k for k, patch in enumerate(room.patches) if patch.material == "pale"]
     assert len(cloth) == 1
     first = sum(len(patch.faces) for patch in room.patches[: cloth[0]])

@@ -12,15 +12,13 @@ import pytest
 from content_house import make_house, write_box
 from stored_room import store_room
 
+from hall_app.check import check
 from hall_app.cli import main
-from hall_app.content.check import check
-from hall_app.content.loading import load
+from hall_app.content import load
+from hall_app.content.bakes import FILES, publish, seal, seal_record
 from hall_app.house import House
-from hall_app.room import bake
-from hall_app.room.key import room_key
-from hall_app.room.places import room_folder, room_record
-from hall_app.room.showing import shown_room, still_right
-from hall_app.sealing import FILES, seal, seal_record
+from hall_app.room.bake import build as bake
+from hall_app.room.bake import room_folder, room_key, room_record, shown_room, still_right
 
 
 @pytest.fixture
@@ -184,11 +182,11 @@ def test_while_files_are_put_in_place_the_old_record_is_gone(tmp_path: Path, mon
 
     monkeypatch.setattr(shutil, "copyfile", cut)
     with pytest.raises(KeyboardInterrupt):
-        bake._publish(new, old)
+        publish(new, old, "room.json")
     assert not (old / "room.json").exists()
     assert room_record(old) is None
     monkeypatch.undo()
-    bake._publish(new, old)
+    publish(new, old, "room.json")
     record = room_record(old)
     assert record is not None
     assert record["key"] == "new"

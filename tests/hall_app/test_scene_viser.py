@@ -4,7 +4,7 @@ from dataclasses import fields
 
 from lit_room import environment
 
-from hall_app.scene.nodes import HallScene
+from hall_app.show import HallScene
 
 
 def test_environment_message_is_as_pinned():

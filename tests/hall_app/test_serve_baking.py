@@ -14,8 +14,8 @@ from build_processes import builds_of, processes, with_scarf
 from plain_hall import write_plain_hall
 from running_hall import RunningHall, running_hall
 
-from hall_app.bake.places import bake_work, key_now
 from hall_app.content import load
+from hall_app.content.bakes import bake_work, key_now
 
 PATIENCE = 20.0  # [s] of a machine that has much else to do; baking takes minutes of it
 

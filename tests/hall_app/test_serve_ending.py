@@ -17,10 +17,9 @@ from build_processes import builds_of, processes, with_scarf
 from plain_hall import write_plain_hall
 from running_hall import free_port
 
-from hall_app.bake.key import bake_key
-from hall_app.bake.places import bake_folder
 from hall_app.content import load
-from hall_app.preparing import stale_garments
+from hall_app.content.bakes import bake_folder, bake_key
+from hall_app.house.baking import stale_garments
 
 PATIENCE = 60.0  # [s] of a machine that has much else to do
 
@@ -84,7 +83,7 @@ def test_ctrl_c_at_every_stage_of_opening(tmp_path: Path, word: str):
 
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_garment_under_way_is_given_up_with_all_its_helpers(tmp_path: Path, sign: signal.Signals):
-    from hall_app.bake.encode import film_possible
+    from hall_app.build import film_possible
 
     helpers = 3 if film_possible() else 1  # the build, and those who draw its film
     with serving(with_scarf(tmp_path / "content"), tmp_path, "--no-light") as hall:

@@ -9,7 +9,7 @@ import time
 import event_loop
 import pytest
 
-from hall_app.server.answers import Answers, Work
+from hall_app.web.answers import Answers, Work
 
 
 def test_who_asks_for_the_same_waits_for_the_same():

@@ -5,13 +5,28 @@ import random
 import event_loop
 import pytest
 
-from hall_app import descriptors
-from hall_app.places import AWAY, KEPT, Places
-from hall_app.server.addresses import MOST_SILENT, MOST_SILENT_IN_ALL, RATES, Addresses, name_of
-from hall_app.server.budgets import RELAY, WALK, Allowance, Bucket, Rate
-from hall_app.server.doorkeeper import Doorkeeper, address_of
-from hall_app.server.open_lines import ASKS_WITHIN, MOST_OF_ONE_ADDRESS, TAKES_WITHIN, OpenLines
-from hall_app.server.portions import PORTION, Portions
+from hall_app.visit import AWAY, KEPT, Places
+from hall_app.web.limits import (
+    ASKS_WITHIN,
+    MOST_OF_ONE_ADDRESS,
+    MOST_SILENT,
+    MOST_SILENT_IN_ALL,
+    PORTION,
+    RATES,
+    RELAY,
+    TAKES_WITHIN,
+    WALK,
+    Addresses,
+    Allowance,
+    Bucket,
+    Doorkeeper,
+    OpenLines,
+    Portions,
+    Rate,
+    address_of,
+    descriptors,
+    name_of,
+)
 
 
 def test_a_bucket_holds_its_burst_and_fills_evenly():

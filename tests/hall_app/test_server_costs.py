@@ -26,13 +26,11 @@ from test_server_door import PICTURE_BYTES, message_of, noise, whole
 
 from hall_app.content import load
 from hall_app.house import House
-from hall_app.scene import pieces as scene
-from hall_app.scene.pieces import LEAN, Pieces
-from hall_app.server import app as application
-from hall_app.server.app import create_app
-from hall_app.server.catalogue import catalogue_html
-from hall_app.server.static import PAGE_FOLDER
-from hall_app.server.thumbnails import Thumbnails
+from hall_app.show import LEAN, Pieces
+from hall_app.show import pieces as scene
+from hall_app.web import app as application
+from hall_app.web import create_app
+from hall_app.web.pages import PAGE_FOLDER, Thumbnails, catalogue_html
 
 
 @dataclass(frozen=True)
@@ -315,10 +313,10 @@ def test_a_full_disk_leaves_no_half_of_a_thumbnail(tmp_path: Path, monkeypatch):
 
 @pytest.mark.parametrize("spoilt", ["door.js", "hall.css", "texts.toml", "hall.js"])
 def test_a_half_updated_page_answers_as_before(tmp_path: Path, spoilt: str):
-    from hall_app.server.static import _Watched
+    from hall_app.web.pages import PageFolder
 
     folder = Path(shutil.copytree(PAGE_FOLDER, tmp_path / "page"))
-    watched = _Watched(folder)
+    watched = PageFolder(folder)
     whole_one, file = watched.now(), folder / spoilt
     text = file.read_text("utf-8")
     file.unlink()

@@ -24,9 +24,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "bench"))
 from crowd_attack import CLICK, WALK, frame  # noqa: E402
 from crowd_load import VISER, camera  # noqa: E402
 
-from hall_app.places import Places
-from hall_app.server.relay import Turns, Views
-from hall_app.server.together import until_first
+from hall_app.visit import Places
+from hall_app.web.sockets import Turns, Views, until_first
 
 HELLO = json.dumps({"t": "hello", "client": None, "display": "page", "able": "predict"})
 PATIENCE = 60.0  # [s]; these tests ask what happens, not how fast
@@ -414,7 +413,8 @@ def test_views_are_for_those_inside(small_hall):
 def hasty_hall(tmp_path):
     """A hall for three that keeps nothing long for those who are not there."""
     hasty = altered(
-        "import hall_app.server.walk_socket as walk, hall_app.server.relay as relay, hall_app.places as places",
+        "from hall_app.web.sockets import relay, walk",
+        "from hall_app.visit import places",
         "walk.KEPT = places.KEPT = 1.0",
         "relay._STRANGERS = 15.0",
     )
@@ -452,7 +452,7 @@ def test_a_view_without_a_visit_ends(hasty_hall):
 
 
 def test_a_socket_that_is_closed_is_told_why(tmp_path):
-    impatient = altered("import hall_app.server.walk_socket as walk", "walk._HELLO_WITHIN = 5.0")
+    impatient = altered("from hall_app.web.sockets import walk", "walk._HELLO_WITHIN = 5.0")
 
     async def told(hall, *said: bytes) -> tuple[int, str]:
         async with door(hall) as walker:
@@ -661,8 +661,9 @@ def test_who_loads_the_page_again_in_a_full_hall_keeps_his_place(small_hall):
 
 def test_who_was_away_for_long_makes_room_and_may_come_back(tmp_path):
     soon_away = altered(
-        "import hall_app.places, hall_app.server.walk_socket",
-        "hall_app.places.AWAY, hall_app.server.walk_socket._LOOK = 3.0, 0.5",
+        "from hall_app.visit import places",
+        "from hall_app.web.sockets import walk",
+        "places.AWAY, walk._LOOK = 3.0, 0.5",
     )
     content = write_plain_hall(tmp_path / "content")
 

@@ -16,12 +16,10 @@ from plain_hall import write_plain_hall
 from running_hall import running_hall
 from websockets.sync.client import connect
 
-from hall_app.scene.pieces import LEAN, PICTURE, Pieces, split
-from hall_app.server import viser_client as unpacking
-from hall_app.server.modules import one_module
-from hall_app.server.packed import accepted
-from hall_app.server.static import PAGE_FOLDER, PageFiles, page_files
-from hall_app.server.viser_client import viser_client
+from hall_app.show import LEAN, PICTURE, Pieces, split
+from hall_app.web.answers import accepted
+from hall_app.web.pages import PAGE_FOLDER, PageFiles, one_module, page_files, viser_client
+from hall_app.web.pages import client as unpacking
 
 FIRST_FLIGHT = 14_600  # [bytes] ten packets: what a server may send before the first acknowledgement
 
@@ -207,7 +205,7 @@ def test_codings_are_those_asked_for(header, best):
 
 def test_a_changed_file_has_another_address():
     sources = page_files().sources
-    changed = PageFiles(sources | {"judge.js": sources["judge.js"] + "\n// changed\n"})
+    changed = PageFiles(sources | {"picture/judge.js": sources["picture/judge.js"] + "\n// changed\n"})
     assert changed.stamp != page_files().stamp
 
 
@@ -262,7 +260,7 @@ def test_all_modules_of_the_page_are_in_it():
 
     script = one_module(read, "hall.js")
     told = re.findall(r"^// (\S+\.js)$", script, re.MULTILINE)
-    inline = {"first.js", "line.js", "door.js"}
+    inline = {"viser/first.js", "viser/line.js", "door.js"}
     assert (
         set(told) == {path.relative_to(PAGE_FOLDER).as_posix() for path in PAGE_FOLDER.rglob("*.js")} - inline
     )

@@ -251,11 +251,10 @@ def test_only_a_visitors_messages_reach_viser():
     import msgspec
     from viser import _messages
 
-    from hall_app.server import relay
-    from hall_app.server.relay import _visitors_kind
+    from hall_app.web.sockets import message_kind, relay
 
     def wanted(kind: object, **fields: object) -> bool:
-        return _visitors_kind(msgspec.msgpack.encode({"type": kind, **fields})) is not None
+        return message_kind(msgspec.msgpack.encode({"type": kind, **fields})) is not None
 
     point, wxyz = [0, 0.5, 1], [1, 0, 0, 0]
     lens = {"fov": 1.0, "near": 0.01, "far": 1000, "image_height": 360, "image_width": 640}
@@ -279,8 +278,8 @@ def test_only_a_visitors_messages_reach_viser():
         7,
     ):
         assert not wanted(kind)
-    assert _visitors_kind(b"") is None
-    assert _visitors_kind(b"\xc1 no msgpack") is None
+    assert message_kind(b"") is None
+    assert message_kind(b"\xc1 no msgpack") is None
 
 
 def test_an_unreadable_model_keeps_the_last_good_one(own_hall):

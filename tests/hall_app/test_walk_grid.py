@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from walk_moves import FLOOR, room
 
-from hall_app.walking import (
+from hall_app.walk import (
     BODY,
     Body,
     Floor,
@@ -102,7 +102,7 @@ def test_progress_runs_to_one():
 def test_cache_is_used_mended_and_bounded(tmp_path, monkeypatch):
     first = cached_grid(DIVIDED, tmp_path, cell=0.1)
     (path,) = tmp_path.iterdir()
-    monkeypatch.setattr("hall_app.walking.grid.bake", lambda *a, **k: pytest.fail("baked although cached"))
+    monkeypatch.setattr("hall_app.walk.grid.bake", lambda *a, **k: pytest.fail("baked although cached"))
     np.testing.assert_array_equal(cached_grid(DIVIDED, tmp_path, cell=0.1).samples, first.samples)
     monkeypatch.undo()
     good = path.read_bytes()

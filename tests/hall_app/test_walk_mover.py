@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from walk_moves import FLOOR, KEYS, dense_floor, random_walk, room
 
-from hall_app.walking import BODY, SPEED, Floor, Keys, Pose, Prism, Round, step, wall, world_of
+from hall_app.walk import BODY, SPEED, Floor, Keys, Pose, Prism, Round, step, wall, world_of
 
 EMPTY = Floor(((-30, -30), (30, -30), (30, 30), (-30, 30)))
 STAND = Floor(((-5, -5), (5, -5), (5, 5), (-5, 5)), (Round(0, 0, 0.45),))

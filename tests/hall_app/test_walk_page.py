@@ -7,8 +7,20 @@ import pytest
 from walk_moves import FLOOR, KEYS, room
 from walk_page import Page, hold
 
-from hall_app.walking import BODY, CELL, MAX_INPUT_DT, SPEED, Keys, Pose, bake, step, world_of
-from hall_app.walking.mover import SLIDE, STEEP, TOUCH
+from hall_app.walk import (
+    BODY,
+    CELL,
+    MAX_INPUT_DT,
+    SLIDE,
+    SPEED,
+    STEEP,
+    TOUCH,
+    Keys,
+    Pose,
+    bake,
+    step,
+    world_of,
+)
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 

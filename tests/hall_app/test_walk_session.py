@@ -7,9 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from hall_app.walking import (
+from hall_app.walk import (
+    ARREARS,
+    BUCKET,
     EYE_MAX,
     EYE_MIN,
+    HOLD,
     SPEED,
     Floor,
     Keys,
@@ -21,7 +24,6 @@ from hall_app.walking import (
     step,
     wall,
 )
-from hall_app.walking.session import ARREARS, BUCKET, HOLD
 
 FLOOR = Floor(((0, 0), (10, 0), (10, 6), (0, 6)), (wall((5, 0), (5, 6), 0.1), Round(2, 2, 0.4)))
 GRID = bake(FLOOR, cell=0.05)

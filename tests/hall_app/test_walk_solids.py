@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from walk_moves import FLOOR, dense_floor, room
 
-from hall_app.walking import BODY, Floor, Prism, Round, SolidError, wall, world_of
+from hall_app.walk import BODY, Floor, Prism, Round, SolidError, wall, world_of
 
 SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
 

@@ -11,8 +11,7 @@ import pytest
 from walk_moves import FLOOR, KEYS
 from walk_page import Crowd
 
-from hall_app.walking import MAX_INPUT_DT, SPEED, Floor, Grid, Keys, Pose, WalkSession, bake
-from hall_app.walking.session import BUCKET
+from hall_app.walk import BUCKET, MAX_INPUT_DT, SPEED, Floor, Grid, Keys, Pose, WalkSession, bake
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from hall_app.walking import BODY, Floor, Keys, Pose, Prism, Round, bake, step, wall
+from hall_app.walk import BODY, Floor, Keys, Pose, Prism, Round, bake, step, wall
 
 CHUNK = 20_000  # poses per exact test
 KEYS = [Keys(f, r) for f in (-1, 0, 1) for r in (-1, 0, 1) if f or r]

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from hall_app.walking import Floor, Grid, Keys, Pose, WalkSession
+from hall_app.walk import Floor, Grid, Keys, Pose, WalkSession
 
 PAGE = Path(__file__).parents[2] / "hall_app" / "page"
-WALKMATH = PAGE / "walkmath.js"
-PREDICTION = PAGE / "prediction.js"
-HEAD = PAGE / "head.js"
+WALKMATH = PAGE / "walk" / "walkmath.js"
+PREDICTION = PAGE / "walk" / "prediction.js"
+HEAD = PAGE / "look" / "head.js"
 
 FORWARD = Keys(1, 0)
 

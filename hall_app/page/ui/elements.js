@@ -1,4 +1,4 @@
-// Building DOM nodes. Text always goes through textContent; HTML from the server has its own, single door (panel_text.js).
+// Building DOM nodes. Text always goes through textContent; HTML from the server has its own, single door (panel/panel.js).
 
 const SVG = "http://www.w3.org/2000/svg";
 

@@ -1,23 +1,23 @@
 // The overlay over the hall: builds its parts, keeps language, exhibit and connection in step between them.
 
-import { watchContext } from "../context.js";
-import { LEVELS } from "../judge.js";
-import { createCaption } from "./caption.js";
-import { createCurtain } from "./curtain.js";
+import { watchContext } from "../picture/context.js";
+import { LEVELS } from "../picture/judge.js";
+import { createCaption } from "./hints/caption.js";
+import { createCurtain } from "./enter/curtain.js";
 import { el, ownsEnter } from "./elements.js";
-import { createEnter } from "./enter.js";
-import { createExhibitsList } from "./exhibits_list.js";
-import { createHelp } from "./help.js";
-import { createHints } from "./hints.js";
-import { createMinimap } from "./minimap.js";
-import { createMusic } from "./music.js";
-import { createConnection, createProblems, createToasts, createVoice } from "./notices.js";
-import { createPanel } from "./panel.js";
-import { createViewer } from "./panel_pictures.js";
-import { createSettings } from "./settings.js";
-import { createSurveyDialog } from "./survey_dialog.js";
-import { createBrand, createLanguageSwitch, createTools } from "./top_bar.js";
-import { createStick, noticeTouch } from "./touch.js";
+import { createEnter } from "./enter/enter.js";
+import { createExhibitsList } from "./dialogs/exhibits.js";
+import { createHelp } from "./dialogs/help.js";
+import { createHints } from "./hints/hints.js";
+import { createMinimap } from "./map/minimap.js";
+import { createMusic } from "./bar/music.js";
+import { createConnection, createProblems, createToasts, createVoice } from "./hints/notices.js";
+import { createPanel } from "./panel/panel.js";
+import { createViewer } from "./panel/pictures.js";
+import { createSettings } from "./dialogs/settings.js";
+import { createSurveyDialog } from "./dialogs/survey.js";
+import { createBrand, createLanguageSwitch, createTools } from "./bar/top_bar.js";
+import { createStick, noticeTouch } from "./hints/touch.js";
 import { createWords } from "./words.js";
 
 // As judge.js has them, and the one that leaves it to the judge.

@@ -1,1 +1,0 @@
-"""Baking: from a pattern, a weave and a recipe to models, film and pictures."""

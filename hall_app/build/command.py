@@ -1,0 +1,165 @@
+"""`hall build`: simulate what changed, keep what did not, go on where it stopped."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hall_app.content.bakes.store import bake_fault, bake_work, baked_here, data_bake, read_record
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.loading import load
+from hall_app.content.lookup import content_folder, make_data_folder
+
+__all__ = ["add_parser", "run"]
+
+Progress = Callable[[float, str], None]
+
+_EPILOG = """\
+Each garment is baked from its pattern, weave and recipe (exhibit.toml: [garment]) into baked/ beside it: the
+simulated garment, both models, film and pictures of the drape. The room is raised from plan.toml and its light
+computed, into room/. What is up to date is left alone. An interrupted build goes on where it stopped. Films need the
+extra 'bake' (pip install '.[bake]'); without it they are left out.
+
+examples:
+  hall build                      everything that changed, in ./assets
+  hall build --exhibit pibo -f    this one again, changed or not
+  hall build --room               the room alone
+  hall build --media              music, pictures and the foreign model as well"""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare `hall build`."""
+    parser = subparsers.add_parser(
+        "build",
+        help="simulate garments and make the hall's media",
+        description="Bake what changed in a content folder.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)")
+    parser.add_argument("--data", type=Path, default=Path("hall-data"), metavar="FOLDER", help="work folder")
+    parser.add_argument("--exhibit", metavar="ID", help="this exhibit alone")
+    parser.add_argument("--room", action="store_true", help="the room alone")
+    parser.add_argument("-f", "--force", action="store_true", help="bake again what is up to date")
+    parser.add_argument("--no-film", action="store_true", help="leave the film of the drape out")
+    parser.add_argument(
+        "--media", action="store_true", help="make music, pictures and the foreign model again"
+    )
+    parser.add_argument(
+        "--into-data",
+        action="store_true",
+        help="write to --data instead of the content folder (as hall serve does)",
+    )
+    parser.add_argument("--json", action="store_true", help="progress and summary as JSON lines")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Bake; 1 when an exhibit that was asked for cannot be baked."""
+    from hall_app.content.bakes.key import bake_key
+
+    folder = content_folder(arguments.content)
+    if arguments.media:
+        from hall_app.media import make_media
+
+        with _progress(arguments.json, "media") as progress:
+            make_media(folder, progress)
+    content = load(folder)
+    for exhibit in () if arguments.room else _chosen(content, arguments.exhibit):
+        key = bake_key(content, exhibit)
+        target = data_bake(arguments.data, exhibit.id, key) if arguments.into_data else baked_here(exhibit)
+        record = read_record(target)
+        whole = record is not None and record.get("key") == key and bake_fault(target) is None
+        if whole and not arguments.force:
+            _tell(arguments.json, {"exhibit": exhibit.id, "state": "up to date"}, f"{exhibit.id}: up to date")
+            continue
+        summary = _bake(content, exhibit, key, target, arguments)
+        _tell(
+            arguments.json,
+            {"exhibit": exhibit.id, "state": "baked", **summary},
+            f"{exhibit.id}: baked in {summary['seconds']['all']:.0f} s",
+        )
+    if arguments.exhibit is None:
+        _build_room(content, arguments)
+    return 0
+
+
+def _build_room(content: Content, arguments: argparse.Namespace) -> None:
+    """The room, if the plan or what is written in it changed."""
+    from hall_app.room.bake.key import room_key
+    from hall_app.room.bake.store import data_room, room_here, room_record, room_work
+
+    key = room_key(content, arguments.data)
+    target = data_room(arguments.data, key) if arguments.into_data else room_here(content.folder)
+    record = room_record(target)
+    if record is not None and record.get("key") == key and not arguments.force:
+        _tell(arguments.json, {"room": key, "state": "up to date"}, "room: up to date")
+        return
+    from hall_app.room.bake.build import bake_room
+
+    make_data_folder(arguments.data)
+    work = room_work(arguments.data, key)
+    with _progress(arguments.json, "room") as progress:
+        record = bake_room(content, key=key, target=target, work=work, data=arguments.data, progress=progress)
+    size = f"{record['triangles']} triangles, {record['bytes'] / 1e6:.2f} MB"
+    _tell(
+        arguments.json,
+        {"room": key, "state": "baked", **record},
+        f"room: baked in {record['seconds']:.0f} s ({size})",
+    )
+
+
+def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
+    if wanted is None:
+        for problem in content.problems:
+            print(f"left out: {problem}", file=sys.stderr)
+        return [exhibit for exhibit in content.exhibits if exhibit.file.garment is not None]
+    exhibit = content.exhibit(wanted)
+    if exhibit is None:
+        named = [
+            str(problem) for problem in content.problems if problem.file.startswith(f"exhibits/{wanted}/")
+        ]
+        raise ValueError(named[0] if named else f"no exhibit {wanted!r} in {content.folder}")
+    if exhibit.file.garment is None:
+        raise ValueError(f"{exhibit.toml}: has no [garment], nothing to bake")
+    return [exhibit]
+
+
+def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
+    from hall_app.build.garment import bake_garment
+
+    make_data_folder(arguments.data)
+    work = bake_work(arguments.data, exhibit.id, key)
+    with _progress(arguments.json, exhibit.id) as progress:
+        return bake_garment(
+            content, exhibit, key=key, target=target, work=work, progress=progress, film=not arguments.no_film
+        )
+
+
+@contextmanager
+def _progress(as_json: bool, what: str) -> Iterator[Progress]:
+    if as_json:
+        yield lambda fraction, label: print(
+            json.dumps({"fraction": round(fraction, 4), "label": label}), flush=True
+        )
+        return
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+
+    columns = (
+        TextColumn("{task.fields[what]}"),
+        BarColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+    )
+    with Bars(*columns) as bars:
+        task = bars.add_task("…", total=1.0, what=what)
+        yield lambda fraction, label: bars.update(task, completed=fraction, description=label)
+
+
+def _tell(as_json: bool, summary: dict, sentence: str) -> None:
+    print(json.dumps(summary, ensure_ascii=False) if as_json else sentence, flush=True)

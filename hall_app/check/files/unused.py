@@ -1,0 +1,43 @@
+"""Files nobody names: leftovers that only make the folder heavier, or a misspelt name."""
+
+from __future__ import annotations
+
+import posixpath
+
+from hall_app.content.files import BAKED, TEXTS, exhibit_files, walk_files
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.problems import Problem
+from hall_app.content.views.markdown import pictures_in
+
+
+def unused_problems(content: Content) -> list[Problem]:
+    """Files in the exhibits' folders and in media/ that no text and no table refers to."""
+    found = []
+    for exhibit in content.exhibits:
+        if exhibit.toml in {problem.file for problem in content.problems}:
+            continue  # its last good version is shown: what the new one names is not known
+        used = _used(exhibit)
+        for path in walk_files(exhibit.folder):
+            name = path.relative_to(exhibit.folder).as_posix()
+            if name not in used and not (exhibit.file.garment and name.startswith(BAKED)):
+                found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
+    media = content.folder / "media"
+    if media.is_dir():
+        named = set(content.hall.music)
+        for path in walk_files(media):
+            name = path.relative_to(content.folder).as_posix()
+            if name not in named:
+                found.append(_unused(name, "hall.toml"))
+    return found
+
+
+def _used(exhibit: Exhibit) -> set[str]:
+    used = {"exhibit.toml", "LICENCE.txt", *TEXTS.values()}
+    used.update(path for _, path in exhibit_files(exhibit.file))
+    texts = (exhibit.text_zh, exhibit.text_en)
+    used.update(posixpath.normpath(path) for text in texts for path in pictures_in(text))
+    return used
+
+
+def _unused(name: str, table: str) -> Problem:
+    return Problem(name, "", "the file is not used", f"name it in {table}, or remove it")

@@ -1,0 +1,67 @@
+"""Everything that is wrong with a content folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hall_app.check.files.bakes import bake_problems
+from hall_app.check.files.budget import budget_problems
+from hall_app.check.files.mannequins import figure_problems
+from hall_app.check.files.media import media_problems
+from hall_app.check.files.models import scale_problems
+from hall_app.check.files.unused import unused_problems
+from hall_app.check.files.words import word_problems
+from hall_app.check.hall.backdrops import backdrop_problems
+from hall_app.check.hall.fittings import fitting_problems
+from hall_app.check.hall.questionnaires import questionnaire_problems, unstated
+from hall_app.check.hall.reach import reach_problems
+from hall_app.check.hall.room import room_problems
+from hall_app.content.folder import Content
+from hall_app.content.loading import load, load_exhibit_problems
+from hall_app.content.problems import ContentError, Problem
+
+__all__ = ["CHECKS", "check", "hints"]
+
+# What is looked at beyond loading: each function takes the content and returns problems.
+CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
+    word_problems,
+    media_problems,
+    scale_problems,
+    budget_problems,
+    reach_problems,
+    backdrop_problems,
+    bake_problems,
+    figure_problems,
+    questionnaire_problems,
+    fitting_problems,
+    room_problems,
+    unused_problems,
+)
+
+
+def check(folder: Path) -> list[Problem]:
+    """All problems of the content folder, in the order of its files; an empty list for a good one."""
+    try:
+        content = load(folder)
+    except ContentError as error:
+        # Without a floor nothing can be placed on it, but the exhibits' own files can be looked at.
+        return [*error.problems, *load_exhibit_problems(folder)]
+    found = list(content.problems)
+    for look in CHECKS:
+        found += _looked(look, content)
+    return list(dict.fromkeys(found))
+
+
+def hints(folder: Path) -> list[Problem]:
+    """What is not wrong, but should be done before the hall opens to visitors."""
+    return unstated(folder)
+
+
+def _looked(look: Callable[[Content], list[Problem]], content: Content) -> list[Problem]:
+    """What one check finds; a fault that nobody foresaw is a problem of its own, and the other checks go on."""
+    try:
+        return look(content)
+    except Exception as error:
+        what = f"{look.__name__.replace('_', ' ')}: cannot be checked ({' '.join(str(error).split())[:200]})"
+        return [Problem(".", "", what, "undo the last change, and report it with the folder")]

@@ -1,0 +1,96 @@
+"""Where bakes lie: beside the exhibit (made by `hall build`) or in the data folder (made by `hall serve`)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from hall_app.content.bakes.key import KEY_DIGITS, bake_key
+from hall_app.content.bakes.record import Fault, seal_fault
+from hall_app.content.folder import Content, Exhibit
+
+__all__ = [
+    "NEEDED",
+    "RECORD",
+    "bake_fault",
+    "bake_folder",
+    "bake_work",
+    "baked_here",
+    "data_bake",
+    "key_now",
+    "read_record",
+]
+
+RECORD = "bake.json"
+NEEDED = ("garment.npz", "hall.glb", "close.glb")
+
+
+def read_record(folder: Path) -> dict[str, Any] | None:
+    """The bake's record, None where there is no complete bake."""
+    try:
+        record = json.loads((folder / RECORD).read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    if not isinstance(record, dict) or not all((folder / name).is_file() for name in NEEDED):
+        return None
+    return record
+
+
+def bake_fault(folder: Path) -> Fault | None:
+    """(file name, what is wrong with it) of a bake whose files are not those that were baked."""
+    return seal_fault(folder, RECORD, NEEDED)
+
+
+def baked_here(exhibit: Exhibit) -> Path:
+    """The exhibit's own bake folder."""
+    return exhibit.folder / "baked"
+
+
+def data_bake(data: Path, exhibit: str, key: str) -> Path:
+    """The folder in which the server keeps a bake of its own."""
+    return data / "bakes" / f"{exhibit}-{key}"
+
+
+def bake_work(data: Path, exhibit: str, key: str) -> Path:
+    """The folder in which a bake that is under way keeps its state; gone once it has succeeded."""
+    return data / "bake-work" / f"{exhibit}-{key}"
+
+
+def key_now(content: Content, exhibit: Exhibit) -> str | None:
+    """The key of a bake of the exhibit's inputs as they are now, None while one of them cannot be read."""
+    try:
+        return bake_key(content, exhibit)
+    except OSError:  # it went away after the content was read
+        return None
+
+
+def bake_folder(content: Content, exhibit: Exhibit, data: Path | None, *, stale: bool = True) -> Path | None:
+    """The folder of the exhibit's bake: of its present inputs if there is one, else (`stale`) its last one.
+
+    data: the data folder, None to look beside the exhibit alone.
+    """
+    here, key = baked_here(exhibit), key_now(content, exhibit)
+    if key is not None:
+        for folder in (here, data_bake(data, exhibit.id, key)) if data is not None else (here,):
+            record = read_record(folder)
+            if record is not None and record.get("key") == key:
+                return folder
+    if not stale:
+        return None
+    last = [folder for folder in (here, *_own_bakes(exhibit, data)) if read_record(folder) is not None]
+    return max(last, key=_made, default=None)
+
+
+def _own_bakes(exhibit: Exhibit, data: Path | None) -> list[Path]:
+    """What the server has baked for the exhibit, of whatever inputs."""
+    pattern = f"{exhibit.id}-{'[0-9a-f]' * KEY_DIGITS}"
+    return [] if data is None else sorted(data_bake(data, "", "").parent.glob(pattern))
+
+
+def _made(folder: Path) -> int:
+    """When the bake's record, its last file, was written [ns]."""
+    try:
+        return (folder / RECORD).stat().st_mtime_ns
+    except OSError:
+        return 0

@@ -1,0 +1,60 @@
+"""What exhibits do. A new behaviour is one small function here; a curator names it in exhibit.toml."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol, TypeVar
+
+__all__ = ["BEHAVIOURS", "Behaviour", "Stage", "behaviour"]
+
+
+V = TypeVar("V")  # a visitor, whom a behaviour only hands on
+
+
+class Stage(Protocol[V]):
+    """What a behaviour may ask for (`show.Stage` gives it)."""
+
+    def on_click(self, exhibit: str, act: Callable[[V], None]) -> None: ...
+    def on_near(self, exhibit: str, distance: float, act: Callable[[V, bool], None]) -> None: ...
+    def on_open(self, exhibit: str, extra: dict[str, Any]) -> None: ...
+    def notice(self, visitor: V, exhibit: str, on: bool, *, glow: bool) -> None: ...
+    def open(self, visitor: V, exhibit: str) -> None: ...
+
+
+Behaviour = Callable[[Stage[Any], str], None]
+
+BEHAVIOURS: dict[str, Behaviour] = {}
+
+NEAR = 3.0  # [m] from which an exhibit notices its visitor
+
+
+def behaviour(act: Behaviour) -> Behaviour:
+    """Register `act(stage, exhibit_id)` under its own name."""
+    BEHAVIOURS[act.__name__] = act
+    return act
+
+
+@behaviour
+def open_on_click(stage: Stage[Any], exhibit: str) -> None:
+    """A click on the model opens its close-up."""
+    stage.on_click(exhibit, lambda visitor: stage.open(visitor, exhibit))
+
+
+@behaviour
+def glow_when_near(stage: Stage[Any], exhibit: str) -> None:
+    """The model lights up and its caption appears while a visitor stands before it."""
+    stage.on_near(exhibit, NEAR, lambda visitor, on: stage.notice(visitor, exhibit, on, glow=True))
+
+
+@behaviour
+def turn_slowly(stage: Stage[Any], exhibit: str) -> None:
+    """The model turns on its stand while a visitor sees it; each page turns it for itself (page/look/turning.js)."""
+
+
+@behaviour
+def play_clip(stage: Stage[Any], exhibit: str) -> None:
+    """The exhibit's first film starts, muted, above its text when its close-up opens (page/ui/panel/media.js).
+
+    Whoever asked the system for less motion finds it there standing still, to be started by hand.
+    """
+    stage.on_open(exhibit, {"play": True})

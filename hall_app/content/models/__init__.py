@@ -1,0 +1,24 @@
+"""Models and pictures as files: can they be read, how large are they, of what colour?
+
+pictures: any picture; glb: models, their header and numbers; colours: a model's main colour.
+"""
+
+from hall_app.content.models.colours import difference, hex_of, main_colour
+from hall_app.content.models.glb import GlbError, GlbInfo, accessor, open_glb, read_glb
+from hall_app.content.models.pictures import FORMATS, LARGEST, PictureError, picture_fault, picture_size
+
+__all__ = [
+    "FORMATS",
+    "LARGEST",
+    "GlbError",
+    "GlbInfo",
+    "PictureError",
+    "accessor",
+    "difference",
+    "hex_of",
+    "main_colour",
+    "open_glb",
+    "picture_fault",
+    "picture_size",
+    "read_glb",
+]

@@ -1,0 +1,204 @@
+"""Reading a GLB: is it one, is it plain, how much does it hold, which numbers? numpy only, no drawing."""
+
+from __future__ import annotations
+
+import json
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hall_app.content.models.pictures import PictureError, picture_size
+
+# The page has no decoder for these: it would look for one on the network, and the hall works without.
+REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
+MAGIC, JSON_CHUNK = 0x46546C67, 0x4E4F534A
+TRIANGLES, STRIP, FAN = 4, 5, 6
+MOST = 2**32  # values one accessor can hold: their indices have 32 bits
+_COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+_WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+Corner = tuple[float, float, float]
+
+
+class GlbError(ValueError):
+    """The file is no readable, plain GLB; `fix` says what to do."""
+
+    def __init__(self, what: str, fix: str) -> None:
+        super().__init__(what)
+        self.fix = fix
+
+
+@dataclass(frozen=True)
+class GlbInfo:
+    """What a GLB holds.
+
+    size: bytes; triangles: as drawn; textures: (width, height) [pixels] of each image; low, high: lowest and
+    highest corner [m] of the whole model with its nodes' transforms.
+    """
+
+    size: int
+    triangles: int
+    textures: tuple[tuple[int, int], ...]
+    extensions: tuple[str, ...]
+    low: Corner
+    high: Corner
+
+
+def read_glb(path: Path) -> GlbInfo:
+    """Read header and JSON of the GLB at `path`. Raises GlbError naming the fault, OSError if unreadable."""
+    data = path.read_bytes()
+    document, binary = _chunks(data)
+    try:
+        extensions = _plain_extensions(document)
+        _no_outside_files(document)
+        triangles = _triangles(document)
+        with np.errstate(all="ignore"):  # what is not finite is refused by name
+            low, high = _bounds(document)
+        return GlbInfo(len(data), triangles, _textures(document, binary), extensions, low, high)
+    except GlbError:
+        raise
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
+        raise GlbError(
+            f"its glTF part is inconsistent ({_short(error)})", "export the model again"
+        ) from error
+
+
+def _short(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}"[:120]
+
+
+def _plain_extensions(document: dict[str, Any]) -> tuple[str, ...]:
+    """All extensions named; refuses those the page cannot draw."""
+    extensions = (*document.get("extensionsUsed", ()), *document.get("extensionsRequired", ()))
+    refused = sorted(set(extensions) & set(REFUSED))
+    if refused:
+        raise GlbError(
+            f"uses {', '.join(refused)}, which the hall cannot draw offline",
+            "export it again without compression",
+        )
+    return tuple(dict.fromkeys(extensions))
+
+
+def open_glb(path: Path) -> tuple[dict[str, Any], bytes]:
+    """The glTF document and the binary blob of the GLB at `path`. Raises GlbError if it is none."""
+    return _chunks(path.read_bytes())
+
+
+def accessor(document: dict[str, Any], binary: bytes, number: int) -> NDArray[np.float64]:
+    """(N, width) an accessor's numbers; fractions where they are normalised. Raises what a broken file brings about."""
+    entry = document["accessors"][number]
+    view = document["bufferViews"][entry["bufferView"]]
+    kind, width = np.dtype(_COMPONENTS[entry["componentType"]]), _WIDTH[entry["type"]]
+    start = view.get("byteOffset", 0) + entry.get("byteOffset", 0)
+    stride = view.get("byteStride", width * kind.itemsize)
+    rows = np.ndarray((entry["count"], width), kind, binary, start, (stride, kind.itemsize))
+    values = rows.astype(float)
+    return values / np.iinfo(kind).max if entry.get("normalized") else values
+
+
+def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
+    broken = "the GLB is broken or cut off"
+    if len(data) < 20 or struct.unpack_from("<I", data)[0] != MAGIC:
+        raise GlbError("not a GLB file", "export the model as binary glTF 2.0 (.glb)")
+    _, version, length = struct.unpack_from("<III", data)
+    if version != 2 or length > len(data):
+        raise GlbError(
+            f"{broken}: {len(data)} bytes of {length}, version {version}", "copy or export it again"
+        )
+    size, kind = struct.unpack_from("<II", data, 12)
+    if kind != JSON_CHUNK or 20 + size > len(data):
+        raise GlbError(f"{broken}: no JSON part", "export the model again")
+    try:
+        document = json.loads(data[20 : 20 + size])
+    except (ValueError, RecursionError) as error:
+        raise GlbError(f"{broken}: its JSON part cannot be read", "export the model again") from error
+    if not isinstance(document, dict):
+        raise GlbError(f"{broken}: its JSON part is no object", "export the model again")
+    return document, data[20 + size + 8 :]
+
+
+def _no_outside_files(document: dict[str, Any]) -> None:
+    for entry in [*document.get("buffers", ()), *document.get("images", ())]:
+        if not entry.get("uri", "data:").startswith("data:"):
+            raise GlbError(f"refers to another file {entry['uri']!r}", "export with everything embedded")
+
+
+def _triangles(document: dict[str, Any]) -> int:
+    """Triangles drawn, each mesh counted as often as nodes show it."""
+    per_mesh = [sum(_drawn(document, p) for p in mesh["primitives"]) for mesh in document.get("meshes", ())]
+    shown = [node["mesh"] for node in document.get("nodes", ()) if "mesh" in node]
+    if not shown or not sum(per_mesh):
+        raise GlbError("holds no triangles", "export the model with its meshes")
+    return sum(per_mesh[mesh] for mesh in shown)
+
+
+def _drawn(document: dict[str, Any], primitive: dict[str, Any]) -> int:
+    index = primitive.get("indices", primitive["attributes"]["POSITION"])
+    count = document["accessors"][index]["count"]
+    if not 0 <= count <= MOST:
+        raise ValueError("an accessor's count is out of range")
+    mode = primitive.get("mode", TRIANGLES)
+    return count // 3 if mode == TRIANGLES else max(0, count - 2) if mode in (STRIP, FAN) else 0
+
+
+def _bounds(document: dict[str, Any]) -> tuple[Corner, Corner]:
+    """Box round all shown meshes: the corners of each accessor's box, moved by the nodes above it."""
+    nodes = document["nodes"]
+    scene = document.get("scenes", [{}])[document.get("scene", 0)]
+    children = {child for node in nodes for child in node.get("children", ())}
+    roots = scene.get("nodes", [index for index in range(len(nodes)) if index not in children])
+    corners: list[np.ndarray] = []
+    todo, met = [(index, np.eye(4)) for index in roots], set()
+    while todo:
+        index, above = todo.pop()
+        if index in met:
+            raise GlbError(f"node {index} has two parents or is in a loop", "export the model again")
+        met.add(index)
+        matrix = above @ _matrix(nodes[index])
+        todo += [(child, matrix) for child in nodes[index].get("children", ())]
+        if "mesh" in nodes[index]:
+            for primitive in document["meshes"][nodes[index]["mesh"]]["primitives"]:
+                accessor = document["accessors"][primitive["attributes"]["POSITION"]]
+                (x0, y0, z0), (x1, y1, z1) = accessor["min"], accessor["max"]
+                box = np.array(np.meshgrid((x0, x1), (y0, y1), (z0, z1)), dtype=float)
+                corners.append(box.reshape(3, -1).T @ matrix[:3, :3].T + matrix[:3, 3])
+    points = np.concatenate(corners)
+    if not np.isfinite(points).all():
+        raise GlbError("has no finite size", "export the model again")
+    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _matrix(node: dict[str, Any]) -> np.ndarray:
+    """A node's own transform (4, 4): its matrix, or translation, rotation [x, y, z, w] and scale."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=float).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
+    turn = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1.0, 1.0, 1.0)))
+    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    return matrix
+
+
+def _textures(document: dict[str, Any], binary: bytes) -> tuple[tuple[int, int], ...]:
+    sizes = []
+    for image in document.get("images", ()):
+        if "bufferView" not in image:
+            continue
+        view = document["bufferViews"][image["bufferView"]]
+        start = view.get("byteOffset", 0)
+        try:
+            sizes.append(picture_size(binary[start : start + view["byteLength"]]))
+        except PictureError as error:
+            raise GlbError(
+                f"one of its textures cannot be read: {error}", "embed textures as PNG or JPEG"
+            ) from error
+    return tuple(sizes)

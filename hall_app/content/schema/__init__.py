@@ -1,0 +1,50 @@
+"""The schemas of a content folder: hall.toml, plan.toml, exhibit.toml.
+
+values: what their tables share; hall, plan, exhibit: one file each; complaints: pydantic's words as a curator's.
+"""
+
+from hall_app.content.schema.complaints import key_name, schema_problems, table_of, toml_problem
+from hall_app.content.schema.exhibit import Body, ExhibitFile, GarmentRecipe, Media, Models, Place, Record
+from hall_app.content.schema.hall import Eye, HallFile, Start
+from hall_app.content.schema.plan import (
+    Bay,
+    Curtain,
+    Lantern,
+    Laylight,
+    Opening,
+    PlanFile,
+    Round,
+    Sign,
+    Solid,
+    Wall,
+)
+from hall_app.content.schema.values import Bilingual, Table
+
+__all__ = [
+    "Bay",
+    "Bilingual",
+    "Body",
+    "Curtain",
+    "ExhibitFile",
+    "Eye",
+    "GarmentRecipe",
+    "HallFile",
+    "Lantern",
+    "Laylight",
+    "Media",
+    "Models",
+    "Opening",
+    "Place",
+    "PlanFile",
+    "Record",
+    "Round",
+    "Sign",
+    "Solid",
+    "Start",
+    "Table",
+    "Wall",
+    "key_name",
+    "schema_problems",
+    "table_of",
+    "toml_problem",
+]

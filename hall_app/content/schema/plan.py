@@ -1,0 +1,138 @@
+"""Schema of plan.toml: floor outline, walls, openings, solids and bays; polygons are [x, z] in metres."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from hall_app.content.schema.values import Bilingual, Metres, Point, Ring, Table, Text
+
+
+class Wall(Table):
+    """A straight wall."""
+
+    start: Point = Field(alias="from", description="one end of the wall's middle line, [x, z]")
+    end: Point = Field(alias="to", description="the other end, [x, z]")
+    thickness: Metres = Field(0.2, description="thickness [m]")
+    height: Metres = Field(4.3, description="height [m]")
+    kind: Literal["wall", "lattice"] = Field(
+        "wall", description="plastered wall or wooden lattice; both stop a visitor"
+    )
+
+    @model_validator(mode="after")
+    def _has_length(self) -> Wall:
+        if self.start == self.end:
+            raise PydanticCustomError("zero_length", "the wall begins and ends at the same point")
+        return self
+
+
+class Opening(Table):
+    """A door or window drawn in a wall; it does not change where one can walk."""
+
+    kind: Literal["door", "window"] = Field(description="door or window")
+    start: Point = Field(alias="from", description="one end on the wall's middle line, [x, z]")
+    end: Point = Field(alias="to", description="the other end, [x, z]")
+    sill: float = Field(0.0, ge=0, le=5, description="height of its lower edge [m]")
+    height: Metres = Field(2.4, description="height of the opening itself [m]")
+
+
+class Round(Table):
+    """A round footprint."""
+
+    x: float = Field(description="centre [m]")
+    z: float = Field(description="centre [m]")
+    radius: Metres = Field(description="radius [m]")
+
+
+class Solid(Table):
+    """Something that stands on the floor and stops a visitor. Exactly one footprint is given."""
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")] = Field(
+        description="short name, a-z, 0-9 and -; an exhibit's place.on refers to it"
+    )
+    kind: Literal["booth", "dais", "step", "bench", "stand", "column", "rope"] = Field(
+        description="booth, dais, step, bench, stand, column, or a rope between two posts"
+    )
+    height: Metres = Field(description="height [m]")
+    polygon: Ring | None = Field(None, description="footprint as corner points [[x, z], …]")
+    size: tuple[Metres, Metres] | None = Field(
+        None, description="footprint as a rectangle [width, depth]; needs at"
+    )
+    at: Point | None = Field(None, description="middle of the rectangle, [x, z]")
+    facing: float = Field(0.0, description="degrees its front is turned; 0 looks to +z")
+    round: Round | None = Field(None, description="round footprint {x, z, radius}")
+    backdrop: Literal["none", "pale", "dark"] = Field(
+        "none",
+        description="cloth at the back of a booth or dais: pale behind dark dress, dark behind pale dress",
+    )
+    label: Bilingual | None = Field(None, description="name of the thing, both languages")
+
+    @model_validator(mode="after")
+    def _one_footprint(self) -> Solid:
+        given = [self.polygon is not None, self.size is not None, self.round is not None]
+        if sum(given) != 1 or (self.size is not None) != (self.at is not None):
+            raise PydanticCustomError("one_footprint", "needs exactly one of: polygon, size with at, round")
+        return self
+
+
+class Bay(Table):
+    """A named part of the hall."""
+
+    id: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$")] = Field(
+        description="short name, a-z, 0-9 and -"
+    )
+    name: Bilingual = Field(description="name shown on the minimap")
+    polygon: Ring = Field(description="its floor, [[x, z], …]")
+    height: Metres | None = Field(
+        None, description="height of its ceiling [m]; without it nave_height over the bay nave, else height"
+    )
+
+
+class Laylight(Table):
+    """A paper ceiling with light above it."""
+
+    at: Point = Field(description="its middle, [x, z]")
+    size: tuple[Metres, Metres] = Field(description="width along x and depth along z [m]")
+
+
+class Lantern(Table):
+    """A paper lantern that hangs from the ceiling."""
+
+    at: Point = Field(description="below which it hangs, [x, z]")
+    height: Annotated[float, Field(ge=2.5, le=20)] = Field(3.1, description="height of its middle [m]")
+
+
+class Curtain(Table):
+    """A pair of curtains tied back to both ends of an opening."""
+
+    start: Point = Field(alias="from", description="one end, the middle of a column, [x, z]")
+    end: Point = Field(alias="to", description="the other end, [x, z]")
+
+
+class Sign(Table):
+    """A hanging board: the plaque with the hall's title, or a banner of calligraphy."""
+
+    kind: Literal["plaque", "banner"] = Field(description="plaque or banner")
+    at: Point = Field(description="the wall's face it hangs on, [x, z]")
+    facing: float = Field(0.0, description="degrees its front is turned; 0 looks to +z")
+    height: Annotated[float, Field(ge=2.0, le=20)] = Field(description="height of its middle [m]")
+    size: tuple[Metres, Metres] = Field(description="width and height [m]")
+    text: Text | None = Field(None, description="what it says; without it the hall's title")
+
+
+class PlanFile(Table):
+    """plan.toml."""
+
+    outline: Ring = Field(description="the floor a visitor may stand on, [[x, z], …], not crossing itself")
+    height: Metres = Field(4.3, description="height of the side rooms [m]")
+    nave_height: Metres = Field(5.4, description="height of the middle aisle [m]")
+    wall: tuple[Wall, ...] = Field((), description="walls, one [[wall]] each")
+    opening: tuple[Opening, ...] = Field((), description="doors and windows, one [[opening]] each")
+    solid: tuple[Solid, ...] = Field((), description="booths, benches, stands, columns, one [[solid]] each")
+    bay: tuple[Bay, ...] = Field((), description="named parts of the hall, one [[bay]] each")
+    laylight: tuple[Laylight, ...] = Field((), description="paper ceilings, one [[laylight]] each")
+    lantern: tuple[Lantern, ...] = Field((), description="lanterns, one [[lantern]] each")
+    curtain: tuple[Curtain, ...] = Field((), description="curtains, one [[curtain]] each")
+    sign: tuple[Sign, ...] = Field((), description="plaque and banners, one [[sign]] each")

@@ -1,0 +1,86 @@
+// Picture quality: resolution, sharpness of slanted textures, reflections. The visitor's choice, or the judge's.
+
+import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/viser_adapter.js";
+import { judge, LEVELS, newJudgement } from "./judge.js";
+import { layLight, plainTones, reflect, sharpen } from "./light.js";
+import { shadeBySight } from "./sides.js";
+
+export const CHOICES = ["auto", ...LEVELS];
+const { recall, remember } = window.HALL.memory;
+const CHOSEN = "hall.quality", FOUND = "hall.quality.found";
+
+// A software renderer pays for every pixel; no use in finding that out by trial.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+const SETTINGS = {
+  low: { anisotropy: 1, blend: false, reflections: false },
+  medium: { anisotropy: 4, blend: true, reflections: false },
+  high: { anisotropy: 8, blend: true, reflections: true },
+};
+
+/** Pixels drawn per CSS pixel, of a screen with `ratio` of them. */
+export function resolution(level, ratio) {
+  const high = Math.min(ratio, 2);
+  const medium = Math.min(high, Math.max(1, 0.75 * high));
+  return { low: Math.min(medium, Math.max(0.66, 0.5 * high)), medium, high }[level];
+}
+
+function softwareDraws() {
+  const context = renderer()?.getContext();
+  const names = context?.getExtension("WEBGL_debug_renderer_info");
+  return Boolean(names) && SOFTWARE.test(String(context.getParameter(names.UNMASKED_RENDERER_WEBGL)));
+}
+
+/** createQuality(onChange) -> {choice, level, choose, frame, dress}; onChange() when choice or level is another. */
+export function createQuality(onChange = () => {}) {
+  let choice = CHOICES.includes(recall(CHOSEN)) ? recall(CHOSEN) : "auto";
+  const found = LEVELS.includes(recall(FOUND)) ? recall(FOUND) : null;
+  const first = found ?? (softwareDraws() ? "low" : "medium");
+  let judgement = newJudgement(first, { now: performance.now(), cautious: Boolean(found) });
+  let last = null, drawn = framesDrawn(), running = false;
+  const level = () => (choice === "auto" ? judgement.level : choice);
+
+  /** Time between two pictures that followed each other without a rest. */
+  function watch(now) {
+    const count = framesDrawn(), drew = count !== drawn;
+    drawn = count;
+    if (drew && running && last !== null && choice === "auto") {
+      const before = judgement.level;
+      judge(judgement, now - last, now);
+      if (judgement.level !== before) {
+        remember(FOUND, judgement.level);
+        onChange();
+      }
+    }
+    running = drew;
+    last = now;
+  }
+
+  return {
+    get choice() { return choice; },
+    get level() { return level(); },
+    choose(next) {
+      if (!CHOICES.includes(next)) return;
+      choice = next;
+      remember(CHOSEN, next);
+      onChange();
+    },
+    /** Ahead of every picture: viser's client and a changed content bring new meshes and put old settings back. */
+    frame(now) {
+      watch(now);
+      const { anisotropy, blend, reflections } = SETTINGS[level()];
+      const room = meshesOf("/room");
+      plainTones();
+      layLight(room);
+      reflect(reflections);
+      sharpen(room, anisotropy, blend);
+      for (const name of nodeNames()) {
+        if (!name.startsWith("/exhibits/") && name !== "/closeup") continue;
+        const meshes = meshesOf(name);
+        sharpen(meshes, anisotropy, blend);
+        shadeBySight(meshes);
+      }
+      drawAt(resolution(level(), window.devicePixelRatio));
+    },
+  };
+}

@@ -1,0 +1,106 @@
+"""What the exhibits are drawn with: read from the content's files and from bakes, beside the event loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from hall_app.content.bakes.models import ExhibitModels, models_of
+from hall_app.content.bakes.store import key_now
+from hall_app.content.files import is_there
+from hall_app.content.floor.footprints import foot_height
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.models.glb import GlbError, read_glb
+from hall_app.content.problems import Problem
+from hall_app.show.scene import Figure
+
+__all__ = ["Drawn", "drawn_exhibits"]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """figures: of the exhibits that stand in the hall; models: exhibit -> its files; keys: exhibit with a garment ->
+    key of the bake of its present inputs; unreadable: models that cannot be read."""
+
+    figures: tuple[Figure, ...]
+    models: dict[str, ExhibitModels]
+    keys: dict[str, str | None]
+    unreadable: tuple[Problem, ...]
+
+
+def drawn_exhibits(
+    content: Content,
+    data: Path,
+    last: Mapping[str, ExhibitModels] | None = None,
+    shown: Mapping[str, Figure] | None = None,
+) -> Drawn:
+    """Read what the content's exhibits are drawn with now. Opens and hashes files: tens of milliseconds.
+
+    last, shown: what stood in the hall until now. A garment whose inputs changed keeps its last models until it is
+    baked; an exhibit whose models are missing or cannot be read keeps the figure it had, or is left out.
+    """
+    figures: list[Figure] = []
+    models: dict[str, ExhibitModels] = {}
+    problems: list[Problem] = []
+    for exhibit in content.exhibits:
+        former, figure = (last or {}).get(exhibit.id), (shown or {}).get(exhibit.id)
+        if former is not None and figure is not None and _own_model_missing(exhibit):
+            found = former  # the content's own problems name the file
+        elif (found := _models(content, exhibit, data, former)) is None:
+            continue
+        else:
+            try:
+                figure = _figure(content, exhibit, found)
+            except (GlbError, OSError) as error:
+                fix = error.fix if isinstance(error, GlbError) else "check the file"
+                what = f"{found.close.name}, {found.hall.name}: {error}"
+                problems.append(Problem(exhibit.toml, "models", what, fix))
+        if figure is not None:
+            models[exhibit.id] = found
+            figures.append(figure)
+    keys = {e.id: key_now(content, e) for e in content.exhibits if e.file.garment is not None}
+    return Drawn(tuple(figures), models, keys, tuple(problems))
+
+
+def _own_model_missing(exhibit: Exhibit) -> bool:
+    """Whether a ready-made model that is named is not there: deleted, renamed, or being copied."""
+    named = exhibit.file.models
+    files = () if named is None else (named.hall, named.close or named.hall)
+    return any(not is_there(exhibit.folder / file) for file in files)
+
+
+def _models(
+    content: Content, exhibit: Exhibit, data: Path, last: ExhibitModels | None
+) -> ExhibitModels | None:
+    """What to draw it with: the bake of its present inputs, else what is shown, else the last bake there is."""
+    fresh = models_of(content, exhibit, data, stale=False)
+    if fresh is not None:
+        return fresh
+    if last is not None and last.baked is not None and exhibit.file.garment is not None and last.whole():
+        return last
+    return models_of(content, exhibit, data)
+
+
+def _held(model: Path) -> Callable[[], bytes]:
+    """Its bytes as they are now: a curator may write a ready-made file in its place, nobody writes into a bake."""
+    data = model.read_bytes()
+    return lambda: data
+
+
+def _figure(content: Content, exhibit: Exhibit, models: ExhibitModels) -> Figure:
+    place = exhibit.file.place
+    read_glb(models.hall)  # a browser would only show a hole
+    low, high = models.bounds()
+    return Figure(
+        id=exhibit.id,
+        hall=models.hall.read_bytes(),
+        close=models.close.read_bytes if models.baked is not None else _held(models.close),
+        x=place.x,
+        y=foot_height(content.plan, exhibit.file),
+        z=place.z,
+        facing=place.facing,
+        centre=(low[1] + high[1]) / 2,
+        radius=0.5 * math.dist(low, high),
+    )

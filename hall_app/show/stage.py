@@ -1,0 +1,112 @@
+"""The stage behaviours act on: who is near what, what is clicked."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from hall_app.content.behaviours import BEHAVIOURS
+from hall_app.visit.visitors import Visitor, Visitors
+
+__all__ = ["Actor", "Figures", "Stage"]
+
+FORGET = 1.15  # leave at this multiple of the near distance: no flicker on the edge
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """An exhibit as the stage knows it: where it stands [m] and what it does."""
+
+    id: str
+    x: float
+    z: float
+    behaviours: tuple[str, ...]
+
+
+class Figures(Protocol):
+    """The drawn side: what a behaviour may name or open."""
+
+    def node(self, exhibit: str) -> str: ...
+    def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]: ...
+    def hide_closeup(self, visitor: Visitor) -> None: ...
+
+
+@dataclass
+class Stage:
+    """Binds behaviours to exhibits and plays them. Not thread-safe: lives on the server's event loop."""
+
+    figures: Figures
+    visitors: Visitors
+    actors: dict[str, Actor] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._clear()
+
+    def _clear(self) -> None:
+        self._clicks: dict[str, list[Callable[[Visitor], None]]] = defaultdict(list)
+        self._near: dict[str, list[tuple[float, Callable[[Visitor, bool], None]]]] = defaultdict(list)
+        self._opening: dict[str, dict[str, Any]] = defaultdict(dict)
+
+    def play(self, actors: tuple[Actor, ...]) -> None:
+        """Take these exhibits on stage in place of the former ones."""
+        for visitor in self.visitors:
+            for exhibit, index in tuple(visitor.near):
+                self._near[exhibit][index][1](visitor, False)
+            visitor.near.clear()
+        self._clear()
+        self.actors = {actor.id: actor for actor in actors}
+        for actor in actors:
+            for name in actor.behaviours:
+                BEHAVIOURS[name](self, actor.id)
+        for visitor in self.visitors:
+            self.stood_at(visitor, visitor.walk.pose.x, visitor.walk.pose.z)
+
+    # What a behaviour asks for.
+
+    def on_click(self, exhibit: str, act: Callable[[Visitor], None]) -> None:
+        self._clicks[exhibit].append(act)
+
+    def on_near(self, exhibit: str, distance: float, act: Callable[[Visitor, bool], None]) -> None:
+        self._near[exhibit].append((distance, act))
+
+    def on_open(self, exhibit: str, extra: dict[str, Any]) -> None:
+        self._opening[exhibit].update(extra)
+
+    def notice(self, visitor: Visitor, exhibit: str, on: bool, *, glow: bool) -> None:
+        node = self.figures.node(exhibit)
+        visitor.say({"t": "near", "id": exhibit, "on": on, "glow": glow, "caption": True, "node": node})
+
+    def open(self, visitor: Visitor, exhibit: str) -> None:
+        """Show `exhibit` from close by; the walking pose stays where it is."""
+        if exhibit not in self.actors or visitor.opened == exhibit:  # megabytes are sent once
+            return
+        studio = self.figures.show_closeup(visitor, exhibit)
+        visitor.opened = exhibit
+        visitor.say({"t": "open", "id": exhibit, **studio, **self._opening[exhibit]})
+
+    def close(self, visitor: Visitor) -> None:
+        self.figures.hide_closeup(visitor)
+        visitor.opened = None
+        visitor.say({"t": "closed"})
+
+    # What happens to it.
+
+    def clicked(self, visitor: Visitor, exhibit: str) -> None:
+        for act in self._clicks.get(exhibit, ()):
+            act(visitor)
+
+    def stood_at(self, visitor: Visitor, x: float, z: float) -> None:
+        """A visitor now stands at (x, z) [m]."""
+        for exhibit, reactions in self._near.items():
+            actor = self.actors[exhibit]
+            away = math.hypot(actor.x - x, actor.z - z)
+            for index, (distance, act) in enumerate(reactions):
+                key = (exhibit, index)
+                inside = away <= distance * (FORGET if key in visitor.near else 1.0)
+                if inside == (key in visitor.near):
+                    continue
+                (visitor.near.add if inside else visitor.near.discard)(key)
+                act(visitor, inside)
