@@ -6,7 +6,7 @@ import argparse
 import socket
 from typing import TYPE_CHECKING
 
-from survey.commands.options import add_proxy
+from survey.commands import add_proxy
 
 from .places import MOST_VISITORS
 from .server.addresses import Addresses

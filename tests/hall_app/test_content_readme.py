@@ -13,8 +13,8 @@ from pydantic import BaseModel
 from hall_app.behaviours import BEHAVIOURS
 from hall_app.content.complaints import table_of
 from hall_app.content.models import Bilingual, ExhibitFile, HallFile, PlanFile
-from survey.questionnaire.definition import Text
-from survey.web.privacy.controller import Controller
+from survey.questionnaire import Text
+from survey.web.privacy import Controller
 
 ASSETS = Path(__file__).parents[2] / "assets"
 README = (ASSETS / "README.md").read_text("utf-8")
