@@ -11,13 +11,17 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from survey.analysis import Analysis, analyse
     from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError, SurveyError
-    from survey.questionnaire.answer import Answer
-    from survey.questionnaire.definition import Questionnaire
-    from survey.questionnaire.files import QuestionnaireFolder, content_folder, read_questionnaire
+    from survey.questionnaire import (
+        Answer,
+        Questionnaire,
+        QuestionnaireFolder,
+        content_folder,
+        read_questionnaire,
+    )
     from survey.store import Receipt, Store
+    from survey.web import Mounted, mount
     from survey.web.api import router
     from survey.web.form import Clip, form_router
-    from survey.web.mounting import Mounted, mount
 
 __all__ = [
     "Analysis",
@@ -44,11 +48,11 @@ __all__ = [
 _HOME = {
     "Analysis": "survey.analysis",
     "analyse": "survey.analysis",
-    "Answer": "survey.questionnaire.answer",
+    "Answer": "survey.questionnaire",
     "router": "survey.web.api",
-    "QuestionnaireFolder": "survey.questionnaire.files",
-    "content_folder": "survey.questionnaire.files",
-    "read_questionnaire": "survey.questionnaire.files",
+    "QuestionnaireFolder": "survey.questionnaire",
+    "content_folder": "survey.questionnaire",
+    "read_questionnaire": "survey.questionnaire",
     "AnswerError": "survey.errors",
     "Problem": "survey.errors",
     "QuestionnaireError": "survey.errors",
@@ -56,9 +60,9 @@ _HOME = {
     "SurveyError": "survey.errors",
     "Clip": "survey.web.form",
     "form_router": "survey.web.form",
-    "Mounted": "survey.web.mounting",
-    "mount": "survey.web.mounting",
-    "Questionnaire": "survey.questionnaire.definition",
+    "Mounted": "survey.web",
+    "mount": "survey.web",
+    "Questionnaire": "survey.questionnaire",
     "Receipt": "survey.store",
     "Store": "survey.store",
 }

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 # All that costs time to import is imported where it is needed, after the process has made way for others.
 if TYPE_CHECKING:
-    from survey.export.sheet import Sheet
-    from survey.questionnaire.definition import Questionnaire
-    from survey.store.answers.archive import Archive
+    from survey.export import Sheet
+    from survey.questionnaire import Questionnaire
+    from survey.store.answers import Archive
 
 __all__ = ["HEADER", "NICE", "main"]
 
@@ -61,8 +61,8 @@ def _end_with_input(folder: Path) -> None:
 
 def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
     """Write what is asked for; what its response's header says of it. Raises AnswerError, StoreError."""
-    from survey.questionnaire.definition import Questionnaire
-    from survey.store.answers.archive import Archive
+    from survey.questionnaire import Questionnaire
+    from survey.store.answers import Archive
 
     archive = Archive(Path(job["data"]) if "data" in job else job["db"])
     asked, task = Questionnaire.model_validate(job["questionnaire"]), job["task"]
@@ -71,8 +71,7 @@ def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
         out.write(json.dumps(found, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode())
         return {}
     from survey.errors import AnswerError
-    from survey.export.anonymity import TooFew
-    from survey.export.sheet import stored_sheet
+    from survey.export import TooFew, stored_sheet
 
     try:
         with archive.snapshot() as connection:
@@ -85,8 +84,7 @@ def _done(job: dict[str, Any], out: BinaryIO, folder: Path) -> dict[str, str]:
 
 
 def _put(task: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
-    from survey.export import put
-    from survey.export.json_file import put_rows, put_suggestions
+    from survey.export import put, put_rows, put_suggestions
 
     if task in ("rows", "suggestions"):
         (put_rows if task == "rows" else put_suggestions)(sheet, out)
@@ -95,12 +93,10 @@ def _put(task: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
 
 
 def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) -> dict[str, Any]:
-    from survey.analysis import analyse
-    from survey.analysis.errors import AnalysisError
-    from survey.analysis.procedure.json_summary import summary
-    from survey.analysis.procedure.pipeline import Settings
+    from survey.analysis import AnalysisError, analyse
+    from survey.analysis.procedure import Settings, summary
     from survey.errors import AnswerError
-    from survey.scores.sources import dropped, reverse_keyed, stated_groups, stored_scores
+    from survey.scores import dropped, reverse_keyed, stated_groups, stored_scores
 
     table = stored_scores(whole, archive, texts=False)
     factors = wanted["factors"]

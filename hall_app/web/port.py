@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hall_app.visit.places import MOST_VISITORS
 from hall_app.web.limits.addresses import Addresses
-from survey.commands.options import add_proxy
+from survey.commands import add_proxy
 
 if TYPE_CHECKING:
     import uvicorn

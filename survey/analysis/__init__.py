@@ -1,52 +1,65 @@
-"""The statistics of a questionnaire: arrays in, arrays out. README.md holds the formulas and their sources."""
+"""The statistics of a questionnaire: arrays in, arrays out. survey/README.md holds the formulas and their sources.
 
-from survey.analysis.components.extraction import Components, principal_components
-from survey.analysis.components.oblique_rotation import oblimin
-from survey.analysis.components.orthogonal_rotation import varimax
-from survey.analysis.components.resampling import Bootstrap, bootstrap
-from survey.analysis.components.retention import Average, Parallel, minimum_average_partial, parallel_analysis
-from survey.analysis.components.sampling_adequacy import (
+From below: `errors` and `checks`, `correlation`, `screening` of the answers, internal `consistency`, `components`, and
+the paper's `procedure`, which `analyse` runs. Beside it stand `confirmatory` factor analysis, `comparison` of two
+groups, `planning` of a study and the `granularity` of printed means; the first three are imported by who wants them.
+"""
+
+from survey.analysis.components import (
     Adequacy,
+    Average,
     Bartlett,
+    Bootstrap,
+    Components,
+    Parallel,
     adequacy,
     adequacy_by_factor_analyzer,
     adequacy_of,
+    bootstrap,
+    minimum_average_partial,
+    oblimin,
+    parallel_analysis,
+    principal_components,
+    varimax,
 )
-from survey.analysis.consistency.cronbach import Reliability, reliability, reliability_of
-from survey.analysis.consistency.mcdonald import Omega, omega_of
-from survey.analysis.correlation.ordinal import polychoric
-from survey.analysis.correlation.pearson import Correlation, correlate, correlate_pairwise, stars
+from survey.analysis.consistency import Omega, Reliability, omega_of, reliability, reliability_of
+from survey.analysis.correlation import Correlation, correlate, correlate_pairwise, polychoric, stars
 from survey.analysis.errors import (
     AllEqual,
     AnalysisError,
+    BadModel,
     ConstantItem,
     CrossCheckFailed,
     DependentItems,
     GapsLeft,
+    GroupTooSmall,
     LoneItem,
     NoComponents,
     NotAMean,
     NotConverged,
     NotFinite,
+    NotIdentified,
     NotPositiveDefinite,
+    OutOfReach,
     TooFewItems,
     TooFewRows,
     TooManyScores,
+    UnknownGroup,
     UnknownItem,
     WrongShape,
 )
 from survey.analysis.granularity import grim, least_n
-from survey.analysis.procedure.json_summary import summary
-from survey.analysis.procedure.pipeline import Analysis, Settings, analyse
-from survey.analysis.procedure.scales import Group, Scale
-from survey.analysis.screening.careless import duplicates, hasty, straight_liners
+from survey.analysis.procedure import KEYS, Analysis, Group, Scale, Settings, analyse, descriptives, summary
+from survey.analysis.screening import duplicates, hasty, straight_liners
 
 __all__ = [
+    "KEYS",
     "Adequacy",
     "AllEqual",
     "Analysis",
     "AnalysisError",
     "Average",
+    "BadModel",
     "Bartlett",
     "Bootstrap",
     "Components",
@@ -56,13 +69,16 @@ __all__ = [
     "DependentItems",
     "GapsLeft",
     "Group",
+    "GroupTooSmall",
     "LoneItem",
     "NoComponents",
     "NotAMean",
     "NotConverged",
     "NotFinite",
+    "NotIdentified",
     "NotPositiveDefinite",
     "Omega",
+    "OutOfReach",
     "Parallel",
     "Reliability",
     "Scale",
@@ -70,6 +86,7 @@ __all__ = [
     "TooFewItems",
     "TooFewRows",
     "TooManyScores",
+    "UnknownGroup",
     "UnknownItem",
     "WrongShape",
     "adequacy",
@@ -79,6 +96,7 @@ __all__ = [
     "bootstrap",
     "correlate",
     "correlate_pairwise",
+    "descriptives",
     "duplicates",
     "grim",
     "hasty",

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from survey.commands.options import add_content, add_store, declare, existing_store
-from survey.questionnaire.definition import LANGUAGES
+from survey.questionnaire import LANGUAGES
 
 __all__ = ["add"]
 
@@ -44,9 +44,8 @@ def add(commands) -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     from survey.errors import SurveyError
-    from survey.questionnaire.files import QuestionnaireFolder, content_folder
-    from survey.web.privacy.page import privacy_page
-    from survey.web.privacy.record import Running, record_of
+    from survey.questionnaire import QuestionnaireFolder, content_folder
+    from survey.web.privacy import Running, privacy_page, record_of
 
     content = content_folder(args.content)
     with closing(existing_store(args)) as store:

@@ -6,7 +6,7 @@ import argparse
 import sys
 
 from survey.commands.options import add_content, add_proxy, add_store, declare, where
-from survey.questionnaire.definition import NEEDS
+from survey.questionnaire import NEEDS
 
 __all__ = ["add"]
 
@@ -57,8 +57,8 @@ def _offers(text: str) -> frozenset[str]:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.questionnaire.files import content_folder
-    from survey.web.service import serve, survey_app
+    from survey.questionnaire import content_folder
+    from survey.web import serve, survey_app
 
     content = content_folder(args.content)
     app, mounted, problems = survey_app(content, where(args), args.rate, args.offers, args.proxy)

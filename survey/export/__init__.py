@@ -1,87 +1,56 @@
-"""Answers for researchers: CSV, XLSX, SPSS, JSON, the codebook, and a script that repeats the analysis in R."""
+"""Answers for researchers: CSV, XLSX, SPSS, JSON, the codebook, and a script that repeats the analysis in R.
+
+A `sheet` is what a file is made of, made coarse by `anonymity` where asked; `formats` says which files there are and
+writes one. Making coarse needs numpy, so its names are handed out late (PEP 562).
+"""
 
 from __future__ import annotations
 
-import io
-import tempfile
-from collections.abc import Sequence
-from pathlib import Path
-from typing import BinaryIO
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from survey.export.cells import safe_cell
-from survey.export.codebook import write_codebook
-from survey.export.csv_file import put_csv, write_csv
-from survey.export.json_file import put_json, write_json
+from survey.export.codebook import variables, write_codebook
+from survey.export.csv_file import write_csv
+from survey.export.formats import FORMATS, exported, file_name, put
+from survey.export.json_file import put_rows, put_suggestions, write_json
 from survey.export.r_script import write_r
-from survey.export.sheet import Sheet, of_rows, pseudonym
+from survey.export.sheet import Sheet, anonymous, of_columns, of_rows, pseudonym, stored_sheet
 from survey.export.sheet import columns as csv_columns
-from survey.export.spss import put_sav
-from survey.export.xlsx import put_xlsx
-from survey.questionnaire.answer import ever_asked
-from survey.questionnaire.definition import Questionnaire
-from survey.store import Stored
+
+if TYPE_CHECKING:
+    from survey.export.anonymity import LEFT_OUT, LEVELS, TooFew, hide
 
 __all__ = [
     "FORMATS",
+    "LEFT_OUT",
+    "LEVELS",
+    "Sheet",
+    "TooFew",
+    "anonymous",
     "csv_columns",
     "exported",
     "file_name",
+    "hide",
+    "of_columns",
+    "of_rows",
     "pseudonym",
     "put",
+    "put_rows",
+    "put_suggestions",
     "safe_cell",
+    "stored_sheet",
+    "variables",
     "write_codebook",
     "write_csv",
     "write_json",
     "write_r",
 ]
 
-FORMATS = ("csv", "xlsx", "sav", "json", "codebook", "r")
+_LATE = {"LEFT_OUT": "anonymity", "LEVELS": "anonymity", "TooFew": "anonymity", "hide": "anonymity"}
 
 
-def put(kind: str, sheet: Sheet, out: BinaryIO, folder: Path) -> None:
-    """Write a file in one of FORMATS, row after row. Raises KeyError for another.
-
-    out: seekable. folder: an empty one for what has to wait on the disk meanwhile. The R script is one for the items
-    of the sheet's questionnaire.
-    """
-    asked, k = sheet.questionnaire, None if sheet.anonymity is None else sheet.anonymity.k
-    if kind == "csv":
-        put_csv(sheet, out)
-    elif kind == "json":
-        put_json(sheet, out)
-    elif kind == "r":
-        out.write(_script(asked, k).encode())
-    elif kind == "codebook":
-        out.write(write_codebook(asked, sheet.anonymity).encode())
-    else:
-        {"xlsx": put_xlsx, "sav": put_sav}[kind](sheet, out, folder)
-
-
-def _script(asked: Questionnaire, k: int | None) -> str:
-    modules = {
-        f"module_{module.id}": [item.id for item in asked.items_of(module)] for module in asked.modules
-    }
-    return write_r(
-        asked.item_ids,
-        file=file_name("csv", asked, k),
-        name=file_name("r", asked, k),
-        reverse=asked.reverse_keyed,
-        turn=asked.points + 1,
-        scales=modules,
-    )
-
-
-def exported(kind: str, questionnaire: Questionnaire, rows: Sequence[Stored]) -> bytes:
-    """A file's bytes in one of FORMATS, of answers that are there as values. Raises KeyError for another."""
-    asked = ever_asked(questionnaire, [row.answer for row in rows]) if kind == "r" else questionnaire
-    out = io.BytesIO()
-    with tempfile.TemporaryDirectory() as folder:
-        put(kind, of_rows(asked, rows), out, Path(folder))
-    return out.getvalue()
-
-
-def file_name(kind: str, questionnaire: Questionnaire, k: int | None = None) -> str:
-    """What a file in one of FORMATS is called, such as garment-v1.csv or garment-v1-k5.csv."""
-    ending = {"codebook": "-codebook.csv", "r": ".R"}.get(kind, f".{kind}")
-    hidden = "" if k is None else f"-k{k}"
-    return f"{questionnaire.id}-v{questionnaire.version}{hidden}{ending}"
+def __getattr__(name: str) -> object:
+    if name not in _LATE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_LATE[name]}"), name)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.errors import SurveyError
-from survey.store.answers.columns import ABSENT, Columns, Heads
+from survey.store.answers import ABSENT, Columns, Heads
 
 __all__ = ["LEFT_OUT", "LEVELS", "Anonymity", "Hidden", "TooFew", "hide"]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from survey.export.cells import safe_cell
 from survey.export.csv_file import ANONYMITY, BOM
-from survey.questionnaire.definition import META_COLUMNS, NOT_ASKED, Questionnaire, Text, suggestion_column
+from survey.questionnaire import META_COLUMNS, NOT_ASKED, Questionnaire, Text, suggestion_column
 
 if TYPE_CHECKING:
     from survey.export.anonymity import Anonymity

@@ -9,7 +9,7 @@ from typing import BinaryIO
 
 from survey.export.cells import safe_cell
 from survey.export.sheet import Sheet, of_rows
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Stored
 
 __all__ = ["ANONYMITY", "BOM", "put_csv", "write_csv"]

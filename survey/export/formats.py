@@ -15,8 +15,7 @@ from survey.export.r_script import write_r
 from survey.export.sheet import Sheet, of_rows
 from survey.export.spss import put_sav
 from survey.export.xlsx import put_xlsx
-from survey.questionnaire.answer import ever_asked
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire, ever_asked
 from survey.store import Stored
 
 __all__ = ["FORMATS", "exported", "file_name", "put"]

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import Any, BinaryIO
 
 from survey.export.sheet import Record, Sheet, of_rows
-from survey.questionnaire.definition import META_COLUMNS, NOT_ASKED, Questionnaire
+from survey.questionnaire import META_COLUMNS, NOT_ASKED, Questionnaire
 from survey.store import Stored
 
 __all__ = ["put_json", "put_rows", "put_suggestions", "write_json"]

@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from survey.questionnaire.definition import META_COLUMNS, NOT_ASKED, Questionnaire, suggestion_column
+from survey.questionnaire import META_COLUMNS, NOT_ASKED, Questionnaire, suggestion_column
 from survey.store import Stored
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection
 
     from survey.export.anonymity import Anonymity, Hidden
-    from survey.store.answers.columns import Columns, Heads
+    from survey.store.answers import Columns, Heads
 
 __all__ = ["Record", "Sheet", "anonymous", "columns", "of_columns", "of_rows", "pseudonym", "stored_sheet"]
 
@@ -101,7 +101,7 @@ def _of_columns(found: Columns, heads: Heads, texts: Iterator[tuple[bytes, str, 
 def anonymous(found: Columns, heads: Heads, hidden: Hidden) -> Sheet:
     """A sheet that keeps no more of anybody than k share; without pseudonyms and suggestions, in a random order."""
     from survey.export.anonymity import LEFT_OUT
-    from survey.store.answers.columns import ABSENT
+    from survey.store.answers import ABSENT
 
     levels, asked = hidden.anonymity.levels, found.questionnaire
     if levels["asked"] == LEFT_OUT:
@@ -130,7 +130,7 @@ def stored_sheet(connection: Connection, questionnaire: Questionnaire, k: int | 
     import numpy as np
 
     from survey.export.anonymity import hide
-    from survey.store.answers.columns import read_columns, read_heads, read_texts
+    from survey.store.answers import read_columns, read_heads, read_texts
 
     if kind == "codebook" and k is None:
         return of_rows(questionnaire, ())
@@ -147,7 +147,7 @@ def stored_sheet(connection: Connection, questionnaire: Questionnaire, k: int | 
 
 def _cells(found: Columns, rows: Sequence[int]) -> Iterator[Record]:
     """The scores of those answers as cells."""
-    from survey.store.answers.columns import ABSENT, UNSCORED
+    from survey.store.answers import ABSENT, UNSCORED
 
     names: dict[int, str | int | None] = {UNSCORED: None, ABSENT: NOT_ASKED}
     for low in range(0, len(rows), _SCORES):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from survey.export.codebook import variables
 from survey.export.sheet import Sheet
-from survey.questionnaire.definition import NOT_ASKED, UNASKED, UNSEEN
+from survey.questionnaire import NOT_ASKED, UNASKED, UNSEEN
 
 if TYPE_CHECKING:
     import pandas

@@ -24,7 +24,7 @@ __all__ = [
     "read_questionnaire",
 ]
 
-FOLDER = "questionnaires"
+QUESTIONNAIRES = "questionnaires"
 
 
 def content_folder(given: Path | None = None) -> Path:
@@ -34,7 +34,9 @@ def content_folder(given: Path | None = None) -> Path:
     """
     if given is not None:
         if not given.is_dir():
-            raise ContentMissing(f"{given}: no such content folder – give --content a folder with {FOLDER}/")
+            raise ContentMissing(
+                f"{given}: no such content folder – give --content a folder with {QUESTIONNAIRES}/"
+            )
         return given
     candidates = [Path("assets")]
     hall = importlib.util.find_spec("hall_app")
@@ -42,9 +44,9 @@ def content_folder(given: Path | None = None) -> Path:
         package = Path(hall.origin).parent
         candidates += [package / "assets", package.parent / "assets"]
     for folder in candidates:
-        if (folder / FOLDER).is_dir():
+        if (folder / QUESTIONNAIRES).is_dir():
             return folder
-    raise ContentMissing(f"no content folder with {FOLDER}/ found – give one with --content")
+    raise ContentMissing(f"no content folder with {QUESTIONNAIRES}/ found – give one with --content")
 
 
 def read_questionnaire(path: Path) -> Questionnaire:
@@ -76,7 +78,7 @@ def read_questionnaire(path: Path) -> Questionnaire:
 
 def find_questionnaire_file(content: Path | None, key: str) -> Questionnaire:
     """The questionnaire of that id. Raises SurveyError naming those there are."""
-    folder = content_folder(content) / FOLDER
+    folder = content_folder(content) / QUESTIONNAIRES
     path = folder / f"{key}.toml"
     if not is_slug(key) or not path.is_file():
         known = ", ".join(found.stem for found in sorted(folder.glob("*.toml"))) or "none"
@@ -118,7 +120,7 @@ class QuestionnaireFolder(Mapping[str, Questionnaire]):
     """
 
     def __init__(self, content: Path, *, patience: float = 0.0) -> None:
-        self.folder = content / FOLDER
+        self.folder = content / QUESTIONNAIRES
         self._patience, self._looked = patience, -math.inf
         self._marks: dict[str, tuple[int, int]] | None = None
         self._seen: dict[Path, tuple[int, int]] = {}

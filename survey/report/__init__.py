@@ -1,83 +1,13 @@
-"""The report: one self-contained page in both languages, its tables as CSV, its figures as SVG."""
+"""The report: one self-contained page in both languages, its tables as CSV, its figures as SVG.
 
-from __future__ import annotations
+`words` are the texts of a language, `indicators` the way of the paper's 25. `tables`, `figures` and the `chapters` of
+other analyses stand in `sections`, these on the `page`, and `files` writes it all into a folder.
+"""
 
-import csv
-import io
-import json
-import math
-from collections.abc import Sequence
-from pathlib import Path
+from survey.report.files import write_report
+from survey.report.indicators import evidence, way_of
+from survey.report.page import Report, build
+from survey.report.sections import Part
+from survey.report.words import Words, coefficient
 
-from survey.analysis import Analysis
-from survey.analysis.procedure.json_summary import descriptives, summary
-from survey.errors import SurveyError
-from survey.export.cells import safe_cell
-from survey.export.r_script import write_r
-from survey.report.chapters.chapter import Further
-from survey.report.page import Part, Report, build
-from survey.scores.csv_table import ScoreTable
-
-__all__ = ["Part", "Report", "build", "write_report"]
-
-
-def write_report(
-    folder: Path,
-    table: ScoreTable,
-    analysis: Analysis,
-    beside: Sequence[Part] = (),
-    further: Sequence[Further] = (),
-) -> Path:
-    """Write report.html, tables/, figures/ and analysis.json into a folder; returns the page.
-
-    further: chapters of other analyses, such as `confirmation_chapter` of one.
-
-    Raises SurveyError where the folder cannot be written.
-    """
-    report = build(table, analysis, beside, further)
-    told = summary(analysis) | {"descriptives": descriptives(analysis)}
-    files = {
-        "report.html": report.html,
-        "analysis.json": json.dumps(told, ensure_ascii=False, allow_nan=False, indent=1) + "\n",
-        "scores.csv": _scores(table),
-        "analysis.R": _repeated(analysis),
-        **{f"tables/{name}": text for name, text in report.tables.items()},
-        **{f"figures/{name}": text for name, text in report.drawings.items()},
-    }
-    try:
-        for name, text in files.items():
-            path = folder / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, "utf-8", newline="")
-    except OSError as error:
-        raise SurveyError(f"{folder}: cannot be written ({error.strerror}) – give another --report") from None
-    return folder / "report.html"
-
-
-def _scores(table: ScoreTable) -> str:
-    """What was analysed, for the R script beside it, which knows the guarded names; scores are bare figures."""
-    out = io.StringIO(newline="")
-    out.write("\ufeff")
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([safe_cell(item) for item in table.items])
-    for row in table.scores.tolist():
-        writer.writerow(["" if math.isnan(score) else f"{score:.17g}" for score in row])
-    return out.getvalue()
-
-
-def _repeated(analysis: Analysis) -> str:
-    chosen = analysis.settings
-    return write_r(
-        analysis.items,
-        file="scores.csv",
-        dropped=analysis.dropped,
-        rotation=chosen.rotation,
-        factors=chosen.factors,
-        missing=chosen.missing,
-        method=chosen.method,
-        reverse=analysis.turned.items,
-        turn=analysis.turned.total,
-        scales={
-            f"{scale.kind}_{scale.key}": scale.items for scale in analysis.scales if scale.kind != "component"
-        },
-    )
+__all__ = ["Part", "Report", "Words", "build", "coefficient", "evidence", "way_of", "write_report"]

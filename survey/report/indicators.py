@@ -8,10 +8,8 @@ from functools import lru_cache
 import numpy as np
 
 from survey.analysis import Analysis, correlate, reliability
-from survey.demonstration import sample_file
-from survey.demonstration.indicators import Primary, intermediate, merged, primary, sample_name
-from survey.demonstration.table3 import CLOSE
-from survey.scores.csv_table import read_scores
+from survey.demonstration import CLOSE, Primary, intermediate, merged, primary, sample_file, sample_name
+from survey.scores import read_scores
 
 __all__ = ["Evidence", "Pair", "Way", "evidence", "way_of"]
 

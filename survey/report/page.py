@@ -8,11 +8,10 @@ from html import escape
 from pathlib import Path
 
 from survey.analysis import Analysis
-from survey.questionnaire.definition import LANGUAGES
-from survey.report.chapters.chapter import Further
-from survey.report.sections import Part, sections_of
-from survey.report.sections.article import Article
-from survey.scores.csv_table import ScoreTable
+from survey.questionnaire import LANGUAGES
+from survey.report.chapters import Further
+from survey.report.sections import Article, Part, sections_of
+from survey.scores import ScoreTable
 
 __all__ = ["Part", "Report", "build"]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from survey.analysis.screening.preparation import Note
-from survey.questionnaire.definition import Language, Questionnaire
+from survey.analysis.screening import Note
+from survey.questionnaire import Language, Questionnaire
 
 __all__ = ["Words", "coefficient", "decimal", "probability", "whole"]
 

@@ -14,13 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.errors import SurveyError
-from survey.questionnaire.definition import (
-    META_COLUMNS,
-    NOT_ASKED,
-    SUGGESTION,
-    Questionnaire,
-    suggestion_column,
-)
+from survey.questionnaire import META_COLUMNS, NOT_ASKED, SUGGESTION, Questionnaire, suggestion_column
 from survey.scores.columns import Choice, no_items
 
 __all__ = ["SECONDS", "ScoreTable", "read_column", "read_scores"]
@@ -237,7 +231,7 @@ def _see_that_all_are_finite(
     """Raises NotFinite naming the first cell such as "inf" or 1e999 in a column that counts."""
     found = np.argwhere(np.isinf(scores))
     if len(found):
-        from survey.analysis.errors import NotFinite
+        from survey.analysis import NotFinite
 
         (line, cells), (name, at) = body[found[0, 0]], columns[found[0, 1]]
         where = f"{path}: line {line}, {name}"

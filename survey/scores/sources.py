@@ -10,19 +10,17 @@ from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from survey.demonstration import sample_file
-from survey.demonstration.indicators import intermediate, merged, questionnaire_id, sample_name
+from survey.demonstration import intermediate, merged, questionnaire_id, sample_file, sample_name
 from survey.errors import SurveyError
-from survey.questionnaire.definition import Questionnaire
-from survey.questionnaire.files import content_folder, find_questionnaire_file, read_questionnaire
+from survey.questionnaire import Questionnaire, content_folder, find_questionnaire_file, read_questionnaire
 from survey.scores.columns import Choice
 from survey.scores.csv_table import ScoreTable, read_scores
 from survey.store import Store
 from survey.store.database import tables
 
 if TYPE_CHECKING:
-    from survey.analysis.procedure.scales import Group
-    from survey.store.answers.archive import Archive
+    from survey.analysis.procedure import Group
+    from survey.store.answers import Archive
 
 __all__ = [
     "dropped",
@@ -102,7 +100,7 @@ def load_scores(
         return replace(table, beside=unevenly_asked(table))
     if key is None:
         raise SurveyError("no questionnaire named – give --questionnaire ID")
-    from survey.store.answers.archive import Archive
+    from survey.store.answers import Archive
 
     with open_stored(where, content, key, version) as (questionnaire, store):
         table = stored_scores(questionnaire, Archive(where), texts=texts, labels=labels)
@@ -114,7 +112,7 @@ def stored_scores(whole: Questionnaire, archive: Archive, *, texts: bool, labels
     """All standing answers to one version: (n, p) of the items that were asked, NaN where one was not, or not seen."""
     import numpy as np
 
-    from survey.store.answers.columns import UNSCORED, read_columns, read_heads, read_texts
+    from survey.store.answers import UNSCORED, read_columns, read_heads, read_texts
 
     with archive.snapshot() as connection:
         columns = read_columns(connection, whole)
@@ -161,7 +159,7 @@ def unevenly_asked(table: ScoreTable) -> str:
 
 def other_roles(where: Path | str, content: Path | None, asked: Questionnaire) -> list[ScoreTable]:
     """Stored answers to the other questionnaires with the same dimensions: the platform's other role."""
-    from survey.store.answers.archive import Archive
+    from survey.store.answers import Archive
 
     folder, found = content_folder(content) / "questionnaires", []
     sides = [side.id for side in asked.dimensions]
@@ -214,7 +212,7 @@ def sample_scores(name: str, content: Path | None) -> ScoreTable:
 
 def stated_groups(questionnaire: Questionnaire | None) -> tuple[Group, ...]:
     """The items of each module, and of each dimension across the modules, in the order in which they are stated."""
-    from survey.analysis.procedure.scales import Group
+    from survey.analysis.procedure import Group
 
     if questionnaire is None:
         return ()

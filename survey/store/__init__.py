@@ -1,10 +1,28 @@
-"""Where answers are kept: SQLite by default, PostgreSQL by URL."""
+"""Where answers are kept: SQLite by default, PostgreSQL by URL.
 
-from survey.store.answers.rows import Stored
-from survey.store.commit.batch import Receipt
-from survey.store.erasure.removal import Overdue
-from survey.store.publication.steps import Public
+From below: `database`, `answers` as they are read, `commit` as they are written, the `audit` of what was done,
+`tokens`, what is public (`publication`), `erasure`, and the `Store` that brings them together. `migrations` is the
+schema's history.
+"""
+
+from survey.store.answers import Archive, Stored
+from survey.store.audit import Audit
+from survey.store.commit import Receipt
+from survey.store.erasure import Overdue
+from survey.store.publication import Public
 from survey.store.store import PATIENCE, Store
-from survey.store.tokens import Tokens
+from survey.store.tokens import TOKEN_DAYS, Token, Tokens
 
-__all__ = ["PATIENCE", "Overdue", "Public", "Receipt", "Store", "Stored", "Tokens"]
+__all__ = [
+    "PATIENCE",
+    "TOKEN_DAYS",
+    "Archive",
+    "Audit",
+    "Overdue",
+    "Public",
+    "Receipt",
+    "Store",
+    "Stored",
+    "Token",
+    "Tokens",
+]

@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 
 from sqlalchemy import Connection, select, update
 
-from survey.store.commit.batch import now
+from survey.store.commit import now
 from survey.store.database import tables
 
 __all__ = ["Audit", "Entry", "in_utc", "note", "note_withdrawal"]

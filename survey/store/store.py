@@ -12,19 +12,25 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, func, select, update
 
 from survey.errors import AnswerError
-from survey.questionnaire.answer import Answer
-from survey.questionnaire.definition import Questionnaire
-from survey.store.answers.rows import Stored, given_answer, standing, stored_rows
+from survey.questionnaire import Answer, Questionnaire
+from survey.store.answers import Stored, given_answer, standing, stored_rows
 from survey.store.audit import Audit, in_utc, note
-from survey.store.commit.batch import Entry, Receipt, commit_batch, freeze_version, now
-from survey.store.commit.writer import Writer
-from survey.store.database import tables
-from survey.store.database.backup import write_copy
-from survey.store.database.place import Place, explained
-from survey.store.erasure.eraser import Eraser, add_trace, clear_traces, rewrite_tables, traces
-from survey.store.erasure.leftovers import Erased, everything
-from survey.store.erasure.removal import Overdue, erase, overdue, withdraw
-from survey.store.publication.steps import Public, Publishing, forget
+from survey.store.commit import Entry, Receipt, Writer, commit_batch, freeze_version, now
+from survey.store.database import Place, explained, tables, write_copy
+from survey.store.erasure import (
+    Erased,
+    Eraser,
+    Overdue,
+    add_trace,
+    clear_traces,
+    erase,
+    everything,
+    overdue,
+    rewrite_tables,
+    traces,
+    withdraw,
+)
+from survey.store.publication import Public, Publishing, forget
 from survey.store.tokens import Tokens
 
 __all__ = ["PATIENCE", "Receipt", "Store"]

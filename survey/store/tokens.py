@@ -14,12 +14,12 @@ from sqlalchemy import Connection, delete, select, update
 
 from survey.errors import AnswerError, StoreError
 from survey.store.audit import in_utc, note
-from survey.store.commit.batch import now
+from survey.store.commit import now
 from survey.store.database import tables
 
-__all__ = ["DAYS", "Token", "Tokens"]
+__all__ = ["TOKEN_DAYS", "Token", "Tokens"]
 
-DAYS = 90  # a token is good for so long unless told: a study's analysis, not its researcher's career
+TOKEN_DAYS = 90  # a token is good for so long unless told: a study's analysis, not its researcher's career
 
 Session = Callable[[], AbstractContextManager[Connection]]
 
@@ -54,7 +54,7 @@ class Tokens:
     def __init__(self, write: Session, read: Session) -> None:
         self._write, self._read = write, read
 
-    def make(self, label: str, *, questionnaire: str | None = None, days: int | None = DAYS) -> str:
+    def make(self, label: str, *, questionnaire: str | None = None, days: int | None = TOKEN_DAYS) -> str:
         """A new token; this is the only time that it can be seen. days: how long it is good, None: for ever."""
         secret = "survey_" + secrets.token_urlsafe(32)
         made = now()

@@ -9,18 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from survey.errors import Problem, QuestionnaireError, StoreError
-from survey.questionnaire.definition import Offers, Questionnaire
-from survey.questionnaire.files import QuestionnaireFolder
+from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder
 from survey.store import Store
-from survey.web.privacy.controller import read_controller
-from survey.web.privacy.record import Record, Running, record_of
+from survey.web.privacy import Record, Running, read_controller, record_of
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
     from survey.web.api import Jobs
-    from survey.web.form.clip import ClipOf
-    from survey.web.form.page import Home
+    from survey.web.form import ClipOf, Home
 
 __all__ = ["Mounted", "mount"]
 
@@ -125,7 +122,7 @@ def mount(
     """
     from survey.web.api import Jobs, Limit, router
     from survey.web.form import form_router
-    from survey.web.privacy.routes import privacy_router
+    from survey.web.privacy import privacy_router
 
     questionnaires = QuestionnaireFolder(content, patience=PATIENCE)
     if problems is None and questionnaires.problems:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from survey.errors import Problem, SurveyError
-from survey.questionnaire.definition import Offers
+from survey.questionnaire import Offers
 from survey.web.mounting import Mounted, mount
 
 if TYPE_CHECKING:

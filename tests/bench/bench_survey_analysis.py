@@ -27,11 +27,9 @@ from survey_exports import KEY, content, fill
 
 from survey import read_questionnaire
 from survey.analysis import Settings, adequacy, analyse, correlate, principal_components, varimax
-from survey.analysis.components.orthogonal_rotation import row_lengths, varimax_criterion
-from survey.analysis.components.sampling_adequacy import adequacy_by_factor_analyzer
-from survey.demonstration import sample_file
-from survey.demonstration.recipe import ITEMS, drawn_sample
-from survey.scores.csv_table import read_scores
+from survey.analysis.components import adequacy_by_factor_analyzer, row_lengths, varimax_criterion
+from survey.demonstration import ITEMS, drawn_sample, sample_file
+from survey.scores import read_scores
 
 ROOT = Path(__file__).resolve().parents[2]
 STATIC = ("static_overall", "static_drape")
@@ -86,7 +84,7 @@ def theirs(table: np.ndarray, keep: int) -> dict[str, Any]:
 
 
 def ours(table: np.ndarray, keep: int) -> dict[str, Any]:
-    from survey.analysis.components.sampling_adequacy import adequacy_of
+    from survey.analysis.components import adequacy_of
 
     r = correlate(table).r
     found = principal_components(r, keep=keep)

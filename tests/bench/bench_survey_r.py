@@ -39,12 +39,11 @@ from survey.analysis import (
     principal_components,
     reliability_of,
 )
-from survey.analysis.components.extraction import eigenvalues
-from survey.analysis.consistency.mcdonald import one_factor
+from survey.analysis.components import eigenvalues
+from survey.analysis.consistency import one_factor
 from survey.cli import main as survey_command
-from survey.demonstration import sample_file
-from survey.demonstration.recipe import ITEMS, drawn_sample
-from survey.scores.csv_table import read_scores
+from survey.demonstration import ITEMS, drawn_sample, sample_file
+from survey.scores import read_scores
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).parent

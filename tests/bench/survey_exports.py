@@ -19,7 +19,7 @@ import numpy as np
 from survey_service import ASSETS, ROOT, Service, submission
 
 from survey import Store, read_questionnaire
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store.database import tables
 
 KEY, ITEMS = "wide", 25

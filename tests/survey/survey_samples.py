@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy import create_engine, text
 
-from survey.demonstration import sample_file
-from survey.demonstration.recipe import drawn_sample
-from survey.demonstration.table3 import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS
-from survey.scores.csv_table import read_scores
+from survey.demonstration import ALPHA, CHI2, KMO, TABLE_3, TABLE_3_ITEMS, drawn_sample, sample_file
+from survey.scores import read_scores
 
 __all__ = [
     "ALPHA",

@@ -32,8 +32,8 @@ from survey.analysis import (
     reliability,
     varimax,
 )
-from survey.analysis.procedure.json_summary import KEYS, descriptives, summary
-from survey.report.words import Words
+from survey.analysis.procedure import KEYS, descriptives, summary
+from survey.report import Words
 
 STATIC = ("static_drape", "static_overall")
 

@@ -23,10 +23,8 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.cli import main
-from survey.export import FORMATS, pseudonym, put
-from survey.export.anonymity import LEFT_OUT, LEVELS, TooFew, hide
-from survey.export.sheet import anonymous
-from survey.store.answers.columns import ABSENT, Columns, Heads
+from survey.export import FORMATS, LEFT_OUT, LEVELS, TooFew, anonymous, hide, pseudonym, put
+from survey.store.answers import ABSENT, Columns, Heads
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")

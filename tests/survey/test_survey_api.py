@@ -17,7 +17,7 @@ from survey_samples import looked_up, submission
 import survey
 from survey.errors import StoreError
 from survey.export import pseudonym
-from survey.questionnaire.answer import TEXT_LIMIT
+from survey.questionnaire import TEXT_LIMIT
 from survey.web.api import Limit
 
 BASE = "/api/v1/questionnaires"

@@ -17,7 +17,7 @@ from survey_attacker import Figure as Seen
 from survey_attacker import Look, Person, possible, read
 from survey_samples import submission
 
-from survey.store.publication.disclosure import KNOWN, STEP, Figure, Scores, Shown, moved_on
+from survey.store.publication import KNOWN, STEP, Figure, Scores, Shown, moved_on
 
 NONE = [0] * 5
 RESULTS = "/api/v1/questionnaires/garment/results"

@@ -15,9 +15,9 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS, paper_sample, submission
 
 import survey
-from survey.analysis.procedure.json_summary import KEYS
+from survey.analysis.procedure import KEYS
 from survey.cli import main
-from survey.scores.csv_table import read_scores
+from survey.scores import read_scores
 
 HERE = ["--content", str(ASSETS)]
 

@@ -13,11 +13,9 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, Store, read_questionnaire
 from survey.errors import StoreError
-from survey.export.sheet import of_columns, of_rows
-from survey.scores.sources import stored_scores
-from survey.store.answers import columns as bulk
-from survey.store.answers.archive import Archive
-from survey.store.answers.columns import ABSENT, UNSCORED, read_columns, read_heads, read_texts
+from survey.export import of_columns, of_rows
+from survey.scores import stored_scores
+from survey.store.answers import ABSENT, UNSCORED, Archive, read_columns, read_heads, read_texts
 from survey.store.database import tables
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
@@ -55,7 +53,7 @@ def matrix(rows, questionnaire):
 
 @pytest.mark.parametrize("at_a_time", [1, 7, 100_000])
 def test_columns_hold_what_the_answers_hold_in_their_order(filled, monkeypatch, at_a_time):
-    monkeypatch.setattr(bulk, "_AT_A_TIME", at_a_time)
+    monkeypatch.setattr("survey.store.answers.columns._AT_A_TIME", at_a_time)
     store, where, older = filled
     for asked in (GARMENT, older, USER):
         rows = store.rows(asked)

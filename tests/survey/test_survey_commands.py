@@ -13,7 +13,7 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 

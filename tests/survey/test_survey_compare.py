@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 from survey_samples import ASSETS, submission
 
-from survey.analysis.comparison.differences import compare, holm
+from survey.analysis.comparison import compare, holm
 from survey.cli import main
 
 ITEMS = ("colour", "drape", "quiet")

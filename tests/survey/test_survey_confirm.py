@@ -7,13 +7,11 @@ import pytest
 from lavaan_record import rows_with, write_rows
 from survey_samples import likert_sample
 
-from survey.analysis.confirmatory import Measurement, confirm, parsed, saturated
-from survey.analysis.correlation.missing_data import patterns_of
-from survey.analysis.errors import BadModel
+from survey.analysis import BadModel
+from survey.analysis.confirmatory import Measurement, confirm, parsed
+from survey.analysis.correlation import patterns_of, saturated
 from survey.cli import main
-from survey.demonstration import sample_file
-from survey.demonstration.recipe import gappy
-from survey.demonstration.table3 import TABLE_3_ITEMS
+from survey.demonstration import TABLE_3_ITEMS, gappy, sample_file
 
 SIX = tuple("abcdef")
 TWO = "F =~ a + b + c; G =~ d + e + f"
@@ -238,7 +236,7 @@ def test_em_ends_where_the_likelihood_is_greatest():
     scores = gappy(likert_sample(120, seed=2)[:, :5], 0.15, seed=4)
     seen = patterns_of(scores, "abcde")
     best = saturated(seen, "abcde")
-    from survey.analysis.correlation.missing_data import misfit_of
+    from survey.analysis.correlation import misfit_of
 
     _, by_sigma, by_mean, _ = misfit_of(seen, best.mean, best.covariance)
     assert np.abs(by_sigma).max() < 1e-7

@@ -19,9 +19,9 @@ from survey_samples import ASSETS, looked_up, submission
 
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import migrations
-from survey.store.database import schema
+from survey.store.database import HEAD
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires"
@@ -564,4 +564,4 @@ def test_the_clock_s_word_goes_with_yes(tmp_path, capsys):
 
 def test_the_newest_step_is_the_head():
     files = sorted((Path(migrations.__file__).parent / "versions").glob("0*.py"))
-    assert files[-1].name.startswith(schema.HEAD)
+    assert files[-1].name.startswith(HEAD)

@@ -20,8 +20,8 @@ from test_survey_pressure import URL, Service
 
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.questionnaire.definition import Questionnaire
-from survey.store.erasure import leftovers
+from survey.questionnaire import Questionnaire
+from survey.store.erasure import BLOCK, erased_answer, left_over
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires/garment"
@@ -307,11 +307,9 @@ def test_on_postgresql_a_purge_leaves_nothing_in_its_tables(postgres, capsys):
 @pytest.mark.parametrize("shift", [-40, -1, 0, 5])
 def test_what_lies_across_two_blocks_is_found(tmp_path, shift):
     file, said = tmp_path / "file", "袖口看不清，下摆也太短了一些"
-    at = leftovers.BLOCK + shift
-    file.write_bytes(b"\0" * at + said.encode() + b"\0" * leftovers.BLOCK)
-    erased = leftovers.erased_answer("key", "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e", "", (), {"form": said})
-    assert leftovers.left_over(file, [erased])
-    other = leftovers.erased_answer(
-        "key", "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e", "", (), {"form": said[::-1]}
-    )
-    assert not leftovers.left_over(file, [other])
+    at = BLOCK + shift
+    file.write_bytes(b"\0" * at + said.encode() + b"\0" * BLOCK)
+    erased = erased_answer("key", "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e", "", (), {"form": said})
+    assert left_over(file, [erased])
+    other = erased_answer("key", "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e", "", (), {"form": said[::-1]})
+    assert not left_over(file, [other])

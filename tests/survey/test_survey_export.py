@@ -14,11 +14,8 @@ import pytest
 from openpyxl import load_workbook
 from survey_samples import ASSETS, submission
 
-from survey.export import FORMATS, csv_columns, exported, safe_cell, write_csv, write_json, write_r
-from survey.export.codebook import variables
-from survey.questionnaire.answer import Answer
-from survey.questionnaire.definition import UNSEEN
-from survey.questionnaire.files import read_questionnaire
+from survey.export import FORMATS, csv_columns, exported, safe_cell, variables, write_csv, write_json, write_r
+from survey.questionnaire import UNSEEN, Answer, read_questionnaire
 from survey.store import Stored
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")

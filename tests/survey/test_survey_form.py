@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 from fastapi import FastAPI
@@ -12,7 +13,10 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS
 
 import survey
-from survey.web.form.page import FOLDER, form_page, words
+from survey.web import form
+from survey.web.form import form_page, words
+
+FOLDER = Path(form.__file__).parent
 
 PAGE = "/questionnaires/garment"
 

@@ -16,13 +16,18 @@ from survey_samples import ASSETS, likert_sample, submission
 from survey import Answer, Store
 from survey.analysis import Settings, analyse, correlate
 from survey.cli import main
-from survey.demonstration import SAMPLES, sample_file
-from survey.demonstration.indicators import intermediate, merged, primary
-from survey.demonstration.opinions import primary_opinions, primary_sample
-from survey.questionnaire.files import read_questionnaire
-from survey.report import build
-from survey.report.indicators import evidence, way_of
-from survey.scores.csv_table import ScoreTable, read_scores
+from survey.demonstration import (
+    SAMPLES,
+    intermediate,
+    merged,
+    primary,
+    primary_opinions,
+    primary_sample,
+    sample_file,
+)
+from survey.questionnaire import read_questionnaire
+from survey.report import build, evidence, way_of
+from survey.scores import ScoreTable, read_scores
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 STATIC = ("static_drape", "static_overall")
@@ -57,7 +62,10 @@ def test_the_file_is_what_the_recipe_makes_also_with_the_oldest_processor_s_line
     assert np.array_equal(table.scores, primary_sample())
     assert set(np.unique(table.scores)) == {1, 2, 3, 4, 5}
     assert np.abs(primary_opinions() % 1 - 0.5).min() > 1e-9
-    code = "import sys, numpy; from survey.demonstration.opinions import *; numpy.save(sys.argv[1], primary_opinions())"
+    code = (
+        "import sys, numpy; from survey.demonstration import primary_opinions;"
+        "numpy.save(sys.argv[1], primary_opinions())"
+    )
     env = os.environ | {"OPENBLAS_CORETYPE": "Prescott"}
     subprocess.run([sys.executable, "-c", code, tmp_path / "anew.npy"], env=env, check=True)
     np.testing.assert_allclose(np.load(tmp_path / "anew.npy"), primary_opinions(), atol=1e-12)

@@ -29,7 +29,7 @@ from survey_samples import ASSETS, submission
 from survey import Answer, Store, StoreError, read_questionnaire
 from survey.export import exported, pseudonym
 from survey.job import NICE
-from survey.web.api import jobs
+from survey.web.api import JOBS_AT_WORK, JOBS_OPEN, Jobs, Run
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 BASE = "/api/v1/questionnaires/garment"
@@ -225,7 +225,7 @@ def test_csv_and_json_are_byte_for_byte_what_the_answers_make(hall):
 
 
 def test_a_file_is_nobody_else_s_and_has_no_name():
-    run = jobs._Run({})
+    run = Run({})
     found = os.fstat(run.body.fileno())
     assert stat.S_IMODE(found.st_mode) & 0o077 == 0
     assert found.st_nlink == 0
@@ -278,11 +278,11 @@ def test_who_hangs_up_ends_it(service, path):
 
 @linux
 def test_a_few_at_a_time_the_next_wait_and_more_are_told_when_to_come_again(service):
-    with ThreadPoolExecutor(jobs.MOST_OPEN + 2) as pool:
-        halted = [halted_request(service, f"{BASE}/export/csv", pool) for _ in range(jobs.MOST)]
+    with ThreadPoolExecutor(JOBS_OPEN + 2) as pool:
+        halted = [halted_request(service, f"{BASE}/export/csv", pool) for _ in range(JOBS_AT_WORK)]
         others = [
             pool.submit(service.request, "GET", f"{BASE}/export/csv")
-            for _ in range(jobs.MOST_OPEN + 2 - jobs.MOST)
+            for _ in range(JOBS_OPEN + 2 - JOBS_AT_WORK)
         ]
         refused = until(
             lambda: done if len(done := [o for o in others if o.done()]) == 2 else None, "not two"
@@ -292,7 +292,7 @@ def test_a_few_at_a_time_the_next_wait_and_more_are_told_when_to_come_again(serv
             assert status == 503
             assert int(headers["retry-after"]) > 0
             assert set(json.loads(body)) == {"field", "problem", "remedy"}
-        assert len(children(service.process.pid)) == jobs.MOST
+        assert len(children(service.process.pid)) == JOBS_AT_WORK
         for _, pid in halted:
             os.kill(pid, signal.SIGCONT)
         for one in {*(waiting for waiting, _ in halted), *others} - set(refused):
@@ -403,7 +403,9 @@ def test_a_full_disk_leaves_the_earlier_file_where_it_was(tmp_path):
 
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_a_process_that_fails_is_an_error_of_the_service(hall, monkeypatch):
-    monkeypatch.setattr(jobs, "_COMMAND", (sys.executable, "-c", "raise SystemExit('no such luck')"))
+    monkeypatch.setattr(
+        "survey.web.api.jobs._COMMAND", (sys.executable, "-c", "raise SystemExit('no such luck')")
+    )
     researcher = {"authorization": f"Bearer {hall.store.tokens.make('researcher')}"}
     assert hall.client.get(f"{BASE}/export/csv", headers=researcher).status_code == 500
 
@@ -431,7 +433,7 @@ class _Gone:
 def test_close_ends_what_is_under_way_and_another_may_begin(tmp_path, monkeypatch):
     with closing(Store(tmp_path)) as store:
         fill(store, 3)
-    made = jobs.Jobs(tmp_path)
+    made = Jobs(tmp_path)
     forever = (sys.executable, "-c", "import sys, time; sys.stdin.readline(); time.sleep(3600)")
     job = {"task": "csv", "questionnaire": GARMENT.document()}
 
@@ -445,7 +447,7 @@ def test_close_ends_what_is_under_way_and_another_may_begin(tmp_path, monkeypatc
         return "".join([str(part) async for part in reply.body_iterator])
 
     with monkeypatch.context() as patched:
-        patched.setattr(jobs, "_COMMAND", forever)
+        patched.setattr("survey.web.api.jobs._COMMAND", forever)
         with pytest.raises(StoreError, match="broken off"):
             event_loop.run(asked(_Gone()))
         ending = threading.Timer(0.3, made.close)

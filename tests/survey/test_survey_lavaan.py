@@ -12,11 +12,8 @@ import pytest
 from lavaan_record import LIMIT, apart, recorded, same_sums, write_rows
 from scipy.special import ndtri
 
-from survey.analysis.confirmatory import parsed
-from survey.analysis.confirmatory.fit_indices import Fit
-from survey.analysis.confirmatory.thresholds import Polychorics
-from survey.analysis.confirmatory.weighted_least_squares import weighted_of
-from survey.analysis.correlation.ordinal import INFINITY, solved_tables
+from survey.analysis.confirmatory import Fit, Polychorics, parsed, weighted_of
+from survey.analysis.correlation import INFINITY, solved_tables
 from survey.cli import main
 from survey.demonstration import sample_file
 

@@ -20,10 +20,8 @@ import survey
 from survey.cli import main
 from survey.errors import QuestionnaireError
 from survey.export import exported
-from survey.questionnaire.definition import NEEDS
-from survey.questionnaire.files import read_questionnaire
-from survey.scores.csv_table import read_scores
-from survey.scores.sources import load_scores
+from survey.questionnaire import NEEDS, read_questionnaire
+from survey.scores import load_scores, read_scores
 
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")
 HALL = [f"hall_{side.id}" for side in USER.dimensions]

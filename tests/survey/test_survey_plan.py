@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from survey.analysis.errors import OutOfReach
+from survey.analysis import OutOfReach
 from survey.analysis.planning import (
     correlation_answers,
     correlation_margin_answers,

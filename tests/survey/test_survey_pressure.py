@@ -17,7 +17,7 @@ import pytest
 from survey_samples import ASSETS, looked_up, submission
 
 from survey import read_questionnaire
-from survey.store.database.tables import open_engine
+from survey.store.database import open_engine
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 SETTINGS = {

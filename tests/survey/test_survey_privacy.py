@@ -16,9 +16,9 @@ from survey_samples import ASSETS, submission
 import survey
 from survey import Answer, Store, read_questionnaire
 from survey.cli import main
-from survey.web.form.page import words
-from survey.web.privacy import page as page_module
-from survey.web.privacy.controller import FILE, Controller, read_controller
+from survey.web import privacy
+from survey.web.form import words
+from survey.web.privacy import CONTROLLER_FILE, Controller, read_controller
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 WHOLE = """\
@@ -55,7 +55,7 @@ def shown(content: Path, data: Path, language: str = "en", base: str = "http://t
 
 
 def test_both_languages_have_the_same_texts_with_the_same_gaps():
-    texts = tomllib.loads(Path(page_module.__file__).with_name("texts.toml").read_text("utf-8"))
+    texts = tomllib.loads(Path(privacy.__file__).with_name("texts.toml").read_text("utf-8"))
     assert set(texts["zh"]) == set(texts["en"])
     for key, text in texts["zh"].items():
         gaps = [
@@ -68,10 +68,12 @@ def test_both_languages_have_the_same_texts_with_the_same_gaps():
 @pytest.mark.parametrize("language", ["zh", "en"])
 def test_what_is_missing_is_said_to_be_missing(content, tmp_path, language):
     text = shown(content, tmp_path / "data", language)
-    assert FILE in text
+    assert CONTROLLER_FILE in text
     assert ("This record is not complete" if language == "en" else "本记录尚不完整") in text
     assert text.count("not stated yet" if language == "en" else "尚未说明") == 4
-    (content / FILE).write_text('[controller]\nname = { zh = "某馆", en = "The Museum" }\n', "utf-8")
+    (content / CONTROLLER_FILE).write_text(
+        '[controller]\nname = { zh = "某馆", en = "The Museum" }\n', "utf-8"
+    )
     text = shown(content, tmp_path / "data", language)
     for key in set(Controller().missing) - {"controller.name"}:
         assert key in text
@@ -81,7 +83,7 @@ def test_what_is_missing_is_said_to_be_missing(content, tmp_path, language):
     ("language", "name"), [("zh", "某某博物馆 &lt;b&gt;"), ("en", "The Museum &lt;b&gt;")]
 )
 def test_who_answers_for_it_is_named_and_escaped(content, tmp_path, language, name):
-    (content / FILE).write_text(WHOLE, "utf-8")
+    (content / CONTROLLER_FILE).write_text(WHOLE, "utf-8")
     text = shown(content, tmp_path / "data", language)
     assert name in text
     assert "privacy@museum.example" in text
@@ -184,17 +186,17 @@ FAULTS = {
 @pytest.mark.parametrize("case", FAULTS)
 def test_a_faulty_file_is_a_problem_and_nothing_of_it_is_shown(content, tmp_path, case):
     text, told = FAULTS[case]
-    (content / FILE).write_text(text, "utf-8")
+    (content / CONTROLLER_FILE).write_text(text, "utf-8")
     found = read_controller(content)
     assert found.gaps == ()
     assert any(told in problem.what for problem in found.faults)
-    assert all(problem.file == FILE for problem in found.faults)
+    assert all(problem.file == CONTROLLER_FILE for problem in found.faults)
     assert all(problem.fix for problem in found.faults)
     assert found.controller == Controller()
     assert mounted_with(content, tmp_path) == (list(found.faults), ())
     page = shown(content, tmp_path / "data")
     assert "This record is not complete" in page
-    assert f"There is a fault in {FILE}, and nothing of it is told here" in page
+    assert f"There is a fault in {CONTROLLER_FILE}, and nothing of it is told here" in page
 
 
 def mounted_with(content: Path, tmp_path: Path) -> tuple[list, tuple]:
@@ -208,28 +210,28 @@ def mounted_with(content: Path, tmp_path: Path) -> tuple[list, tuple]:
 def test_what_is_not_stated_yet_is_a_hint_and_no_problem(content, tmp_path):
     problems, (hint,) = mounted_with(content, tmp_path)
     assert problems == []
-    assert str(hint).startswith(f"{FILE}: missing")
-    (content / FILE).write_text('[controller]\nemail = "a@b"\n', "utf-8")
+    assert str(hint).startswith(f"{CONTROLLER_FILE}: missing")
+    (content / CONTROLLER_FILE).write_text('[controller]\nemail = "a@b"\n', "utf-8")
     problems, (hint,) = mounted_with(content, tmp_path)
     assert problems == []
     assert set(hint.key.split(", ")) == set(Controller().missing) - {"controller.email"}
-    (content / FILE).write_text(WHOLE, "utf-8")
+    (content / CONTROLLER_FILE).write_text(WHOLE, "utf-8")
     assert mounted_with(content, tmp_path) == ([], ())
 
 
 def test_the_file_that_is_shipped_says_nothing_until_it_is_filled_in(content, tmp_path):
-    blank = (ASSETS / FILE).read_text("utf-8")
-    (content / FILE).write_text(blank, "utf-8")
+    blank = (ASSETS / CONTROLLER_FILE).read_text("utf-8")
+    (content / CONTROLLER_FILE).write_text(blank, "utf-8")
     found = read_controller(content)
     assert found.controller == Controller()
     assert found.faults == ()
     assert found.gaps[0].key == ", ".join(Controller().missing)
     assert "not stated yet" in shown(content, tmp_path / "data")
     filled = blank.replace('zh = "", en = ""', 'zh = "某", en = "One"').replace('email = ""', 'email = "a@b"')
-    (content / FILE).write_text(filled, "utf-8")
+    (content / CONTROLLER_FILE).write_text(filled, "utf-8")
     assert read_controller(content).problems == ()
     for one_language in ('zh = "某", en = ""', 'zh = "", en = "One"'):
-        (content / FILE).write_text(blank.replace('zh = "", en = ""', one_language, 1), "utf-8")
+        (content / CONTROLLER_FILE).write_text(blank.replace('zh = "", en = ""', one_language, 1), "utf-8")
         assert [fault.key.partition(".")[0] for fault in read_controller(content).faults] == ["controller"]
 
 
@@ -238,9 +240,9 @@ def test_the_command_writes_the_page_and_names_what_is_missing(content, tmp_path
     Store(data).close()
     command = ["privacy", "--content", str(content), "--data", str(data)]
     assert main([*command, "--language", "en", "--out", str(out)]) == 1
-    assert f"{FILE}: missing" in capsys.readouterr().err
+    assert f"{CONTROLLER_FILE}: missing" in capsys.readouterr().err
     assert "not known to this page" in out.read_text("utf-8")
-    (content / FILE).write_text(WHOLE, "utf-8")
+    (content / CONTROLLER_FILE).write_text(WHOLE, "utf-8")
     assert main(command) == 0
     said = capsys.readouterr()
     assert said.err == ""

@@ -21,10 +21,9 @@ from survey.analysis import (
     reliability,
     reliability_of,
 )
-from survey.analysis.components.extraction import eigenvalues
-from survey.demonstration import sample_file
-from survey.demonstration.recipe import drawn_sample
-from survey.scores.csv_table import read_scores
+from survey.analysis.components import eigenvalues
+from survey.demonstration import drawn_sample, sample_file
+from survey.scores import read_scores
 
 RECORDED = json.loads((Path(__file__).parent / "recorded" / "psych.json").read_text("utf-8"))
 SETS = RECORDED["data_sets"]

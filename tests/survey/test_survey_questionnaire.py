@@ -11,8 +11,6 @@ from fastapi.testclient import TestClient
 from survey_samples import ASSETS, given, submission
 
 import survey
-import survey.questionnaire.files
-import survey.web.mounting
 from survey import QuestionnaireError, content_folder, read_questionnaire
 from survey.cli import main
 
@@ -35,7 +33,7 @@ label = { zh = "一", en = "One" }
 
 @pytest.fixture
 def content(tmp_path, monkeypatch):
-    monkeypatch.setattr(survey.web.mounting, "PATIENCE", 0.0)  # edits show at once
+    monkeypatch.setattr("survey.web.mounting.PATIENCE", 0.0)  # edits show at once
     shutil.copytree(ASSETS / "questionnaires", tmp_path / "content" / "questionnaires")
     return tmp_path / "content"
 
@@ -137,7 +135,7 @@ def test_with_a_list_for_problems_the_good_ones_are_served(content, tmp_path):
 
 def test_a_look_at_the_folder_is_good_for_as_long_as_patience_says(content, monkeypatch):
     now = [100.0]
-    monkeypatch.setattr(survey.questionnaire.files.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
     write(content, SMALL)
     folder = survey.QuestionnaireFolder(content, patience=0.2)
     write(content, SMALL.replace('"Small"', '"Smaller"'))
@@ -213,7 +211,7 @@ def test_an_edited_version_stays_readable_as_it_was_asked(content, tmp_path):
 @pytest.mark.parametrize("text", [f"a = {'9' * 5000}", "a = " + "[" * 5000 + "]" * 5000])
 def test_what_the_reader_cannot_hold_is_named_and_stays_named(content, text):
     write(content, text)
-    folder = survey.questionnaire.files.QuestionnaireFolder(content)
+    folder = survey.QuestionnaireFolder(content)
     for _ in range(2):
         assert "small.toml" in str(folder.problems[0])
     assert "garment" in folder

@@ -19,16 +19,13 @@ from survey_samples import ASSETS, given, likert_sample, submission
 
 from survey import Answer
 from survey.analysis import Settings, analyse
-from survey.analysis.procedure.json_summary import KEYS
+from survey.analysis.procedure import KEYS
 from survey.cli import main
-from survey.demonstration.recipe import with_moments
+from survey.demonstration import with_moments
 from survey.export import exported
-from survey.questionnaire.definition import Questionnaire
-from survey.questionnaire.files import read_questionnaire
+from survey.questionnaire import Questionnaire, read_questionnaire
 from survey.report import write_report
-from survey.scores.columns import no_items
-from survey.scores.csv_table import ScoreTable, read_scores
-from survey.scores.sources import stated_groups
+from survey.scores import ScoreTable, no_items, read_scores, stated_groups
 
 RECORDED = json.loads((Path(__file__).parent / "recorded" / "psych.json").read_text("utf-8"))
 BFI = RECORDED["data_sets"]["psych-bfi"]

@@ -18,15 +18,12 @@ from survey_samples import ASSETS
 
 import survey.report
 from survey.analysis import Settings, analyse, varimax
-from survey.analysis.procedure.profiles import profile
+from survey.analysis.procedure import profile
 from survey.cli import main
-from survey.questionnaire.files import read_questionnaire
-from survey.report import Part, build, write_report
-from survey.report.tables.csv_text import as_csv, matrix_csv
-from survey.report.tables.paper import rows
-from survey.report.tables.table import Table
-from survey.report.words import Words, coefficient
-from survey.scores.csv_table import ScoreTable
+from survey.questionnaire import read_questionnaire
+from survey.report import Part, Words, build, coefficient, write_report
+from survey.report.tables import Table, as_csv, matrix_csv, paper_rows
+from survey.scores import ScoreTable
 
 STATIC = ("static_overall", "static_drape")
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
@@ -120,7 +117,7 @@ def test_the_tables_hold_the_analysis_s_figures(folder):
 
 
 def test_the_page_beside_the_paper_computes_its_column():
-    found = {row.quantity[1]: row for row in rows(None)}
+    found = {row.quantity[1]: row for row in paper_rows(None)}
     assert found["Cumulative % of variance"].computed == "85.33"
     assert found["Degrees of freedom of Bartlett's test"].computed == "45"
     assert found["Bartlett's χ²"].computed.startswith("168.65")
@@ -243,7 +240,7 @@ def test_an_item_without_communality_stays_where_it_is():
 
 
 def test_the_form_s_settings_cannot_end_their_script_element():
-    from survey.web.form.page import form_page
+    from survey.web.form import form_page
 
     title = GARMENT.title.model_copy(update={"zh": "</script><b>x"})
     page = form_page(GARMENT.model_copy(update={"title": title}), "zh", "</script><img src=x>")

@@ -7,10 +7,9 @@ import pytest
 from survey_samples import ASSETS
 
 from survey.analysis import Settings, analyse
-from survey.questionnaire.files import read_questionnaire
+from survey.questionnaire import read_questionnaire
 from survey.report import Part, write_report
-from survey.scores.csv_table import ScoreTable
-from survey.scores.sources import sample_scores, stated_groups
+from survey.scores import ScoreTable, sample_scores, stated_groups
 
 pytestmark = pytest.mark.browser
 

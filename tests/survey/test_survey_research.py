@@ -16,10 +16,10 @@ from survey_samples import ASSETS, likert_sample, submission
 
 from survey import Answer
 from survey.analysis import Settings, analyse, summary
-from survey.analysis.procedure.json_summary import KEYS
+from survey.analysis.procedure import KEYS
 from survey.cli import main
 from survey.export import FORMATS
-from survey.scores.sources import stated_groups
+from survey.scores import stated_groups
 
 BASE = "/api/v1/questionnaires"
 GUARDED = ["rows", "suggestions", "analysis", *(f"export/{kind}" for kind in FORMATS)]

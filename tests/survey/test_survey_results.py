@@ -16,10 +16,10 @@ from sqlalchemy import event, text
 from survey_samples import submission
 
 from survey.errors import StoreError
-from survey.questionnaire.answer import Answer
+from survey.questionnaire import Answer
 from survey.store import migrations
 from survey.store.database import tables
-from survey.store.publication.disclosure import Figure
+from survey.store.publication import Figure
 
 URL = "/api/v1/questionnaires/garment/results"
 

@@ -10,25 +10,24 @@ import pytest
 from survey_samples import CHI2, KMO, TABLE_3, TABLE_3_ITEMS, given
 
 from survey.analysis import Settings, analyse
-from survey.demonstration import SAMPLES, sample_file
-from survey.demonstration.recipe import (
+from survey.demonstration import (
     ITEMS,
+    SAMPLES,
+    N,
     annealed_sample,
+    correlation_of_ten,
+    correlation_of_twelve,
+    deviations,
     drawn_opinions,
     drawn_sample,
     exact_sample,
     gappy,
+    kmo_of,
+    sample_file,
     solved_population,
     with_moments,
 )
-from survey.demonstration.table3 import (
-    N,
-    correlation_of_ten,
-    correlation_of_twelve,
-    deviations,
-    kmo_of,
-)
-from survey.scores.csv_table import read_scores
+from survey.scores import read_scores
 
 STATIC = ("static_overall", "static_drape")
 
@@ -130,7 +129,7 @@ def test_the_files_are_what_the_recipe_makes():
 
 MADE_ANEW = """
 import sys, numpy as np
-from survey.demonstration.recipe import drawn_opinions, exact_sample
+from survey.demonstration import drawn_opinions, exact_sample
 np.savez(sys.argv[1], exact=exact_sample(), drawn=drawn_opinions(200, 200))
 """
 

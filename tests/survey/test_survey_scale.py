@@ -14,10 +14,8 @@ from survey_samples import ASSETS, submission
 from survey.cli import main
 from survey.demonstration import SAMPLES, sample_file
 from survey.export import exported
-from survey.questionnaire.answer import Answer
-from survey.questionnaire.definition import UNSEEN
-from survey.questionnaire.files import read_questionnaire
-from survey.scores.csv_table import read_scores
+from survey.questionnaire import UNSEEN, Answer, read_questionnaire
+from survey.scores import read_scores
 from survey.store import Stored
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")

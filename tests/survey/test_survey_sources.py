@@ -12,7 +12,7 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, Store
 from survey.cli import main
-from survey.questionnaire.files import read_questionnaire
+from survey.questionnaire import read_questionnaire
 
 N = 60
 

@@ -39,11 +39,15 @@ from survey.analysis import (
     straight_liners,
     varimax,
 )
-from survey.analysis.components.extraction import Rotation
-from survey.analysis.components.oblique_rotation import quartimin_criterion
-from survey.analysis.components.orthogonal_rotation import STARTS, starts, varimax_criterion
-from survey.analysis.components.retention import random_correlations
-from survey.analysis.correlation.ordinal import binormal
+from survey.analysis.components import (
+    STARTS,
+    Rotation,
+    quartimin_criterion,
+    random_correlations,
+    starts,
+    varimax_criterion,
+)
+from survey.analysis.correlation import binormal
 
 STATIC = ("static_overall", "static_drape")
 PRINTED = "4.15 4.46 4.35 4.88 4.84 4.55 4.60 4.98 4.92 4.57 4.94 4.27 4.78".split()

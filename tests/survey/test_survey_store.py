@@ -15,11 +15,10 @@ from survey_samples import ASSETS, submission
 
 from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Receipt, Store, migrations
-from survey.store.commit.batch import now
-from survey.store.commit.writer import MOST, Writer
-from survey.store.database import schema, tables
+from survey.store.commit import BATCH_SIZE, Writer, now
+from survey.store.database import HEAD, tables
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 
@@ -51,7 +50,7 @@ def columns(file: Path) -> dict[str, set[tuple]]:
 
 def test_the_head_is_the_newest_migration():
     files = sorted((Path(migrations.__file__).parent / "versions").glob("0*.py"))
-    assert files[-1].name.partition("_")[0] == schema.HEAD
+    assert files[-1].name.partition("_")[0] == HEAD
 
 
 def test_a_store_of_the_first_version_is_upgraded_and_keeps_its_answers(tmp_path, store):
@@ -290,13 +289,13 @@ def test_a_transaction_is_never_longer_than_its_bound_and_keeps_the_order():
         return acknowledged(entries)
 
     writer = Writer(commit)
-    answers = [an_answer() for _ in range(MOST + 50)]
+    answers = [an_answer() for _ in range(BATCH_SIZE + 50)]
     futures = [writer.put((GARMENT, answer)) for answer in answers]
     gate.set()
     for future in futures:
         future.result(10)
     writer.close()
-    assert max(map(len, batches)) <= MOST
+    assert max(map(len, batches)) <= BATCH_SIZE
     assert [one for batch in batches for one in batch] == [answer.id for answer in answers]
 
 

@@ -14,7 +14,7 @@ from scipy.special import gammaln, ndtri
 
 from survey.analysis.checks import finite_scores
 from survey.analysis.errors import GroupTooSmall, NotFinite, UnknownGroup, WrongShape
-from survey.analysis.screening.preparation import Note, named
+from survey.analysis.screening import Note, named
 
 __all__ = ["LEAST", "Comparison", "Difference", "Effect", "compare", "holm"]
 

@@ -17,7 +17,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import chdtrc
 
 from survey.analysis.checks import finite_scores, require_independent
-from survey.analysis.correlation.pearson import correlate
+from survey.analysis.correlation import correlate
 from survey.analysis.errors import CrossCheckFailed, LoneItem, TooFewItems, TooFewRows
 
 __all__ = ["Adequacy", "Bartlett", "adequacy", "adequacy_by_factor_analyzer", "adequacy_of"]

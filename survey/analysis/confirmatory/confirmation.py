@@ -14,7 +14,7 @@ from survey.analysis.confirmatory.covariance_structure import Structure
 from survey.analysis.confirmatory.fit_indices import Fit
 from survey.analysis.confirmatory.measurement_model import Measurement
 from survey.analysis.confirmatory.modification_indices import Hint
-from survey.analysis.screening.preparation import Note
+from survey.analysis.screening import Note
 
 __all__ = ["LEVEL", "Confirmation", "Parameter", "Standard", "parameters_of", "standardised"]
 

@@ -20,7 +20,7 @@ from survey.analysis.confirmatory.maximum_likelihood import Likelihood, likeliho
 from survey.analysis.confirmatory.measurement_model import Measurement, require_identified
 from survey.analysis.confirmatory.weighted_least_squares import Weighted, weighted
 from survey.analysis.errors import GapsLeft, NotFinite, NotIdentified
-from survey.analysis.screening.preparation import Note, named
+from survey.analysis.screening import Note, named
 
 __all__ = ["Estimator", "Gaps", "confirm"]
 

@@ -13,7 +13,7 @@ from survey.analysis.confirmatory.fisher_scoring import scored, solved
 from survey.analysis.confirmatory.fit_indices import Fit, Tested, fit_of
 from survey.analysis.confirmatory.measurement_model import Measurement
 from survey.analysis.confirmatory.modification_indices import Hint, hints_of
-from survey.analysis.correlation.missing_data import Patterns, Saturated, misfit_of, patterns_of, saturated
+from survey.analysis.correlation import Patterns, Saturated, misfit_of, patterns_of, saturated
 
 __all__ = ["Likelihood", "likelihood"]
 

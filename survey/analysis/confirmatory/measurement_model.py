@@ -16,7 +16,7 @@ from itertools import combinations
 
 import numpy as np
 
-from survey.analysis.components.extraction import Components
+from survey.analysis.components import Components
 from survey.analysis.errors import BadModel, NotIdentified, TooFewItems, UnknownItem
 
 __all__ = ["Measurement", "explored", "parsed", "require_identified"]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from survey.analysis.correlation.ordinal import LIMIT, Ordered, binormal, density, ordered, solved_tables
+from survey.analysis.correlation import LIMIT, Ordered, binormal, density, ordered, solved_tables
 from survey.analysis.errors import DependentItems, TooFewRows
 
 __all__ = ["Polychorics", "polychorics"]

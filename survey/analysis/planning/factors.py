@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.components.extraction import eigenvalues, kaiser_count
-from survey.analysis.components.sampling_adequacy import adequacy_of
-from survey.analysis.correlation.pearson import correlate
+from survey.analysis.components import adequacy_of, eigenvalues, kaiser_count
+from survey.analysis.correlation import correlate
 from survey.analysis.errors import AnalysisError, OutOfReach
 
 __all__ = ["Recovery", "factor_recovery"]

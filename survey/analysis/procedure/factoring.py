@@ -9,27 +9,31 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.components.extraction import (
+from survey.analysis.components import (
+    Adequacy,
+    Average,
     Components,
+    Parallel,
     Rotation,
+    adequacy,
+    adequacy_of,
     eigenvalues,
     kaiser_count,
+    minimum_average_partial,
+    parallel_analysis,
     principal_components,
 )
-from survey.analysis.components.retention import Average, Parallel, minimum_average_partial, parallel_analysis
-from survey.analysis.components.sampling_adequacy import Adequacy, adequacy, adequacy_of
-from survey.analysis.consistency.cronbach import Reliability, reliability, reliability_of
-from survey.analysis.consistency.mcdonald import HEYWOOD, Omega, omega_of
-from survey.analysis.correlation.missing_data import correlate_likely
-from survey.analysis.correlation.ordinal import polychoric
-from survey.analysis.correlation.pearson import (
+from survey.analysis.consistency import HEYWOOD, Omega, Reliability, omega_of, reliability, reliability_of
+from survey.analysis.correlation import (
     Correlation,
     correlate,
+    correlate_likely,
     correlate_pairwise,
     covariance_pairwise,
+    polychoric,
 )
 from survey.analysis.errors import AnalysisError, GapsLeft, NoComponents
-from survey.analysis.screening.preparation import Note, Prepared, named
+from survey.analysis.screening import Note, Prepared, named
 
 __all__ = ["Factored", "Method", "correlation_of", "covariance_of", "factor", "step"]
 

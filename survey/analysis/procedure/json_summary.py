@@ -7,10 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from survey.analysis.components.extraction import Components
-from survey.analysis.components.resampling import Bootstrap
-from survey.analysis.components.retention import Average, Parallel
-from survey.analysis.components.sampling_adequacy import Adequacy
+from survey.analysis.components import Adequacy, Average, Bootstrap, Components, Parallel
 from survey.analysis.procedure.pipeline import Analysis
 from survey.analysis.procedure.scales import Scale
 

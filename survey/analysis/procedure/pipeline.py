@@ -10,28 +10,25 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from survey.analysis.components.extraction import Components, Rotation
-from survey.analysis.components.resampling import Bootstrap, bootstrap
-from survey.analysis.components.retention import Average, Parallel
-from survey.analysis.components.sampling_adequacy import Adequacy
-from survey.analysis.consistency.cronbach import Reliability
-from survey.analysis.consistency.mcdonald import Omega
-from survey.analysis.correlation.pearson import Correlation
+from survey.analysis.components import Adequacy, Average, Bootstrap, Components, Parallel, Rotation, bootstrap
+from survey.analysis.consistency import Omega, Reliability
+from survey.analysis.correlation import Correlation
 from survey.analysis.procedure.factoring import Factored, Method, correlation_of, covariance_of, factor, step
 from survey.analysis.procedure.scales import Group, Scale, grouped, running_against, scales_of
-from survey.analysis.screening.preparation import (
+from survey.analysis.screening import (
     Flags,
     Note,
     Prepared,
+    Turned,
     asking,
     flagged,
     left_out,
     likely_gaps,
     named,
+    off_scale,
     prepare,
+    turned,
 )
-from survey.analysis.screening.reverse_keying import Turned, turned
-from survey.analysis.screening.scale_range import off_scale
 
 __all__ = ["Analysis", "Missing", "Settings", "analyse"]
 

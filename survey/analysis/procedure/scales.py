@@ -12,12 +12,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.components.extraction import Components, homes
-from survey.analysis.consistency.cronbach import Reliability, reliability_of
-from survey.analysis.consistency.mcdonald import Omega, omega_of
-from survey.analysis.correlation.pearson import Correlation
+from survey.analysis.components import Components, homes
+from survey.analysis.consistency import Omega, Reliability, omega_of, reliability_of
+from survey.analysis.correlation import Correlation
 from survey.analysis.procedure.factoring import step
-from survey.analysis.screening.preparation import Note
+from survey.analysis.screening import Note
 
 __all__ = ["Group", "Kind", "Scale", "grouped", "running_against", "scales_of"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from survey.analysis.correlation.pearson import stars
+from survey.analysis.correlation import stars
 
 __all__ = ["printed"]
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from survey.analysis.screening.preparation import Note, named
-from survey.questionnaire.definition import UNSEEN
+from survey.questionnaire import UNSEEN
 
 __all__ = ["off_scale"]
 

@@ -15,10 +15,10 @@ from survey.commands.research.progress import counted
 from survey.commands.research.sources import ALL, add_sources, list_demonstrations, points_of, table_asked
 
 if TYPE_CHECKING:
-    from survey.analysis.errors import AnalysisError
-    from survey.analysis.procedure.pipeline import Analysis, Settings
-    from survey.report.chapters.chapter import Further
-    from survey.scores.csv_table import ScoreTable
+    from survey.analysis import AnalysisError
+    from survey.analysis.procedure import Analysis, Settings
+    from survey.report.chapters import Further
+    from survey.scores import ScoreTable
 
 __all__ = ["add"]
 
@@ -95,9 +95,8 @@ def add(commands) -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     # With --json an analysis that cannot be is told as {"error": …} as well.
-    from survey.analysis.errors import AnalysisError, TooFewRows
-    from survey.analysis.procedure.json_summary import descriptives, summary
-    from survey.analysis.procedure.text_summary import printed
+    from survey.analysis import AnalysisError, TooFewRows
+    from survey.analysis.procedure import descriptives, printed, summary
 
     if args.demo == ALL:
         return list_demonstrations()
@@ -129,7 +128,7 @@ def _run(args: argparse.Namespace) -> int:
 def _shows_the_way(args: argparse.Namespace) -> bool:
     """Whether a report is asked for of the stored answers to the questionnaire that the synthetic sample is of, and
     nothing in it that a sample has not."""
-    from survey.demonstration.indicators import questionnaire_id
+    from survey.demonstration import questionnaire_id
 
     stored = args.file is None and args.questionnaire == questionnaire_id()
     return stored and args.report is not None and args.compare is None
@@ -137,8 +136,8 @@ def _shows_the_way(args: argparse.Namespace) -> bool:
 
 def _report_of_the_sample(args: argparse.Namespace, error: AnalysisError) -> int:
     """Too few have answered: the report shows the way of the indicators all the same, and whose scores these are."""
-    from survey.demonstration.indicators import sample_name
-    from survey.scores.sources import sample_scores
+    from survey.demonstration import sample_name
+    from survey.scores import sample_scores
 
     problem = str(error).partition(" – ")[0]
     print(f"survey: {args.questionnaire}: {problem}; the report is of the synthetic sample {sample_name()}",
@@ -150,7 +149,7 @@ def _report_of_the_sample(args: argparse.Namespace, error: AnalysisError) -> int
 
 def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
     from survey.analysis import analyse
-    from survey.scores.sources import stated_groups
+    from survey.scores import stated_groups
 
     settings = _settings(args, table)
     run = partial(
@@ -172,7 +171,7 @@ def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
 
 def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysis, beyond: Beyond) -> None:
     from survey.report import Part, write_report
-    from survey.scores.sources import other_roles
+    from survey.scores import other_roles
 
     beside = []
     if args.file is None and table.questionnaire is not None and table.questionnaire.dimensions:
@@ -183,8 +182,8 @@ def _write_report(args: argparse.Namespace, table: ScoreTable, analysis: Analysi
 
 
 def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:
-    from survey.analysis.procedure.pipeline import Settings
-    from survey.scores.sources import dropped, reverse_keyed
+    from survey.analysis.procedure import Settings
+    from survey.scores import dropped, reverse_keyed
 
     return Settings(
         drop=dropped(args.drop, table.questionnaire),
@@ -201,14 +200,12 @@ def _settings(args: argparse.Namespace, table: ScoreTable) -> Settings:
 
 def _beyond(args: argparse.Namespace, table: ScoreTable) -> Beyond:
     """--confirm and --compare, where they are asked for. Raises what `confirm` and `compare` raise."""
-    from survey.analysis.comparison.summary import comparison_printed, comparison_summary
-    from survey.analysis.confirmatory import confirmation_summary
-    from survey.analysis.confirmatory.summary import confirmation_printed
+    from survey.analysis.comparison import comparison_printed, comparison_summary
+    from survey.analysis.confirmatory import confirmation_printed, confirmation_summary
     from survey.commands.research.compare import compared
     from survey.commands.research.confirm import confirmed
     from survey.commands.research.sources import turned_source
-    from survey.report.chapters.comparison import comparison_chapter
-    from survey.report.chapters.confirmation import confirmation_chapter
+    from survey.report.chapters import comparison_chapter, confirmation_chapter
 
     summary: dict[str, Any] = {}
     printed, chapters = [], []

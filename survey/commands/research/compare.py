@@ -20,10 +20,10 @@ from survey.commands.research.sources import (
 )
 
 if TYPE_CHECKING:
-    from survey.analysis.comparison.differences import Comparison
-    from survey.analysis.screening.preparation import Note
-    from survey.questionnaire.definition import Text
-    from survey.scores.csv_table import ScoreTable
+    from survey.analysis.comparison import Comparison
+    from survey.analysis.screening import Note
+    from survey.questionnaire import Text
+    from survey.scores import ScoreTable
 
 __all__ = ["Compared", "add", "compared"]
 
@@ -76,7 +76,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.analysis.comparison.summary import comparison_printed, comparison_summary
+    from survey.analysis.comparison import comparison_printed, comparison_summary
 
     if args.demo == ALL:
         return list_demonstrations()
@@ -109,8 +109,8 @@ def compared(
 
     by: "language", "exhibit", "role" or a column of args.file.
     """
-    from survey.analysis.comparison.differences import compare
-    from survey.scores.sources import dropped
+    from survey.analysis.comparison import compare
+    from survey.scores import dropped
 
     _require_labels(args, by)
     if args.file is None and by == "role":
@@ -125,7 +125,7 @@ def compared(
 
 
 def _labels(table: ScoreTable, args: argparse.Namespace, by: str) -> Sequence[str]:
-    from survey.scores.csv_table import read_column
+    from survey.scores import read_column
 
     return table.labels[by] if args.file is None else read_column(args.file, by)
 
@@ -140,9 +140,9 @@ def _without(table: ScoreTable, column: str) -> ScoreTable:
 
 def _roles_compared(own: ScoreTable, args: argparse.Namespace, groups: tuple[str, str] | None) -> Compared:
     """Answers to a questionnaire with dimensions and to the other one: each answer's mean of every dimension."""
-    from survey.analysis.comparison.differences import compare
+    from survey.analysis.comparison import compare
     from survey.errors import SurveyError
-    from survey.scores.sources import dropped, other_roles
+    from survey.scores import dropped, other_roles
 
     asked = own.questionnaire
     if asked is None or not asked.dimensions:

@@ -20,8 +20,8 @@ from survey.commands.research.sources import (
 
 if TYPE_CHECKING:
     from survey.analysis.confirmatory import Confirmation, Gaps, Measurement
-    from survey.analysis.screening.preparation import Note
-    from survey.scores.csv_table import ScoreTable
+    from survey.analysis.screening import Note
+    from survey.scores import ScoreTable
 
 __all__ = ["add", "confirmed"]
 
@@ -65,8 +65,7 @@ def add(commands) -> argparse.ArgumentParser:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.analysis.confirmatory import confirmation_summary
-    from survey.analysis.confirmatory.summary import confirmation_printed
+    from survey.analysis.confirmatory import confirmation_printed, confirmation_summary
 
     if args.demo == ALL:
         return list_demonstrations()
@@ -87,7 +86,7 @@ def confirmed(
 ) -> Confirmation:
     """A confirmatory analysis as the arguments ask for it. model: "modules", "explored", or a text."""
     from survey.analysis.confirmatory import confirm
-    from survey.scores.sources import dropped
+    from survey.scores import dropped
 
     table = source.table
     measured = _model_asked(table, model, dropped(args.drop, table.questionnaire))
@@ -106,9 +105,8 @@ def confirmed(
 
 def _model_asked(table: ScoreTable, model: str, drop: tuple[str, ...]) -> Measurement:
     """The measurement model: the questionnaire's modules, what an exploratory analysis finds, or a text."""
-    from survey.analysis import Settings, analyse
+    from survey.analysis import BadModel, NoComponents, Settings, analyse
     from survey.analysis.confirmatory import Measurement, explored, parsed
-    from survey.analysis.errors import BadModel, NoComponents
 
     if model == "explored":
         found = analyse(table.scores, table.items, settings=Settings(drop=drop, draws=0))
@@ -131,7 +129,7 @@ def _model_asked(table: ScoreTable, model: str, drop: tuple[str, ...]) -> Measur
 
 
 def _same_answers(model: str) -> tuple[Note, ...]:
-    from survey.analysis.screening.preparation import Note
+    from survey.analysis.screening import Note
 
     if model != "explored":
         return ()

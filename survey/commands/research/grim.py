@@ -29,7 +29,7 @@ def add(commands) -> argparse.ArgumentParser:
 
 def _run(args: argparse.Namespace) -> int:
     # Exit status 0 also where a mean is impossible: the question was answered.
-    from survey.analysis.granularity import grim, least_n
+    from survey.analysis import grim, least_n
 
     possible = {mean: grim(mean, args.n, items=args.items) for mean in args.means}
     least = least_n(args.means, items=args.items)

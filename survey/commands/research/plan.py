@@ -224,7 +224,7 @@ def _factors(args: argparse.Namespace) -> Told:
     import numpy as np
 
     from survey.analysis.planning import factor_recovery
-    from survey.demonstration.table3 import TABLE_3, correlation_of_ten
+    from survey.demonstration import TABLE_3, correlation_of_ten
 
     root = np.linalg.cholesky(correlation_of_ten()).T
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from survey.commands.options import add_content, add_store, positive, where
 
 if TYPE_CHECKING:
-    from survey.analysis.screening.preparation import Note
-    from survey.scores.csv_table import ScoreTable
+    from survey.analysis.screening import Note
+    from survey.scores import ScoreTable
 
 __all__ = [
     "ALL",
@@ -76,8 +76,7 @@ def table_asked(args: argparse.Namespace, *, texts: bool = False, labels: bool =
 
     What else there is, such as other versions, is told on standard error. texts, labels: as `load_scores` has them.
     """
-    from survey.scores.columns import Choice
-    from survey.scores.sources import listed, load_scores
+    from survey.scores import Choice, listed, load_scores
 
     if args.file is None and args.questionnaire is None and args.demo is None:
         args.parser.error("name a FILE.csv, or a --questionnaire of the stored answers, or a --demo")
@@ -104,7 +103,7 @@ def list_demonstrations() -> int:
 
 def _demonstration(args: argparse.Namespace) -> ScoreTable:
     from survey.demonstration import SAMPLES
-    from survey.scores.sources import sample_scores
+    from survey.scores import sample_scores
 
     if args.file is not None:
         args.parser.error("give a FILE.csv or a --demo, not both")
@@ -124,9 +123,8 @@ def turned_source(table: ScoreTable, args: argparse.Namespace, reverse: str | No
 
     reverse: instead of what the arguments say. Raises UnknownItem.
     """
-    from survey.analysis.screening.preparation import left_out
-    from survey.analysis.screening.reverse_keying import turned_table
-    from survey.scores.sources import dropped, reverse_keyed
+    from survey.analysis.screening import left_out, turned_table
+    from survey.scores import dropped, reverse_keyed
 
     points = points_of(table, args)
     notes = left_out(table.aside)
@@ -138,7 +136,7 @@ def turned_source(table: ScoreTable, args: argparse.Namespace, reverse: str | No
 
 def told(args: argparse.Namespace, work: Callable[[], tuple[dict[str, Any], str]]) -> int:
     """Print what the work gives, as JSON or as text; an analysis that cannot be is told as {"error": …} as well."""
-    from survey.analysis.errors import AnalysisError
+    from survey.analysis import AnalysisError
 
     try:
         found, text = work()

@@ -15,7 +15,7 @@ from survey.commands.options import add_content, add_store, declare, positive, w
 from survey.errors import SurveyError
 
 if TYPE_CHECKING:
-    from survey.questionnaire.definition import Questionnaire
+    from survey.questionnaire import Questionnaire
     from survey.store import Store
 
 __all__ = ["add"]
@@ -64,7 +64,7 @@ def _k(text: str) -> int:
 
 def _run(args: argparse.Namespace) -> int:
     from survey.errors import room_in
-    from survey.scores.sources import open_stored
+    from survey.scores import open_stored
 
     ending = "" if args.out is None else args.out.suffix.lower().lstrip(".")
     kind = args.format or (ending if ending in FORMATS else "csv")
@@ -92,10 +92,9 @@ def _make(
     args: argparse.Namespace, kind: str, asked: Questionnaire, store: Store, made: BinaryIO
 ) -> tuple[int, tuple[str, str]]:
     """Write the file; how many answers are in it, and what to say of it."""
-    from survey.export import put
-    from survey.export.sheet import stored_sheet
-    from survey.scores.sources import other_versions
-    from survey.store.answers.archive import Archive
+    from survey.export import put, stored_sheet
+    from survey.scores import other_versions
+    from survey.store.answers import Archive
 
     with Archive(where(args)).snapshot() as connection, tempfile.TemporaryDirectory() as folder:
         sheet = stored_sheet(connection, asked, args.k, kind)
@@ -111,7 +110,7 @@ def _beside(made: BinaryIO, out: Path | None) -> Path | None:
     """The finished file beside where it is to be: a full disk leaves there what was there. None: no such place."""
     if out is None or _is_no_file(out):
         return None
-    from survey.store.database.permissions import take_rights
+    from survey.store.database import take_rights
 
     part = None
     try:

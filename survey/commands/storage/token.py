@@ -53,8 +53,7 @@ def _days(text: str) -> int:
 
 
 def _run(args: argparse.Namespace) -> int:
-    from survey.store import Store
-    from survey.store.tokens import DAYS
+    from survey.store import TOKEN_DAYS, Store
 
     # A token may come before the first answer; a list of them, or an end to one, may not.
     new = not args.list and args.revoke is None
@@ -68,7 +67,7 @@ def _run(args: argparse.Namespace) -> int:
             for token in store.tokens.all():
                 print("\t".join(_told(token, today)))
         elif args.revoke is None:
-            days = None if args.never else args.days or DAYS
+            days = None if args.never else args.days or TOKEN_DAYS
             print(store.tokens.make(args.label, questionnaire=args.questionnaire, days=days))
         elif store.tokens.revoke(args.revoke):
             print(f"token {args.revoke} is revoked")
@@ -79,7 +78,7 @@ def _run(args: argparse.Namespace) -> int:
 
 def _see_that_there_is(args: argparse.Namespace) -> None:
     """A misspelt one would be noticed by the researcher only. It may have left the content and still have answers."""
-    from survey.questionnaire.files import find_questionnaire_file
+    from survey.questionnaire import find_questionnaire_file
     from survey.store import Store
     from survey.store.database import tables
 

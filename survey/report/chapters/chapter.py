@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from survey.report.tables.table import Table
+from survey.report.tables import Table
 from survey.report.words import Words
 
 __all__ = ["Chapter", "Drawing", "Further"]

@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 
-from survey.analysis.comparison.differences import Comparison, Difference, Effect
-from survey.questionnaire.definition import Text
+from survey.analysis.comparison import Comparison, Difference, Effect
+from survey.questionnaire import Text
 from survey.report.chapters.chapter import Chapter, Drawing
-from survey.report.figures.forest_plot import intervals
-from survey.report.tables.table import Table
+from survey.report.figures import intervals
+from survey.report.tables import Table
 from survey.report.words import Words, decimal, probability, whole
 
 __all__ = ["comparison_chapter"]

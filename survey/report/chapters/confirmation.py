@@ -8,8 +8,8 @@ import numpy as np
 
 from survey.analysis.confirmatory import Confirmation, Fit, Parameter
 from survey.report.chapters.chapter import Chapter, Drawing
-from survey.report.figures.forest_plot import intervals
-from survey.report.tables.table import Table
+from survey.report.figures import intervals
+from survey.report.tables import Table
 from survey.report.words import Words, coefficient, decimal, probability, whole
 
 __all__ = ["confirmation_chapter"]

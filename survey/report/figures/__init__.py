@@ -1,4 +1,4 @@
-"""The report's figures as SVG: how every one is drawn, then one module a kind of figure."""
+"""The report's figures as SVG: how every one is drawn (`svg`), then one module a kind of figure."""
 
 from survey.report.figures.correlation_matrix import correlations
 from survey.report.figures.flow_chart import flow

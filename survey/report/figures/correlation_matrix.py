@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.analysis.correlation.pearson import stars
+from survey.analysis.correlation import stars
 from survey.report.figures.svg import BLUE, INK, QUIET, RED, WIDTH, figure_of, style, svg_of
 
 __all__ = ["correlations"]

@@ -20,7 +20,7 @@ from survey.report.figures.svg import (
     style,
     svg_of,
 )
-from survey.report.tables.table import MANY
+from survey.report.tables import MANY
 
 __all__ = ["lines", "loadings", "scatter_matrix", "scree"]
 

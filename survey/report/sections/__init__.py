@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.report.sections.article import Article, Part
 from survey.report.sections.closing import further, method, notes
 from survey.report.sections.components import loadings, retention, variance

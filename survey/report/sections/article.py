@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from html import escape
 
 from survey.analysis import Analysis
-from survey.questionnaire.definition import Language, Questionnaire
-from survey.report.chapters.chapter import Further
+from survey.questionnaire import Language, Questionnaire
+from survey.report.chapters import Further
 from survey.report.sections.headline import component_names, head
-from survey.report.tables.csv_text import as_csv
-from survey.report.tables.table import Table, as_html, tables_of
+from survey.report.tables import Table, as_csv, as_html, tables_of
 from survey.report.words import Words
-from survey.scores.csv_table import ScoreTable
+from survey.scores import ScoreTable
 
 __all__ = ["Article", "Part"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from survey.report.chapters.chapter import Drawing
+from survey.report.chapters import Drawing
 from survey.report.sections.article import Article
-from survey.report.tables.table import Table
+from survey.report.tables import Table
 
 __all__ = ["further", "method", "notes"]
 

@@ -7,7 +7,7 @@ from html import escape
 
 from survey.report import figures
 from survey.report.sections.article import Article
-from survey.report.tables.table import MANY
+from survey.report.tables import MANY
 
 __all__ = ["loadings", "retention", "variance"]
 

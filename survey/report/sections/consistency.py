@@ -7,7 +7,7 @@ from html import escape
 
 from survey.analysis import Scale
 from survey.report.sections.article import Article
-from survey.report.tables.table import Table
+from survey.report.tables import Table
 from survey.report.words import coefficient
 
 __all__ = ["reliability"]

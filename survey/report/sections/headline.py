@@ -5,10 +5,10 @@ from __future__ import annotations
 from html import escape
 
 from survey.analysis import Analysis
-from survey.analysis.components.extraction import proposed_modules
-from survey.questionnaire.definition import Questionnaire
+from survey.analysis.components import proposed_modules
+from survey.questionnaire import Questionnaire
 from survey.report.words import Words, coefficient, whole
-from survey.scores.csv_table import ScoreTable
+from survey.scores import ScoreTable
 
 __all__ = ["component_names", "head", "key_figures"]
 

@@ -7,7 +7,7 @@ from html import escape
 
 from survey.report import figures
 from survey.report.sections.article import Article
-from survey.report.tables.csv_text import matrix_csv
+from survey.report.tables import matrix_csv
 from survey.report.words import coefficient, decimal, probability
 
 __all__ = ["adequacy", "correlation", "items"]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
-from survey.analysis.procedure.profiles import Profile, profile
-from survey.questionnaire.definition import Language
+from survey.analysis.procedure import Profile, profile
+from survey.questionnaire import Language
 from survey.report import figures
 from survey.report.sections.article import Article, Part
-from survey.report.tables.table import Table
+from survey.report.tables import Table
 from survey.report.words import Words, decimal
-from survey.scores.csv_table import ScoreTable
+from survey.scores import ScoreTable
 
 __all__ = ["platform", "suggestions", "written_by_module"]
 

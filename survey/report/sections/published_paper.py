@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 
-from survey.demonstration.indicators import intermediate, questionnaire_id, sample_name
-from survey.report.figures.flow_chart import flow
+from survey.demonstration import intermediate, questionnaire_id, sample_name
+from survey.report.figures import flow
 from survey.report.indicators import Way, evidence, way_of
 from survey.report.sections.article import Article
-from survey.report.tables.paper import paper_table
-from survey.report.tables.table import Table
+from survey.report.tables import Table, paper_table
 from survey.report.words import Words, coefficient, whole
 
 __all__ = ["paper", "way"]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from survey.export.cells import safe_cell
+from survey.export import safe_cell
 from survey.report.tables.table import Table
 
 __all__ = ["as_csv", "matrix_csv"]

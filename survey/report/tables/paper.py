@@ -8,11 +8,11 @@ import numpy as np
 from scipy.special import stdtrit
 
 from survey.analysis import Analysis, adequacy_of, grim, least_n, varimax
-from survey.demonstration.table3 import TABLE_3, N
+from survey.demonstration import TABLE_3, N
 from survey.report.tables.table import Table
 from survey.report.words import Words
 
-__all__ = ["MEANS", "Row", "paper_table", "rows"]
+__all__ = ["MEANS", "Row", "paper_rows", "paper_table"]
 
 # The thirteen means of III.C as printed.
 MEANS = "4.15 4.46 4.35 4.88 4.84 4.55 4.60 4.98 4.92 4.57 4.94 4.27 4.78".split()
@@ -32,7 +32,7 @@ class Row:
     verdict: tuple[str, str]
 
 
-def rows(analysis: Analysis | None) -> list[Row]:
+def paper_rows(analysis: Analysis | None) -> list[Row]:
     """Every row computed now. analysis: yours, where it is of the same ten items' kind; None leaves the column "–"."""
     return [
         *_eigenvalue_rows(analysis),
@@ -46,7 +46,7 @@ def paper_table(analysis: Analysis | None, say: Words) -> Table:
     """The rows in one language."""
     body = tuple(
         (say.either(row.quantity), row.printed, row.computed, row.yours, say.either(row.verdict))
-        for row in rows(analysis)
+        for row in paper_rows(analysis)
     )
     head = (say("quantity"), say("printed"), say("computed"), say("yours"), say("verdict"))
     return Table("paper", say("section_paper"), head, body, left=5, rules=frozenset(range(1, len(body))))

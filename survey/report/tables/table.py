@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from html import escape
 
 from survey.analysis import Analysis
-from survey.analysis.components.extraction import kaiser_count
+from survey.analysis.components import kaiser_count
 from survey.report.words import Words, coefficient, decimal
 
 __all__ = ["MANY", "Table", "as_html", "tables_of"]

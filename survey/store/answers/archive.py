@@ -11,8 +11,7 @@ from sqlalchemy import Connection, Engine, create_engine
 from sqlalchemy.pool import NullPool
 
 from survey.errors import StoreError
-from survey.store.database import tables
-from survey.store.database.place import explained
+from survey.store.database import explained, tables
 
 __all__ = ["Archive"]
 

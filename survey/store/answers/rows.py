@@ -8,8 +8,7 @@ from datetime import UTC, datetime
 from sqlalchemy import ColumnElement, Connection, Table, select
 
 from survey.errors import AnswerError
-from survey.questionnaire.answer import Answer
-from survey.questionnaire.definition import Language, Questionnaire
+from survey.questionnaire import Answer, Language, Questionnaire
 from survey.store.database import tables
 
 __all__ = ["WITHDRAWN", "Stored", "given_answer", "standing", "stored_rows"]

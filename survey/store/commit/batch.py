@@ -11,9 +11,8 @@ from sqlalchemy import Connection, Table, select
 from sqlalchemy.dialects import postgresql, sqlite
 
 from survey.errors import AnswerError
-from survey.questionnaire.answer import Answer
-from survey.questionnaire.definition import Questionnaire
-from survey.store.answers.rows import WITHDRAWN
+from survey.questionnaire import Answer, Questionnaire
+from survey.store.answers import WITHDRAWN
 from survey.store.database import tables
 
 __all__ = ["Entry", "Receipt", "commit_batch", "freeze_version", "insert_new", "now"]

@@ -10,9 +10,9 @@ from concurrent.futures import Future
 from survey.errors import AnswerError, StoreError
 from survey.store.commit.batch import Entry, Receipt
 
-__all__ = ["MOST", "Writer"]
+__all__ = ["BATCH_SIZE", "Writer"]
 
-MOST = 200  # entries of one transaction: bounds how long the first of them waits
+BATCH_SIZE = 200  # entries of one transaction: bounds how long the first of them waits
 
 Commit = Callable[[Sequence[Entry]], list[Receipt | AnswerError]]
 
@@ -59,13 +59,13 @@ class Writer:
                 return
 
     def _next(self) -> tuple[list[tuple[Entry, Future[Receipt]]], bool]:
-        """What waits now, at least one and at most MOST; and whether the end was asked for."""
+        """What waits now, at least one and at most BATCH_SIZE; and whether the end was asked for."""
         batch: list[tuple[Entry, Future[Receipt]]] = []
         try:
             found = self._waiting.get()
             while found is not None:
                 batch.append(found)
-                if len(batch) == MOST:
+                if len(batch) == BATCH_SIZE:
                     return batch, False
                 found = self._waiting.get_nowait()
         except queue.Empty:

@@ -1,1 +1,13 @@
-"""x"""
+"""The database itself: `tables` and how it is opened, `schema` and its upgrades, its `place` on the disk, `backup`.
+
+`permissions` sees that what is written is its owner's alone; `tables` is handed out as a whole: `tables.answer`, …
+"""
+
+from survey.store.database import tables
+from survey.store.database.backup import write_copy
+from survey.store.database.permissions import make_private, take_rights
+from survey.store.database.place import Place, explained
+from survey.store.database.schema import HEAD
+from survey.store.database.tables import open_engine
+
+__all__ = ["HEAD", "Place", "explained", "make_private", "open_engine", "tables", "take_rights", "write_copy"]

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from sqlalchemy import Connection, delete, select
 
-from survey.store.commit.batch import now
+from survey.store.commit import now
 from survey.store.database import tables
 from survey.store.erasure.leftovers import Erased, everything, left_over
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["Erased", "erased_answer", "everything", "left_over"]
+__all__ = ["BLOCK", "Erased", "erased_answer", "everything", "left_over"]
 
 BLOCK = 1 << 20  # bytes read at a time …
 OVERLAP = 512  # … and how many of them again with the next, more than anything that is looked for

@@ -8,10 +8,10 @@ from datetime import date
 from sqlalchemy import ColumnElement, Connection, delete, func, select, update
 
 from survey.errors import AnswerError
-from survey.questionnaire.definition import Questionnaire
-from survey.store.answers.rows import standing
+from survey.questionnaire import Questionnaire
+from survey.store.answers import standing
 from survey.store.audit import in_utc, note_withdrawal
-from survey.store.commit.batch import now
+from survey.store.commit import now
 from survey.store.database import tables
 from survey.store.erasure.eraser import add_trace
 from survey.store.erasure.leftovers import Erased, erased_answer

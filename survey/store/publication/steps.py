@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from sqlalchemy import Connection, delete, func, select, update
 
 from survey.errors import StoreError
-from survey.questionnaire.definition import Questionnaire
-from survey.store.answers.rows import standing
-from survey.store.commit.batch import insert_new
+from survey.questionnaire import Questionnaire
+from survey.store.answers import standing
+from survey.store.commit import insert_new
 from survey.store.database import tables
 from survey.store.publication.disclosure import STEP, Figure, Scores, Shown, moved_on
 

@@ -1,7 +1,12 @@
-"""The questionnaire's HTTP interface."""
+"""The questionnaire's HTTP interface.
 
-from survey.web.api.jobs import Jobs
+`routes` gathers what is read, submitted (`submission`) and handed to researchers (`research`). `lookup` finds the
+version that is meant, `guard` admits by token, `rate_limit` counts addresses, `body` reads and `replies` answers;
+`schema` is what a submission must look like, `results` what everybody sees, and `jobs` run in processes of their own.
+"""
+
+from survey.web.api.jobs import JOBS_AT_WORK, JOBS_OPEN, Jobs, Run
 from survey.web.api.rate_limit import Limit
 from survey.web.api.routes import router
 
-__all__ = ["Jobs", "Limit", "router"]
+__all__ = ["JOBS_AT_WORK", "JOBS_OPEN", "Jobs", "Limit", "Run", "router"]

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from fastapi import Request
 
 from survey.errors import AnswerError
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Store
 
 __all__ = ["journal", "token_guard"]

@@ -22,10 +22,10 @@ from fastapi.responses import StreamingResponse
 
 from survey.errors import AnswerError, StoreError, room_in
 
-__all__ = ["MOST", "MOST_OPEN", "Jobs"]
+__all__ = ["JOBS_AT_WORK", "JOBS_OPEN", "Jobs", "Run"]
 
-MOST = 2  # processes at a time
-MOST_OPEN = (
+JOBS_AT_WORK = 2  # processes at a time
+JOBS_OPEN = (
     8  # files that somebody is still fetching, or that are being made: each takes its size on the disk
 )
 RETRY_SECONDS = 5
@@ -41,9 +41,9 @@ class Jobs:
     neither a process nor the database. It ends with whoever hangs up, with close(), and with this process.
     """
 
-    def __init__(self, where: Path | str, *, most: int = MOST) -> None:
+    def __init__(self, where: Path | str, *, most: int = JOBS_AT_WORK) -> None:
         self._where = where
-        self._running: set[_Run] = set()
+        self._running: set[Run] = set()
         self._open: weakref.WeakSet[BinaryIO] = weakref.WeakSet()
         self._threads = ThreadPoolExecutor(most, "survey-job")
 
@@ -60,12 +60,12 @@ class Jobs:
         noted: called once it is made; where that raises, nothing is handed out. Raises AnswerError: 503 where too many
         are at work, else what the job refuses; StoreError.
         """
-        if sum(not body.closed for body in self._open) >= MOST_OPEN:
-            problem = f"{MOST_OPEN} exports and analyses are under way"
+        if sum(not body.closed for body in self._open) >= JOBS_OPEN:
+            problem = f"{JOBS_OPEN} exports and analyses are under way"
             remedy = f"send the same again in {RETRY_SECONDS} s"
             raise AnswerError("", problem, remedy, status=503, wait=RETRY_SECONDS)
         with room_in(tempfile.gettempdir()):
-            run = _Run(_store(self._where) | dict(job))
+            run = Run(_store(self._where) | dict(job))
         self._running.add(run)
         self._open.add(run.body)
         try:
@@ -84,7 +84,7 @@ class Jobs:
             _parts(run.body), media_type=media_type, headers={**headers, **told, **sizes}
         )
 
-    async def _finished(self, request: Request, run: _Run) -> dict[str, str]:
+    async def _finished(self, request: Request, run: Run) -> dict[str, str]:
         """What the run says at its end; where the client hangs up before, the run is over."""
         done = asyncio.get_running_loop().run_in_executor(self._threads, run.through)
         # Where the request itself was ended nobody is left to hear what became of it.
@@ -107,7 +107,7 @@ class Jobs:
             run.end()
 
 
-class _Run:
+class Run:
     """One process. body: what it makes, a file without a name, readable by nobody else."""
 
     def __init__(self, job: dict[str, Any]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from survey.errors import AnswerError
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Store
 
 __all__ = ["Questionnaires", "find_questionnaire", "find_version"]

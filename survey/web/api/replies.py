@@ -12,8 +12,7 @@ from fastapi.routing import APIRoute
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire.answer import TEXT_LIMIT
-from survey.questionnaire.keys import SLUG
+from survey.questionnaire import SLUG, TEXT_LIMIT
 from survey.web.api.schema import NO_CODE, UUID_PATTERN
 
 __all__ = ["ExplainingRoute", "PlainRoute", "Receipt", "Refusal", "Submission", "Withdrawal", "refused"]

@@ -11,7 +11,7 @@ from fastapi.security import HTTPBearer
 from pydantic import BaseModel, ConfigDict, Field
 
 from survey.export import file_name
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Store
 from survey.web.api.guard import journal, token_guard
 from survey.web.api.jobs import Jobs

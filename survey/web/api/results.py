@@ -7,9 +7,9 @@ from fractions import Fraction
 from math import floor
 from typing import Any
 
-from survey.questionnaire.definition import Questionnaire, Text
+from survey.questionnaire import Questionnaire, Text
 from survey.store import Public
-from survey.store.publication.disclosure import STEP, Figure, Reason, Shown
+from survey.store.publication import STEP, Figure, Reason, Shown
 
 __all__ = ["LEAST", "public_results"]
 

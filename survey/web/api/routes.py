@@ -6,7 +6,7 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from survey.questionnaire.definition import Offers, Questionnaire
+from survey.questionnaire import Offers, Questionnaire
 from survey.store import Store
 from survey.web.api.jobs import Jobs
 from survey.web.api.lookup import Questionnaires, find_questionnaire

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from survey.questionnaire.answer import TEXT_LIMIT
-from survey.questionnaire.definition import LANGUAGES, Questionnaire
-from survey.questionnaire.keys import SLUG
+from survey.questionnaire import LANGUAGES, SLUG, TEXT_LIMIT, Questionnaire
 
 __all__ = ["NO_CODE", "UUID_PATTERN", "submission_schema"]
 

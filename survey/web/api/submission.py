@@ -11,8 +11,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 
 from survey.errors import AnswerError, StoreError
-from survey.questionnaire.answer import Answer, submission_id
-from survey.questionnaire.definition import Offers, Questionnaire
+from survey.questionnaire import Answer, Offers, Questionnaire, submission_id
 from survey.store import PATIENCE, Store
 from survey.store import Receipt as Committed
 from survey.web.api.body import read_json

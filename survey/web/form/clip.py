@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
 
-from survey.questionnaire.definition import Language, Module
+from survey.questionnaire import Language, Module
 
 __all__ = ["MOTION", "Clip", "ClipOf", "clip_html"]
 

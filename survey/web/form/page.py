@@ -11,8 +11,7 @@ from html import escape
 from pathlib import Path
 from typing import Literal
 
-from survey.questionnaire.answer import TEXT_LIMIT
-from survey.questionnaire.definition import Item, Language, Module, Questionnaire, Text
+from survey.questionnaire import TEXT_LIMIT, Item, Language, Module, Questionnaire, Text
 from survey.web.form.clip import Clip, clip_html
 
 __all__ = ["ASSETS", "Home", "document", "form_page", "heading", "list_page", "notice_page", "words"]

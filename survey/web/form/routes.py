@@ -10,8 +10,7 @@ from fastapi.responses import HTMLResponse, Response
 from fastapi.routing import APIRoute
 
 from survey.errors import StoreError
-from survey.questionnaire.definition import LANGUAGES, Language, Offers, Questionnaire
-from survey.questionnaire.keys import is_slug
+from survey.questionnaire import LANGUAGES, Language, Offers, Questionnaire, is_slug
 from survey.web.form.clip import ClipOf
 from survey.web.form.page import ASSETS, FOLDER, Home, form_page, list_page, notice_page
 
@@ -49,7 +48,9 @@ class PageRoute(APIRoute):
                     request.headers.get("accept-language", ""),
                 )
                 headers = HEADERS | {"Retry-After": str(RETRY_SECONDS)}
-                return HTMLResponse(notice_page("unavailable", chosen_language(asked, preferred)), 503, headers)
+                return HTMLResponse(
+                    notice_page("unavailable", chosen_language(asked, preferred)), 503, headers
+                )
 
         return showing
 

@@ -10,12 +10,11 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
 from survey.errors import Problem
-from survey.questionnaire.definition import Text
-from survey.questionnaire.files import problem_of
+from survey.questionnaire import Text, problem_of
 
-__all__ = ["FILE", "Controller", "Statement", "read_controller"]
+__all__ = ["CONTROLLER_FILE", "Controller", "Statement", "read_controller"]
 
-FILE = "controller.toml"
+CONTROLLER_FILE = "controller.toml"
 
 Mail = Annotated[str, StringConstraints(strip_whitespace=True, pattern=r"^[^@\s<>]{1,64}@[^@\s<>]{1,255}$")]
 
@@ -79,24 +78,26 @@ class Statement:
 
 def read_controller(content: Path) -> Statement:
     """What the content folder says; what was left blank in it is not stated."""
-    path = content / FILE
+    path = content / CONTROLLER_FILE
     if not path.is_file():
         what, fix = (
             "missing: the privacy page cannot say who answers for the survey",
             "write it (its form: README.md)",
         )
-        return Statement(Controller(), gaps=(Problem(FILE, "", what, fix),))
+        return Statement(Controller(), gaps=(Problem(CONTROLLER_FILE, "", what, fix),))
     try:
         found = Controller.model_validate(_filled(tomllib.loads(path.read_text("utf-8-sig"))))
     except ValidationError as error:
-        return Statement(Controller(), tuple(problem_of(FILE, entry) for entry in error.errors()))
+        return Statement(Controller(), tuple(problem_of(CONTROLLER_FILE, entry) for entry in error.errors()))
     except (OSError, ValueError, RecursionError) as error:  # unreadable, no UTF-8, no TOML
         what = f"cannot be read ({' '.join(str(error).split())[:120]})"
-        return Statement(Controller(), (Problem(FILE, "", what, "mend that line, and save it as UTF-8"),))
+        return Statement(
+            Controller(), (Problem(CONTROLLER_FILE, "", what, "mend that line, and save it as UTF-8"),)
+        )
     if not found.missing:
         return Statement(found)
     fix = "fill them in, in zh and en, before visitors answer; the privacy page says that they are missing"
-    return Statement(found, gaps=(Problem(FILE, ", ".join(found.missing), "not stated yet", fix),))
+    return Statement(found, gaps=(Problem(CONTROLLER_FILE, ", ".join(found.missing), "not stated yet", fix),))
 
 
 def _filled(document: dict[str, Any]) -> dict[str, Any]:

@@ -7,10 +7,10 @@ from functools import lru_cache
 from html import escape
 from pathlib import Path
 
-from survey.questionnaire.definition import Language, Questionnaire, Text
-from survey.store.publication.disclosure import STEP
-from survey.web.form.page import document, heading
-from survey.web.privacy.controller import FILE, Contact
+from survey.questionnaire import Language, Questionnaire, Text
+from survey.store.publication import STEP
+from survey.web.form import document, heading
+from survey.web.privacy.controller import CONTROLLER_FILE, Contact
 from survey.web.privacy.record import Record
 
 __all__ = ["privacy_page"]
@@ -66,7 +66,9 @@ class _Page:
         if not statement.problems:
             return ""
         keys = (", " if self.language == "en" else "、").join(statement.controller.missing)
-        told = self.said("faulty_text" if statement.faults else "missing_text", file=FILE, keys=keys)
+        told = self.said(
+            "faulty_text" if statement.faults else "missing_text", file=CONTROLLER_FILE, keys=keys
+        )
         title = escape(self.say["missing_title"])
         return f'<div class="notice"><strong>{title}</strong>{escape(told)}</div>'
 

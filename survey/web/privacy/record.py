@@ -9,9 +9,9 @@ from pathlib import Path
 
 from sqlalchemy import func, select
 
-from survey.questionnaire.definition import Questionnaire
+from survey.questionnaire import Questionnaire
 from survey.store import Store
-from survey.store.answers.archive import Archive
+from survey.store.answers import Archive
 from survey.store.database import tables
 from survey.web.privacy.controller import Statement, read_controller
 

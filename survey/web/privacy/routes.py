@@ -7,7 +7,7 @@ from collections.abc import Callable
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 
-from survey.web.form.routes import HEADERS, PageRoute, Preferred, Wanted, chosen_language
+from survey.web.form import HEADERS, PageRoute, Preferred, Wanted, chosen_language
 from survey.web.privacy.page import privacy_page
 from survey.web.privacy.record import Record
 
