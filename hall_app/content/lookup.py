@@ -36,7 +36,7 @@ def content_folder(given: Path | None = None, *, here: Path | None = None) -> Pa
 
 def make_data_folder(folder: Path) -> None:
     """Make it for its owner alone; one that was there keeps its rights. Raises OSError naming the option."""
-    from survey.store.database.permissions import make_private
+    from survey.store.database import make_private
 
     try:
         make_private(folder)
