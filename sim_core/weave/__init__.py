@@ -1,16 +1,16 @@
 """Weaving: drafts -> relaxed yarns -> tileable maps and cloth parameters."""
 
 from sim_core.errors import WeaveError
-from sim_core.weave.draft import Channels, Draft, plain, satin, twill
-from sim_core.weave.geometry import ClothParameters, YarnGeometry
+from sim_core.weave.cloth import cloth_parameters
+from sim_core.weave.draft.draft import Channels, Draft, plain, satin, twill
+from sim_core.weave.maps.surface import SurfaceMaps, lit_cloth, surface_maps
 from sim_core.weave.model import Weave
-from sim_core.weave.parameters import cloth_parameters
-from sim_core.weave.particles import ParticleCell, relax_particles
-from sim_core.weave.relaxation import relax
-from sim_core.weave.report import parameters_of
-from sim_core.weave.solve import solve
-from sim_core.weave.surface import SurfaceMaps, lit_cloth, surface_maps
+from sim_core.weave.summary import parameters_of
 from sim_core.weave.yarn import Yarn
+from sim_core.weave.yarns.beams import relax
+from sim_core.weave.yarns.geometry import ClothParameters, YarnGeometry
+from sim_core.weave.yarns.particles.cell import ParticleCell, relax_particles
+from sim_core.weave.yarns.solver import solve
 
 __all__ = [
     "Channels",

@@ -24,10 +24,10 @@ from sim_core.weave import (
     surface_maps,
     twill,
 )
-from sim_core.weave.elastica import elastica_crimp, peirce_crimp
-from sim_core.weave.generators import basket, damask
-from sim_core.weave.report import measured
-from sim_core.weave.wif_read import parse_wif
+from sim_core.weave.draft.generators import basket, damask
+from sim_core.weave.files.wif.reader import parse_wif
+from sim_core.weave.summary import measured
+from sim_core.weave.yarns.elastica import elastica_crimp, peirce_crimp
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from wif_fuzz import damaged  # noqa: E402

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave.algebra import Harness, drawdown, harness, lift_plan, tie_up
-from sim_core.weave.analysis import float_statistics, hangs_together, summary
-from sim_core.weave.draft import Channels, Draft, plain, satin, twill
-from sim_core.weave.generators import (
+from sim_core.weave.draft.algebra import Harness, drawdown, harness, lift_plan, tie_up
+from sim_core.weave.draft.analysis import float_statistics, hangs_together, summary
+from sim_core.weave.draft.draft import Channels, Draft, plain, satin, twill
+from sim_core.weave.draft.generators import (
     basket,
     damask,
     diamond,
@@ -16,9 +16,16 @@ from sim_core.weave.generators import (
     satin_of_six,
     weft_faced,
 )
-from sim_core.weave.sources import dressed
-from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.words import draft_of_words, motif_of
+from sim_core.weave.draft.notation import draft_of_words, motif_of
+from sim_core.weave.draft.structures import (
+    brocade,
+    four_end_gauze,
+    gauze,
+    tapestry,
+    warp_compound,
+    weft_compound,
+)
+from sim_core.weave.files.sources import dressed
 
 RNG = np.random.default_rng(5)
 

@@ -12,9 +12,9 @@ from PIL import Image
 from sim_core.cli import main
 from sim_core.errors import WeaveError
 from sim_core.weave.chart import View, Window, chart_of, write_draft
-from sim_core.weave.profiles import STRUCTURES, blocked_out, unit_of
-from sim_core.weave.sources import blocked_source, source_of
-from sim_core.weave.wif_read import read_wif
+from sim_core.weave.files.profiles import STRUCTURES, blocked_out, unit_of
+from sim_core.weave.files.sources import blocked_source, source_of
+from sim_core.weave.files.wif.reader import read_wif
 
 FOLDER = Path(__file__).parent / "drafts"
 TWILL = str(FOLDER / "weaveit-32-shafts.wif")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave.algebra import Harness, lift_plan
-from sim_core.weave.analysis import hangs_together, summary, summary_of_factors
-from sim_core.weave.draft import Draft
-from sim_core.weave.factors import Factors
+from sim_core.weave.draft.algebra import Harness, lift_plan
+from sim_core.weave.draft.analysis import hangs_together, summary, summary_of_factors
+from sim_core.weave.draft.draft import Draft
+from sim_core.weave.draft.factors import Factors
 
 
 def lifts(count: int):

@@ -3,8 +3,8 @@
 from time import monotonic, sleep
 
 from sim_core.weave import plain, relax_particles
-from sim_core.weave.progress import shown
-from sim_core.weave.sources import dressed
+from sim_core.weave.files.sources import dressed
+from sim_core.weave.yarns.progress import shown
 
 
 def heard(capsys, words: str, patience: float = 60.0) -> bool:

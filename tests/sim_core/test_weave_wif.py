@@ -10,16 +10,23 @@ from wif_fuzz import damaged, generated
 
 from sim_core.errors import SimCoreError, WeaveError
 from sim_core.weave import Draft, Weave, plain, satin
-from sim_core.weave.algebra import Harness
-from sim_core.weave.report import facts_of
-from sim_core.weave.solve import solve
-from sim_core.weave.sources import source_of, weave_of
-from sim_core.weave.strands import main_picks, strands
-from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.wif import PRIVATE, Wif, wif_of
-from sim_core.weave.wif_read import parse_wif, read_wif
-from sim_core.weave.wif_sections import decoded
-from sim_core.weave.wif_write import wif_text, write_wif
+from sim_core.weave.draft.algebra import Harness
+from sim_core.weave.draft.structures import (
+    brocade,
+    four_end_gauze,
+    gauze,
+    tapestry,
+    warp_compound,
+    weft_compound,
+)
+from sim_core.weave.files.sources import source_of, weave_of
+from sim_core.weave.files.wif.model import PRIVATE, Wif, wif_of
+from sim_core.weave.files.wif.reader import parse_wif, read_wif
+from sim_core.weave.files.wif.sections import decoded
+from sim_core.weave.files.wif.writer import wif_text, write_wif
+from sim_core.weave.summary import facts_of
+from sim_core.weave.yarns.paths import main_picks, strands
+from sim_core.weave.yarns.solver import solve
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 BASE = """[WIF]
