@@ -1,15 +1,15 @@
 """Meshing: outline -> staggered points -> redundant points out -> growth triangulation -> quality."""
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.lattice import staggered_points
+from sim_core.mesh.measures.triangles import quality
 from sim_core.mesh.model import MeshReport, PanelMesh
-from sim_core.mesh.outline import outline_samples
+from sim_core.mesh.outline.contours import outline_samples
+from sim_core.mesh.outline.size_field import SizeField
 from sim_core.mesh.panel import panel_mesh
-from sim_core.mesh.quality import quality
-from sim_core.mesh.raycast import inside, keep_points
+from sim_core.mesh.points.lattice import staggered_points
+from sim_core.mesh.points.raycast import inside, keep_points
 from sim_core.mesh.seams import Seam, SeamFit, SeamSide, sewn_meshes
-from sim_core.mesh.sizes import SizeField
-from sim_core.mesh.triangulation import triangulate
+from sim_core.mesh.triangulation.point_set import triangulate
 
 __all__ = [
     "MeshReport",

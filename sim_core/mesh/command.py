@@ -131,7 +131,7 @@ def run(args: argparse.Namespace) -> int:
         raise WrongArgument("--edge: missing – give the length of a mesh edge in metres, such as --edge 0.01")
     from sim_core.machine_code import compile_clock
     from sim_core.mesh.drawing import mesh_picture
-    from sim_core.mesh.sizes import read_size_field
+    from sim_core.mesh.outline.size_field import read_size_field
     from sim_core.mesh.writing import write_mesh, write_picture
 
     drawing, read = _drawing(args)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from sim_core.mesh.measures.triangles import quality
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.quality import quality
 
 __all__ = ["mesh_picture"]
 

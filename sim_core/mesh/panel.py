@@ -7,20 +7,20 @@ import numpy as np
 
 from sim_core.errors import OutlineError
 from sim_core.machine_code import CompileClock, compile_clock
-from sim_core.mesh.best import BestFill, best_fill
-from sim_core.mesh.graded import graded_points
-from sim_core.mesh.growth import CLOSED, Growth, grow_points
-from sim_core.mesh.lattice import staggered_points
-from sim_core.mesh.lines import clean_lines
+from sim_core.mesh.improvement.best import BestFill, best_fill
+from sim_core.mesh.improvement.smoothing import smoothed
+from sim_core.mesh.measures.report import deviation, measured
+from sim_core.mesh.measures.triangles import quality as face_quality
+from sim_core.mesh.measures.verification import fills, verify
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import check_edge, cleaned_contours, sharpest_corner
-from sim_core.mesh.quality import quality as face_quality
-from sim_core.mesh.raycast import keep_points
-from sim_core.mesh.report import deviation, measured
-from sim_core.mesh.sampling import Rim, sampled_rim
-from sim_core.mesh.sizes import SizeField
-from sim_core.mesh.smoothing import smoothed
-from sim_core.mesh.verify import fills, verify
+from sim_core.mesh.outline.contours import check_edge, cleaned_contours, sharpest_corner
+from sim_core.mesh.outline.inner_lines import clean_lines
+from sim_core.mesh.outline.samples import Rim, sampled_rim
+from sim_core.mesh.outline.size_field import SizeField
+from sim_core.mesh.points.graded import graded_points
+from sim_core.mesh.points.lattice import staggered_points
+from sim_core.mesh.points.raycast import keep_points
+from sim_core.mesh.triangulation.growth import CLOSED, Growth, grow_points
 
 __all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh", "timed"]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim_core.errors import FileProblem, OutlineWarning
 from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.numbers import check_numbers
+from sim_core.mesh.outline.numbers import check_numbers
 from sim_core.mesh.sheets.model import Sheet
 from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
 from sim_core.reading import read_json, shown

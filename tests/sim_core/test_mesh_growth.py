@@ -7,9 +7,9 @@ from scipy.spatial import ConvexHull, Delaunay
 
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh, triangulate
-from sim_core.mesh.naive import grow_naive
-from sim_core.mesh.outline import signed_area
-from sim_core.mesh.quality import triangle_areas
+from sim_core.mesh.measures.triangles import triangle_areas
+from sim_core.mesh.outline.contours import signed_area
+from sim_core.mesh.triangulation.naive import grow_naive
 
 
 def triangles(faces) -> set:

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from sim_core.mesh import panel_mesh, walls
-from sim_core.mesh.cells import point_cells
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh import panel_mesh
+from sim_core.mesh.geometry.cells import point_cells
+from sim_core.mesh.measures.verification import mesh_fault
+from sim_core.mesh.triangulation import walls
 
 
 def ring(count: int, gap: float) -> tuple[np.ndarray, np.ndarray]:

@@ -11,13 +11,13 @@ import numpy as np
 import shapely
 
 from sim_core.errors import FileProblem, OutlineError
-from sim_core.mesh.left_out import warn_left_out
-from sim_core.mesh.outline import LARGEST
-from sim_core.mesh.sheets.dxf_strokes import dxf_strokes
+from sim_core.mesh.outline.contours import LARGEST
 from sim_core.mesh.sheets.garment_code import GarmentCode, code_sheet, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet, Which
 from sim_core.mesh.sheets.sorting import sorted_sheet
-from sim_core.mesh.sheets.svg_strokes import svg_strokes
+from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
+from sim_core.mesh.sheets.strokes.left_out import warn_left_out
+from sim_core.mesh.sheets.strokes.svg import svg_strokes
 from sim_core.reading import read_json
 
 __all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_code"]

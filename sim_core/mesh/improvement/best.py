@@ -5,17 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim_core.mesh.angles import small_angles
-from sim_core.mesh.graded import graded_points
-from sim_core.mesh.growth import CLOSED, Growth, grow_points
-from sim_core.mesh.lattice import staggered_points
-from sim_core.mesh.layer import apart, layer_points
-from sim_core.mesh.raycast import distance_below, inside, keep_points
-from sim_core.mesh.refinement import refined
-from sim_core.mesh.repair import SPOTS, repaired
-from sim_core.mesh.sampling import Rim
-from sim_core.mesh.sizes import SizeField
-from sim_core.mesh.smoothing import centre, open_angles, sharpest_angle, stars
+from sim_core.mesh.improvement.angles import small_angles
+from sim_core.mesh.improvement.refinement import refined
+from sim_core.mesh.improvement.repair import SPOTS, repaired
+from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle, stars
+from sim_core.mesh.outline.samples import Rim
+from sim_core.mesh.outline.size_field import SizeField
+from sim_core.mesh.points.graded import graded_points
+from sim_core.mesh.points.lattice import staggered_points
+from sim_core.mesh.points.layer import apart, layer_points
+from sim_core.mesh.points.raycast import distance_below, inside, keep_points
+from sim_core.mesh.triangulation.growth import CLOSED, Growth, grow_points
 
 __all__ = ["BestFill", "best_fill"]
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.cells import bounds
-from sim_core.mesh.exact import orient
+from sim_core.mesh.geometry.cells import bounds
+from sim_core.mesh.geometry.predicates import orient
 
 __all__ = ["distance_below", "inside", "keep_points"]
 

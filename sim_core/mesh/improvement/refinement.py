@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.angles import edge_keys, sharp_corners
-from sim_core.mesh.flips import (
+from sim_core.mesh.improvement.angles import edge_keys, sharp_corners
+from sim_core.mesh.triangulation.flips import (
     AHEAD,
     KEPT,
     Flips,
@@ -25,7 +25,7 @@ from sim_core.mesh.flips import (
     with_point,
     with_point_on,
 )
-from sim_core.mesh.incremental import joined_points
+from sim_core.mesh.triangulation.incremental import joined_points
 
 __all__ = ["Refined", "refined"]
 

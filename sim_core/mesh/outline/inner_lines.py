@@ -5,8 +5,8 @@ from bisect import bisect
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.crossings import crossed_steps
-from sim_core.mesh.outline import clean_points
+from sim_core.mesh.outline.contours import clean_points
+from sim_core.mesh.outline.crossings import crossed_steps
 
 __all__ = ["clean_lines"]
 

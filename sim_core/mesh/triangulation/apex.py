@@ -8,9 +8,9 @@ wide (hull edges, long thin triangles) blocks of 8 x 8 cells are skipped whole.
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.cells import cell_of
-from sim_core.mesh.exact import INCIRCLE_BOUND, ORIENT_BOUND, incircle, orient
-from sim_core.mesh.walls import hidden
+from sim_core.mesh.geometry.cells import cell_of
+from sim_core.mesh.geometry.predicates import INCIRCLE_BOUND, ORIENT_BOUND, incircle, orient
+from sim_core.mesh.triangulation.walls import hidden
 
 __all__ = ["apex", "block_boxes", "strictly_delaunay"]
 

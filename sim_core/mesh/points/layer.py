@@ -7,7 +7,7 @@ One row that follows the outline puts it between free points, and smoothing spre
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.cells import bounds
+from sim_core.mesh.geometry.cells import bounds
 
 __all__ = ["apart", "layer_points"]
 

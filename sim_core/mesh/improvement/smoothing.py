@@ -6,7 +6,7 @@ Nothing here changes which points are joined; growth does that again after every
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.quality import triangle_areas
+from sim_core.mesh.measures.triangles import triangle_areas
 
 __all__ = ["centre", "open_angles", "sharpest_angle", "smoothed", "stars"]
 

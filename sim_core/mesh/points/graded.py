@@ -3,11 +3,11 @@
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.lattice import lattice_points, lattice_size
-from sim_core.mesh.layer import apart, layer_points
-from sim_core.mesh.raycast import inside
-from sim_core.mesh.sampling import Rim
-from sim_core.mesh.sizes import SizeField
+from sim_core.mesh.outline.samples import Rim
+from sim_core.mesh.outline.size_field import SizeField
+from sim_core.mesh.points.lattice import lattice_points, lattice_size
+from sim_core.mesh.points.layer import apart, layer_points
+from sim_core.mesh.points.raycast import inside
 
 __all__ = ["graded_points", "lattice_near"]
 

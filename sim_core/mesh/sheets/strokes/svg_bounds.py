@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from xml.etree import ElementTree
 
-from sim_core.mesh.left_out import MOST_VISITED
+from sim_core.mesh.sheets.strokes.left_out import MOST_VISITED
 
 __all__ = ["check_bounds", "left_out_of"]
 

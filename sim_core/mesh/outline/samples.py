@@ -4,10 +4,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sim_core.mesh.crossings import crossed_steps
-from sim_core.mesh.nearest import nearest_others, size_boxes
-from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
-from sim_core.mesh.sizes import SizeField
+from sim_core.mesh.geometry.nearest import nearest_others, size_boxes
+from sim_core.mesh.outline.contours import CORNER_DEGREES, outline_turning
+from sim_core.mesh.outline.crossings import crossed_steps
+from sim_core.mesh.outline.size_field import SizeField
 
 __all__ = ["Rim", "sampled_contours", "sampled_rim"]
 

@@ -8,8 +8,18 @@ with flips in between that make every other edge Delaunay. Ties are cut as they 
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.exact import orient
-from sim_core.mesh.flips import AHEAD, Flips, corner_of, fix, flip, legal, walk, with_point, with_point_on
+from sim_core.mesh.geometry.predicates import orient
+from sim_core.mesh.triangulation.flips import (
+    AHEAD,
+    Flips,
+    corner_of,
+    fix,
+    flip,
+    legal,
+    walk,
+    with_point,
+    with_point_on,
+)
 
 __all__ = ["hull_edges", "inner_faces", "joined_points"]
 

@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.apex import apex, block_boxes, strictly_delaunay
-from sim_core.mesh.cells import Cells, point_cells
-from sim_core.mesh.incremental import hull_edges, inner_faces, joined_points
-from sim_core.mesh.walls import wall_cells
+from sim_core.mesh.geometry.cells import Cells, point_cells
+from sim_core.mesh.triangulation.apex import apex, block_boxes, strictly_delaunay
+from sim_core.mesh.triangulation.incremental import hull_edges, inner_faces, joined_points
+from sim_core.mesh.triangulation.walls import wall_cells
 
 __all__ = ["CLOSED", "Growth", "grow_points"]
 

@@ -5,8 +5,8 @@ from math import fsum, isfinite, sqrt
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.crossings import enclosing, first_crossing
-from sim_core.mesh.merging import merged
+from sim_core.mesh.outline.crossings import enclosing, first_crossing
+from sim_core.mesh.outline.touching_holes import merged
 
 __all__ = [
     "CORNER_DEGREES",

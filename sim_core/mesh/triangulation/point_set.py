@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.growth import CLOSED, grow_points
+from sim_core.mesh.triangulation.growth import CLOSED, grow_points
 
 __all__ = ["triangulate"]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.exact import incircle, orient
+from sim_core.mesh.geometry.predicates import incircle, orient
 
 __all__ = [
     "KEPT",

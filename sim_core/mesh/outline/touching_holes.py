@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim_core.errors import OutlineError, OutlineWarning
-from sim_core.mesh.crossings import close_contours
+from sim_core.mesh.outline.crossings import close_contours
 
 __all__ = ["Merged", "merged"]
 

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.left_out import MOST_VISITED, visited
-from sim_core.mesh.outline import LARGEST
-from sim_core.mesh.sheets.dxf_mending import mended, spelled_out
-from sim_core.mesh.sheets.strokes import Drawn, Stroke
-from sim_core.mesh.sheets.words import spoken
+from sim_core.mesh.outline.contours import LARGEST
+from sim_core.mesh.sheets.strokes.dxf_mending import mended, spelled_out
+from sim_core.mesh.sheets.strokes.left_out import MOST_VISITED, visited
+from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
+from sim_core.mesh.sheets.strokes.words import spoken
 from sim_core.reading import read_bytes
 
 __all__ = ["dxf_strokes"]

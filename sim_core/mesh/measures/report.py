@@ -3,9 +3,9 @@
 import numpy as np
 from numba import njit
 
+from sim_core.mesh.measures.triangles import quality
+from sim_core.mesh.measures.verification import area_error, conformity
 from sim_core.mesh.model import MeshReport
-from sim_core.mesh.quality import quality
-from sim_core.mesh.verify import area_error, conformity
 
 __all__ = ["deviation", "measured"]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.exact import orient
+from sim_core.mesh.geometry.predicates import orient
 
 __all__ = ["close_contours", "crossed_steps", "enclosing", "first_crossing"]
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.cells import Cells, cell_of
-from sim_core.mesh.exact import orient
+from sim_core.mesh.geometry.cells import Cells, cell_of
+from sim_core.mesh.geometry.predicates import orient
 
 __all__ = ["Walls", "crosses", "hidden", "wall_cells"]
 

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.growth import CLOSED, grow_points
-from sim_core.mesh.quality import triangle_areas
-from sim_core.mesh.smoothing import centre, open_angles, sharpest_angle, stars
-from sim_core.mesh.verify import open_edges
+from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle, stars
+from sim_core.mesh.measures.triangles import triangle_areas
+from sim_core.mesh.measures.verification import open_edges
+from sim_core.mesh.triangulation.growth import CLOSED, grow_points
 
 __all__ = ["SPOTS", "repaired"]
 

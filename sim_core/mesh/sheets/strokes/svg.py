@@ -15,11 +15,11 @@ from xml.etree import ElementTree
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.sheets.strokes import Drawn, Stroke
-from sim_core.mesh.sheets.svg_bounds import check_bounds, left_out_of
-from sim_core.mesh.sheets.svg_text import svg_root
-from sim_core.mesh.sheets.svg_viewports import LENGTHS, NUMBER, flatten_viewports
-from sim_core.mesh.sheets.words import speaks, spoken
+from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
+from sim_core.mesh.sheets.strokes.svg_bounds import check_bounds, left_out_of
+from sim_core.mesh.sheets.strokes.svg_text import svg_root
+from sim_core.mesh.sheets.strokes.svg_viewports import LENGTHS, NUMBER, flatten_viewports
+from sim_core.mesh.sheets.strokes.words import speaks, spoken
 
 __all__ = ["svg_strokes"]
 
