@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sim_core.errors import OutlineError
 from sim_core.garment.cutting import Panel, Path, Seam, check_extent
 from sim_core.garment.measures import measured
-from sim_core.mesh.outline.contours import clean_contours
+from sim_core.mesh.outline import clean_contours
 
 __all__ = ["CutProblem", "PanelTable", "SeamTable", "read_cut", "read_dye"]
 

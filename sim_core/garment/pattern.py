@@ -15,7 +15,7 @@ from sim_core.garment.cutting import Panel, Seam, check_extent
 from sim_core.garment.cutting import Path as Path_
 from sim_core.garment.sewing import MOST_VERTICES, Cloth, cut_cloth
 from sim_core.mesh import PanelMesh, panel_mesh
-from sim_core.mesh.outline.contours import check_count
+from sim_core.mesh.outline import check_count
 from sim_core.reading import read_toml, shown
 
 MOST_POINTS = 5000  # of an outline

@@ -11,7 +11,7 @@ import numpy as np
 from sim_core.errors import OutlineError
 from sim_core.garment.cutting import Panel, Path, Seam, arc_length, at_length
 from sim_core.mesh import panel_mesh
-from sim_core.mesh.outline.contours import check_edge, signed_area
+from sim_core.mesh.outline import check_edge, signed_area
 
 __all__ = ["MOST_VERTICES", "Cloth", "cut_cloth"]
 

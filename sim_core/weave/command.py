@@ -212,12 +212,12 @@ def _relaxed(weave, particles: bool):
     Satins and twills are no large repeats: one pick of them is relaxed, or pins bring them to rest soon.
     """
     from sim_core.weave.yarns.particles.cell import MOST_STEPS, NotAtRest, is_figure
-    from sim_core.weave.yarns.progress import shown
+    from sim_core.weave.yarns.progress import progress_report
     from sim_core.weave.yarns.solver import solve
 
     count = 2 * PER * weave.draft.lift.size
     large = particles and is_figure(weave.draft.lift)
-    with shown(weave.name) as watch:
+    with progress_report(weave.name) as watch:
         if large and count > MOST_PARTICLES:
             reason = f"a repeat of {count:,} particles, more than {MOST_PARTICLES:,}"
             return solve(weave), {"note": f"stage A, at the crossings: {reason}"}

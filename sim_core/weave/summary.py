@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from sim_core.weave.cloth import cloth_parameters
+from sim_core.weave.cloth import ClothParameters, measured, parameters_of
 from sim_core.weave.draft.factors import Factors
 from sim_core.weave.files.sources import Source
 from sim_core.weave.files.wif.sections import listed
 from sim_core.weave.model import Weave
-from sim_core.weave.yarns.geometry import ClothParameters, YarnGeometry
+from sim_core.weave.yarns.geometry import YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
-from sim_core.weave.yarns.paths import strands
-from sim_core.weave.yarns.solver import ground_of, solve
+from sim_core.weave.yarns.solver import solve
 
-__all__ = ["facts_of", "measured", "parameters_of", "summary_of", "summary_text"]
+__all__ = ["facts_of", "summary_of", "summary_text"]
 
 MOST_SHOWN = 65_536  # crossings of a drawdown told in full
 UNITS = {
@@ -154,73 +151,6 @@ def _entries(parameters: ClothParameters) -> dict:
         if key in parameters.bounds:
             entries[key]["band"] = list(parameters.bounds[key])
     return entries
-
-
-def measured(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict[str, float]:
-    """Crimp, thickness [m] and areal density [kg/m2] of the relaxed repeat, all yarns and only where they are."""
-    warp, weft = float(np.mean(geometry.warp_crimp)), float(np.mean(geometry.weft_crimp))
-    width, height = weave.size
-    mass = weave.draft.ends * height * (1 + warp) * weave.warp.tex
-    systems = strands(weave, geometry)
-    for k, system in enumerate(systems[1:]):
-        # a yarn that ends at a slit gives one place of its path to the slit, which is no yarn missing
-        there = (system.colour >= 0).mean(axis=1) if k else np.ones(len(system.place))
-        mass += float(there.sum()) * width * (1 + (weft if k == 0 else 0.0)) * system.yarn.tex
-    tops = [(s.height + s.yarn.height / 2)[s.colour >= 0].max() for s in systems]
-    bottoms = [(s.height - s.yarn.height / 2)[s.colour >= 0].min() for s in systems]
-    return {
-        "crimp_warp": warp,
-        "crimp_weft": weft,
-        "thickness": float(max(tops) - min(bottoms)),
-        "areal_density": mass / (width * height),
-    }
-
-
-def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothParameters:
-    """Parameters of a relaxed cloth for `cloth.Material.of`: density and thickness of the cell that is given, stiffness
-    from stage A of the ground.
-
-    What the model cannot settle is a band in `bounds`: bending between free and stuck fibres, shear between slipping
-    and stuck crossings. The ends of a leno or compound weave are counted as if each had its own place.
-    """
-    channels = weave.draft.channels
-    plain = replace(ground_of(weave), extra=None)
-    if channels.order is not None or channels.layer is not None:
-        plain = _stand_in(weave)
-    from sim_core.weave.yarns.beams import relax
-    from sim_core.weave.yarns.shifts import MANY
-
-    if plain.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and plain.draft is weave.draft:
-        base = geometry
-    else:
-        base = relax(plain, share=64 if plain is not weave and channels.layer is not None else 1)
-    made = cloth_parameters(plain, base)
-    size = measured(weave, geometry)
-    note = dict(made.provenance)
-    if channels.order is not None or channels.layer is not None:
-        for key in ("stretch_warp", "stretch_weft", "shear", "poisson", "bend_warp", "bend_weft", "bend"):
-            note[key] += (
-                "; of a plain weave with the same yarns and sett in place of the leno or compound weave"
-            )
-    stage = "the relaxed particles" if isinstance(geometry, ParticleCell) else "the relaxed beams"
-    note["density"] += f"; yarn paths of {stage}"
-    return replace(made, density=size["areal_density"], thickness=size["thickness"], provenance=note)
-
-
-def _stand_in(weave: Weave) -> Weave:
-    """A plain weave with the yarns and a sett that fits, for the stiffness of leno and compound weaves."""
-    from sim_core.weave.draft.draft import plain
-
-    series = [s for s in (weave.draft.channels.end_series, weave.draft.channels.pick_series) if s is not None]
-    share = 1 + int(series[0].max()) if weave.draft.channels.layer is not None else 1
-    warp = share if weave.draft.channels.end_series is not None else 1
-    weft = share if weave.draft.channels.end_series is None else 1
-    room = 1.01 * (weave.warp.height + weave.weft.height)
-    ends = min(weave.ends_per_m / warp, 1 / (room + weave.warp.width - weave.warp.height))
-    picks = min(weave.picks_per_m / weft, 1 / (room + weave.weft.width - weave.weft.height))
-    return replace(
-        weave, draft=plain(), ends_per_m=ends, picks_per_m=picks, warp_colours=(), weft_colours=(), extra=None
-    )
 
 
 def summary_text(name: str, summary: dict) -> str:

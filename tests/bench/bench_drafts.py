@@ -95,7 +95,7 @@ print(json.dumps({"read": read - begin, "facts": done - read, "memory": memory, 
 
 def longest_woven(path: Path) -> tuple[int, int]:
     """The longest float of warp and weft, counted pick by pick on the cloth itself."""
-    from sim_core.weave.files.wif.reader import read_wif
+    from sim_core.weave.files.wif import read_wif
 
     lift = read_wif(path).factors.lift()
     found = []

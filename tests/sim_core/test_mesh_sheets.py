@@ -11,7 +11,7 @@ from sim_core import cli
 from sim_core.errors import FileProblem
 from sim_core.garment.pattern import Pattern
 from sim_core.mesh import panel_mesh
-from sim_core.mesh.outline.contours import signed_area
+from sim_core.mesh.outline import signed_area
 from sim_core.mesh.sheets import Choice, panel_of, read_garment_code, read_sheet
 
 SHEETS = Path(__file__).parent / "sheets"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sim_core.mesh import panel_mesh
-from sim_core.mesh.geometry.cells import point_cells
-from sim_core.mesh.measures.verification import mesh_fault
+from sim_core.mesh.geometry import point_cells
+from sim_core.mesh.measures import mesh_fault
 from sim_core.mesh.triangulation import walls
 
 

@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 
 from sim_core.weave import Weave, Yarn, plain, relax_particles, surface_maps
-from sim_core.weave.draft.draft import Draft, satin
-from sim_core.weave.draft.generators import damask
-from sim_core.weave.files.sources import dressed
-from sim_core.weave.yarns.beams import beam_stiffness
-from sim_core.weave.yarns.particles.cell import NotAtRest, is_figure
-from sim_core.weave.yarns.particles.common_waves import CommonWaves, gathered
-from sim_core.weave.yarns.particles.curve_gaps import curve_gaps
-from sim_core.weave.yarns.particles.forces import STATIC, contact_forces
-from sim_core.weave.yarns.splines import resampled
+from sim_core.weave.draft import Draft, damask, satin
+from sim_core.weave.files import dressed
+from sim_core.weave.yarns import beam_stiffness, resampled
+from sim_core.weave.yarns.particles import (
+    STATIC,
+    CommonWaves,
+    NotAtRest,
+    contact_forces,
+    curve_gaps,
+    gathered,
+    is_figure,
+)
 
 NOTHING = np.zeros((0, 0, 2))
 

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
-from sim_core.weave.cloth import tensile_compliance
-from sim_core.weave.draft.generators import damask
-from sim_core.weave.yarns.beams import beam_stiffness
-from sim_core.weave.yarns.shifts import draft_shift
+from sim_core.weave import Weave, Yarn, plain, relax, satin, tensile_compliance, twill
+from sim_core.weave.draft import damask
+from sim_core.weave.yarns import beam_stiffness, draft_shift
 
 D = 1e-4
 

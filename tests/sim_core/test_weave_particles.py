@@ -5,22 +5,31 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from elastica import elastica_crimp, peirce_crimp
 
 from sim_core.errors import WeaveError
 from sim_core.weave import Channels, Draft, Weave, Yarn, plain, satin, twill
-from sim_core.weave.draft.generators import basket
-from sim_core.weave.draft.structures import gauze
-from sim_core.weave.yarns.beams import beam_stiffness
-from sim_core.weave.yarns.elastica import elastica_crimp, peirce_crimp
-from sim_core.weave.yarns.jam import check_jam, jam_limits
-from sim_core.weave.yarns.leno_brocade import lay_beams
-from sim_core.weave.yarns.particles.cell import relax_particles
-from sim_core.weave.yarns.particles.closest_pairs import curve_overlap, pin_forces
-from sim_core.weave.yarns.particles.forces import contact_forces, side_forces, yarn_forces
-from sim_core.weave.yarns.particles.preconditioner import advance, factored
-from sim_core.weave.yarns.paths import strands
-from sim_core.weave.yarns.shifts import turns_of
-from sim_core.weave.yarns.solver import ground_of, solve
+from sim_core.weave.draft import basket, gauze
+from sim_core.weave.yarns import (
+    beam_stiffness,
+    check_jam,
+    ground_of,
+    jam_limits,
+    lay_beams,
+    solve,
+    strands,
+    turns_of,
+)
+from sim_core.weave.yarns.particles import (
+    advance,
+    contact_forces,
+    curve_overlap,
+    factored,
+    pin_forces,
+    relax_particles,
+    side_forces,
+    yarn_forces,
+)
 
 D = 1e-4
 NO_TURNS = np.zeros(0, np.int64)

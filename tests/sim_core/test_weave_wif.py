@@ -9,9 +9,9 @@ import pytest
 from wif_fuzz import damaged, generated
 
 from sim_core.errors import SimCoreError, WeaveError
-from sim_core.weave import Draft, Weave, plain, satin
-from sim_core.weave.draft.algebra import Harness
-from sim_core.weave.draft.structures import (
+from sim_core.weave import Draft, Weave, facts_of, plain, satin
+from sim_core.weave.draft import (
+    Harness,
     brocade,
     four_end_gauze,
     gauze,
@@ -19,14 +19,9 @@ from sim_core.weave.draft.structures import (
     warp_compound,
     weft_compound,
 )
-from sim_core.weave.files.sources import source_of, weave_of
-from sim_core.weave.files.wif.model import PRIVATE, Wif, wif_of
-from sim_core.weave.files.wif.reader import parse_wif, read_wif
-from sim_core.weave.files.wif.sections import decoded
-from sim_core.weave.files.wif.writer import wif_text, write_wif
-from sim_core.weave.summary import facts_of
-from sim_core.weave.yarns.paths import main_picks, strands
-from sim_core.weave.yarns.solver import solve
+from sim_core.weave.files import source_of, weave_of
+from sim_core.weave.files.wif import PRIVATE, Wif, decoded, parse_wif, read_wif, wif_of, wif_text, write_wif
+from sim_core.weave.yarns import main_picks, solve, strands
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 BASE = """[WIF]

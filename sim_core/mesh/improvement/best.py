@@ -8,7 +8,8 @@ import numpy as np
 from sim_core.mesh.improvement.angles import small_angles
 from sim_core.mesh.improvement.refinement import refined
 from sim_core.mesh.improvement.repair import SPOTS, repaired
-from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle, stars
+from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle
+from sim_core.mesh.measures.triangles import stars
 from sim_core.mesh.outline.samples import Rim
 from sim_core.mesh.outline.size_field import SizeField
 from sim_core.mesh.points.graded import graded_points

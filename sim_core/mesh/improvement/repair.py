@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle, stars
-from sim_core.mesh.measures.triangles import triangle_areas
+from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle
+from sim_core.mesh.measures.triangles import stars, triangle_areas
 from sim_core.mesh.measures.verification import open_edges
 from sim_core.mesh.triangulation.growth import CLOSED, grow_points
 

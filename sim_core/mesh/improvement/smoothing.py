@@ -8,7 +8,7 @@ from numba import njit
 
 from sim_core.mesh.measures.triangles import triangle_areas
 
-__all__ = ["centre", "open_angles", "sharpest_angle", "smoothed", "stars"]
+__all__ = ["centre", "open_angles", "sharpest_angle", "smoothed"]
 
 TURNS = np.arange(8) * np.pi / 4
 WAYS = np.column_stack([np.cos(TURNS), np.sin(TURNS)])  # directions a point is tried in
@@ -29,24 +29,6 @@ def smoothed(vertices: np.ndarray, faces: np.ndarray, fixed: int) -> np.ndarray:
         summed = np.bincount(corners, np.repeat(weight * middle[:, axis], 3), len(vertices))
         moved[fixed:, axis] = summed[fixed:] / total[fixed:]
     return moved
-
-
-@njit(cache=True, error_model="numpy")
-def stars(faces, count):
-    """Corners around each vertex: start (count + 1,) and items, 3 face + corner, both int32."""
-    start = np.zeros(count + 1, np.int32)
-    for f in range(faces.shape[0]):
-        for k in range(3):
-            start[faces[f, k] + 1] += 1
-    for v in range(count):
-        start[v + 1] += start[v]
-    items, filled = np.zeros(3 * faces.shape[0], np.int32), start.copy()
-    for f in range(faces.shape[0]):
-        for k in range(3):
-            v = faces[f, k]
-            items[filled[v]] = 3 * f + k
-            filled[v] += 1
-    return start, items
 
 
 @njit(cache=True, error_model="numpy")

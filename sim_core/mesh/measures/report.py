@@ -1,15 +1,45 @@
-"""The figures of a finished mesh."""
+"""The figures of a finished mesh: how good its triangles are, and how far it is from the contours that were given."""
+
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numba import njit
 
 from sim_core.mesh.measures.triangles import quality
 from sim_core.mesh.measures.verification import area_error, conformity
-from sim_core.mesh.model import MeshReport
 
-__all__ = ["deviation", "measured"]
+__all__ = ["MeshReport", "deviation", "measured"]
 
 MOST_TRIED = 32
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """What was measured on a panel mesh.
+
+    seconds: wall time of meshing.  compile_seconds: of making or fetching machine code meanwhile, not part of these.
+    min_angle_deg: smallest angle of any triangle [degrees].
+    mean_quality, worst_quality: of q = 4 sqrt(3) area / sum of squared edges, 1 = equilateral.
+    mean_edge_ratio, worst_edge_ratio: of shortest / longest edge of a triangle.
+    area_error: |mesh area - polygon area| / polygon area.  conformity: fraction of outline steps that are mesh edges.
+    outline_deviation: Hausdorff distance [m] between the contours given (holes that touch: the rim they leave) and
+    the meshed ones.
+    """
+
+    seconds: float
+    min_angle_deg: float
+    mean_quality: float
+    worst_quality: float
+    mean_edge_ratio: float
+    worst_edge_ratio: float
+    area_error: float
+    conformity: float
+    outline_deviation: float
+    compile_seconds: float = 0.0
+
+    def to_dict(self) -> dict[str, float]:
+        """A plain dictionary that JSON can hold."""
+        return asdict(self)
 
 
 def measured(vertices, faces, boundary, free) -> MeshReport:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-__all__ = ["Quality", "quality", "triangle_areas"]
+__all__ = ["Quality", "quality", "stars", "triangle_areas"]
 
 
 class Quality(NamedTuple):
@@ -55,3 +55,21 @@ def _measured(vertices, faces):
         shape[f] = 2 * np.sqrt(3.0) * double / total
         ratio[f] = np.sqrt(least / most)
     return angle, shape, ratio
+
+
+@njit(cache=True, error_model="numpy")
+def stars(faces, count):
+    """Corners around each vertex: start (count + 1,) and items, 3 face + corner, both int32."""
+    start = np.zeros(count + 1, np.int32)
+    for f in range(faces.shape[0]):
+        for k in range(3):
+            start[faces[f, k] + 1] += 1
+    for v in range(count):
+        start[v + 1] += start[v]
+    items, filled = np.zeros(3 * faces.shape[0], np.int32), start.copy()
+    for f in range(faces.shape[0]):
+        for k in range(3):
+            v = faces[f, k]
+            items[filled[v]] = 3 * f + k
+            filled[v] += 1
+    return start, items

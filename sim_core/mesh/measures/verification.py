@@ -4,8 +4,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.improvement.smoothing import stars
-from sim_core.mesh.measures.triangles import triangle_areas
+from sim_core.mesh.measures.triangles import stars, triangle_areas
 from sim_core.mesh.outline.contours import swept_area
 
 __all__ = ["AREA_TOLERANCE", "area_error", "conformity", "fills", "mesh_fault", "open_edges", "verify"]

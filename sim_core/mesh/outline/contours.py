@@ -135,7 +135,7 @@ def clean_contour(points, name: str) -> np.ndarray:
 def clean_contours(outline, holes, *, edge: float | None = None) -> list[np.ndarray]:
     """The outline and its holes, checked and turned so that the cloth lies to their left in (x, -y).
 
-    edge: [m]; with it, holes that touch the outline or each other are merged (`merging.py`), with an OutlineWarning.
+    edge: [m]; with it, holes that touch the outline or each other are merged with a warning (`touching_holes.py`).
     Raises OutlineError for crossing contours (naming the segments), zero area, and holes outside.
     """
     return cleaned_contours(outline, holes, edge=edge)[0]

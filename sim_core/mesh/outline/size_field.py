@@ -9,13 +9,26 @@ import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.geometry.nearest import SizeBoxes, least_sizes, size_boxes
-from sim_core.mesh.outline.numbers import check_numbers
 from sim_core.reading import read_json, shown
 
-__all__ = ["SizeField", "read_size_field"]
+__all__ = ["SizeField", "check_numbers", "read_size_field"]
 
 SHORTEST = 64  # a point's edge is at least edge / SHORTEST
 LARGEST = 1e6  # [m] sizes and places beyond this are no metres
+
+
+def check_numbers(path: Path, name: str, rows: object, shape: str) -> None:
+    """Raise FileProblem naming the first row of a list that holds something else than numbers.
+
+    rows: what the file holds under `name`; other faults of shape are left to whoever makes an array of it.
+    shape: such as "[x, y] in metres".
+    """
+    if not isinstance(rows, list):
+        return
+    for k, row in enumerate(rows):
+        for value in row if isinstance(row, list) else [row]:
+            if isinstance(value, bool | str) or value is None:
+                raise FileProblem(f"{path}: {name}: point {k} is {shown(row)} – give numbers, {shape}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,22 +9,12 @@ from typing import TYPE_CHECKING
 
 from sim_core.arguments import ending, whole
 from sim_core.errors import WrongArgument
+from sim_core.weave.chart.paper import PAPERS
 
 if TYPE_CHECKING:
     from sim_core.weave.files.sources import Source
 
 __all__ = ["add_drawing", "check_drawing", "draw"]
-
-PAPERS = (
-    "A4",
-    "A3",
-    "A2",
-    "A1",
-    "A0",
-    "letter",
-    "legal",
-    "tabloid",
-)  # of chart.PAPERS, which is imported late
 
 
 def add_drawing(parser: argparse.ArgumentParser) -> None:

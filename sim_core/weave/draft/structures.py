@@ -5,7 +5,7 @@ import numpy as np
 from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Channels, Draft, plain
 
-__all__ = ["brocade", "gauze", "four_end_gauze", "tapestry", "warp_compound", "weft_compound"]
+__all__ = ["brocade", "four_end_gauze", "gauze", "tapestry", "warp_compound", "weft_compound"]
 
 MAIN, INNER, EXTRA = 0, 1, 2
 DOUP = 1

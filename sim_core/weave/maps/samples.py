@@ -8,12 +8,12 @@ import numpy as np
 from numba import njit
 
 from sim_core.weave.yarns.geometry import Strands
-from sim_core.weave.yarns.splines import smooth_noise
 
 __all__ = ["Samples", "Tile", "sample_surface", "tile_of"]
 
 PROFILE = 256
 FLANK = 0.1  # the section is vertical at its edge; its slope is cut off here
+TABLE = 256  # samples of irregularity along a yarn, once round the tile
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,12 +114,16 @@ def tile_of(
     return tiles, np.concatenate(colours), size
 
 
-def _noise(rng, count: int, waves: float, lap: np.ndarray) -> np.ndarray:
-    table = smooth_noise(rng, count, waves)
-    where = (lap - np.floor(lap)) * table.shape[1]
-    k = np.minimum(where.astype(int), table.shape[1] - 1)
+def _noise(rng: np.random.Generator, count: int, waves: float, lap: np.ndarray) -> np.ndarray:
+    """(count, places) periodic noise of unit variance with about `waves` swings once round the tile, at laps `lap`."""
+    frequency = np.fft.rfftfreq(TABLE, 1 / TABLE)
+    weight = np.exp(-0.5 * (frequency / max(waves, 1.0)) ** 2)
+    table = np.fft.irfft(np.fft.rfft(rng.standard_normal((count, TABLE)), axis=1) * weight, TABLE, axis=1)
+    table /= table.std()
+    where = (lap - np.floor(lap)) * TABLE
+    k = np.minimum(where.astype(int), TABLE - 1)
     t = where - k
-    return table[:, k] * (1 - t) + table[:, (k + 1) % table.shape[1]] * t
+    return table[:, k] * (1 - t) + table[:, (k + 1) % TABLE] * t
 
 
 def _cubic(values: np.ndarray, k: np.ndarray, t: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 from sim_core.errors import WeaveError
 from sim_core.weave.yarns.geometry import Strands
 
-__all__ = ["tube_mesh", "write_yarns"]
+__all__ = ["coloured_stretches", "tube_mesh", "write_yarns"]
 
 ROUND = 12  # vertices round a yarn
 
@@ -57,7 +57,7 @@ def write_yarns(systems: tuple[Strands, ...], path: str | Path) -> None:
         raise WeaveError(f"{path}: {path.suffix or 'no ending'} – end the name with .glb or .ply")
 
 
-def _pieces(system: Strands):
+def coloured_stretches(system: Strands):
     """(points, colour index, points before and after) of each stretch of yarn that is there and of one colour.
 
     Whole yarns close: their last point is the first of the next repeat.
@@ -85,7 +85,7 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
     scene = trimesh.Scene()
     for system in systems:
         made: dict[int, tuple[list, list, int]] = {}
-        for points, colour, around in _pieces(system):
+        for points, colour, around in coloured_stretches(system):
             vertices, faces = tube_mesh(points, system.yarn.width / 2, system.yarn.height / 2, around=around)
             vs, fs, count = made.get(colour, ([], [], 0))
             made[colour] = ([*vs, vertices], [*fs, faces + count], count + len(vertices))
@@ -101,7 +101,7 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
 def _ply(systems: tuple[Strands, ...]) -> bytes:
     points, tints, edges, count = [], [], [], 0
     for system in systems:
-        for part, colour, _ in _pieces(system):
+        for part, colour, _ in coloured_stretches(system):
             points.append(part)
             tints.append(np.tile(np.rint(system.palette[colour] * 255).astype(int), (len(part), 1)))
             edges.append(count + np.column_stack([np.arange(len(part) - 1), np.arange(1, len(part))]))

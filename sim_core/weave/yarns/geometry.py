@@ -1,12 +1,12 @@
 """The values that come out of the weave room: yarn geometry, yarn paths and cloth parameters."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["ClothParameters", "Strands", "YarnGeometry"]
+__all__ = ["Strands", "YarnGeometry"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,33 +33,6 @@ class YarnGeometry:
     def crest_to_trough(self) -> tuple[float, float]:
         """h1 of the warp and h2 of the weft [m]: the largest crest-to-trough distance of any yarn."""
         return float(np.ptp(self.warp_height, axis=0).max()), float(np.ptp(self.weft_height, axis=1).max())
-
-
-@dataclass(frozen=True)
-class ClothParameters:
-    """What a cloth solver needs to know of a weave.
-
-    density [kg/m2], thickness [m], stretch_warp, stretch_weft, shear [N/m], poisson, bend [N m] (geometric mean of
-    bend_warp and bend_weft), friction.  bounds: name -> (least, most) where a value lies between two bounds.
-    provenance: name -> formula, inputs and source in one sentence.
-    """
-
-    density: float
-    thickness: float
-    stretch_warp: float
-    stretch_weft: float
-    shear: float
-    poisson: float
-    bend: float
-    friction: float
-    bend_warp: float
-    bend_weft: float
-    bounds: dict[str, tuple[float, float]] = field(default_factory=dict)
-    provenance: dict[str, str] = field(default_factory=dict)
-
-    def to_dict(self) -> dict:
-        """A plain dictionary that JSON can hold."""
-        return asdict(self)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from sim_core.weave.yarns.leno_brocade import brocade_heights, leno_paths
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.splines import resampled
 
-__all__ = ["strands"]
+__all__ = ["main_picks", "strands"]
 
 BENEATH = (
     0.9  # of a yarn's height: how much lower the hidden yarns of a compound unit lie than the one that shows

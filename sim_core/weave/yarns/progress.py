@@ -10,14 +10,14 @@ from typing import TextIO
 
 import numpy as np
 
-__all__ = ["shown"]
+__all__ = ["progress_report"]
 
 FIRST = 2.0  # seconds before anything is told: most weaves are done by then
 EVERY, EVERY_LINE = 0.5, 10.0  # seconds, on a terminal and into a file
 
 
 @contextmanager
-def shown(name: str, *, first: float = FIRST, every: float | None = None) -> Iterator[np.ndarray]:
+def progress_report(name: str, *, first: float = FIRST, every: float | None = None) -> Iterator[np.ndarray]:
     """Gives the (2,) float64 that `relax_particles` writes steps and residual to, and tells them from another thread.
 
     first, every: seconds before the first and between two reports; `every` depends on whether stderr is a terminal.

@@ -1,10 +1,8 @@
-"""Yarn centre lines: the periodic cubic splines through the relaxed heights, and their natural irregularity."""
+"""Yarn centre lines: the periodic cubic splines through the relaxed heights."""
 
 import numpy as np
 
-__all__ = ["resampled", "smooth_noise", "spline_slopes"]
-
-TABLE = 256  # samples of irregularity along a yarn, once round the tile
+__all__ = ["resampled", "spline_slopes"]
 
 
 def spline_slopes(height: np.ndarray) -> np.ndarray:
@@ -24,11 +22,3 @@ def resampled(height: np.ndarray, per: int) -> np.ndarray:
         + slope[..., None] * t * (1 - t) ** 2 - slope_after[..., None] * t * t * (1 - t)
     )  # fmt: skip
     return np.ascontiguousarray(z.reshape(len(height), -1))
-
-
-def smooth_noise(rng: np.random.Generator, count: int, waves: float) -> np.ndarray:
-    """(count, TABLE) periodic noise of unit variance with about `waves` swings along the table."""
-    frequency = np.fft.rfftfreq(TABLE, 1 / TABLE)
-    weight = np.exp(-0.5 * (frequency / max(waves, 1.0)) ** 2)
-    noise = np.fft.irfft(np.fft.rfft(rng.standard_normal((count, TABLE)), axis=1) * weight, TABLE, axis=1)
-    return noise / noise.std()

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial import KDTree
 
-__all__ = ["Drawn", "Stroke", "joined"]
+__all__ = ["MOST_VISITED", "Drawn", "Stroke", "joined", "visited"]
 
 NEAR = 1e-6  # of the drawing's extent: ends this near are joined
+MOST_VISITED = 200_000  # elements, those of blocks and uses each time they are drawn
 
 
 @dataclass(frozen=True)
@@ -97,3 +98,10 @@ def _mates(lines: list[np.ndarray], near: float) -> list[int]:
     mate = np.full(len(ends), -1)
     mate[pairs] = pairs[:, ::-1]
     return mate.tolist()
+
+
+def visited(before: int) -> int:
+    """One element more; raises ValueError where a drawing multiplies itself beyond bearing."""
+    if before >= MOST_VISITED:
+        raise ValueError(f"it draws more than {MOST_VISITED} elements")
+    return before + 1

@@ -1,6 +1,6 @@
 """Lines of an SVG drawing, read by svgelements: shapes, paths, transforms, units, viewports, `<use>`, style sheets.
 
-Checked before it is handed over: `<use>` of `<use>` without end (`svg_bounds.py`); entities end in `svg_text.py`.
+What it is handed has been decoded, checked and bounded before (`svg_tree.py`).
 """
 
 from __future__ import annotations
@@ -16,9 +16,14 @@ import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
-from sim_core.mesh.sheets.strokes.svg_bounds import check_bounds, left_out_of
-from sim_core.mesh.sheets.strokes.svg_text import svg_root
-from sim_core.mesh.sheets.strokes.svg_viewports import LENGTHS, NUMBER, flatten_viewports
+from sim_core.mesh.sheets.strokes.svg_tree import (
+    LENGTHS,
+    NUMBER,
+    check_bounds,
+    flatten_viewports,
+    left_out_of,
+    svg_root,
+)
 from sim_core.mesh.sheets.strokes.words import speaks, spoken
 
 __all__ = ["svg_strokes"]

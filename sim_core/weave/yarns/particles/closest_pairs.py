@@ -18,7 +18,7 @@ from numba import njit
 
 from sim_core.weave.yarns.particles.forces import set_out, touch
 
-__all__ = ["curve_overlap", "pin_forces"]
+__all__ = ["curve_gaps", "curve_overlap", "pin_forces"]
 
 APART = 0.02  # of a piece: pins of one crossing and norm that are nearer are one
 POLISH = 12  # steps of Newton
@@ -274,3 +274,42 @@ def _pinned(s, aside, held, u, z, gu, gz, hu, hz, yarn, base, l1, u2, z2, gu2, g
                 hu[yarn, n] += abs(w) * out[4]
                 hz[yarn, n] += abs(w) * out[5]
     return more
+
+
+@njit(cache=True, error_model="numpy")
+def curve_gaps(wu, wz, fu, fz, lift, per, l1, l2, wide_x, wide_y, reach1, reach2, gaps):
+    """How far the curves of crossing yarns are from touching, in each of the two norms; less than 0 where they overlap.
+
+    wu, wz: (ends, picks * per), fu, fz: (picks, ends * per) [D], curves through these as in curve_overlap, the minima
+    of whose distance are found likewise.  gaps: (picks, ends, 2) [D], written: round the warp, round the weft; yarns
+    farther than 1 D beyond touching count as that far.
+    """
+    picks, ends = lift.shape
+    rows, columns = 4 * reach1 + 1, 4 * reach2 + 1
+    warp, weft, grid = np.zeros((rows, 2)), np.zeros((columns, 2)), np.zeros((rows, columns))
+    least, where = np.zeros(max(rows, columns)), np.zeros(max(rows, columns), np.int64)
+    for i in range(picks):
+        for j in range(ends):
+            sign = 1.0 if lift[i, j] else -1.0
+            e, c1 = j, i * per
+            half_pieces(wu, wz, e, c1, reach1, warp)
+            half_pieces(fu, fz, i, j * per, reach2, weft)
+            for norm in range(2):
+                over_x = 1.0 / wide_x**2 if norm == 0 else 1.0
+                over_y = 1.0 / wide_y**2 if norm == 1 else 1.0
+                best = 4.0
+                lines = least_by_line(
+                    warp, weft, reach1, reach2, l1, l2, over_x, over_y, sign, norm, grid, least, where
+                )
+                for a in range(lines):
+                    here = least[a]
+                    best = min(best, here)
+                    if not is_minimum(least, a, lines):
+                        continue
+                    s, t = 0.5 * (where[a] if norm else a) - reach1, 0.5 * (a if norm else where[a]) - reach2
+                    s1, t1, square = polished(
+                        s, t, wu, wz, e, c1, l1, fu, fz, i, j * per, l2, over_x, over_y, sign
+                    )
+                    if square < here and abs(s1) <= reach1 + 1 and abs(t1) <= reach2 + 1:
+                        best = min(best, square)
+                gaps[i, j, norm] = np.sqrt(best) - 1.0

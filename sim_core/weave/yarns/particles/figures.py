@@ -12,8 +12,8 @@ from math import ceil
 
 import numpy as np
 
+from sim_core.weave.yarns.particles.closest_pairs import curve_gaps
 from sim_core.weave.yarns.particles.common_waves import CommonWaves
-from sim_core.weave.yarns.particles.curve_gaps import curve_gaps
 from sim_core.weave.yarns.particles.forces import side_forces
 from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
 from sim_core.weave.yarns.particles.scale import Scale

@@ -197,7 +197,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     overlap now, after their forces are taken (only where `weigh` is set).
     wide_x, wide_y: half widths of the contact norm along the weft and the warp; reach1, reach2: particles on both
     sides of a crossing that can touch.  friction: Coulomb's mu at the crossings, with elastic slip `slip` from the
-    place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifted.py).
+    place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifts.py).
     apart: empty, or (picks, ends, 2) [D] by how much points keep farther from the warp and from the weft, so that the
     curves keep apart between the particles too (see curve_gaps).
     stuck: empty, or (picks, ends, 2) [D] places of end and pick at which a crossing came to stick: static friction.

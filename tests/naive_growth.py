@@ -6,7 +6,7 @@ Kept as the oracle of the tests and the base line of the bench; nothing else use
 import numpy as np
 from numba import njit
 
-from sim_core.mesh.geometry.predicates import orient
+from sim_core.mesh.geometry import orient
 
 __all__ = ["grow_naive"]
 

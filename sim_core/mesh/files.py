@@ -1,64 +1,21 @@
-"""Readers and writers of the mesh room: outlines from JSON and pattern sheets in; npz, PLY, OBJ out."""
+"""A panel mesh written: npz, PLY, OBJ, and a picture of its faces coloured by quality."""
 
-import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import IO
 
 import numpy as np
 
-from sim_core.errors import FileProblem, OutlineWarning
-from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline.numbers import check_numbers
-from sim_core.mesh.sheets.model import Sheet
-from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
-from sim_core.reading import read_json, shown
+from sim_core.errors import FileProblem
+from sim_core.mesh.measures.triangles import quality
+from sim_core.mesh.panel import PanelMesh
 
-__all__ = ["Drawing", "drawing_of", "read_outline", "write_mesh", "write_picture"]
+__all__ = ["mesh_picture", "write_mesh", "write_picture"]
 
-
-class Drawing(NamedTuple):
-    """What an outline file holds: outline [m], holes and inner lines, as lists of [x, y] or arrays, y down."""
-
-    outline: Any
-    holes: list
-    constraints: list
-
-
-def read_outline(path: Path, choice: Choice | None = None, units: str | None = None) -> Drawing:
-    """The outline, holes and inner lines of a JSON file or of one piece of a pattern sheet, metres, y down.
-
-    JSON: {"outline": [[x, y], ...], "holes": [...], "constraints": [...]}. Sheets (SVG, DXF, GarmentCode): `choice`
-    says which piece along which line, `units` what a drawing unit is; remarks are OutlineWarnings.
-    Raises FileProblem (path: what – remedy) for a file that is missing, empty, of another kind or shape.
-    """
-    choice = choice or Choice()
-    if is_sheet(path):
-        return drawing_of(path, read_sheet(path, units, choice.layer), choice)
-    shape = 'it must hold {"outline": [[x, y], ...], "holes": [...], "constraints": [...]} in metres'
-    values = read_json(path, f"an outline file (JSON): {shape}")
-    if not isinstance(values, dict) or "outline" not in values:
-        raise FileProblem(f"{path}: outline: missing – {shape}")
-    unknown = sorted(set(values) - {"outline", "holes", "constraints"})
-    if unknown:
-        raise FileProblem(f"{path}: {unknown[0][:80]}: unknown key – {shape}")
-    for name in ("holes", "constraints"):
-        if not isinstance(values.get(name, []), list):
-            raise FileProblem(f"{path}: {name}: {shown(values[name])} – give a list of lists of [x, y]")
-    check_numbers(path, "outline", values["outline"], "[x, y] in metres")
-    for name, kind in (("holes", "hole"), ("constraints", "constraint")):
-        for k, rows in enumerate(values.get(name, [])):
-            check_numbers(path, f"{kind} {k}", rows, "[x, y] in metres")
-    return Drawing(values["outline"], values.get("holes", []), values.get("constraints", []))
-
-
-def drawing_of(path: Path, sheet: Sheet, choice: Choice) -> Drawing:
-    """The piece of a sheet that is chosen; remarks are OutlineWarnings. Raises FileProblem."""
-    piece, remark = panel_of(path, sheet, choice)
-    for told in (*sheet.remarks, *filter(None, [remark])):
-        warnings.warn(told, OutlineWarning, stacklevel=3)
-    return Drawing(piece.cut, list(piece.holes), list(piece.lines))
+POOR, GOOD = np.array([206, 92, 60]), np.array([236, 238, 232])
+MARGIN = 24
+OVERSAMPLE = 2
 
 
 def write_mesh(path: Path, mesh: PanelMesh) -> None:
@@ -140,3 +97,24 @@ def _write_obj(stream: IO[bytes], mesh: PanelMesh) -> None:
     lines = [f"v {x:.9g} {y:.9g} 0" for x, y, _ in _upright(mesh)]
     lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in mesh.faces]
     stream.write(("\n".join(lines) + "\n").encode())
+
+
+def mesh_picture(mesh: PanelMesh, *, size: int = 1200) -> np.ndarray:
+    """Draw a mesh as (n, m, 3) uint8, its longer side `size` pixels; faces from red (30 degrees) to pale (60)."""
+    from PIL import Image, ImageDraw
+
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    scale = (size - 2 * MARGIN) * OVERSAMPLE / float((high - low).max())
+    width, height = (int(v) for v in np.ceil((high - low) * scale) + 2 * MARGIN * OVERSAMPLE)
+    image = Image.new("RGB", (width, height), "white")
+    draw = ImageDraw.Draw(image)
+    places = (mesh.vertices - low) * scale + MARGIN * OVERSAMPLE
+    share = np.clip((quality(mesh.vertices, mesh.faces).min_angle - 30) / 30, 0, 1)[:, None]
+    colours = np.rint(POOR + (GOOD - POOR) * share).astype(int)
+    for face, colour in zip(mesh.faces, colours, strict=True):
+        corners = [tuple(p) for p in places[face]]
+        draw.polygon(corners, fill=tuple(colour.tolist()))
+        draw.line([*corners, corners[0]], fill=(70, 84, 92), width=1)
+    for loop in mesh.boundary:
+        draw.line([tuple(p) for p in places[[*loop, loop[0]]]], fill=(20, 30, 40), width=2 * OVERSAMPLE)
+    return np.asarray(image.resize((width // OVERSAMPLE, height // OVERSAMPLE), Image.Resampling.LANCZOS))
