@@ -20,10 +20,10 @@ FLAT = 1e-7  # share of cancellation in a triangle's area below which its circle
 
 
 @njit(cache=True, error_model="numpy")
-def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, unsure, spent):
+def apex(places, a, b, cells, boxes, walls, unsure, spent):
     """The optimal point C left of a -> b (Eq. 9 with the fan rule), or -1 where no point lies there.
 
-    places: (n, 2) in growth order.  start … rows: its cells.  boxes: `block_boxes`.  walls: `Walls` or None.
+    places: (n, 2) in growth order, sorted into `cells`.  boxes: `block_boxes`.  walls: `Walls` or None.
     unsure: (n,) int32, room for points that rounding cannot tell from the circle of the best so far; most of them
     are settled by a better point, the rest exactly in the end.  spent: (1,) int64, points looked at, counted on.
     Fan rule: points on one circle become a fan from the one that comes first in growth order. If that is not an end
@@ -31,6 +31,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
 
     One long function on purpose: the search lives in registers, and passing it between functions costs twice its time.
     """
+    start, x0, y0, per_metre, columns, rows = cells
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     ux, uy = bx - ax, by - ay
     us = ux * ux + uy * uy
@@ -101,7 +102,7 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
                         waiting += 1
                     continue
             if walls is not None:
-                if hidden(places, a, b, k, x0, y0, per_metre, columns, rows, walls):
+                if hidden(places, a, b, k, cells, walls):
                     continue
             best = k
             # The circle through a, b and k, seen from a: inside it alpha x + beta y + gamma (x x + y y) < 0.
@@ -125,11 +126,11 @@ def apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, walls, un
     spent[0] += work + waiting
     if waiting == 0:
         return best
-    return _settled(places, a, b, best, unsure, waiting, x0, y0, per_metre, columns, rows, walls)
+    return _settled(places, a, b, best, unsure, waiting, cells, walls)
 
 
 @njit(cache=True, error_model="numpy")
-def _settled(places, a, b, best, unsure, waiting, x0, y0, per_metre, columns, rows, walls):
+def _settled(places, a, b, best, unsure, waiting, cells, walls):
     """The optimal point among `best` and those that rounding could not tell from its circle; ties by the fan rule."""
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     lowest, near_a, near_b = best, best, best
@@ -139,7 +140,7 @@ def _settled(places, a, b, best, unsure, waiting, x0, y0, per_metre, columns, ro
         if side < 0 or k == best:
             continue
         if walls is not None:
-            if hidden(places, a, b, k, x0, y0, per_metre, columns, rows, walls):
+            if hidden(places, a, b, k, cells, walls):
                 continue
         if side > 0:
             best, lowest, near_a, near_b = k, k, k, k
@@ -173,8 +174,9 @@ def _right_of(box, ax, ay, ux, uy):
 
 
 @njit(cache=True, error_model="numpy")
-def block_boxes(places, start, columns, rows):
+def block_boxes(places, cells):
     """Bounding box (left, low, right, high) of the points in each block of 8 x 8 cells; left > right where empty."""
+    start, columns, rows = cells.start, cells.columns, cells.rows
     boxes = np.zeros(((rows - 1) // BLOCK + 1, (columns - 1) // BLOCK + 1, 4))
     boxes[:, :, :2], boxes[:, :, 2:] = np.inf, -np.inf
     for i in range(rows):
@@ -188,7 +190,7 @@ def block_boxes(places, start, columns, rows):
 
 
 @njit(cache=True, error_model="numpy")
-def strictly_delaunay(places, edges, start, x0, y0, per_metre, columns, rows, boxes, spent, most):
+def strictly_delaunay(places, edges, cells, boxes, spent, most):
     """Per edge (m, 2) whether some circle through its ends holds no other point, inside or on it. Returns (m,) bool.
 
     Such an edge is in every (constrained) Delaunay triangulation, so nothing has to keep triangles from crossing it.
@@ -200,23 +202,24 @@ def strictly_delaunay(places, edges, start, x0, y0, per_metre, columns, rows, bo
         if spent[0] > most:
             break
         a, b = edges[m, 0], edges[m, 1]
-        if not _crowded(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
+        if not _crowded(places, a, b, cells, spent):
             continue  # the circle over the edge as diameter is empty
-        c = apex(places, a, b, start, x0, y0, per_metre, columns, rows, boxes, None, unsure, spent)
-        d = apex(places, b, a, start, x0, y0, per_metre, columns, rows, boxes, None, unsure, spent)
+        c = apex(places, a, b, cells, boxes, None, unsure, spent)
+        d = apex(places, b, a, cells, boxes, None, unsure, spent)
         if c >= 0 and d >= 0:
             side = incircle(
                 places[a, 0], places[a, 1], places[b, 0], places[b, 1], places[c, 0], places[c, 1],
                 places[d, 0], places[d, 1],
             )  # fmt: skip
             strict[m] = side < 0
-        strict[m] &= not _between(places, a, b, start, x0, y0, per_metre, columns, rows, spent)
+        strict[m] &= not _between(places, a, b, cells, spent)
     return strict
 
 
 @njit(cache=True, error_model="numpy")
-def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
+def _crowded(places, a, b, cells, spent):
     """Whether a third point may lie in the closed circle over a b as diameter (rounding counts as inside)."""
+    start, x0, y0, per_metre, columns, rows = cells
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     mx, my = (ax + bx) / 2, (ay + by) / 2
     radius = np.hypot(bx - ax, by - ay) / 2 * (1 + 1e-9) + 1e-15 * (abs(mx) + abs(my))
@@ -233,8 +236,9 @@ def _crowded(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
 
 
 @njit(cache=True, error_model="numpy")
-def _between(places, a, b, start, x0, y0, per_metre, columns, rows, spent):
+def _between(places, a, b, cells, spent):
     """Whether a point lies on the segment between its ends."""
+    start, x0, y0, per_metre, columns, rows = cells
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     left, right = min(ax, bx), max(ax, bx)
     low, high = min(ay, by), max(ay, by)
