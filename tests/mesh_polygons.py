@@ -6,7 +6,7 @@ import numpy as np
 from exact_delaunay import delaunay_faults
 
 from sim_core.mesh import panel_mesh
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh.measures import mesh_fault
 
 __all__ = ["random_panel", "report_faults"]
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from sim_core.weave.algebra import Harness
-from sim_core.weave.wif import Wif
-from sim_core.weave.wif_write import wif_text
+from sim_core.weave.draft import Harness
+from sim_core.weave.files.wif import Wif, wif_text
 
 
 def generated(rng: np.random.Generator) -> Wif:

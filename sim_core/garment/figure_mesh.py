@@ -11,7 +11,7 @@ from sim_core.cloth.field import DistanceField
 from sim_core.garment.figure_form import FormSettings, crotch_height, figure_field, section
 from sim_core.garment.figure_source import Body
 from sim_core.garment.mannequin import BONES, Mannequin
-from sim_core.mesh.surface_net import split_quads, surface_net
+from sim_core.mesh import split_quads, surface_net
 
 COARSE, MIDDLE, FINE = 0.0165, 0.0125, 0.0095  # [m] of cells: trunk, feet, hands
 OTHER_SIDE = [BONES.index(b[:-2] + {"_l": "_r", "_r": "_l"}[b[-2:]]) if b[-2] == "_" else 0 for b in BONES]

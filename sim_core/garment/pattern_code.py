@@ -15,8 +15,7 @@ import numpy as np
 from sim_core.garment.cutting import Panel, Path, Seam, arc_length
 from sim_core.garment.pattern import Pattern
 from sim_core.mesh.outline import signed_area
-from sim_core.mesh.sheets import CodeEdge, CodePanel, GarmentCode, Stitch
-from sim_core.mesh.sheets.legs import cubic_through
+from sim_core.mesh.sheets import CodeEdge, CodePanel, GarmentCode, Stitch, cubic_through
 from sim_core.reading import read_toml
 
 __all__ = ["code_of_pattern", "read_pattern_code"]

@@ -130,9 +130,8 @@ def run(args: argparse.Namespace) -> int:
     if args.edge is None:
         raise WrongArgument("--edge: missing – give the length of a mesh edge in metres, such as --edge 0.01")
     from sim_core.machine_code import compile_clock
-    from sim_core.mesh.drawing import mesh_picture
-    from sim_core.mesh.sizes import read_size_field
-    from sim_core.mesh.writing import write_mesh, write_picture
+    from sim_core.mesh.files import mesh_picture, write_mesh, write_picture
+    from sim_core.mesh.outline.size_field import read_size_field
 
     drawing, read = _drawing(args)
     sizes = read_size_field(args.size_field) if args.size_field else None
@@ -179,8 +178,8 @@ def _tell_compiling() -> None:
 def _drawing(args: argparse.Namespace) -> tuple:
     """What is to be meshed, and the warnings of its reader."""
     from sim_core.errors import OutlineWarning
+    from sim_core.mesh.sheets.outline_file import drawing_of, read_outline
     from sim_core.mesh.sheets.reading import Choice, sheet_of_code
-    from sim_core.mesh.writing import drawing_of, read_outline
 
     choice = Choice(args.piece, args.line, args.layer, args.allowance / 1000)
     with warnings.catch_warnings(record=True) as read:

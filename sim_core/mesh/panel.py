@@ -1,34 +1,50 @@
 """Outline to panel mesh: samples, staggered points, redundant points out, growth, check."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
 from sim_core.errors import OutlineError
 from sim_core.machine_code import CompileClock, compile_clock
-from sim_core.mesh.best import BestFill, best_fill
-from sim_core.mesh.graded import graded_points
-from sim_core.mesh.growth import CLOSED, Growth, grow_points
-from sim_core.mesh.lattice import staggered_points
-from sim_core.mesh.lines import clean_lines
-from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import check_edge, cleaned_contours, sharpest_corner
-from sim_core.mesh.quality import quality as face_quality
-from sim_core.mesh.raycast import keep_points
-from sim_core.mesh.report import deviation, measured
-from sim_core.mesh.sampling import Rim, sampled_rim
-from sim_core.mesh.sizes import SizeField
-from sim_core.mesh.smoothing import smoothed
-from sim_core.mesh.verify import fills, verify
+from sim_core.mesh.improvement.best import BestFill, best_fill
+from sim_core.mesh.improvement.smoothing import smoothed
+from sim_core.mesh.measures.report import MeshReport, deviation, measured
+from sim_core.mesh.measures.triangles import quality as face_quality
+from sim_core.mesh.measures.verification import fills, verify
+from sim_core.mesh.outline.contours import check_edge, cleaned_contours, sharpest_corner
+from sim_core.mesh.outline.inner_lines import clean_lines
+from sim_core.mesh.outline.samples import Rim, sampled_rim
+from sim_core.mesh.outline.size_field import SizeField
+from sim_core.mesh.points.graded import graded_points
+from sim_core.mesh.points.lattice import staggered_points
+from sim_core.mesh.points.raycast import keep_points
+from sim_core.mesh.triangulation.growth import CLOSED, Growth, grow_points
 
-__all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh", "timed"]
+__all__ = ["QUALITIES", "PanelMesh", "check_options", "filled_mesh", "panel_mesh", "timed"]
 
 UPRIGHT = np.array([1.0, -1.0])  # y down -> y up; exact
 ENOUGH_DEGREES = 30.0
 OTHER_THRESHOLDS = (0.76, 0.64, 0.82)
 QUALITIES = ("fair", "light", "best")
 PASSES = 3  # of light smoothing
+
+
+@dataclass(frozen=True, eq=False)
+class PanelMesh:
+    """A triangulated panel in pattern coordinates (metres, y down).
+
+    vertices: (V, 2) float64 [m].  faces: (F, 3) int32, positive area in (x, -y).
+    boundary: one array of vertex indices per contour, the outer one first; outer counter-clockwise and holes
+    clockwise in (x, -y), so that the cloth lies to the left.
+    lines: one array of vertex indices per inner line, open; their steps are edges of the mesh.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    boundary: tuple[np.ndarray, ...]
+    report: MeshReport
+    lines: tuple[np.ndarray, ...] = ()
 
 
 def panel_mesh(

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
-from sim_core.mesh.sizes import SizeField
+from sim_core.mesh.outline.contours import CORNER_DEGREES, outline_turning
+from sim_core.mesh.outline.size_field import SizeField
 
 __all__ = ["Steps", "arc_lengths", "at_lengths", "seam_steps"]
 

@@ -15,14 +15,19 @@ import numpy as np
 
 from sim_core.errors import OutlineError
 from sim_core.machine_code import compile_clock
-from sim_core.mesh.lines import clean_lines
-from sim_core.mesh.model import PanelMesh
-from sim_core.mesh.outline import check_edge, clean_contour, clean_contours, cleaned_contours, signed_area
-from sim_core.mesh.panel import check_options, filled_mesh, timed
-from sim_core.mesh.report import deviation
-from sim_core.mesh.sampling import sampled_rim
+from sim_core.mesh.measures.report import deviation
+from sim_core.mesh.outline.contours import (
+    check_edge,
+    clean_contour,
+    clean_contours,
+    cleaned_contours,
+    signed_area,
+)
+from sim_core.mesh.outline.inner_lines import clean_lines
+from sim_core.mesh.outline.samples import sampled_rim
+from sim_core.mesh.outline.size_field import SizeField
+from sim_core.mesh.panel import PanelMesh, check_options, filled_mesh, timed
 from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
-from sim_core.mesh.sizes import SizeField
 
 __all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
 

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 
 from sim_core.arguments import ending, whole
 from sim_core.errors import WeaveError, WrongArgument
-from sim_core.weave.drawing import add_drawing, check_drawing, draw
+from sim_core.weave.chart.command import add_drawing, check_drawing, draw
 
 if TYPE_CHECKING:
-    from sim_core.weave.geometry import YarnGeometry
+    from sim_core.weave.files.sources import Source
     from sim_core.weave.model import Weave
-    from sim_core.weave.particles import ParticleCell
-    from sim_core.weave.sources import Source
+    from sim_core.weave.yarns.geometry import YarnGeometry
+    from sim_core.weave.yarns.particles.cell import ParticleCell
 
 __all__ = ["add_parser", "run"]
 
@@ -100,8 +100,8 @@ def add_parser(subparsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Tell, relax, draw and write; returns the exit status."""
-    from sim_core.weave.report import facts_of, summary_text
-    from sim_core.weave.sources import blocked_source, source_of
+    from sim_core.weave.files.sources import blocked_source, source_of
+    from sim_core.weave.summary import facts_of, summary_text
 
     _check_words(args)
     _check_places(args)
@@ -117,8 +117,8 @@ def run(args: argparse.Namespace) -> int:
     if args.wif:
         _write_wif(source, args.wif)
     if cloth is not None and args.yarns:
-        from sim_core.weave.strands import strands
-        from sim_core.weave.tubes import write_yarns
+        from sim_core.weave.maps.tubes import write_yarns
+        from sim_core.weave.yarns.paths import strands
 
         write_yarns(strands(cloth.weave, cloth.geometry), args.yarns)
     if cloth is not None and args.maps:
@@ -139,7 +139,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _check_words(args: argparse.Namespace) -> None:
     """Arguments that say nothing without others, and structures that are none, are refused before the work."""
-    from sim_core.weave.profiles import unit_of
+    from sim_core.weave.files.profiles import unit_of
 
     check_drawing(args)
     if args.blocks:
@@ -174,10 +174,10 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
 
     A large draft is relaxed only for who asks for it: what needs no physics is answered at once.
     """
-    from sim_core.weave.draft import plain
-    from sim_core.weave.particles import relax_particles
-    from sim_core.weave.report import summary_of
-    from sim_core.weave.sources import dressed
+    from sim_core.weave.draft.draft import plain
+    from sim_core.weave.files.sources import dressed
+    from sim_core.weave.summary import summary_of
+    from sim_core.weave.yarns.particles.cell import relax_particles
 
     asked = args.relax or args.maps or args.yarns
     crossings = source.factors.picks * source.factors.ends
@@ -199,8 +199,8 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
 
 def _write_wif(source: Source, path: Path) -> None:
     """The file of another program as it stands, else our draft with all that WIF cannot say."""
-    from sim_core.weave.wif import wif_of
-    from sim_core.weave.wif_write import write_wif
+    from sim_core.weave.files.wif.model import wif_of
+    from sim_core.weave.files.wif.writer import write_wif
 
     own = source.made is None and source.wif is not None
     write_wif(source.wif if own and source.wif is not None else wif_of(source.weave[0]), path)
@@ -211,13 +211,13 @@ def _relaxed(weave, particles: bool):
 
     Satins and twills are no large repeats: one pick of them is relaxed, or pins bring them to rest soon.
     """
-    from sim_core.weave.particles import MOST_STEPS, NotAtRest, is_figure
-    from sim_core.weave.progress import shown
-    from sim_core.weave.solve import solve
+    from sim_core.weave.yarns.particles.cell import MOST_STEPS, NotAtRest, is_figure
+    from sim_core.weave.yarns.progress import progress_report
+    from sim_core.weave.yarns.solver import solve
 
     count = 2 * PER * weave.draft.lift.size
     large = particles and is_figure(weave.draft.lift)
-    with shown(weave.name) as watch:
+    with progress_report(weave.name) as watch:
         if large and count > MOST_PARTICLES:
             reason = f"a repeat of {count:,} particles, more than {MOST_PARTICLES:,}"
             return solve(weave), {"note": f"stage A, at the crossings: {reason}"}
@@ -233,7 +233,7 @@ def _relaxed(weave, particles: bool):
 def _write(folder: Path, cloth: _Cloth, size: int, summary: dict) -> None:
     from PIL import Image
 
-    from sim_core.weave.surface import lit_cloth, surface_maps
+    from sim_core.weave.maps.surface import lit_cloth, surface_maps
 
     maps = surface_maps(cloth.weave, cloth.geometry, pixels=size)
     for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():

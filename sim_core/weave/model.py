@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.draft import Channels, Draft
-from sim_core.weave.reading import read_weave_file
+from sim_core.weave.draft.draft import Channels, Draft
+from sim_core.weave.weave_file import read_weave_file
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["Weave", "draft_from_dict", "draft_to_dict"]

@@ -79,9 +79,9 @@ LARGE = {
 PROGRAM = """
 import json, re, sys, time
 from pathlib import Path
-from sim_core.weave.report import facts_of
-from sim_core.weave.sources import source_of_wif
-from sim_core.weave.wif_read import read_wif
+from sim_core.weave.summary import facts_of
+from sim_core.weave.files.sources import source_of_wif
+from sim_core.weave.files.wif.reader import read_wif
 path = Path(sys.argv[1])
 begin = time.process_time()
 wif = read_wif(path)
@@ -95,7 +95,7 @@ print(json.dumps({"read": read - begin, "facts": done - read, "memory": memory, 
 
 def longest_woven(path: Path) -> tuple[int, int]:
     """The longest float of warp and weft, counted pick by pick on the cloth itself."""
-    from sim_core.weave.wif_read import read_wif
+    from sim_core.weave.files.wif import read_wif
 
     lift = read_wif(path).factors.lift()
     found = []

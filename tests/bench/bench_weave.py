@@ -23,7 +23,7 @@ from scipy.optimize import nnls
 
 from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
 from sim_core.weave.draft import Draft
-from sim_core.weave.relaxation import beam_stiffness
+from sim_core.weave.yarns import beam_stiffness
 
 ROOT = Path(__file__).parents[2]
 D = 1e-4

@@ -3,9 +3,8 @@
 import numpy as np
 
 from sim_core.mesh import inside, keep_points, quality, staggered_points
-from sim_core.mesh.outline import clean_contours, signed_area
-from sim_core.mesh.quality import triangle_areas
-from sim_core.mesh.sampling import sampled_contours
+from sim_core.mesh.measures import triangle_areas
+from sim_core.mesh.outline import clean_contours, sampled_contours, signed_area
 
 TURN = np.arange(64) * 2 * np.pi / 64
 ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])

@@ -19,7 +19,7 @@ sys.path.append(
 from growing_shapes import SHAPES, small_holes  # noqa: E402
 
 from sim_core.mesh import panel_mesh, quality  # noqa: E402
-from sim_core.mesh.angles import small_angles  # noqa: E402
+from sim_core.mesh.improvement import small_angles  # noqa: E402
 from sim_core.mesh.outline import clean_contours  # noqa: E402
 
 __all__ = ["grading", "growing"]

@@ -10,8 +10,15 @@ import numpy as np
 from mesh_cases import half_robe
 from PIL import Image, ImageDraw, ImageFont
 
-from sim_core.mesh import SizeField, inside, keep_points, outline_samples, panel_mesh, staggered_points
-from sim_core.mesh.drawing import mesh_picture
+from sim_core.mesh import (
+    SizeField,
+    inside,
+    keep_points,
+    mesh_picture,
+    outline_samples,
+    panel_mesh,
+    staggered_points,
+)
 from sim_core.mesh.outline import clean_contours
 
 FINE = 2  # drawn so much larger, then reduced

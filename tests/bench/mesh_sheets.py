@@ -22,8 +22,8 @@ from peers import Peers, peer_python
 
 from sim_core.errors import SimCoreError
 from sim_core.mesh import panel_mesh
+from sim_core.mesh.measures import quality
 from sim_core.mesh.outline import signed_area
-from sim_core.mesh.quality import quality
 from sim_core.mesh.sheets import Choice, panel_of, read_sheet
 
 ROOT = Path(__file__).resolve().parents[2]

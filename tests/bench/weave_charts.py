@@ -8,10 +8,8 @@ from pathlib import Path
 
 from PIL import Image
 
-from sim_core.weave.chart import View, chart_of
-from sim_core.weave.chart.paper import free_page
-from sim_core.weave.chart.png import picture_of
-from sim_core.weave.sources import blocked_source, source_of
+from sim_core.weave.chart import View, chart_of, free_page, picture_of
+from sim_core.weave.files import blocked_source, source_of
 
 FOLDER = Path(__file__).parents[1] / "sim_core" / "drafts"
 WIDE = 1500  # pixels of two pictures beside each other

@@ -16,6 +16,7 @@ from sim_core.weave import (
     Draft,
     Weave,
     Yarn,
+    measured,
     plain,
     relax,
     relax_particles,
@@ -24,12 +25,11 @@ from sim_core.weave import (
     surface_maps,
     twill,
 )
-from sim_core.weave.elastica import elastica_crimp, peirce_crimp
-from sim_core.weave.generators import basket, damask
-from sim_core.weave.report import measured
-from sim_core.weave.wif_read import parse_wif
+from sim_core.weave.draft import basket, damask
+from sim_core.weave.files.wif import parse_wif
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from elastica import elastica_crimp, peirce_crimp  # noqa: E402
 from wif_fuzz import damaged  # noqa: E402
 
 D = 1e-4

@@ -10,8 +10,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from sim_core.weave import ParticleCell, Weave, lit_cloth, solve, surface_maps
-from sim_core.weave.figure1 import figure_one, figure_one_picture
-from sim_core.weave.sources import weave_of
+from sim_core.weave.files import weave_of
+from sim_core.weave.maps import figure_one, figure_one_picture
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 SIDE, COLUMNS, FOOT = 330, 5, 34

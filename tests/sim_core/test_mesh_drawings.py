@@ -7,9 +7,8 @@ import pytest
 
 from sim_core import cli
 from sim_core.errors import FileProblem, OutlineWarning
-from sim_core.mesh.outline import signed_area
-from sim_core.mesh.sizes import read_size_field
-from sim_core.mesh.writing import read_outline
+from sim_core.mesh.outline import read_size_field, signed_area
+from sim_core.mesh.sheets import read_outline
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="300mm" viewBox="0 0 200 300">'
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from exact_delaunay import incircle_sign, orient_sign
 
-from sim_core.mesh.exact import incircle, orient
+from sim_core.mesh.geometry import incircle, orient
 
 
 def on_one_circle(rng) -> np.ndarray:

@@ -8,11 +8,9 @@ from exact_delaunay import delaunay_faults
 
 from sim_core.errors import FileProblem, OutlineError, OutlineWarning
 from sim_core.mesh import SizeField, panel_mesh, quality, staggered_points
-from sim_core.mesh import lines as inner_lines
-from sim_core.mesh.graded import lattice_near
-from sim_core.mesh.outline import clean_contours, sharpest_corner
-from sim_core.mesh.sizes import read_size_field
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh.measures import mesh_fault
+from sim_core.mesh.outline import clean_contours, inner_lines, read_size_field, sharpest_corner
+from sim_core.mesh.points import lattice_near
 
 RECTANGLE = np.array([[0, 0], [1, 0], [1, 0.7], [0, 0.7]])
 TURN = np.arange(64) * 2 * np.pi / 64

@@ -6,17 +6,12 @@ from exact_delaunay import delaunay_faults
 from growing_shapes import SHAPES, small_holes
 from mesh_polygons import random_panel
 
-from sim_core.mesh import SizeField, panel_mesh, refinement, triangulate
-from sim_core.mesh.angles import small_angles
-from sim_core.mesh.crossings import crossed_steps, first_crossing
-from sim_core.mesh.growth import PATIENCE, grow_points
-from sim_core.mesh.incremental import inner_faces, joined_points
-from sim_core.mesh.nearest import nearest_others, size_boxes
-from sim_core.mesh.outline import clean_contours
-from sim_core.mesh.quality import quality
-from sim_core.mesh.report import deviation
-from sim_core.mesh.sampling import sampled_rim
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh import SizeField, panel_mesh, triangulate
+from sim_core.mesh.geometry import nearest_others, size_boxes
+from sim_core.mesh.improvement import refinement, small_angles
+from sim_core.mesh.measures import deviation, mesh_fault, quality
+from sim_core.mesh.outline import clean_contours, crossed_steps, first_crossing, sampled_rim
+from sim_core.mesh.triangulation import PATIENCE, grow_points, inner_faces, joined_points
 
 UPRIGHT = (1.0, -1.0)
 

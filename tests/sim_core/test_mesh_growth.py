@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from exact_delaunay import delaunay_faults
+from naive_growth import grow_naive
 from scipy.spatial import ConvexHull, Delaunay
 
 from sim_core.errors import OutlineError
 from sim_core.mesh import panel_mesh, triangulate
-from sim_core.mesh.naive import grow_naive
+from sim_core.mesh.measures import triangle_areas
 from sim_core.mesh.outline import signed_area
-from sim_core.mesh.quality import triangle_areas
 
 
 def triangles(faces) -> set:

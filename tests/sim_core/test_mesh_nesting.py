@@ -6,8 +6,7 @@ from shapely import Polygon
 from shapely.affinity import rotate
 
 from sim_core.errors import OutlineError
-from sim_core.mesh.crossings import close_contours, enclosing
-from sim_core.mesh.outline import cleaned_contours
+from sim_core.mesh.outline import cleaned_contours, close_contours, enclosing
 
 NEAR = 1e-9
 SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])

@@ -8,11 +8,9 @@ from exact_delaunay import delaunay_faults
 
 from sim_core import cli
 from sim_core.errors import OutlineError
-from sim_core.mesh import panel_mesh
+from sim_core.mesh import panel_mesh, write_mesh
+from sim_core.mesh.measures import mesh_fault, quality, triangle_areas
 from sim_core.mesh.outline import signed_area
-from sim_core.mesh.quality import quality, triangle_areas
-from sim_core.mesh.verify import mesh_fault
-from sim_core.mesh.writing import write_mesh
 
 TURN = np.arange(64) * 2 * np.pi / 64
 ROUND = np.column_stack([np.cos(TURN), np.sin(TURN)])

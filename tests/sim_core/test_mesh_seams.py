@@ -5,7 +5,7 @@ import pytest
 
 from sim_core.errors import OutlineError, OutlineWarning
 from sim_core.mesh import Seam, SeamSide, SizeField, sewn_meshes
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh.measures import mesh_fault
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 T = np.linspace(0, np.pi / 2, 30)

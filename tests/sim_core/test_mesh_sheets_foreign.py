@@ -15,9 +15,7 @@ from sim_core.errors import FileProblem
 from sim_core.garment.pattern import Pattern
 from sim_core.mesh import panel_mesh
 from sim_core.mesh.outline import signed_area
-from sim_core.mesh.sheets import read_garment_code, read_sheet
-from sim_core.mesh.sheets.drawing import apart, sheet_picture
-from sim_core.mesh.sheets.toml_text import toml_text
+from sim_core.mesh.sheets import apart, read_garment_code, read_sheet, sheet_picture, toml_text
 
 SHEETS = Path(__file__).parent / "sheets"
 PATTERNS = Path(__file__).parents[2] / "assets" / "patterns"

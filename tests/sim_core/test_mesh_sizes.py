@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sim_core.mesh import SizeField, nearest, panel_mesh
-from sim_core.mesh.nearest import size_boxes
-from sim_core.mesh.verify import mesh_fault
+from sim_core.mesh import SizeField, panel_mesh
+from sim_core.mesh.geometry import nearest, size_boxes
+from sim_core.mesh.measures import mesh_fault
 
 
 @pytest.mark.parametrize("count", [1, 7, 8, 9, 64, 65, 3000])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.mesh import inside, keep_points, outline_samples, quality, staggered_points
-from sim_core.mesh.sampling import sampled_contours
+from sim_core.mesh.outline import sampled_contours
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 CIRCLE = np.column_stack([np.cos(t := np.arange(200) * np.pi / 100), np.sin(t)])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim_core.mesh.surface_net import split_quads, surface_net
+from sim_core.mesh.geometry import split_quads, surface_net
 
 
 @pytest.fixture(scope="module")

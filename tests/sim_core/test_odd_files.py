@@ -15,7 +15,7 @@ from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Garment, Pattern
 from sim_core.garment.mannequin import Mannequin
 from sim_core.garment.measures import measured
-from sim_core.mesh.writing import read_outline
+from sim_core.mesh.sheets import read_outline
 from sim_core.weave import Weave
 
 ASSETS = Path(__file__).parents[2] / "assets"

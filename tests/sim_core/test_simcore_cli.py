@@ -158,8 +158,8 @@ def test_weave_writes_maps_yarns_wif_and_summary(tmp_path, capsys, relax):
 
 
 def test_weave_takes_a_picture_of_a_motif_and_our_json(tmp_path, capsys):
-    from sim_core.weave.model import draft_to_dict
-    from sim_core.weave.structures import gauze
+    from sim_core.weave import draft_to_dict
+    from sim_core.weave.draft import gauze
 
     motif = np.full((20, 20, 3), 255, np.uint8)
     motif[5:15, 5:15] = 0

@@ -4,21 +4,37 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave.algebra import Harness, drawdown, harness, lift_plan, tie_up
-from sim_core.weave.analysis import float_statistics, hangs_together, summary
-from sim_core.weave.draft import Channels, Draft, plain, satin, twill
-from sim_core.weave.generators import (
+from sim_core.weave.draft import (
+    Channels,
+    Draft,
+    Harness,
     basket,
+    brocade,
     damask,
     diamond,
+    draft_of_words,
+    drawdown,
+    float_statistics,
+    four_end_gauze,
+    gauze,
+    hangs_together,
+    harness,
     herringbone,
+    lift_plan,
     limit_floats,
+    motif_of,
+    plain,
+    satin,
     satin_of_six,
+    summary,
+    tapestry,
+    tie_up,
+    twill,
+    warp_compound,
+    weft_compound,
     weft_faced,
 )
-from sim_core.weave.sources import dressed
-from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.words import draft_of_words, motif_of
+from sim_core.weave.files import dressed
 
 RNG = np.random.default_rng(5)
 

@@ -12,9 +12,8 @@ from PIL import Image
 from sim_core.cli import main
 from sim_core.errors import WeaveError
 from sim_core.weave.chart import View, Window, chart_of, write_draft
-from sim_core.weave.profiles import STRUCTURES, blocked_out, unit_of
-from sim_core.weave.sources import blocked_source, source_of
-from sim_core.weave.wif_read import read_wif
+from sim_core.weave.files import STRUCTURES, blocked_out, blocked_source, source_of, unit_of
+from sim_core.weave.files.wif import read_wif
 
 FOLDER = Path(__file__).parent / "drafts"
 TWILL = str(FOLDER / "weaveit-32-shafts.wif")
@@ -136,7 +135,7 @@ def test_no_page_weaves_out_a_plan_that_it_does_not_draw(monkeypatch, tmp_path):
 
 
 def test_larger_drafts_are_pages_that_meet_without_a_gap(tmp_path):
-    from sim_core.weave.chart.sheets import windows
+    from sim_core.weave.chart import windows
 
     pages = windows(Window((0, 1210), (40, 730)), 500)
     assert all(w.ends[1] - w.ends[0] <= 500 and w.picks[1] - w.picks[0] <= 500 for w in pages)

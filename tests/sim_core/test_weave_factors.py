@@ -4,10 +4,15 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave.algebra import Harness, lift_plan
-from sim_core.weave.analysis import hangs_together, summary, summary_of_factors
-from sim_core.weave.draft import Draft
-from sim_core.weave.factors import Factors
+from sim_core.weave.draft import (
+    Draft,
+    Factors,
+    Harness,
+    hangs_together,
+    lift_plan,
+    summary,
+    summary_of_factors,
+)
 
 
 def lifts(count: int):

@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 
 from sim_core.weave import Weave, Yarn, plain, relax_particles, surface_maps
-from sim_core.weave.common_waves import CommonWaves, gathered
-from sim_core.weave.curve_gaps import curve_gaps
-from sim_core.weave.draft import Draft, satin
-from sim_core.weave.generators import damask
-from sim_core.weave.lines import resampled
-from sim_core.weave.particle_forces import STATIC, contact_forces
-from sim_core.weave.particles import NotAtRest, is_figure
-from sim_core.weave.relaxation import beam_stiffness
-from sim_core.weave.sources import dressed
+from sim_core.weave.draft import Draft, damask, satin
+from sim_core.weave.files import dressed
+from sim_core.weave.yarns import beam_stiffness, resampled
+from sim_core.weave.yarns.particles import (
+    STATIC,
+    CommonWaves,
+    NotAtRest,
+    contact_forces,
+    curve_gaps,
+    gathered,
+    is_figure,
+)
 
 NOTHING = np.zeros((0, 0, 2))
 
@@ -74,7 +77,7 @@ def test_a_figure_crimps_as_by_pins():
     """In an open net, where both ways come to rest, they give the same cloth."""
     yarn = Yarn(1e-4, 5e-6, 2.0, 1e-9)
     weave = Weave("net", damask(blobs(24, 5), longest=8), yarn, yarn, 2400, 2400)
-    import sim_core.weave.particles as particles
+    import sim_core.weave.yarns.particles.cell as particles
 
     way, plain_way = relax_particles(weave, per=8), None
     with pytest.MonkeyPatch.context() as patch:
@@ -107,7 +110,7 @@ def test_what_does_not_rest_the_figures_way_rests_by_pins_from_the_start(monkeyp
     lift = satin(32, 23).lift.copy()
     lift[3, 5] ^= True
     assert is_figure(lift)
-    monkeypatch.setattr("sim_core.weave.particles.FIGURE_STEPS", 150)
+    monkeypatch.setattr("sim_core.weave.yarns.particles.cell.FIGURE_STEPS", 150)
     watch = np.zeros(2)
     cell = relax_particles(dressed(Draft("turned", lift)), most=3000, watch=watch)
     assert cell.residual <= 1e-3

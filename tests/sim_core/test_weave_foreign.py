@@ -8,10 +8,9 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import WeaveError
-from sim_core.weave.dtx import parse_dtx, read_dtx
-from sim_core.weave.report import facts_of
-from sim_core.weave.sources import source_of_wif
-from sim_core.weave.wif_read import read_wif
+from sim_core.weave import facts_of
+from sim_core.weave.files import parse_dtx, read_dtx, source_of_wif
+from sim_core.weave.files.wif import read_wif
 
 FOLDER = Path(__file__).parent / "drafts"
 READABLE = sorted(p for p in FOLDER.iterdir() if p.suffix in (".wif", ".dtx") and p.stem != "missing-tieup")

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
-from sim_core.weave.generators import damask
-from sim_core.weave.parameters import tensile_compliance
-from sim_core.weave.relaxation import beam_stiffness
-from sim_core.weave.shifted import draft_shift
+from sim_core.weave import Weave, Yarn, plain, relax, satin, tensile_compliance, twill
+from sim_core.weave.draft import damask
+from sim_core.weave.yarns import beam_stiffness, draft_shift
 
 D = 1e-4
 
@@ -161,7 +159,7 @@ def test_crimp_straightening_of_plain_weave_has_a_closed_form():
 
 
 def long_hand(cloth: Weave, tolerance: float, monkeypatch, many: int):
-    monkeypatch.setattr("sim_core.weave.relaxation.MANY", many)
+    monkeypatch.setattr("sim_core.weave.yarns.beams.MANY", many)
     return relax(cloth, tolerance=tolerance)
 
 
@@ -207,7 +205,7 @@ def test_large_figures_keep_their_yarns_apart(monkeypatch):
     for name in ("warp_height", "weft_height", "force", "warp_crimp", "weft_crimp"):
         one, other = getattr(wanted, name), getattr(made, name)
         np.testing.assert_allclose(other, one, atol=1e-4 * np.abs(one).max())
-    monkeypatch.setattr("sim_core.weave.parameters.MANY", 10**9)
+    monkeypatch.setattr("sim_core.weave.cloth.MANY", 10**9)
     exact = tensile_compliance(cloth)
-    monkeypatch.setattr("sim_core.weave.parameters.MANY", 100)
+    monkeypatch.setattr("sim_core.weave.cloth.MANY", 100)
     np.testing.assert_allclose(tensile_compliance(cloth, made), exact, rtol=0.05)

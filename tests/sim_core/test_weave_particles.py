@@ -5,22 +5,31 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from elastica import elastica_crimp, peirce_crimp
 
 from sim_core.errors import WeaveError
 from sim_core.weave import Channels, Draft, Weave, Yarn, plain, satin, twill
-from sim_core.weave.closest_pairs import curve_overlap, pin_forces
-from sim_core.weave.elastica import elastica_crimp, peirce_crimp
-from sim_core.weave.generators import basket
-from sim_core.weave.jam import check_jam, jam_limits
-from sim_core.weave.laid import lay_beams
-from sim_core.weave.particle_forces import contact_forces, side_forces, yarn_forces
-from sim_core.weave.particles import relax_particles
-from sim_core.weave.relaxation import beam_stiffness
-from sim_core.weave.shifted import turns_of
-from sim_core.weave.solve import ground_of, solve
-from sim_core.weave.strands import strands
-from sim_core.weave.structures import gauze
-from sim_core.weave.yarn_steps import advance, factored
+from sim_core.weave.draft import basket, gauze
+from sim_core.weave.yarns import (
+    beam_stiffness,
+    check_jam,
+    ground_of,
+    jam_limits,
+    lay_beams,
+    solve,
+    strands,
+    turns_of,
+)
+from sim_core.weave.yarns.particles import (
+    advance,
+    contact_forces,
+    curve_overlap,
+    factored,
+    pin_forces,
+    relax_particles,
+    side_forces,
+    yarn_forces,
+)
 
 D = 1e-4
 NO_TURNS = np.zeros(0, np.int64)
@@ -261,7 +270,7 @@ def test_one_end_and_one_pick_stand_for_all_of_a_satin(monkeypatch, draft, spaci
     """As satins above 10,000 crossings are relaxed, against all yarns of the repeat; 2.6: neighbours touch."""
     weave = cloth(draft, spacing, flattening=flattening)
     whole = relax_particles(weave)
-    monkeypatch.setattr("sim_core.weave.particles.MANY", 0)
+    monkeypatch.setattr("sim_core.weave.yarns.particles.cell.MANY", 0)
     one = relax_particles(weave)
     assert one.steps == whole.steps
     for name in ("warp_side", "warp_height", "weft_side", "weft_height"):

@@ -3,8 +3,8 @@
 from time import monotonic, sleep
 
 from sim_core.weave import plain, relax_particles
-from sim_core.weave.progress import shown
-from sim_core.weave.sources import dressed
+from sim_core.weave.files import dressed
+from sim_core.weave.yarns import progress_report
 
 
 def heard(capsys, words: str, patience: float = 60.0) -> bool:
@@ -18,7 +18,7 @@ def heard(capsys, words: str, patience: float = 60.0) -> bool:
 
 
 def test_stage_steps_and_residual_are_told_on_stderr(capsys):
-    with shown("cloth", first=0.01, every=0.01) as watch:
+    with progress_report("cloth", first=0.01, every=0.01) as watch:
         assert heard(capsys, "stage A")
         cell = relax_particles(dressed(plain()), watch=watch)
         # A slow machine tells steps on the way as well; the last word is the cell's own.
@@ -28,7 +28,7 @@ def test_stage_steps_and_residual_are_told_on_stderr(capsys):
 
 
 def test_what_is_soon_done_is_not_told(capsys):
-    with shown("cloth", first=60):
+    with progress_report("cloth", first=60):
         pass
     captured = capsys.readouterr()
     assert captured.err == ""

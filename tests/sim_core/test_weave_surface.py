@@ -8,15 +8,18 @@ import pytest
 
 from sim_core.cloth.material import Material
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, Yarn, plain
-from sim_core.weave.figure1 import figure_one, figure_one_picture
-from sim_core.weave.generators import basket
-from sim_core.weave.report import measured, parameters_of, summary_of
-from sim_core.weave.solve import solve
-from sim_core.weave.sources import weave_of
-from sim_core.weave.strands import strands
-from sim_core.weave.surface import lit_cloth, surface_maps
-from sim_core.weave.tubes import tube_mesh, write_yarns
+from sim_core.weave import Weave, Yarn, measured, parameters_of, plain, summary_of
+from sim_core.weave.draft import basket
+from sim_core.weave.files import weave_of
+from sim_core.weave.maps import (
+    figure_one,
+    figure_one_picture,
+    lit_cloth,
+    surface_maps,
+    tube_mesh,
+    write_yarns,
+)
+from sim_core.weave.yarns import solve, strands
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
@@ -103,7 +106,7 @@ def test_yarn_numbers_and_directions(relaxed):
 
 
 def test_opengl_draws_the_same_cloth(relaxed):
-    gl = pytest.importorskip("sim_core.weave.gl_samples")
+    gl = pytest.importorskip("sim_core.weave.maps.gl_samples")
     try:
         gl.context()
     except gl.NoOpenGL as error:
@@ -237,11 +240,11 @@ def test_density_counts_extra_wefts_only_where_they_are(relaxed):
 @pytest.mark.parametrize("name", ["twill", "kesi"])
 def test_tubes_go_on_in_the_next_repeat_without_a_seam(relaxed, name):
     """The last ring of a yarn is its first, a repeat further; so are rings where the colour changes."""
-    from sim_core.weave.tubes import _pieces
+    from sim_core.weave.maps import coloured_stretches
 
     weave, geometry = relaxed(name)
     warp = strands(weave, geometry)[0]
-    for points, _, around in _pieces(warp):
+    for points, _, around in coloured_stretches(warp):
         vertices, _ = tube_mesh(points, 1e-4, 5e-5, around=around)
         rings = vertices.reshape(len(points), -1, 3)
         np.testing.assert_allclose(rings[-1], rings[0] + [0, warp.length, 0], atol=1e-12)

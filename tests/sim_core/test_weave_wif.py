@@ -9,17 +9,19 @@ import pytest
 from wif_fuzz import damaged, generated
 
 from sim_core.errors import SimCoreError, WeaveError
-from sim_core.weave import Draft, Weave, plain, satin
-from sim_core.weave.algebra import Harness
-from sim_core.weave.report import facts_of
-from sim_core.weave.solve import solve
-from sim_core.weave.sources import source_of, weave_of
-from sim_core.weave.strands import main_picks, strands
-from sim_core.weave.structures import brocade, four_end_gauze, gauze, tapestry, warp_compound, weft_compound
-from sim_core.weave.wif import PRIVATE, Wif, wif_of
-from sim_core.weave.wif_read import parse_wif, read_wif
-from sim_core.weave.wif_sections import decoded
-from sim_core.weave.wif_write import wif_text, write_wif
+from sim_core.weave import Draft, Weave, facts_of, plain, satin
+from sim_core.weave.draft import (
+    Harness,
+    brocade,
+    four_end_gauze,
+    gauze,
+    tapestry,
+    warp_compound,
+    weft_compound,
+)
+from sim_core.weave.files import source_of, weave_of
+from sim_core.weave.files.wif import PRIVATE, Wif, decoded, parse_wif, read_wif, wif_of, wif_text, write_wif
+from sim_core.weave.yarns import main_picks, solve, strands
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 BASE = """[WIF]

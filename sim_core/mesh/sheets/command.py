@@ -10,12 +10,12 @@ from unicodedata import combining, east_asian_width
 import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError, OutlineWarning
-from sim_core.mesh.sheets.drawing import sheet_picture
+from sim_core.mesh.files import write_picture
 from sim_core.mesh.sheets.garment_code import GarmentCode, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.mesh.sheets.pattern_file import code_of, write_pattern
+from sim_core.mesh.sheets.picture import sheet_picture
 from sim_core.mesh.sheets.reading import Choice, is_sheet, outline_along, read_sheet, sheet_of_code
-from sim_core.mesh.writing import write_picture
 from sim_core.reading import read_json
 
 __all__ = ["run_sheet"]

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import shapely
 
-from sim_core.mesh.sheets.strokes import Stroke
-from sim_core.mesh.sheets.words import Role, material_of, speaks
+from sim_core.mesh.sheets.strokes.stroke import Stroke
+from sim_core.mesh.sheets.strokes.words import Role, material_of, speaks
 
 __all__ = ["Contour", "contours", "owner_of", "piece_name", "seam_inside"]
 

@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.curves import arc_points, bezier_points
+from sim_core.mesh.geometry.curves import arc_points, bezier_points
 from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.reading import read_json, shown
 

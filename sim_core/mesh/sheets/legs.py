@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim_core.mesh.curves import bezier_points
-from sim_core.mesh.outline import CORNER_DEGREES, outline_turning
+from sim_core.mesh.geometry.curves import bezier_points
+from sim_core.mesh.outline.contours import CORNER_DEGREES, outline_turning
 
 __all__ = ["Leg", "cubic_through", "legs_of"]
 

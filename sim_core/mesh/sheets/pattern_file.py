@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.garment_code import CodeEdge, CodePanel, GarmentCode
 from sim_core.mesh.sheets.legs import Leg, cubic_through, legs_of
-from sim_core.mesh.sheets.toml_text import toml_text
 
-__all__ = ["code_of", "pattern_text", "write_pattern"]
+__all__ = ["code_of", "pattern_text", "toml_text", "write_pattern"]
 
 EDGE = 0.01  # [m] of a pattern file's mesh unless somebody says otherwise
 EASE = 0.02  # sides of a seam may differ by this share in a pattern file
@@ -174,3 +175,55 @@ def _keys(names: list[str]) -> dict[str, str]:
             number += 1
         found[name] = made
     return found
+
+
+def toml_text(tables: dict[str, Any]) -> str:
+    """TOML of tables as `tomllib` gives them; raises TypeError for other values than text, numbers, lists, tables."""
+    lines = [f"{_key(key)} = {_value(value)}" for key, value in tables.items() if not _is_table(key, value)]
+    parts = ["\n".join(lines)]
+    for key, value in tables.items():
+        if _is_table(key, value):
+            rows, head = (
+                (value, f"[[{_key(key)}]]") if isinstance(value, list) else ([value], f"[{_key(key)}]")
+            )
+            parts += ["\n".join([head, *(f"{_key(k)} = {_rows(v)}" for k, v in row.items())]) for row in rows]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _is_table(key: str, value: Any) -> bool:
+    if isinstance(value, list):
+        return bool(value) and all(isinstance(row, dict) for row in value)
+    return isinstance(value, dict) and key != "title"  # short enough for one line
+
+
+def _rows(value: Any) -> str:
+    """A list of tables one a line, anything else on one line."""
+    if isinstance(value, list) and value and all(isinstance(row, dict) for row in value):
+        return "[\n" + "".join(f"  {_value(row)},\n" for row in value) + "]"
+    return _value(value)
+
+
+def _key(key: Any) -> str:
+    text = str(key)
+    bare = bool(text) and all(c.isascii() and (c.isalnum() or c in "-_") for c in text)
+    return text if bare else _text(text)
+
+
+def _text(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
+        return repr(value)
+    if isinstance(value, list):
+        return "[" + ", ".join(_value(v) for v in value) + "]"
+    if isinstance(value, dict):
+        return (
+            "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }" if value else "{}"
+        )
+    raise TypeError(f"{type(value).__name__} has no TOML")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,14 +11,13 @@ from typing import Literal
 import numpy as np
 import shapely
 
-from sim_core.errors import FileProblem, OutlineError
-from sim_core.mesh.left_out import warn_left_out
-from sim_core.mesh.outline import LARGEST
-from sim_core.mesh.sheets.dxf_strokes import dxf_strokes
+from sim_core.errors import FileProblem, OutlineError, OutlineWarning
+from sim_core.mesh.outline.contours import LARGEST
 from sim_core.mesh.sheets.garment_code import GarmentCode, code_sheet, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet, Which
 from sim_core.mesh.sheets.sorting import sorted_sheet
-from sim_core.mesh.sheets.svg_strokes import svg_strokes
+from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
+from sim_core.mesh.sheets.strokes.svg import svg_strokes
 from sim_core.reading import read_json
 
 __all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_code"]
@@ -25,6 +25,7 @@ __all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_co
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "pt": 0.0254 / 72, "px": 0.0254 / 96}
 SHOWN = 12  # names in a message
 SMALL, LARGE = 0.02, 10.0  # [m] a sheet's largest piece is hardly beyond
+MOST_NAMED = 8
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
         what = "only closed lines of less than 2 mm" if small else "no closed line in it that may be a piece"
         raise FileProblem(f"{path}: {what} – {remedy}")
     left_out = +(drawn.left_out + Counter(sheet.left_out))
-    warn_left_out(path, left_out)
+    _warn_left_out(path, left_out)
     remarks, notes = (*drawn.remarks, *sheet.remarks), (*drawn.notes, *_noted(sheet))
     return _on(path, replace(sheet, left_out=dict(left_out), remarks=remarks, notes=notes), layer)
 
@@ -182,3 +183,12 @@ def _clipped(
             if isinstance(part, shapely.LineString) and part.length > 1e-3:
                 found.append(np.array(part.coords))
     return tuple(found), cut
+
+
+def _warn_left_out(path: Path, found: Counter[str]) -> None:
+    """Warn of what was left out (name: how often), the most frequent first, if there is anything."""
+    if not found:
+        return
+    named = [f"{count} {what[:40]}" for what, count in found.most_common(MOST_NAMED)]
+    more = ["more"] if len(found) > MOST_NAMED else []
+    warnings.warn(f"left out of {path.name}: {', '.join(named + more)}", OutlineWarning, stacklevel=2)

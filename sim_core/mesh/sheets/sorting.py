@@ -11,8 +11,8 @@ import shapely
 
 from sim_core.mesh.sheets.contours import Contour, contours, owner_of, piece_name, seam_inside
 from sim_core.mesh.sheets.model import Piece, Sheet
-from sim_core.mesh.sheets.strokes import Stroke, joined
-from sim_core.mesh.sheets.words import Role, layer_name, role_of, speaks
+from sim_core.mesh.sheets.strokes.stroke import Stroke, joined
+from sim_core.mesh.sheets.strokes.words import Role, layer_name, role_of, speaks
 
 __all__ = ["sorted_sheet"]
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from PIL import Image
 
-from sim_core.weave.algebra import lift_plan
 from sim_core.weave.chart.sheets import MOST_DRAWN, numbered, windows
 from sim_core.weave.chart.values import Window
-from sim_core.weave.sources import Source
+from sim_core.weave.draft.algebra import lift_plan
+from sim_core.weave.files.sources import Source
 
 __all__ = ["write_cards", "write_pegs"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim_core.weave.factors import Factors
+from sim_core.weave.draft.factors import Factors
 
 __all__ = ["Floats", "long_floats"]
 

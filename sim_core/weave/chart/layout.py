@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.weave.algebra import lift_plan
 from sim_core.weave.chart.floats import Floats, long_floats
 from sim_core.weave.chart.texts import MOST_SHAFTS, credits_of, facts_of, foot_of, swatches_of, title_of
 from sim_core.weave.chart.values import INK, PAPER, Block, Chart, Label, View, Window
-from sim_core.weave.sources import Source
+from sim_core.weave.draft.algebra import lift_plan
+from sim_core.weave.files.sources import Source
 
 __all__ = ["chart_of"]
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.algebra import Harness
-from sim_core.weave.factors import Factors
-from sim_core.weave.sources import Source
-from sim_core.weave.wif import Wif
+from sim_core.weave.draft.algebra import Harness
+from sim_core.weave.draft.factors import Factors
+from sim_core.weave.files.sources import Source
+from sim_core.weave.files.wif.model import Wif
 
 __all__ = ["repeated"]
 

@@ -13,7 +13,7 @@ from sim_core.weave.chart.paper import PAPERS, READABLE, SMALLEST_ASKED, free_pa
 from sim_core.weave.chart.png import picture_of
 from sim_core.weave.chart.svg import svg_of
 from sim_core.weave.chart.values import Leaf, View, Window
-from sim_core.weave.sources import Source
+from sim_core.weave.files.sources import Source
 
 __all__ = ["numbered", "windows", "write_draft"]
 

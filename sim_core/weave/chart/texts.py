@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim_core.weave.sources import ASSUMED
+from sim_core.weave.files.sources import ASSUMED
 
 if TYPE_CHECKING:
     from sim_core.weave.chart.values import Swatch, View, Window
-    from sim_core.weave.sources import Source
+    from sim_core.weave.files.sources import Source
 
 __all__ = ["MOST_SHAFTS", "credits_of", "facts_of", "foot_of", "swatches_of", "title_of"]
 

@@ -1,0 +1,17 @@
+"""What is measured on a mesh, and what must hold of it.
+
+`triangles` has areas, angles and shapes; `verification` refuses what is no manifold that fills its contours; `report`
+sums up.
+"""
+
+from sim_core.mesh.measures.report import MeshReport, deviation
+from sim_core.mesh.measures.triangles import quality, triangle_areas
+from sim_core.mesh.measures.verification import mesh_fault
+
+__all__ = [
+    "MeshReport",
+    "deviation",
+    "mesh_fault",
+    "quality",
+    "triangle_areas",
+]

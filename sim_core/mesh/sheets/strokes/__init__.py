@@ -1,0 +1,16 @@
+"""Lines of a drawing with the names around them, before anyone says what they are.
+
+`svg` reads a tree that `svg_tree` has made safe, `dxf` what ezdxf reads; both give a `stroke` its `words`.
+"""
+
+from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
+from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke, joined
+from sim_core.mesh.sheets.strokes.svg import svg_strokes
+
+__all__ = [
+    "Drawn",
+    "Stroke",
+    "dxf_strokes",
+    "joined",
+    "svg_strokes",
+]

@@ -1,0 +1,196 @@
+"""The summary of a relaxed weave: the keys of `simcore weave --json`, SI units throughout."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim_core.weave.cloth import ClothParameters, measured, parameters_of
+from sim_core.weave.draft.factors import Factors
+from sim_core.weave.files.sources import Source
+from sim_core.weave.files.wif.sections import listed
+from sim_core.weave.model import Weave
+from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.particles.cell import ParticleCell
+from sim_core.weave.yarns.solver import solve
+
+__all__ = ["facts_of", "summary_of", "summary_text"]
+
+MOST_SHOWN = 65_536  # crossings of a drawdown told in full
+UNITS = {
+    "density": "kg/m2",
+    "thickness": "m",
+    "stretch_warp": "N/m",
+    "stretch_weft": "N/m",
+    "shear": "N/m",
+    "poisson": "1",
+    "bend": "N m",
+    "bend_warp": "N m",
+    "bend_weft": "N m",
+    "friction": "1",
+    "take_up_warp": "1",
+    "take_up_weft": "1",
+}
+TAKE_UP = (
+    "crimp / (1 + crimp): share of the yarn's length that the cloth takes up; band: beams held at their places (stage "
+    "A) and particles free to slide with friction (stage B), since the crimp of floats depends on how the cloth "
+    "was handled"
+)
+
+
+def facts_of(source: Source) -> dict:
+    """What a draft tells without physics: the first keys of the command's JSON.
+
+    `repeat` is the smallest that makes up the whole draft. Of a file of another program also its size and period (a
+    repeat of which the last may be cut off), what does not interlace (numbers from 1), its colours, the drawdown of up
+    to 65,536 crossings (one text a pick, 1 = warp on top), and what the reader had to replace.
+    """
+    facts = source.facts
+    made = {
+        "repeat": {"ends": facts.ends, "picks": facts.picks},
+        "face": facts.face,
+        "floats": {
+            side: {"longest": floats.longest, "mean": floats.mean}
+            for side, floats in (("warp", facts.warp), ("weft", facts.weft))
+        },
+        "interlacings": facts.interlacings,
+        "integral": facts.integral,
+    }
+    if source.wif is None:
+        return made
+    factors, tieup = source.factors, source.harness.tieup
+    picks, ends = factors.loose()
+    size = {"title": source.name, "ends": factors.ends, "picks": factors.picks, "shafts": tieup.shape[0]}
+    size["period"] = {"ends": factors.periods[1], "picks": factors.periods[0]}
+    return made | {
+        "draft": size | ({"lift_plan": True} if source.plan else {"treadles": tieup.shape[1]}),
+        "loose": {"ends": (ends + 1).tolist(), "picks": (picks + 1).tolist()},
+        "colours": {
+            "warp": _counted(source.palette, source.warp_colours),
+            "weft": _counted(source.palette, source.weft_colours),
+        },
+        "drawdown": _rows(factors) if factors.picks * factors.ends <= MOST_SHOWN else None,
+        "remarks": list(source.remarks),
+    }
+
+
+def _counted(palette: np.ndarray, colours: np.ndarray) -> list[dict]:
+    """Each colour that is used, with how many yarns have it."""
+    used, counts = np.unique(colours, return_counts=True)
+    return [
+        {"colour": "#{:02x}{:02x}{:02x}".format(*palette[k]), "number": int(k) + 1, "yarns": int(n)}
+        for k, n in zip(used, counts, strict=True)
+    ]
+
+
+def _rows(factors: Factors) -> list[str]:
+    return ["".join("1" if over else "0" for over in pick) for pick in factors.lift()]
+
+
+def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
+    """What the relaxed cloth tells: the keys of the command's JSON beside `facts_of`.
+
+    seconds: that the relaxation took.  origin: of yarns and sett.
+    """
+    size = measured(weave, geometry)
+    parameters = parameters_of(weave, geometry)
+    deep = geometry.penetration
+    if not isinstance(geometry, ParticleCell):
+        deep /= (weave.warp.height + weave.weft.height) / 2
+    return {
+        "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
+        "thickness": size["thickness"],
+        "areal_density": size["areal_density"],
+        "residual": geometry.residual,
+        "penetration": deep,
+        "penetration_of": _covered(weave, geometry),
+        "seconds": seconds,
+        "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
+    }
+
+
+def _covered(weave: Weave, geometry: YarnGeometry | ParticleCell) -> str:
+    """Which overlaps `penetration` measures, and which yarns it leaves out."""
+    if isinstance(geometry, ParticleCell):
+        text = "curves of warp and weft at all crossings, and particles of neighbouring yarns"
+    else:
+        text = "warp and weft at the crossings"
+    if weave.extra is not None:
+        text += "; not extra wefts, which are laid on the relaxed ground"
+    if weave.draft.channels.layer is not None:
+        text += "; not yarns of a compound weave that do not show, which are placed beneath"
+    if weave.draft.channels.order is not None and weave.draft.channels.layer is None:
+        text += "; not ends where they cross one another"
+    return text
+
+
+def _take_up(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict:
+    """Take-up of warp and weft, with the band between both stages where stage B was run."""
+    kinds = [geometry]
+    if isinstance(geometry, ParticleCell):
+        kinds.append(solve(weave))
+    entries = {}
+    for side in ("warp", "weft"):
+        shares = [c / (1 + c) for c in (float(np.mean(getattr(kind, f"{side}_crimp"))) for kind in kinds)]
+        entries[f"take_up_{side}"] = {
+            "value": shares[0],
+            "unit": UNITS[f"take_up_{side}"],
+            "provenance": TAKE_UP,
+        }
+        if len(shares) > 1:
+            entries[f"take_up_{side}"]["band"] = [min(shares), max(shares)]
+    return entries
+
+
+def _entries(parameters: ClothParameters) -> dict:
+    values = parameters.to_dict()
+    entries = {}
+    for key, unit in UNITS.items():
+        if key not in values:
+            continue
+        entries[key] = {"value": values[key], "unit": unit, "provenance": parameters.provenance[key]}
+        if key in parameters.bounds:
+            entries[key]["band"] = list(parameters.bounds[key])
+    return entries
+
+
+def summary_text(name: str, summary: dict) -> str:
+    """The summary for people, a line a topic."""
+    repeat, floats = summary["repeat"], summary["floats"]
+    lines = [
+        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, longest float "
+        f"{floats['warp']['longest']} warp {floats['weft']['longest']} weft, "
+        f"{'hangs together' if summary['integral'] else 'FALLS APART'}"
+    ]
+    lines += _draft_lines(summary)
+    if "crimp" in summary:
+        crimp = summary["crimp"]
+        lines.append(
+            f"  crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, {summary['thickness'] * 1e6:.0f} um thick, "
+            f"{summary['areal_density'] * 1e3:.1f} g/m2"
+        )
+    for key, entry in summary.get("parameters", {}).items():
+        if isinstance(entry, dict) and "value" in entry:
+            band = entry.get("band")
+            between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
+            lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
+    if "note" in summary:
+        lines.append(f"  {summary['note']}")
+    if "drawn" in summary:
+        drawn = summary["drawn"]
+        lines.append(f"  drawn: {listed(drawn) if len(drawn) < 5 else f'{drawn[0]} to {drawn[-1]}'}")
+    return "\n".join(lines)
+
+
+def _draft_lines(summary: dict) -> list[str]:
+    """What a file of another program says besides: its size, its colours, what does not interlace."""
+    if "draft" not in summary:
+        return []
+    draft, colours = summary["draft"], summary["colours"]
+    how = "lift plan" if "lift_plan" in draft else f"{draft['treadles']} treadles"
+    lines = [f"  {draft['ends']} ends on {draft['shafts']} shafts, {draft['picks']} picks, {how}"]
+    for side, used in colours.items():
+        lines.append(f"  {side:<5}" + listed([f"{entry['yarns']} {entry['colour']}" for entry in used], 6))
+    for side, loose in summary["loose"].items():
+        if loose:
+            lines.append(f"  never interlace: {side} {listed(loose)}")
+    return lines

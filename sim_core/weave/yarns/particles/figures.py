@@ -1,0 +1,135 @@
+"""Rest of large figures: contact that stays soft, curves kept apart without pins, and common waves moved at once.
+
+Pins hold places; in a large figure in a close sett the yarns slide far before they rest, leave their pins, and get new
+ones, while the contact is stiffened round after round. Here nothing is pinned: where two curves come nearer to each
+other than their particles do, the particles of that crossing keep farther by as much, which is renewed as they slide.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+
+from sim_core.weave.yarns.particles.closest_pairs import curve_gaps
+from sim_core.weave.yarns.particles.common_waves import CommonWaves
+from sim_core.weave.yarns.particles.forces import side_forces
+from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
+from sim_core.weave.yarns.particles.scale import Scale
+
+__all__ = ["rest_of_figure"]
+
+SOFT = 20.0  # stiffness of the contact, x largest crossing force
+TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between two looks at the curves
+LAST = 50  # steps without waves in which it must come to rest
+FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
+SLIDE = 0.5  # of D, that yarns slide sideways and their contacts must follow
+TURNED = 2e-3  # of D: a gap that turns to overlap and back by more is followed by half, down to LEAST
+LEAST = 0.05
+FREE, STICK = 20, 15  # moves until yarns that slid may stick, and between two such times
+SLID = 0.03  # of D, away from where they stuck
+PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
+
+
+def rest_of_figure(
+    yarns: Yarns, scale: Scale, begun: Outcome, *, tolerance: float, overlap: float, most: int
+) -> Outcome:
+    """Bring yarns that the plain way did not bring to rest to it, or to `most` steps; begun: how that way ended.
+
+    overlap: of curves [D] that is allowed, and of the gap of two that press.
+    """
+    picks, ends = yarns.lift.shape
+    stiff = SOFT * yarns.hardest
+    yarns = _reaching(yarns, scale)
+    for array in yarns.offsets:  # presses as before
+        array *= begun.stiff / stiff
+    apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
+    waves = CommonWaves.of((picks, ends), yarns.per, yarns.numbers, stiff)
+    calm, stuck = np.ones_like(gaps), None
+    steps, turn, done = begun.steps, 0, begun
+    while steps < most:
+        look = turn % ROUND == 0
+        if turn >= FREE and turn % STICK == 0:
+            stuck = _stuck(yarns, stuck)
+        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, stuck=stuck, renew=look and turn > 0)
+        steps += done.steps
+        if look:
+            before = gaps.copy()
+            _measure(gaps, yarns)
+            turned = (before * gaps < 0) & (np.abs(before - gaps) > TURNED)
+            calm = np.clip(np.where(turned, 0.5, 1.1) * calm, LEAST, 1.0)
+            apart = np.clip(apart - calm * gaps, 0.0, FARTHEST)
+        if steps < most and done.residual <= tolerance and -gaps.min() <= overlap:
+            done = yarns.settle(stiff, min(LAST, most - steps), apart=apart, stuck=stuck, tolerance=tolerance)
+            steps += done.steps
+            _measure(gaps, yarns)
+            deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
+            if done.residual <= tolerance and deepest <= overlap:
+                return Outcome(done.residual, deepest, done.energy, steps, stiff)
+        if steps < most:  # else what is told of the yarns must be of where they end
+            wu, wz, fu, fz = yarns.places
+            waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
+        turn += 1
+    _measure(gaps, yarns)
+    deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
+    return Outcome(done.residual, deepest, done.energy, steps, stiff)
+
+
+def _reaching(yarns: Yarns, scale: Scale) -> Yarns:
+    """The same yarns, but particles as far beyond a crossing as they slide here may touch, too."""
+    old = scale.reach
+    most = yarns.per * min(yarns.lift.shape) - 1
+    new = [
+        min(reach + ceil(SLIDE / piece), yarns.per - 1, most)
+        for reach, piece in zip(old, scale.piece, strict=True)
+    ]
+    held = np.zeros((*yarns.lift.shape, 2 * (sum(new) + 1)))
+    for first, second, start in ((0, 0, 0), (2 * old[0] + 1, 2 * new[0] + 1, 1)):
+        width, wider = 2 * old[start] + 1, new[start] - old[start]
+        held[:, :, second + wider : second + wider + width] = yarns.offsets[0][:, :, first : first + width]
+    numbers = (*yarns.numbers[:8], float(new[0]), float(new[1]), *yarns.numbers[10:])
+    return replace(yarns, numbers=numbers, offsets=(held, *yarns.offsets[1:]))
+
+
+def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
+    """(picks, ends, 2) places of both yarns at each crossing: where it stuck before, unless it slid away from there."""
+    wu, _, fu, _ = yarns.places
+    here = np.dstack([wu[:, :: yarns.per].T, fu[:, :: yarns.per]])
+    if before is None:
+        return here
+    away = np.hypot(*np.moveaxis(here - before, 2, 0)) > SLID
+    return np.where(away[..., None], here, before)
+
+
+def _measure(gaps: np.ndarray, yarns: Yarns) -> None:
+    """Fill gaps (picks, ends, 2) [D] of the curves at every crossing, round the warp and round the weft."""
+    l1, l2, _, _, _, _, wide1, wide2, reach1, reach2 = yarns.numbers[:10]
+    wu, wz, fu, fz = yarns.places
+    one, two = int(reach1), int(reach2)
+    curve_gaps(wu, wz, fu, fz, yarns.lift, yarns.per, l1, l2, wide1, wide2, one, two, gaps)
+
+
+def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
+    """Deepest overlap of curves, or widest gap of two that press on each other [D]."""
+    nearest = gaps.min(axis=2)
+    pressed = pressing > PRESSED * pressing.max()
+    return float(max(-nearest.min(), nearest[pressed].max(initial=0.0)))
+
+
+def _of_neighbours(yarns: Yarns) -> float:
+    """Deepest overlap of neighbours of one system, or widest gap across which they press [D]."""
+    *_, p1, p2, wide1, high1, wide2, high2, _, _ = yarns.numbers
+    found = 0.0
+    wu, wz, fu, fz = yarns.places
+    for u, z, spacing, wide, high, held in (
+        (wu, wz, p1, wide1, high1, yarns.offsets[1]),
+        (fu, fz, p2, wide2, high2, yarns.offsets[2]),
+    ):
+        if wide > 0:
+            spare = np.zeros_like(u)
+            deep = side_forces(
+                u, z, spacing, wide, high, 1.0, spare, spare, held, False, False, spare, spare, 0
+            )
+            found = max(found, deep[1])
+    return found
