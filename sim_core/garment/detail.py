@@ -10,8 +10,8 @@ from scipy.spatial import KDTree
 
 from sim_core import metrics
 from sim_core.cloth import Solid
-from sim_core.cloth.contact import collide_samples, collide_vertices, contact_samples
-from sim_core.cloth.sheet import face_edge_table
+from sim_core.cloth.contact.collisions import collide_samples, collide_vertices, contact_samples
+from sim_core.cloth.sheet.sheet import face_edge_table
 from sim_core.errors import SimCoreError
 from sim_core.garment.model import Garment
 from sim_core.garment.pattern import Pattern

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth.field import field_of
+from sim_core.cloth.contact.distance_field import field_of
 from sim_core.garment.mannequin import Mannequin
 from sim_core.garment.schedule import Pose
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from scipy.spatial import ConvexHull
 
-from sim_core.cloth.field import DistanceField, field_of, hull_mesh
+from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_mesh
 from sim_core.garment.figure_source import Body
 
 LOW, HIGH = np.array([-0.85, -0.03, -0.22]), np.array([0.85, 1.50, 0.30])  # [m] of the working field

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.cloth.field import DistanceField
+from sim_core.cloth.contact.distance_field import DistanceField
 from sim_core.garment.figure_form import FormSettings, crotch_height, figure_field, section
 from sim_core.garment.figure_source import Body
 from sim_core.garment.mannequin import BONES, Mannequin

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.cloth import Material, Sheet
-from sim_core.cloth.evening import evened
+from sim_core.cloth.sheet.mass_lumping import evened
 from sim_core.garment.sewing import Cloth
 
 __all__ = ["Half", "half_sheet"]

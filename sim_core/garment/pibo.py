@@ -13,8 +13,8 @@ import numpy as np
 
 from sim_core import metrics
 from sim_core.cloth import Contact, Drape, Holds, Phase, drape
-from sim_core.cloth.draping import ENGINE_VERSION
-from sim_core.cloth.field import DistanceField, field_of, united
+from sim_core.cloth.contact.distance_field import DistanceField, field_of, united
+from sim_core.cloth.run.drape_run import ENGINE_VERSION
 from sim_core.errors import SimCoreError
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.mannequin import Mannequin

@@ -8,7 +8,7 @@ import time
 import numba
 import numpy as np
 
-from sim_core.cloth.draping import ENGINE_VERSION
+from sim_core.cloth.run.drape_run import ENGINE_VERSION
 
 __all__ = ["Clock", "versions"]
 

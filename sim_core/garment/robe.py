@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim_core import metrics
-from sim_core.cloth.draping import ENGINE_VERSION
+from sim_core.cloth.run.drape_run import ENGINE_VERSION
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing import FigureLike, Worn, dress
 from sim_core.garment.model import Garment

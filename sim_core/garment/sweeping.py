@@ -9,7 +9,7 @@ from scipy import sparse
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from sim_core.cloth.field import DistanceField
+from sim_core.cloth.contact.distance_field import DistanceField
 from sim_core.errors import SimCoreError
 
 __all__ = ["Accordion", "arranged_path", "swept"]

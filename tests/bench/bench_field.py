@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core import metrics
-from sim_core.cloth.field import field_of
+from sim_core.cloth.contact import field_of
 from sim_core.garment.mannequin import Mannequin
 from sim_core.picture import normals
 

@@ -9,7 +9,7 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Capsule
-from sim_core.cloth.field import DistanceField, field_of, hull_mesh, united
+from sim_core.cloth.contact import DistanceField, field_of, hull_mesh, united
 from sim_core.errors import SimCoreError
 from sim_core.garment.mannequin import Mannequin
 from sim_core.garment.solids import solid_mesh

@@ -14,8 +14,8 @@ from sim_core.cloth import (
     Sheet,
     drape,
 )
-from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
+from sim_core.cloth.step import Pace
 from sim_core.errors import SimCoreError
 from sim_core.garment.halves import half_sheet
 from sim_core.garment.sewing import Cloth

@@ -5,7 +5,7 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Capsule, Contact, Live, Material, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.scenes import equilateral_sheet
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, follow
 from sim_core.garment.following import garment_sheet

@@ -9,7 +9,7 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Capsule, Phase
-from sim_core.cloth.field import field_of
+from sim_core.cloth.contact import field_of
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern
 from sim_core.garment.mannequin import Mannequin

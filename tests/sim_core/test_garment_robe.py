@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.cloth.phases import schedule
+from sim_core.cloth.step import schedule
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern, detail, robe_on_figure, write_glb
 from sim_core.garment.figure import Figure
@@ -112,7 +112,7 @@ def test_coat_survives_file_detail_and_model(
 
 @pytest.mark.slow
 def test_same_bits_also_after_an_interrupt(ling: Weave, figure: Figure, tmp_path: Path, monkeypatch) -> None:
-    from sim_core.cloth import draping
+    from sim_core.cloth.run import drape_run as draping
 
     heard: list[int] = []
     whole = robe_on_figure(

@@ -65,7 +65,7 @@ def test_an_interrupted_bake_goes_on_to_the_same_bits(
     gauze: Weave, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = scarf_on_stand(strip(), gauze, seed=1, phases=SHORT, on_frame=lambda index, x: None)
-    from sim_core.cloth import draping
+    from sim_core.cloth.run import drape_run as draping
 
     monkeypatch.setattr(draping, "CHECKPOINT_SECONDS", 0.0)
     file, heard = tmp_path / "scarf.npz", []

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim_core import reading
-from sim_core.cloth.checkpoint import RunState, load_checkpoint, save_checkpoint
+from sim_core.cloth.run import RunState, load_checkpoint, save_checkpoint
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Garment, Pattern
 from sim_core.garment.mannequin import Mannequin

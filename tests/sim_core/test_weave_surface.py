@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.cloth.material import Material
+from sim_core.cloth.sheet import Material
 from sim_core.errors import WeaveError
 from sim_core.weave import Weave, Yarn, plain
 from sim_core.weave.figure1 import figure_one, figure_one_picture
