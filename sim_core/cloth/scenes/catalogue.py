@@ -58,7 +58,7 @@ class Scene:
         return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME, body=body),))
 
     def drape(self, **settings: Any) -> Drape:
-        """Simulates the scene; settings: those of `draping.drape`."""
+        """Simulates the scene; settings: those of `cloth.drape`."""
         return drape(
             self.sheet,
             self.positions,

@@ -1,4 +1,4 @@
-"""The time loop over lanes: as `stepping.advance`, but a step is one pass from one array into another."""
+"""The time loop over lanes: as `leapfrog.advance`, but a step is one pass from one array into another."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def advance_lanes(
     dt,
     substeps,
 ):
-    """`stepping.advance` for xs, vs, spare (3, V) of the lanes' numbers; xs and vs change in place, spare is room."""
+    """`leapfrog.advance` for xs, vs, spare (3, V) of the lanes' numbers; xs and vs change in place, spare is room."""
     here, there, mark = xs, spare, room.mark.T
     layers, push = shell.thickness > 0.0, around.cap if len(packed.kind) > 0 else 0.0
     halved = layers or around.speed_limit < FREE  # something comes between the kick and the drift

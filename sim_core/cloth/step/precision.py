@@ -107,7 +107,7 @@ class Laned:
         dt: float,
         count: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """`stepping.advance`: x, v (3, V) float64 change in place; single counts free cloth from its middle."""
+        """`leapfrog.advance`: x, v (3, V) float64 change in place; single counts free cloth from its middle."""
         here, there, speed = self._state
         absolute = (
             self.real is np.float64 or len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
@@ -138,7 +138,7 @@ class Laned:
         return float(value)
 
     def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
-        """`watching.stored_energy` [J]."""
+        """`diagnostics.stored_energy` [J]."""
         return float(stored_lanes(self.lanes, inverse, self._ones, self.room, x, v))
 
     def forget(self) -> None:

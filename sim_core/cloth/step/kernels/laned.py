@@ -1,4 +1,4 @@
-"""The loops of `banded.py` over lanes (`lattice.py`), in either precision: force, kick and drift are one pass.
+"""The loops of `banded.py` over lanes (`lanes.py`), in either precision: force, kick and drift are one pass.
 
 A run names where its coefficients begin, its last column: those of a lattice repeat and lie in short tables. A product
 and a sum may be one instruction here (contracted), so the last bits depend on whether the processor has it; on one
