@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 from .palette import MATERIALS, linear
 from .patch import Patch

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 from .palette import linear
 

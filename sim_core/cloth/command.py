@@ -12,10 +12,10 @@ from zipfile import is_zipfile
 
 import numpy as np
 
-from sim_core.arguments import ending, number, whole
 from sim_core.cloth.scenes.summary import summary_of, tell, write
 from sim_core.errors import SimCoreError, WrongArgument
 from sim_core.validation import FURTHEST
+from sim_core.validation.arguments import ending, number, whole
 
 if TYPE_CHECKING:
     from sim_core.cloth.run.drape_run import Drape

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from sim_core.errors import FileProblem
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 
 __all__ = ["check_numbers"]
 

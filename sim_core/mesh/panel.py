@@ -6,7 +6,6 @@ from time import perf_counter
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.machine_code import CompileClock, compile_clock
 from sim_core.mesh.best import BestFill, best_fill
 from sim_core.mesh.graded import graded_points
 from sim_core.mesh.growth import CLOSED, Growth, grow_points
@@ -21,6 +20,7 @@ from sim_core.mesh.sampling import Rim, sampled_rim
 from sim_core.mesh.sizes import SizeField
 from sim_core.mesh.smoothing import smoothed
 from sim_core.mesh.verify import fills, verify
+from sim_core.metrics.compile_time import CompileClock, compile_clock
 
 __all__ = ["QUALITIES", "check_options", "filled_mesh", "panel_mesh", "timed"]
 

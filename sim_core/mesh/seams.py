@@ -14,7 +14,6 @@ from typing import TypeVar
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.machine_code import compile_clock
 from sim_core.mesh.lines import clean_lines
 from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.outline import check_edge, clean_contour, clean_contours, cleaned_contours, signed_area
@@ -23,6 +22,7 @@ from sim_core.mesh.report import deviation
 from sim_core.mesh.sampling import sampled_rim
 from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
 from sim_core.mesh.sizes import SizeField
+from sim_core.metrics.compile_time import compile_clock
 
 __all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
 

@@ -10,7 +10,7 @@ import numpy as np
 from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.nearest import SizeBoxes, least_sizes, size_boxes
 from sim_core.mesh.numbers import check_numbers
-from sim_core.reading import read_json, shown
+from sim_core.validation.files import read_json, shown
 
 __all__ = ["SizeField", "read_size_field"]
 

@@ -13,7 +13,7 @@ from sim_core.mesh.model import PanelMesh
 from sim_core.mesh.numbers import check_numbers
 from sim_core.mesh.sheets.model import Sheet
 from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
-from sim_core.reading import read_json, shown
+from sim_core.validation.files import read_json, shown
 
 __all__ = ["Drawing", "drawing_of", "read_outline", "write_mesh", "write_picture"]
 

@@ -18,7 +18,7 @@ import re
 from pathlib import Path
 
 from sim_core.errors import FileProblem, WeaveError
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.algebra import Harness
 from sim_core.weave.wif import PRIVATE, Wif, centimetres, tidy
 from sim_core.weave.wif_colours import palette_of, thread_colours

@@ -24,7 +24,7 @@ from hall_app.room.palette import BACKDROPS, MATERIALS, linear
 from hall_app.room.places import room_folder
 from hall_app.room.showing import shown_room
 from hall_app.room.textures import TEXTURES, texture
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 ASSETS = Path(__file__).parents[2] / "assets"
 MB = 1_000_000

@@ -21,8 +21,7 @@ from sim_core.cloth.scenes import (
     teapot_solid,
 )
 from sim_core.errors import WrongArgument
-from sim_core.metrics import surface_distance
-from sim_core.triangles import winding
+from sim_core.metrics import surface_distance, winding
 
 KEYS = {"scene", "vertices", "frames", "seconds", "compile_seconds", "ms_per_frame", "substeps", "integrator"}
 KEYS |= {"fallbacks", "worst_stretch", "penetrations", "intersections", "seed"}

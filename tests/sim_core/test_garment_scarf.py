@@ -9,8 +9,8 @@ from sim_core import metrics
 from sim_core.cloth import Phase
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Gathering, Pattern, Stand, scarf_on_stand
-from sim_core.garment.placing import gathered_strip
-from sim_core.garment.scarf import PHASES
+from sim_core.garment.placement import gathered_strip
+from sim_core.garment.recipes import PHASES
 from sim_core.mesh import panel_mesh
 from sim_core.picture import Camera, Surface, render
 from sim_core.weave import Draft, Weave, Yarn, plain

@@ -10,6 +10,7 @@ from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
 from sim_core.cloth.contact.pairs import edge_edge_pairs, finder_of, hash_points, pairs_of, vertex_face_pairs
 from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
+from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 from sim_core.cloth.contact.untangling import crossings_of, faces_at_edges, no_crossings, untangle
 
@@ -43,6 +44,7 @@ __all__ = [
     "moving_mesh",
     "no_crossings",
     "pairs_of",
+    "solid_mesh",
     "repel",
     "united",
     "untangle",

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.triangles import _gap2
+from sim_core.metrics.triangles import squared_gap
 
 
 @njit(cache=True, error_model="numpy")
@@ -46,7 +46,7 @@ def splat(vertices, faces, origin, cell, reach, distance, nearest):
                         continue  # not even the ball around the face is nearer
                     if abs((p[0] - a[0]) * mx + (p[1] - a[1]) * my + (p[2] - a[2]) * mz) >= best:
                         continue  # nor its plane
-                    d2 = _gap2(p, a, b, c)
+                    d2 = squared_gap(p, a, b, c)
                     if d2 < best * best:
                         distance[i, j, k] = math.sqrt(d2)
                         nearest[i, j, k] = f
@@ -85,7 +85,7 @@ def spread(vertices, faces, origin, cell, band, distance, nearest):
                 if best <= distance[i, j, k] - cell:
                     continue
                 p[0], p[1], p[2] = origin[0] + cell * u, origin[1] + cell * v, origin[2] + cell * w
-                d2 = _gap2(p, a, b, c)
+                d2 = squared_gap(p, a, b, c)
                 least = min(best, limit, band)
                 if d2 < least * least * (1.0 - 1e-6):
                     distance[u, v, w] = math.sqrt(d2)

@@ -12,8 +12,8 @@ import numpy as np
 
 from sim_core.cloth.run.certificate import Tally
 from sim_core.errors import FileProblem
-from sim_core.reading import read_npz
 from sim_core.validation import told
+from sim_core.validation.files import read_npz
 
 _ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
 

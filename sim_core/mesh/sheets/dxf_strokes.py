@@ -23,7 +23,7 @@ from sim_core.mesh.outline import LARGEST
 from sim_core.mesh.sheets.dxf_mending import mended, spelled_out
 from sim_core.mesh.sheets.strokes import Drawn, Stroke
 from sim_core.mesh.sheets.words import spoken
-from sim_core.reading import read_bytes
+from sim_core.validation.files import read_bytes
 
 __all__ = ["dxf_strokes"]
 

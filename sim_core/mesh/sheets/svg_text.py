@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from sim_core.errors import FileProblem
-from sim_core.reading import read_bytes
+from sim_core.validation.files import read_bytes
 
 __all__ = ["WHAT", "svg_root"]
 
