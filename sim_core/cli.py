@@ -13,7 +13,7 @@ from sim_core.errors import SimCoreError, WrongArgument
 __all__ = ["main"]
 
 ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
-ELSEWHERE = {"mannequin": "sim_core.garment.figure_command"}  # commands that share another room
+ELSEWHERE = {"mannequin": "sim_core.body.command"}  # commands that share another room
 BENCHES = ("weave", "drafts", "mesh", "cloth", "field")
 
 DESCRIPTION = """\
@@ -53,7 +53,7 @@ def _room_command(room: str):
 
 def _pattern_code(path: Path):
     """What a pattern file cuts, for `simcore mesh`: that room lies below the garments' and cannot ask there itself."""
-    return import_module("sim_core.garment.pattern_code").read_pattern_code(path)
+    return import_module("sim_core.garment.pattern.garmentcode").read_pattern_code(path)
 
 
 def _wanted_rooms(arguments: list[str]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from hall_app.media.drawings import FAINT, INK, OVER, Sheet
 
 if TYPE_CHECKING:
     from sim_core.garment import Pattern
-    from sim_core.garment.cutting import Panel
+    from sim_core.garment.pattern.panels import Panel
 
 __all__ = ["cutting_plan"]
 

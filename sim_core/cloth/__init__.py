@@ -8,21 +8,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sim_core.cloth.air import Air
-from sim_core.cloth.certificate import Certificate
-from sim_core.cloth.collider import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
-from sim_core.cloth.draping import Contact, Drape, Phase, drape
-from sim_core.cloth.holding import Holds
-from sim_core.cloth.live import Live
-from sim_core.cloth.material import Material
-from sim_core.cloth.moving import MovingGrid, moving_mesh
-from sim_core.cloth.precision import Pace
-from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.contact import Box, Capsule, Cylinder, GridSdf, HalfSpace, Holds, Solid, Union
+from sim_core.cloth.run import Certificate, Drape, Live, drape
+from sim_core.cloth.sheet import Material, Sheet
+from sim_core.cloth.step import Air, Contact, Pace, Phase
 
 if TYPE_CHECKING:
-    from sim_core.cloth.fidelity import Choice, choose
-    from sim_core.cloth.field import DistanceField, field_of
-    from sim_core.cloth.scenes import Scene, scene
+    from sim_core.cloth.contact import DistanceField, MovingGrid, field_of, moving_mesh
+    from sim_core.cloth.scenes import Choice, Scene, choose, scene
 
 __all__ = [
     "Air",
@@ -54,11 +47,13 @@ __all__ = [
 ]
 
 _LATE = {
-    "Choice": "fidelity",
-    "DistanceField": "field",
+    "Choice": "scenes",
+    "DistanceField": "contact",
+    "MovingGrid": "contact",
     "Scene": "scenes",
-    "choose": "fidelity",
-    "field_of": "field",
+    "choose": "scenes",
+    "field_of": "contact",
+    "moving_mesh": "contact",
     "scene": "scenes",
 }
 

@@ -12,20 +12,20 @@ from zipfile import is_zipfile
 
 import numpy as np
 
-from sim_core.arguments import ending, number, whole
-from sim_core.cloth.given import FURTHEST
-from sim_core.cloth.outcome import summary_of, tell, write
+from sim_core.cloth.scenes.summary import summary_of, tell, write
 from sim_core.errors import SimCoreError, WrongArgument
+from sim_core.validation import FURTHEST
+from sim_core.validation.arguments import ending, number, whole
 
 if TYPE_CHECKING:
-    from sim_core.cloth.draping import Drape
-    from sim_core.cloth.precision import Pace
-    from sim_core.cloth.scenes import Scene
+    from sim_core.cloth.run.drape_run import Drape
+    from sim_core.cloth.scenes.catalogue import Scene
+    from sim_core.cloth.step.precision import Pace
 
 WARM = 120  # vertices of the scene that code is compiled with: enough for lanes
 BLOWN = 10.0  # times its length that an edge has in no cloth: a fixed step was too long
 DESCRIPTION = """\
-Simulates the scenes of the published work, and two more; --case picks a sequence (sim_core/cloth/scenes.toml).
+Simulates the scenes of the published work, and two more; --case picks a sequence (sim_core/cloth/scenes/scenes.toml).
 
   flag      1.5 x 1 m in the wind, its left side pinned      10 cases, 600 frames
   teapot    a cloth falls on the Utah teapot                 16 cases, 400 frames
@@ -126,7 +126,7 @@ class _Heard:
 
     def frame(self, index: int, positions: np.ndarray) -> None:
         """Keeps a frame, counts what is inside the collider, and says how far the run is."""
-        from sim_core.cloth.moving import MovingGrid
+        from sim_core.cloth.contact.moving_grid import MovingGrid
 
         self.film.append(positions)
         solid = self.scene.collider
@@ -146,8 +146,8 @@ class _Heard:
 
 def run(args: argparse.Namespace) -> int:
     """Runs the scene; returns the exit status."""
-    from sim_core.cloth.film import film_needs
-    from sim_core.cloth.scenes import scene
+    from sim_core.cloth.scenes.catalogue import scene
+    from sim_core.cloth.scenes.film import film_needs
 
     if args.video:
         film_needs()
@@ -160,7 +160,7 @@ def run(args: argparse.Namespace) -> int:
         raise WrongArgument(f"{args.resume}: this is no state of a run – name another file, or remove it")
     settings = _chosen(args)
     if args.certify:
-        from sim_core.cloth.certifier import need_ipctk
+        from sim_core.cloth.run.certifier import need_ipctk
 
         need_ipctk()
     made = scene(
@@ -214,7 +214,7 @@ def _chosen(args: argparse.Namespace) -> dict[str, Any]:
                 raise WrongArgument(
                     f"--{name}: --error chooses the setting, {_WHY[name]} – give one of the two"
                 )
-        from sim_core.cloth.fidelity import choose
+        from sim_core.cloth.scenes.fidelity import choose
 
         choice = choose(
             args.scene, error_mm=args.error, case=args.case, size=args.size, pins=args.pins, wind=args.wind
@@ -243,7 +243,7 @@ _WHY = {
 
 
 def _pace(settings: dict[str, Any]) -> Pace:
-    from sim_core.cloth.precision import Pace
+    from sim_core.cloth.step.precision import Pace
 
     return Pace(settings["precision"], settings["courant"])
 
@@ -263,7 +263,7 @@ def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Pat
 
 def _warmed(made: Scene, settings: dict[str, Any]) -> float:
     """Seconds until the compiled code is there: one frame of a small scene with the same terms."""
-    from sim_core.cloth.scenes import scene
+    from sim_core.cloth.scenes.catalogue import scene
 
     begin = time.perf_counter()
     small = scene(made.name, frames=1, vertices=WARM)

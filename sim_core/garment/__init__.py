@@ -1,14 +1,12 @@
 """Garments: patterns, placing, the drape as a value, levels of detail and GLB. See README.md."""
 
-from sim_core.garment.detail import choose_detail, detail
-from sim_core.garment.following import follow
+from sim_core.garment.follow_body import follow, garment_sheet
+from sim_core.garment.garment import Garment
 from sim_core.garment.glb import write_glb
-from sim_core.garment.model import Garment
+from sim_core.garment.levels import choose_detail, detail
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.placing import Gathering
-from sim_core.garment.robe import robe_on_figure
-from sim_core.garment.scarf import scarf_on_stand
-from sim_core.garment.stand import Stand
+from sim_core.garment.placement import Gathering
+from sim_core.garment.recipes import Stand, robe_on_figure, scarf_on_stand
 
 __all__ = [
     "Garment",
@@ -18,6 +16,7 @@ __all__ = [
     "choose_detail",
     "detail",
     "follow",
+    "garment_sheet",
     "robe_on_figure",
     "scarf_on_stand",
     "write_glb",

@@ -8,15 +8,15 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim_core.arguments import number, whole
+from sim_core.validation.arguments import number, whole
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from sim_core.body.pose import Pose
+    from sim_core.body.wearer import Figure
     from sim_core.garment import Garment, Pattern
-    from sim_core.garment.figure import Figure
     from sim_core.garment.glb import Shown
-    from sim_core.garment.schedule import Pose
     from sim_core.weave import Weave
 
 HALL_FIGURE = 1800  # triangles of the figure in the hall's model
@@ -105,16 +105,16 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _pose(args: argparse.Namespace) -> Pose:
-    from sim_core.garment.schedule import Pose
+    from sim_core.body.pose import Pose
 
     return Pose(args.arm, args.elbow)
 
 
 def _figure(args: argparse.Namespace) -> Figure | None:
     """Who wears it, None for a recipe without a figure."""
+    from sim_core.body.mannequin import Mannequin
+    from sim_core.body.wearer import Figure
     from sim_core.errors import FileProblem, SimCoreError, WrongArgument
-    from sim_core.garment.figure import Figure
-    from sim_core.garment.mannequin import Mannequin
 
     if args.recipe != "robe_on_figure":
         return None
@@ -132,7 +132,7 @@ def _figure(args: argparse.Namespace) -> Figure | None:
 
 def _draped(args: argparse.Namespace, pattern: Pattern, weave: Weave, figure: Figure | None) -> Garment:
     from sim_core.garment import robe_on_figure, scarf_on_stand
-    from sim_core.garment.schedule import Schedule
+    from sim_core.garment.recipes.schedule import Schedule
 
     hooks: dict[str, Any] = {
         "edge": args.edge,
@@ -147,7 +147,7 @@ def _draped(args: argparse.Namespace, pattern: Pattern, weave: Weave, figure: Fi
 def _shown(
     figure: Figure | None, args: argparse.Namespace, garment: Garment, triangles: int | None
 ) -> Shown | None:
-    from sim_core.garment.shown import shown_figure
+    from sim_core.garment.levels.figure import shown_figure
 
     if figure is None:
         return None
@@ -183,7 +183,7 @@ def _draw(path: Path, garment: Garment, figure: tuple[np.ndarray, np.ndarray] | 
     import numpy as np
 
     from sim_core.garment.glb import LACQUER, LINEN
-    from sim_core.garment.stand import Stand
+    from sim_core.garment.recipes.stand import Stand
     from sim_core.picture import Camera, Surface, render, save_png
 
     sheer = figure is None

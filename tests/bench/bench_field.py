@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from sim_core import metrics
-from sim_core.cloth.field import field_of
-from sim_core.garment.mannequin import Mannequin
+from sim_core.body import Mannequin
+from sim_core.cloth.contact import field_of
 from sim_core.picture import normals
 
 FILE = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"

@@ -28,7 +28,7 @@ from cloth_figures import deciding, summary
 from cloth_sweeps import OURS, SWEEPS, Compared, compared, given, told
 from peers import Peers, peer_python
 
-from sim_core.cloth.precision import Pace
+from sim_core.cloth.step import Pace
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"

@@ -16,10 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from sim_core.cloth.draping import ENGINE_VERSION
-from sim_core.cloth.material import Material
-from sim_core.cloth.pilot import GRID, grid_film
-from sim_core.cloth.scenes import PINS, Scene, cases, material, scene
+from sim_core.cloth.run import ENGINE_VERSION
+from sim_core.cloth.scenes import GRID, PINS, Scene, cases, grid_film, material, scene
+from sim_core.cloth.sheet import Material
 
 KEPT = Path(__file__).parents[2] / "build" / "cloth-fidelity"
 KINDS = ("hanging", "flag", "teapot")

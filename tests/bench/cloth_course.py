@@ -7,8 +7,8 @@ import numpy as np
 
 from sim_core import metrics
 from sim_core.cloth import Air, Contact, Live, Sheet, Solid
-from sim_core.cloth.forces import energies
-from sim_core.cloth.phases import FRAME
+from sim_core.cloth.sheet import energies
+from sim_core.cloth.step import FRAME
 
 CALM = 1e-6  # [J] of motion left: nothing moves by a millimetre a second any more
 RISE = 0.01  # share of the energy a run has lost that may come back: leapfrog's own error of one step

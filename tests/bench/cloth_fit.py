@@ -9,8 +9,7 @@ from cloth_cases import EDGES, Case
 from cloth_flags import FINE
 from scipy.stats import nct, norm
 
-from sim_core.cloth.fidelity import Asked, law_terms
-from sim_core.cloth.pilot import PILOTS
+from sim_core.cloth.scenes import PILOTS, Asked, law_terms
 
 ORDERS = np.arange(1.0, 2.51, 0.05)
 RIDGE = (1e-4, 1e-3, 0.05, 0.3, 0.1)  # mean start and slope, those of the pins beside it, curve: few scenes

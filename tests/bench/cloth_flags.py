@@ -17,7 +17,7 @@ import numpy as np
 from cloth_cases import Case, ran
 from scipy.stats import t as student
 
-from sim_core.cloth.phases import FRAME
+from sim_core.cloth.step import FRAME
 
 BEGIN, LAST = 12, 164  # frames: 0.5 to 6.5 s
 SEEDS = (0, 1, 2, 3)

@@ -7,8 +7,8 @@ import numpy as np
 from cloth_course import STRETCH, UNIQUE, Outcome, Setting, calm, course, longest, unique
 
 from sim_core.cloth import Contact, Material, Sheet
-from sim_core.cloth.mending import mended
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet, hang_edge, scene
+from sim_core.cloth.sheet import mended
 from sim_core.metrics import intersections
 
 LAYERED = Contact(thickness=0.002)

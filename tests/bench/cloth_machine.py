@@ -14,8 +14,8 @@ from pathlib import Path
 
 from cloth_runs import simulate
 
-from sim_core.cloth.phases import FRAME
 from sim_core.cloth.scenes import hang_edge
+from sim_core.cloth.step import FRAME
 
 Told = Callable[[str], None]
 SPINS = 20_000_000

@@ -14,10 +14,8 @@ import numpy as np
 from cloth_cases import filmed
 from cloth_runs import distance, simulate
 
-from sim_core.cloth.phases import FRAME
-from sim_core.cloth.pilot import grid_film
-from sim_core.cloth.precision import Pace
-from sim_core.cloth.scenes import Scene, hang_edge, scene
+from sim_core.cloth.scenes import Scene, grid_film, hang_edge, scene
+from sim_core.cloth.step import FRAME, Pace
 from sim_core.metrics import intersections
 
 Told = Callable[[str], None]

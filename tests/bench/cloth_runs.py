@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_core.cloth.phases import FRAME
-from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import Scene
+from sim_core.cloth.step import FRAME, Pace
 
 
 @dataclass(frozen=True)

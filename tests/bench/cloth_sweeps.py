@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import GF_CM, Scene, hang_edge, scene
+from sim_core.cloth.step import Pace
 
 GRAVITY = 9.81
 UNDAMPED = replace(GF_CM, mass_damping=0.0, stiffness_damping=0.0)

@@ -1,4 +1,4 @@
-"""Makes `sim_core/cloth/fidelity.json`, and checks what it promises on 20 scenes it has not seen.
+"""Makes `sim_core/cloth/scenes/fidelity.json`, and checks what it promises on 20 scenes it has not seen.
 
     python tests/bench/cloth_table.py            measures the training scenes, fits the law, writes the table
     python tests/bench/cloth_table.py --check    20 other scenes; --seed N draws others; kept in docs/figures
@@ -22,9 +22,8 @@ from cloth_cases import EDGES, FRAMES, KINDS, Case, Kept, drawn, ran, training
 from cloth_fit import fitted, limit_known, own_error
 from cloth_flags import COARSE, FINE, compared, told
 
-from sim_core.cloth.fidelity import FILE, choose
-from sim_core.cloth.phases import FRAME
-from sim_core.cloth.pilot import PILOTS, apart, gap
+from sim_core.cloth.scenes import FILE, PILOTS, apart, choose, gap
+from sim_core.cloth.step import FRAME
 from sim_core.errors import WrongArgument
 
 DETAILS = Path(__file__).parents[2] / "sim_core" / "cloth" / "DETAILS.md"

@@ -8,11 +8,10 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from sim_core.cloth import Air, Contact, Cylinder, Material, Phase, Sheet, drape
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.forces import edge_tensions, energies, vertex_forces
-from sim_core.cloth.live import Live
+from sim_core.cloth.run import Live
 from sim_core.cloth.scenes import drape_coefficient, equilateral_sheet, scene
-from sim_core.cloth.stability import first_mode
+from sim_core.cloth.sheet import edge_tensions, energies, vertex_forces
+from sim_core.cloth.step import Engine, first_mode
 
 G = 9.81
 

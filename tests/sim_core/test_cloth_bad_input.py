@@ -24,10 +24,10 @@ from sim_core.cloth import (
     drape,
     moving_mesh,
 )
-from sim_core.cloth import running as cloth_running
-from sim_core.cloth.field import field_of
-from sim_core.cloth.mending import mended
+from sim_core.cloth.contact import field_of
+from sim_core.cloth.run import adaptive_run
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
+from sim_core.cloth.sheet import mended
 from sim_core.errors import SimCoreError
 
 REST, FACES = equilateral_sheet(0.2, 0.2, 0.1)
@@ -164,7 +164,7 @@ def test_runs_without_meaning_are_named_before_anything_runs(
     def ran(*_: object) -> None:
         raise AssertionError("a frame was simulated")
 
-    monkeypatch.setattr(cloth_running.Run, "frame_under", ran)
+    monkeypatch.setattr(adaptive_run.Run, "frame_under", ran)
     if word == "no stable step":  # is seen where the first step is looked for
         monkeypatch.undo()
     given = {"sheet": SHEET, "positions": FLAT, "phases": [Phase(1.0)]} | RUNS[word]

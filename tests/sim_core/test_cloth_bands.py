@@ -5,11 +5,10 @@ import pytest
 from scipy.spatial import Delaunay
 
 from sim_core.cloth import Air, Material, Phase, Sheet, drape
-from sim_core.cloth.banded import band_air, band_bends, band_pulls, band_strains, band_tensions
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.forces import edge_tensions, vertex_forces
 from sim_core.cloth.scenes import equilateral_sheet
-from sim_core.cloth.stability import first_mode, stiffness_times, tensions_at
+from sim_core.cloth.sheet import edge_tensions, vertex_forces
+from sim_core.cloth.step import Engine, first_mode, stiffness_times, tensions_at
+from sim_core.cloth.step.kernels import band_air, band_bends, band_pulls, band_strains, band_tensions
 from sim_core.mesh import panel_mesh
 
 CLOTH = Material(0.05, 80.0, 0.2, 1e-4, stretch_warp=300.0, shear=11.0)

@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial import Delaunay
 
 from sim_core.cloth import Material, Sheet
-from sim_core.cloth.forces import energies
-from sim_core.cloth.rows import disc, equilateral_sheet
+from sim_core.cloth.scenes import disc, equilateral_sheet
+from sim_core.cloth.sheet import energies
 from sim_core.mesh import panel_mesh
 
 SIDE, BEND = 0.6, 1e-4

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Contact, Material, MovingGrid, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.limb import limb_mesh
-from sim_core.cloth.phases import FRAME
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.scenes import equilateral_sheet, limb_mesh
+from sim_core.cloth.step import FRAME
 
 G = 9.81
 CLEARANCE = Contact().clearance

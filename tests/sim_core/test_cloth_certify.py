@@ -10,8 +10,8 @@ import pytest
 
 from sim_core import cli, metrics
 from sim_core.cloth import Contact, HalfSpace, Holds, Live, Phase, Sheet, drape
+from sim_core.cloth.run import moved_together, zones_of
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
-from sim_core.cloth.zones import moved_together, zones_of
 from sim_core.errors import SimCoreError
 
 needs_ipctk = pytest.mark.skipif(

@@ -7,16 +7,21 @@ import numpy as np
 import pytest
 
 from sim_core import cli
-from sim_core.cloth.collider import Capsule
-from sim_core.cloth.field import field_of
-from sim_core.cloth.limb import limb_mesh
-from sim_core.cloth.moving import MovingGrid
-from sim_core.cloth.rows import disc, equilateral_sheet, sheet_of
-from sim_core.cloth.scenes import NAMES, PINS, cases, scene
-from sim_core.cloth.teapot import teapot_mesh, teapot_solid
+from sim_core.cloth.contact import Capsule, MovingGrid, field_of
+from sim_core.cloth.scenes import (
+    NAMES,
+    PINS,
+    cases,
+    disc,
+    equilateral_sheet,
+    limb_mesh,
+    scene,
+    sheet_of,
+    teapot_mesh,
+    teapot_solid,
+)
 from sim_core.errors import WrongArgument
-from sim_core.metrics import surface_distance
-from sim_core.triangles import winding
+from sim_core.metrics import surface_distance, winding
 
 KEYS = {"scene", "vertices", "frames", "seconds", "compile_seconds", "ms_per_frame", "substeps", "integrator"}
 KEYS |= {"fallbacks", "worst_stretch", "penetrations", "intersections", "seed"}
@@ -183,8 +188,8 @@ def test_a_folder_is_refused_as_a_file_before_anything_runs(capsys, tmp_path: Pa
 
 @pytest.mark.parametrize("name", NAMES)
 def test_code_is_compiled_with_a_scene_of_the_same_loop(name: str) -> None:
-    from sim_core.cloth.command import WARM
-    from sim_core.cloth.engine import Engine
+    from sim_core.cloth import WARM
+    from sim_core.cloth.step import Engine
 
     small, whole = (Engine(scene(name, vertices=count).sheet).laned for count in (WARM, None))
     assert (small is None) == (whole is None)

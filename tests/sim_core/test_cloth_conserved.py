@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Contact, Material, Phase, Sheet, drape
-from sim_core.cloth.forces import energies
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.cloth.sheet import energies
 from sim_core.mesh import panel_mesh
 
 FREE = Material(0.05, 50.0, 0.3, 5e-5, mass_damping=0.0, stiffness_damping=0.0)

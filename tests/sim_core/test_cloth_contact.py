@@ -20,11 +20,17 @@ from sim_core.cloth import (
     Union,
     drape,
 )
-from sim_core.cloth.distance import distances
-from sim_core.cloth.pairs import edge_edge_pairs, finder_of, hash_points, pairs_of, vertex_face_pairs
+from sim_core.cloth.contact import (
+    distances,
+    edge_edge_pairs,
+    finder_of,
+    hash_points,
+    pairs_of,
+    solid_mesh,
+    vertex_face_pairs,
+)
 from sim_core.cloth.scenes import bar, equilateral_sheet, scene
 from sim_core.errors import SimCoreError
-from sim_core.garment.solids import solid_mesh
 
 SOLIDS = [
     Capsule((0.1, 0.2, -0.1), (-0.2, 0.5, 0.3), 0.07),

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Material, Sheet
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.evening import evened
-from sim_core.cloth.rows import equilateral_sheet
-from sim_core.cloth.stability import first_mode
+from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.cloth.sheet import evened
+from sim_core.cloth.step import Engine, first_mode
 
 CLOTH = Material(0.05, 50.0, 0.3, 1e-6)
 

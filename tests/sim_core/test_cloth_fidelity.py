@@ -3,10 +3,21 @@
 import numpy as np
 import pytest
 
-from sim_core.cloth.fidelity import Asked, bounds, choose, table
-from sim_core.cloth.phases import FRAME
-from sim_core.cloth.pilot import GRID, PILOTS, apart, gap, grid_film, pilot
-from sim_core.cloth.scenes import GF_CM, scene
+from sim_core.cloth.scenes import (
+    GF_CM,
+    GRID,
+    PILOTS,
+    Asked,
+    apart,
+    bounds,
+    choose,
+    gap,
+    grid_film,
+    scene,
+    table,
+)
+from sim_core.cloth.scenes import pilots as pilot
+from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError, WrongArgument
 
 KINDS = ("flag", "hanging", "teapot")

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
+from sim_core.body import Mannequin
 from sim_core.cloth import Capsule
-from sim_core.cloth.field import DistanceField, field_of, hull_mesh, united
+from sim_core.cloth.contact import DistanceField, field_of, hull_mesh, solid_mesh, united
 from sim_core.errors import SimCoreError
-from sim_core.garment.mannequin import Mannequin
-from sim_core.garment.solids import solid_mesh
+from sim_core.metrics import winding
 from sim_core.picture import normals
-from sim_core.triangles import winding
 
 FILE = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"
 CELL = 0.008

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Material, Phase, Sheet, drape
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.forces import edge_tensions, energies, vertex_forces
 from sim_core.cloth.scenes import equilateral_sheet
-from sim_core.cloth.stability import first_mode
+from sim_core.cloth.sheet import edge_tensions, energies, vertex_forces
+from sim_core.cloth.step import Engine, first_mode
 from sim_core.errors import SimCoreError
 from sim_core.mesh import panel_mesh
 

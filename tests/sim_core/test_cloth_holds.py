@@ -14,11 +14,11 @@ from sim_core.cloth import (
     Sheet,
     drape,
 )
-from sim_core.cloth.precision import Pace
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
+from sim_core.cloth.step import Pace
 from sim_core.errors import SimCoreError
-from sim_core.garment.halves import half_sheet
-from sim_core.garment.sewing import Cloth
+from sim_core.garment.pattern import Cloth
+from sim_core.garment.recipes import half_sheet
 
 
 def test_panels_welded_along_a_seam_are_one_cloth() -> None:

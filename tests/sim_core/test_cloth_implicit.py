@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
-from sim_core.cloth.conditions import Conditions
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.factor import Factored
-from sim_core.cloth.implicit import Load
 from sim_core.cloth.scenes import equilateral_sheet, hang_edge
+from sim_core.cloth.step import Conditions, Engine, Factored, Load
 from sim_core.errors import SimCoreError
 
 CLOTH = Material(0.05, 80.0, 0.2, 1e-4, stretch_warp=300.0, shear=11.0, stiffness_damping=1e-3)

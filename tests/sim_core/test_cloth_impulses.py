@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import GridSdf
-from sim_core.cloth.contact import collide_samples, collide_vertices
-from sim_core.cloth.repulsion import LEVER, Shell, repel
+from sim_core.cloth.contact import LEVER, Shell, collide_samples, collide_vertices, repel
 
 THICKNESS = 0.004  # [m]
 SPRING = 1e-9  # so weak that damping and friction are seen alone

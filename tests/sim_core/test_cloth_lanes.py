@@ -6,22 +6,23 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Live, Phase, drape
-from sim_core.cloth.bands import bands_of, ordered
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.holding import Holds
-from sim_core.cloth.laned import (
+from sim_core.cloth.contact import Holds
+from sim_core.cloth.scenes import GF_CM, bar, disc, hang_edge, scene
+from sim_core.cloth.sheet import Sheet
+from sim_core.cloth.step import Engine, Pace
+from sim_core.cloth.step.kernels import (
+    SAME,
+    bands_of,
     lane_bends,
     lane_further,
     lane_leap,
     lane_odd_bends,
     lane_strains,
     lane_tensions,
+    lattice_lanes,
+    ordered,
+    plain_lanes,
 )
-from sim_core.cloth.lattice import SAME, lattice_lanes, plain_lanes
-from sim_core.cloth.precision import Pace
-from sim_core.cloth.rows import disc
-from sim_core.cloth.scenes import GF_CM, bar, hang_edge, scene
-from sim_core.cloth.sheet import Sheet
 from sim_core.errors import SimCoreError
 
 SINGLE, LONG = Pace("single"), Pace("single", 0.95)
@@ -57,7 +58,7 @@ def accelerations(sheet, lanes, x):
 
 
 def expected(sheet, x):
-    from sim_core.cloth.forces import edge_tensions, vertex_forces
+    from sim_core.cloth.sheet import edge_tensions, vertex_forces
 
     s, place = sheet.stencil, np.ascontiguousarray(x.T)
     strain, tension, force = np.zeros(len(s.edges)), np.zeros(len(s.edges)), np.zeros_like(place)
@@ -116,7 +117,7 @@ def test_a_lattice_in_double_falls_over_lanes_as_over_bands():
     lanes = Engine(made.sheet).laned
     assert lanes is not None
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("sim_core.cloth.engine.lanes_for", lambda *_: None)
+        patch.setattr("sim_core.cloth.step.engine.lanes_for", lambda *_: None)
         bands = run(made)
     assert apart(run(made), bands) < 1e-5
 

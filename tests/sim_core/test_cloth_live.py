@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
-from sim_core.cloth.engine import MOST_PINNED, Engine
-from sim_core.cloth.mending import mended
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.cloth.sheet import mended
+from sim_core.cloth.step import MOST_PINNED, Engine
 from sim_core.errors import SimCoreError
 
 CLOTH = Material(0.05, 50.0, 0.3, 5e-5)
@@ -121,8 +121,8 @@ def test_an_interrupt_in_the_midst_of_a_frame_leaves_the_state_as_it_was(
     compiled: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Compiled code comes back from Ctrl-C with SystemErrors, the interrupt the cause of the first."""
-    from sim_core.cloth.engine import Engine
     from sim_core.cloth.scenes import scene
+    from sim_core.cloth.step import Engine
 
     def stopped(*_: object, **__: object) -> None:
         if compiled:

@@ -7,9 +7,8 @@ from numba.core.runtime import _nrt_python  # pyright: ignore[reportAttributeAcc
 from numba.core.runtime.nrt import rtsys
 
 from sim_core.cloth import Capsule, Contact, Material, Sheet
-from sim_core.cloth.conditions import Conditions
-from sim_core.cloth.engine import Engine
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.cloth.step import Conditions, Engine
 
 CONTACT = Contact(0.003, 0.001, thickness=0.004, skin=0.002, untangle=5)
 
@@ -68,7 +67,7 @@ def test_full_lists_grow_and_keep_the_result() -> None:
 
 @pytest.mark.parametrize("broken", [np.nan, np.inf, 1e300])
 def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) -> None:
-    from sim_core.cloth.pairs import edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
+    from sim_core.cloth.contact import edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
 
     rest, faces = equilateral_sheet(0.1, 0.1, 0.02)
     faces = faces.astype(np.int32)

@@ -54,7 +54,7 @@ def test_step_follows_the_tangent_of_a_stretched_sheet() -> None:
 
 def test_watchdog_rolls_back_a_frame_that_blows_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a step that is promised stable but is not, the frame is done again with half of it."""
-    from sim_core.cloth import engine
+    from sim_core.cloth.step import engine
 
     scene = hang_edge(0.1, seconds=0.08)
     true_step = engine.stable_step

@@ -8,10 +8,8 @@ import pytest
 from scipy.spatial import Delaunay
 
 from sim_core.cloth import Contact, Drape, HalfSpace, Holds, Live, Material, Phase, Sheet, drape
-from sim_core.cloth.checkpoint import RunState, load_checkpoint, save_checkpoint
-from sim_core.cloth.running import Run
+from sim_core.cloth.run import Run, RunState, Smoother, load_checkpoint, save_checkpoint, smoothed
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet, hang_edge
-from sim_core.cloth.smoothing import _Smoother, smoothed
 from sim_core.metrics import intersections
 
 CLOTH = Material(0.05, 49.0, 0.3, 4.9e-5)
@@ -144,7 +142,7 @@ def test_waves_are_let_through_by_their_length() -> None:
     u = sheet.rest[:, 0]
     for length, share in ((0.05, 1 / (1 + 0.5**4)), (0.1, 0.5), (0.2, 1 / (1 + 2.0**4))):
         wave = np.column_stack([sheet.rest, 0.01 * np.cos((u - 1.5) / 0.1)])
-        found = _Smoother(sheet, wave, np.zeros(0, np.int64)).low_pass(length)
+        found = Smoother(sheet, wave, np.zeros(0, np.int64)).low_pass(length)
         middle = np.abs(u - 1.5) < 0.25
         left = found[middle, 2] @ wave[middle, 2] / (wave[middle, 2] @ wave[middle, 2])
         assert left == pytest.approx(share, abs=0.02)

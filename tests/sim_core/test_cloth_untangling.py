@@ -5,10 +5,8 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Contact, Material, Phase, Sheet, drape
-from sim_core.cloth.holding import Holds
-from sim_core.cloth.pairs import finder_of
-from sim_core.cloth.rows import equilateral_sheet
-from sim_core.cloth.untangling import crossings_of, faces_at_edges, no_crossings, untangle
+from sim_core.cloth.contact import Holds, crossings_of, faces_at_edges, finder_of, no_crossings, untangle
+from sim_core.cloth.scenes import equilateral_sheet
 
 CLOTH = Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0)
 

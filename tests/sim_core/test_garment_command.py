@@ -25,7 +25,7 @@ def test_bad_words_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFi
 def test_garment_command_writes_all_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from sim_core.garment import scarf
+    from sim_core.garment.recipes import scarf
 
     monkeypatch.setattr(scarf.scarf_on_stand, "__kwdefaults__", _short(scarf.scarf_on_stand.__kwdefaults__))
     pattern = tmp_path / "short.toml"

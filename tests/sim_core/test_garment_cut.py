@@ -7,7 +7,7 @@ import pytest
 
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Pattern
-from sim_core.garment.measures import measured
+from sim_core.garment.pattern import measured
 
 ASSETS = Path(__file__).parents[2] / "assets" / "patterns"
 

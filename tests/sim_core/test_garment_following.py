@@ -5,11 +5,10 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Capsule, Contact, Live, Material, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.rows import equilateral_sheet
+from sim_core.cloth.contact import solid_mesh
+from sim_core.cloth.scenes import equilateral_sheet
 from sim_core.errors import SimCoreError
-from sim_core.garment import Garment, follow
-from sim_core.garment.following import garment_sheet
-from sim_core.garment.solids import solid_mesh
+from sim_core.garment import Garment, follow, garment_sheet
 
 CLOTH = Material(0.05, 50.0, 0.3, 2e-5, 0.5, 1.0)
 CONTACT = Contact(0.004, 0.001, speed_limit=4.0)

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial import KDTree
 
 from sim_core import metrics
+from sim_core.body import BONES, Mannequin, turn_between
 from sim_core.errors import FileProblem, SimCoreError
-from sim_core.garment.mannequin import BONES, Mannequin, turn_between
 
 FILE = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"
 POSES = ((0.0, 0.0), (45.0, 12.0), (58.0, 78.0))
@@ -95,7 +95,7 @@ def test_no_anatomy_stands_out(woman: Mannequin) -> None:
     """From hip to collar the trunk's sections are convex within 3 mm: no cleft, no navel, no two breasts."""
     from scipy.spatial import ConvexHull
 
-    from sim_core.garment.figure_form import section
+    from sim_core.body.making import section
 
     for y in np.arange(0.80, 1.18, 0.02):
         points = section(woman.vertices, woman.faces, float(y))

@@ -8,24 +8,23 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
+from sim_core.body import Mannequin
 from sim_core.cloth import Capsule, Phase
-from sim_core.cloth.field import field_of
+from sim_core.cloth.contact import field_of, solid_mesh
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern
-from sim_core.garment.mannequin import Mannequin
-from sim_core.garment.pibo import (
+from sim_core.garment.placement import Accordion, arranged_path, swept
+from sim_core.garment.recipes import (
     FALLING,
     HELD,
     PiboSettings,
+    capped,
     field_under,
     laid_along,
     pibo_on_figure,
     solids_under,
 )
-from sim_core.garment.solids import solid_mesh
-from sim_core.garment.sweeping import Accordion, arranged_path, swept
-from sim_core.garment.worn_solid import capped
-from sim_core.triangles import winding
+from sim_core.metrics import winding
 from sim_core.weave import Weave
 
 ASSETS = Path(__file__).parents[2] / "assets"

@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.cloth.phases import schedule
+from sim_core.body import Figure, Mannequin, Pose
+from sim_core.cloth.step import schedule
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Pattern, detail, robe_on_figure, write_glb
-from sim_core.garment.figure import Figure
-from sim_core.garment.laying import Laying, laid
-from sim_core.garment.mannequin import Mannequin
-from sim_core.garment.schedule import Pose, Schedule
-from sim_core.garment.shown import shown_figure
-from sim_core.triangles import winding
+from sim_core.garment.levels import shown_figure
+from sim_core.garment.placement import Laying, laid
+from sim_core.garment.recipes import Schedule
+from sim_core.metrics import winding
 from sim_core.weave import Weave, solve, surface_maps
 
 ASSETS = Path(__file__).parents[2] / "assets"
@@ -112,7 +111,7 @@ def test_coat_survives_file_detail_and_model(
 
 @pytest.mark.slow
 def test_same_bits_also_after_an_interrupt(ling: Weave, figure: Figure, tmp_path: Path, monkeypatch) -> None:
-    from sim_core.cloth import draping
+    from sim_core.cloth.run import drape_run as draping
 
     heard: list[int] = []
     whole = robe_on_figure(

@@ -9,8 +9,8 @@ from sim_core import metrics
 from sim_core.cloth import Phase
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Gathering, Pattern, Stand, scarf_on_stand
-from sim_core.garment.placing import gathered_strip
-from sim_core.garment.scarf import PHASES
+from sim_core.garment.placement import gathered_strip
+from sim_core.garment.recipes import PHASES
 from sim_core.mesh import panel_mesh
 from sim_core.picture import Camera, Surface, render
 from sim_core.weave import Draft, Weave, Yarn, plain
@@ -65,7 +65,7 @@ def test_an_interrupted_bake_goes_on_to_the_same_bits(
     gauze: Weave, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = scarf_on_stand(strip(), gauze, seed=1, phases=SHORT, on_frame=lambda index, x: None)
-    from sim_core.cloth import draping
+    from sim_core.cloth.run import drape_run as draping
 
     monkeypatch.setattr(draping, "CHECKPOINT_SECONDS", 0.0)
     file, heard = tmp_path / "scarf.npz", []

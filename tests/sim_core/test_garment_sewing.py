@@ -6,11 +6,18 @@ import numpy as np
 import pytest
 
 from sim_core.garment import Pattern
-from sim_core.garment.cutting import Panel
-from sim_core.garment.cutting import Path as Way
-from sim_core.garment.dressing import GAP, SAG, _gap, _holds, _nape, robe_materials
-from sim_core.garment.halves import Half, half_sheet
-from sim_core.garment.sewing import Cloth, cut_cloth
+from sim_core.garment.pattern import Cloth, Panel, cut_cloth
+from sim_core.garment.pattern import Path as Way
+from sim_core.garment.recipes import (
+    GAP,
+    SAG,
+    Half,
+    half_sheet,
+    nape_pins,
+    robe_holds,
+    robe_materials,
+    seam_gap,
+)
 from sim_core.weave import Weave, parameters_of, solve
 
 ASSETS = Path(__file__).parents[2] / "assets"
@@ -127,7 +134,7 @@ def test_fronts_stay_on_their_side_and_the_middle_in_the_middle(
 ) -> None:
     pattern, cloth = half
     x = sheet.gathered(np.column_stack([cloth.vertices, np.zeros(len(cloth.vertices))]))
-    holds = _holds(pattern, cloth, sheet, (0.3, 0.5, 0.01), x)
+    holds = robe_holds(pattern, cloth, sheet, (0.3, 0.5, 0.01), x)
     assert (holds.low[sheet.middle] == 0).all()
     assert (holds.high[sheet.middle] == 0).all()
     others = np.setdiff1d(np.arange(sheet.real), sheet.middle)
@@ -144,14 +151,14 @@ def test_fronts_stay_on_their_side_and_the_middle_in_the_middle(
     assert (lowest[stitched] < 0.5).all()
     bands = [n for n, panel in enumerate(pattern.panels) if panel.along is not None]
     assert np.isin(stitched, sheet.number[np.isin(cloth.panel_of, bands)]).all()
-    free = _holds(pattern, cloth, sheet, None, x)
+    free = robe_holds(pattern, cloth, sheet, None, x)
     assert np.isinf(free.high[others]).all()
 
 
 def test_pairs_are_the_twins_of_the_sewn_seams(half: tuple[Pattern, Cloth], sheet: Half) -> None:
     pattern, cloth = half
     x = sheet.gathered(np.column_stack([cloth.vertices, np.zeros(len(cloth.vertices))]))
-    holds = _holds(pattern, cloth, sheet, None, x)
+    holds = robe_holds(pattern, cloth, sheet, None, x)
     wanted = {tuple(sorted(pair)) for pair in sheet.number[_named(cloth)].tolist()}
     assert {tuple(pair) for pair in holds.pairs.tolist()} == wanted
     assert holds.spans == pytest.approx(np.linalg.norm(x[holds.pairs[:, 0]] - x[holds.pairs[:, 1]], axis=1))
@@ -170,12 +177,12 @@ def test_the_gap_is_the_widest_open_seam(half: tuple[Pattern, Cloth], sheet: Hal
     place = np.random.default_rng(3).normal(size=(cloth.closed.max() + 1, 3))
     points = np.zeros((sheet.real, 3))
     points[sheet.number] = place[cloth.closed]
-    assert _gap(cloth, sheet, points) == 0.0
+    assert seam_gap(cloth, sheet, points) == 0.0
     a, b = sheet.number[_named(cloth)][len(cloth.pairs) // 2]
     points[a] += [0.003, 0.0, 0.004]
-    assert _gap(cloth, sheet, points) == pytest.approx(0.005)
+    assert seam_gap(cloth, sheet, points) == pytest.approx(0.005)
     points[b] += [0.003, 0.0, 0.004]
-    others = _gap(cloth, sheet, points)
+    others = seam_gap(cloth, sheet, points)
     assert others == pytest.approx(0.0) or others == pytest.approx(
         0.005
     )  # a corner of three panels stays open
@@ -183,7 +190,7 @@ def test_the_gap_is_the_widest_open_seam(half: tuple[Pattern, Cloth], sheet: Hal
 
 def test_the_nape_is_pinned_with_its_neighbours_alone(half: tuple[Pattern, Cloth], sheet: Half) -> None:
     pattern, cloth = half
-    nape = _nape(pattern, cloth, sheet)
+    nape = nape_pins(pattern, cloth, sheet)
     body = cloth.middle[cloth.panel_of[cloth.middle] == 0]
     top = sheet.number[body[np.argmax(cloth.vertices[body, 1])]]
     assert top in nape

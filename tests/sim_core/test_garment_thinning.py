@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.garment.thinning import Thinning
+from sim_core.garment.levels import Thinning
 from sim_core.mesh import panel_mesh
 
 

@@ -13,10 +13,10 @@ import trimesh
 from PIL import Image
 
 from sim_core import metrics
+from sim_core.cloth.contact import solid_mesh
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Garment, Pattern, Stand, choose_detail, detail, write_glb
-from sim_core.garment.detail import locate
-from sim_core.garment.solids import solid_mesh
+from sim_core.garment.levels import locate
 from sim_core.mesh import panel_mesh
 
 SHEET = 'name = "test"\nedge = 0.05\nsize = [0.4, 1.0]\n'

@@ -4,9 +4,9 @@ import time
 
 from numba import njit
 
-from sim_core import machine_code
-from sim_core.machine_code import compile_clock
 from sim_core.mesh import panel_mesh
+from sim_core.metrics import compile_clock
+from sim_core.metrics import compile_time as machine_code
 
 SQUARE = [[0.0, 0], [1, 0], [1, 1], [0, 1]]
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.errors import SimCoreError
-from sim_core.picture import Camera, Surface, lighting, render
-from sim_core.raster import depth_map
+from sim_core.picture import Camera, Surface, depth_map, lighting, render
 
 SQUARE = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 1.0, 0.0]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)

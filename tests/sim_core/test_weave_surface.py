@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.cloth.material import Material
+from sim_core.cloth.sheet import Material
 from sim_core.errors import WeaveError
 from sim_core.weave import Weave, Yarn, measured, parameters_of, plain, summary_of
 from sim_core.weave.draft import basket

@@ -53,9 +53,9 @@ class PiboOnFigure:
         self._robes["close"] = Garment.load(done)
 
     def drape(self, progress: Progress, checkpoint: Path, on_frame: OnFrame | None) -> Garment:
-        from sim_core.garment.mannequin import Mannequin
-        from sim_core.garment.pibo import pibo_on_figure
-        from sim_core.garment.schedule import Pose
+        from sim_core.body.mannequin import Mannequin
+        from sim_core.body.pose import Pose
+        from sim_core.garment.recipes.pibo import pibo_on_figure
 
         table, robe = self._in.table, self._robes["close"]
         assert self._in.mannequin is not None
@@ -107,9 +107,9 @@ class PiboOnFigure:
         return self._robes[precision]
 
     def clear_of(self, garment: Garment) -> Any:
-        from sim_core.garment.mannequin import Mannequin
-        from sim_core.garment.pibo import PiboSettings, field_under, solids_under
-        from sim_core.garment.schedule import Pose
+        from sim_core.body.mannequin import Mannequin
+        from sim_core.body.pose import Pose
+        from sim_core.garment.recipes.pibo import PiboSettings, field_under, solids_under
 
         assert self._in.mannequin is not None
         pose = Pose(self._in.table.arm, self._in.table.elbow)

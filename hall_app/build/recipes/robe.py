@@ -11,9 +11,9 @@ from hall_app.build.film import Look, Solid
 from hall_app.build.recipes.recipe import LACQUER, LINEN, Inputs, OnFrame, Progress, shown_colour
 
 if TYPE_CHECKING:
+    from sim_core.body.pose import Pose
+    from sim_core.body.wearer import Figure
     from sim_core.garment import Garment
-    from sim_core.garment.figure import Figure
-    from sim_core.garment.schedule import Pose
 
 __all__ = ["RobeOnFigure"]
 
@@ -24,8 +24,9 @@ class RobeOnFigure:
     """Panels sewn and dressed on the mannequin."""
 
     def __init__(self, inputs: Inputs) -> None:
+        from sim_core.body.pose import Pose
         from sim_core.errors import SimCoreError
-        from sim_core.garment.schedule import Pose, Schedule
+        from sim_core.garment.recipes.schedule import Schedule
 
         if inputs.mannequin is None:
             raise SimCoreError("recipe robe_on_figure: names no mannequin – add garment.mannequin")
@@ -35,14 +36,14 @@ class RobeOnFigure:
         return None
 
     def _figure(self) -> Figure:
-        from sim_core.garment.figure import Figure
-        from sim_core.garment.mannequin import Mannequin
+        from sim_core.body.mannequin import Mannequin
+        from sim_core.body.wearer import Figure
 
         assert self._in.mannequin is not None
         return Figure(Mannequin.load(self._in.mannequin))
 
     def drape(self, progress: Progress, checkpoint: Path, on_frame: OnFrame | None) -> Garment:
-        from sim_core.garment.robe import robe_on_figure
+        from sim_core.garment.recipes.robe import robe_on_figure
 
         figure = self._figure()
 
@@ -62,7 +63,7 @@ class RobeOnFigure:
         )
 
     def look(self) -> Look:
-        from sim_core.garment.schedule import Pose
+        from sim_core.body.pose import Pose
 
         cloth = self._in.pattern.cloth(self._in.table.edge).mirrored()
         return self._look(cloth.faces, cloth.panel, Pose())
@@ -72,8 +73,8 @@ class RobeOnFigure:
 
     def _look(self, faces: np.ndarray, panel: np.ndarray, pose: Pose) -> Look:
         from sim_core.cloth import Cylinder
-        from sim_core.garment.shown import BASE
-        from sim_core.garment.solids import solid_mesh
+        from sim_core.cloth.contact.solid_meshes import solid_mesh
+        from sim_core.garment.levels.figure import BASE
 
         pattern = self._in.pattern
         colours = [shown_colour(p.dye or pattern.dye, self._in.maps) for p in pattern.panels]
@@ -88,7 +89,7 @@ class RobeOnFigure:
         return Look(parts, solids, 1.0, float(vertices[:, 1].max()) + BASE[1], BASE[1])
 
     def beside(self, garment: Garment, precision: str) -> dict[str, Any]:
-        from sim_core.garment.shown import shown_figure
+        from sim_core.garment.levels.figure import shown_figure
 
         body = self._figure().mesh(self._schedule.pose)
         most = HALL_FIGURE if precision == "hall" else None

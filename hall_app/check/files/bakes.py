@@ -45,8 +45,8 @@ def _inputs(content: Content) -> dict[str, Problem]:
 
 
 def _readers() -> dict[str, Callable[[Path], Any]]:
+    from sim_core.body.mannequin import Mannequin
     from sim_core.garment import Pattern
-    from sim_core.garment.mannequin import Mannequin
     from sim_core.weave import Weave
 
     return {"patterns": Pattern.load, "weaves": Weave.load, "mannequins": Mannequin.load}

@@ -117,7 +117,7 @@ def measured_again(root: Path, table: GarmentRecipe, folder: Path) -> Measured:
     Raises SimCoreError, GlbError, ValueError, KeyError, IndexError, TypeError or OSError for files that cannot be read.
     """
     from sim_core.garment import Garment
-    from sim_core.garment.shown import BASE
+    from sim_core.garment.levels.figure import BASE
 
     garment = Garment.load(folder / "garment.npz")
     cloth = Cloth(garment.positions, garment.faces, garment.rest_corners())
@@ -125,7 +125,7 @@ def measured_again(root: Path, table: GarmentRecipe, folder: Path) -> Measured:
     lift = BASE[1] if table.mannequin else 0.0
     if table.robe_pattern is not None:
         from sim_core.garment import Pattern
-        from sim_core.garment.worn_solid import capped
+        from sim_core.garment.recipes.worn_solid import capped
 
         name = Pattern.load(root / table.robe_pattern).name
         under, robe = robe_beneath(folder, name, lift, solids[0])
@@ -142,7 +142,7 @@ def measured_again(root: Path, table: GarmentRecipe, folder: Path) -> Measured:
 def _solids(root: Path, table: GarmentRecipe, garment: Garment) -> list[Solid]:
     """What the cloth hangs on: the posed figure, or the stand."""
     if table.mannequin is not None:
-        from sim_core.garment.mannequin import Mannequin
+        from sim_core.body.mannequin import Mannequin
 
         figure = Mannequin.load(root / table.mannequin)
         return [(figure.posed(table.arm, table.elbow), figure.faces)]

@@ -19,7 +19,7 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.geometry.curves import arc_points, bezier_points
 from sim_core.mesh.sheets.model import Piece, Sheet
-from sim_core.reading import read_json, shown
+from sim_core.validation.files import read_json, shown
 
 __all__ = [
     "CodeEdge",

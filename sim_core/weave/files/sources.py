@@ -161,7 +161,7 @@ def source_of_wif(wif: Wif, path: Path) -> Source:
 
 
 def _from_json(path: Path) -> tuple[Weave, str]:
-    from sim_core.reading import read_json
+    from sim_core.validation.files import read_json
 
     values = read_json(path, "a weave written as JSON")
     if not isinstance(values, dict):

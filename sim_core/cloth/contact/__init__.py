@@ -1,0 +1,67 @@
+"""What a cloth meets: solids and their distances, itself, and what holds it."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from sim_core.cloth.contact.collisions import collide_samples, collide_vertices
+from sim_core.cloth.contact.constraints import Holds
+from sim_core.cloth.contact.distance import distances
+from sim_core.cloth.contact.pairs import edge_edge_pairs, finder_of, hash_points, pairs_of, vertex_face_pairs
+from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
+from sim_core.cloth.contact.solid_meshes import solid_mesh
+from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
+from sim_core.cloth.contact.untangling import crossings_of, faces_at_edges, no_crossings, untangle
+
+if TYPE_CHECKING:
+    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_mesh, united
+    from sim_core.cloth.contact.moving_grid import MovingGrid, moving_mesh
+
+__all__ = [
+    "Box",
+    "Capsule",
+    "Cylinder",
+    "DistanceField",
+    "GridSdf",
+    "HalfSpace",
+    "Holds",
+    "LEVER",
+    "MovingGrid",
+    "Shell",
+    "Solid",
+    "Union",
+    "collide_samples",
+    "collide_vertices",
+    "crossings_of",
+    "distances",
+    "edge_edge_pairs",
+    "faces_at_edges",
+    "field_of",
+    "finder_of",
+    "hash_points",
+    "hull_mesh",
+    "moving_mesh",
+    "no_crossings",
+    "pairs_of",
+    "solid_mesh",
+    "repel",
+    "united",
+    "untangle",
+    "vertex_face_pairs",
+]
+
+_LATE = {
+    "DistanceField": "distance_field",
+    "MovingGrid": "moving_grid",
+    "field_of": "distance_field",
+    "hull_mesh": "distance_field",
+    "moving_mesh": "moving_grid",
+    "united": "distance_field",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _LATE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_LATE[name]}"), name)

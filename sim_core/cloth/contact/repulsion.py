@@ -1,0 +1,112 @@
+"""Self-contact by velocity impulses on near vertex-triangle and edge-edge pairs.
+
+A position push pumps energy into stacked folds; a velocity impulse of spring / dt per depth with damping of
+the approach does not. The sign of a pair is its present side, so pairs must never pass through each other:
+below a quarter of the shell the whole approaching velocity is taken away.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from numba import njit
+
+from sim_core.cloth.contact.pairs import (
+    edge_edge_pairs,
+    segment_parameters,
+    triangle_weights,
+    vertex_face_pairs,
+)
+
+LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
+
+
+class Shell(NamedTuple):
+    """Settings of self-contact; thickness 0 switches it off."""
+
+    thickness: float  # [m] distance two layers keep
+    skin: float  # [m] candidates reach this much further
+    spring: float  # impulse per depth, in units of mass / dt
+    friction: float
+    every: int  # substeps between two impulses
+    separation: float  # share of the separating speed that is taken, as far as the spring pushes
+
+
+@njit(cache=True, error_model="numpy")
+def _impulse(x, v, inverse_mass, index, weight, shell, dt):
+    """One contact between four vertices whose weights (signed, sum 0) span the separation."""
+    dx = dy = dz = vx = vy = vz = 0.0
+    total = most = 0.0
+    for k in range(4):
+        i, w = index[k], weight[k]
+        dx, dy, dz = dx + w * x[i, 0], dy + w * x[i, 1], dz + w * x[i, 2]
+        vx, vy, vz = vx + w * v[i, 0], vy + w * v[i, 1], vz + w * v[i, 2]
+        total += w * w * inverse_mass[i]
+        most = max(most, abs(w) * inverse_mass[i])
+    total = max(total, most / LEVER)
+    gap = math.sqrt(dx * dx + dy * dy + dz * dz)
+    if gap >= shell.thickness or gap < 1e-9 or total == 0.0:
+        return
+    nx, ny, nz = dx / gap, dy / gap, dz / gap
+    vn = vx * nx + vy * ny + vz * nz
+    depth = 1.0 - gap / shell.thickness
+    gain = shell.spring * (1.0 + 8.0 * depth * depth) * depth * shell.thickness / dt
+    if vn < 0.0:
+        gain += (1.0 if depth > 0.75 else 0.3) * -vn
+    else:
+        gain = max(gain - shell.separation * vn, 0.0)
+    tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+    slide = math.sqrt(tx * tx + ty * ty + tz * tz)
+    lost = 0.0
+    if slide > 0.0:
+        lost = min(0.5, shell.friction * gain / slide)
+    for k in range(4):
+        share = weight[k] * inverse_mass[index[k]] / total
+        v[index[k], 0] += share * (gain * nx - lost * tx)
+        v[index[k], 1] += share * (gain * ny - lost * ty)
+        v[index[k], 2] += share * (gain * nz - lost * tz)
+
+
+@njit(cache=True, error_model="numpy")
+def repel(x, v, inverse_mass, faces, edges, points, crossings, counts, shell, dt):
+    """Impulses for counts[0] vertex-face pairs `points` and counts[1] edge-edge pairs, in their fixed order."""
+    reach2 = shell.thickness * shell.thickness
+    for k in range(counts[0]):
+        i, f = points[k]
+        a, b, c = faces[f]
+        wa, wb, wc = triangle_weights(x[i], x[a], x[b], x[c])
+        dx = x[i, 0] - wa * x[a, 0] - wb * x[b, 0] - wc * x[c, 0]
+        dy = x[i, 1] - wa * x[a, 1] - wb * x[b, 1] - wc * x[c, 1]
+        dz = x[i, 2] - wa * x[a, 2] - wb * x[b, 2] - wc * x[c, 2]
+        if dx * dx + dy * dy + dz * dz < reach2:
+            _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
+    for k in range(counts[1]):
+        a, b = edges[crossings[k, 0]]
+        c, d = edges[crossings[k, 1]]
+        s, t = segment_parameters(x[a], x[b], x[c], x[d])
+        # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
+        if s <= 0.0 or s >= 1.0 or t <= 0.0 or t >= 1.0:
+            continue
+        dx = x[a, 0] + s * (x[b, 0] - x[a, 0]) - x[c, 0] - t * (x[d, 0] - x[c, 0])
+        dy = x[a, 1] + s * (x[b, 1] - x[a, 1]) - x[c, 1] - t * (x[d, 1] - x[c, 1])
+        dz = x[a, 2] + s * (x[b, 2] - x[a, 2]) - x[c, 2] - t * (x[d, 2] - x[c, 2])
+        if dx * dx + dy * dy + dz * dz < reach2:
+            _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
+
+
+@njit(cache=True, error_model="numpy")
+def candidate_pairs(x, rest, faces, edges, length2, same, shell, finder, points, crossings):
+    """Vertex-face and edge-edge candidates within thickness + skin; same (V,): vertices to be sewn share a number.
+
+    Both lists (K, 2) are written over; returns them, longer ones where they were full, and how many are in each.
+    """
+    reach = shell.thickness + shell.skin
+    side = 0.0
+    for e in range(len(edges)):
+        side += math.sqrt(length2[e])
+    # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
+    near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
+    points, first = vertex_face_pairs(x, rest, faces, same, reach, near, finder, points)
+    crossings, second = edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, crossings)
+    return points, crossings, (first, second)

@@ -1,0 +1,296 @@
+"""Takes a cloth out of itself: the lines along which it passes through itself are shortened until there are none.
+
+Repulsion keeps layers on the sides they are on, and where a fold is pressed between solids one may slip through; from
+then on repulsion would hold it there. After Volino & Magnenat-Thalmann (2006), derived anew: the end Q of a piece of
+such a line, where an edge along E passes through a face with normal N, moves by
+
+    dQ = de + E (N . (df - de)) / (N . E)
+
+when edge and face move by de and df there. The pieces start from Q along R (unit, one for each face at the edge), so
+that the line's length changes by -sum(R) . dQ, and is shortened fastest by moving edge against face along
+
+    G = sum(R) - 2 (sum(R) . E) / (N . E) N.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+
+from sim_core.cloth.contact.constraints import Holds, bound, mirror
+from sim_core.cloth.contact.pairs import Finder, hash_points
+
+SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
+NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met on the way
+PATIENCE = 8  # steps without fewer crossings after which it is left to the next frame
+
+
+Lists = tuple[np.ndarray, np.ndarray]
+
+
+def no_crossings() -> Lists:
+    """Lists for some crossings: pairs (K, 2) int32 and places (K, 4)."""
+    return np.zeros((64, 2), np.int32), np.zeros((64, 4))
+
+
+def faces_at_edges(edges: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """The third vertices (E, 2) int32 of the faces (F, 3) at each edge (E, 2); -1 where there is but one face."""
+    count = int(faces.max()) + 1
+    key = np.sort(edges, axis=1).astype(np.int64) @ [count, 1]
+    order = np.argsort(key)
+    third = np.full((len(edges), 2), -1, np.int32)
+    for corner in range(3):
+        a, b, c = (faces[:, (corner + k) % 3].astype(np.int64) for k in range(3))
+        edge = order[np.searchsorted(key[order], np.minimum(a, b) * count + np.maximum(a, b))]
+        free = third[edge, 0] < 0
+        third[edge[free], 0] = c[free]
+        third[edge[~free], 1] = c[~free]
+    return third
+
+
+@njit(cache=True, error_model="numpy")
+def _reach(x, edges, faces):
+    """Half the longest edge, and the largest distance of a face's corner from its centre [m]."""
+    half = wide = 0.0
+    for e in range(len(edges)):
+        i, j = edges[e]
+        half = max(half, (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2)
+    for f in range(len(faces)):
+        a, b, c = faces[f]
+        for k in (a, b, c):
+            gap = 0.0
+            for axis in range(3):
+                gap += (x[k, axis] - (x[a, axis] + x[b, axis] + x[c, axis]) / 3.0) ** 2
+            wide = max(wide, gap)
+    return 0.5 * math.sqrt(half), math.sqrt(wide)
+
+
+@njit(cache=True, error_model="numpy")
+def _through(x, p, q, a, b, c):
+    """Where the segment p q passes through the face a b c: share of the way along it (-1: nowhere), weights of b, c."""
+    ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
+    wx, wy, wz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
+    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+    dp = (x[p, 0] - x[a, 0]) * nx + (x[p, 1] - x[a, 1]) * ny + (x[p, 2] - x[a, 2]) * nz
+    dq = (x[q, 0] - x[a, 0]) * nx + (x[q, 1] - x[a, 1]) * ny + (x[q, 2] - x[a, 2]) * nz
+    if dp * dq >= 0.0:
+        return -1.0, 0.0, 0.0
+    t = dp / (dp - dq)
+    mx = x[p, 0] + t * (x[q, 0] - x[p, 0]) - x[a, 0]
+    my = x[p, 1] + t * (x[q, 1] - x[p, 1]) - x[a, 1]
+    mz = x[p, 2] + t * (x[q, 2] - x[p, 2]) - x[a, 2]
+    size = nx * nx + ny * ny + nz * nz
+    v = ((my * wz - mz * wy) * nx + (mz * wx - mx * wz) * ny + (mx * wy - my * wx) * nz) / size
+    w = ((uy * mz - uz * my) * nx + (uz * mx - ux * mz) * ny + (ux * my - uy * mx) * nz) / size
+    if v < 0.0 or w < 0.0 or v + w > 1.0:
+        return -1.0, 0.0, 0.0
+    return t, v, w
+
+
+@njit(cache=True, error_model="numpy")
+def crossings_of(x, edges, faces, same, finder, pairs, place):
+    """Finds the pairs of an edge and a face that pass through each other and share no vertex; x (V, 3) [m].
+
+    same (V,): vertices with equal numbers count as one. Written over: pairs (K, 2) int32 and where, place (K, 4), the
+    share of the way along the edge and the weights of the face's corners. Returns both, longer where they were full,
+    and how many there are.
+    """
+    half, wide = _reach(x, edges, faces)
+    reach, middle = half + wide, finder.by_cell
+    balls = finder.balls[: len(edges)]
+    for e in range(len(edges)):
+        i, j = edges[e]
+        length2 = 0.0
+        for axis in range(3):
+            balls[e, axis] = 0.5 * (x[i, axis] + x[j, axis])
+            length2 += (x[i, axis] - x[j, axis]) ** 2
+        balls[e, 3] = 0.5 * math.sqrt(length2)
+    dims, low, cell = hash_points(balls, reach, finder)
+    order, start = finder.order, finder.start
+    for s in range(len(edges)):
+        for c in range(4):
+            middle[s, c] = balls[order[s], c]
+    count = 0
+    for f in range(len(faces)):
+        a, b, c = faces[f]
+        px = (x[a, 0] + x[b, 0] + x[c, 0]) / 3.0
+        py = (x[a, 1] + x[b, 1] + x[c, 1]) / 3.0
+        pz = (x[a, 2] + x[b, 2] + x[c, 2]) / 3.0
+        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
+        for cx in range(max(ax - 1, 0), min(ax + 2, dims[0])):
+            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
+                row = (cx * dims[1] + cy) * dims[2]
+                for s in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
+                    span = wide + middle[s, 3]
+                    mx, my, mz = middle[s, 0] - px, middle[s, 1] - py, middle[s, 2] - pz
+                    if mx * mx + my * my + mz * mz > span * span:
+                        continue
+                    e = order[s]
+                    i, j = edges[e]
+                    si, sj, sa, sb, sc = same[i], same[j], same[a], same[b], same[c]
+                    if si == sa or si == sb or si == sc or sj == sa or sj == sb or sj == sc:
+                        continue
+                    t, v, w = _through(x, i, j, a, b, c)
+                    if t < 0.0:
+                        continue
+                    if count == len(pairs):
+                        pairs, place = np.concatenate((pairs, pairs)), np.concatenate((place, place))
+                    pairs[count, 0], pairs[count, 1] = e, f
+                    place[count, 0], place[count, 1], place[count, 2], place[count, 3] = t, 1.0 - v - w, v, w
+                    count += 1
+    return pairs, place, count
+
+
+@njit(cache=True, error_model="numpy")
+def near_crossings(x, shapes, crossed, reach):
+    """Which of the edges or faces (N, 2 or 3) begin within `reach` [m] of an edge that is crossed, (K, 2); N bools."""
+    near = np.zeros(len(shapes), np.bool_)
+    for n in range(len(shapes)):
+        i = shapes[n, 0]
+        for k in range(len(crossed)):
+            j = crossed[k, 0]
+            gap2 = (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2
+            if gap2 < reach * reach:
+                near[n] = True
+                break
+    return near
+
+
+@njit(cache=True, error_model="numpy")
+def _cross(a, b):
+    return np.array((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+
+
+@njit(cache=True, error_model="numpy")
+def _shortening(x, i, j, third, a, b, c):
+    """G (3,) for the edge i j, whose faces' third vertices are given, through the face a b c."""
+    along = x[j] - x[i]
+    along /= math.sqrt((along**2).sum()) + 1e-30
+    normal = _cross(x[b] - x[a], x[c] - x[a])
+    normal /= math.sqrt((normal**2).sum()) + 1e-30
+    into = np.zeros(3)
+    for k in range(2):
+        if third[k] < 0:
+            continue
+        side = x[third[k]] - x[i]
+        line = _cross(normal, _cross(along, side))
+        size = math.sqrt((line**2).sum())
+        if size < 1e-12:
+            continue
+        inward = side - (side * along).sum() * along
+        into += line * (math.copysign(1.0, (line * inward).sum()) / size)
+    slope = (normal * along).sum()
+    slope = math.copysign(max(abs(slope), 0.1), slope)
+    return into - 2.0 * (into * along).sum() / slope * normal
+
+
+@njit(cache=True, error_model="numpy")
+def _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step):
+    """One step of at most `step` [m] of every edge against its face; the sums are taken where all stood before."""
+    move, weight = np.zeros_like(x), np.zeros(len(x))
+    for k in range(count):
+        i, j = edges[pairs[k, 0]]
+        a, b, c = faces[pairs[k, 1]]
+        way = _shortening(x, i, j, third[pairs[k, 0]], a, b, c)
+        size = math.sqrt((way**2).sum())
+        way *= step / math.sqrt(size * size + SHY * SHY)
+        index = (i, j, a, b, c)
+        share = (1.0 - place[k, 0], place[k, 0], -place[k, 1], -place[k, 2], -place[k, 3])
+        total = 0.0
+        for n in range(5):
+            total += share[n] * share[n] * inverse_mass[index[n]]
+        if total == 0.0:
+            continue
+        for n in range(5):
+            part = share[n] * inverse_mass[index[n]] / total
+            for axis in range(3):
+                move[index[n], axis] += part * way[axis]
+            weight[index[n]] += 1.0
+    for i in range(len(x)):
+        if weight[i] > 0.0:
+            # Pairs along one line ask for the same way: taken once, not as often as there are pairs.
+            gain = 1.0 / math.sqrt(weight[i])
+            for axis in range(3):
+                x[i, axis] += gain * move[i, axis]
+
+
+def _stop_going_back(way: np.ndarray, v: np.ndarray) -> None:
+    """Takes from v (V, 3) what goes against the way (V, 3) that a vertex was moved."""
+    size = np.sqrt((way * way).sum(1))
+    moved = size > 0.0
+    along = way[moved] / size[moved, None]
+    v[moved] -= np.minimum((along * v[moved]).sum(1), 0.0)[:, None] * along
+
+
+def _together_with(left: np.ndarray, pairs: np.ndarray, edges: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    """Which vertices (V,) hang together with those of crossings that are left (L, 5).
+
+    What hangs together are moved vertices (V,) at one edge (E, 2) and the five of each crossing (K, 5), then and now.
+    """
+    both = edges[moved[edges].all(1)]
+    first = np.concatenate([both[:, 0], np.repeat(pairs[:, 0], 4)])
+    second = np.concatenate([both[:, 1], pairs[:, 1:].ravel()])
+    graph = sparse.coo_array((np.ones(len(first)), (first, second)), (len(moved), len(moved)))
+    tangle = connected_components(graph, directed=False)[1]
+    return np.isin(tangle, tangle[left.ravel()])
+
+
+def untangle(
+    x: np.ndarray,
+    v: np.ndarray,
+    inverse_mass: np.ndarray,
+    edges: np.ndarray,
+    faces: np.ndarray,
+    third: np.ndarray,
+    holds: Holds,
+    finder: Finder,
+    lists: Lists,
+    *,
+    step: float,
+    rounds: int,
+    partly: bool = False,
+) -> tuple[int, int, Lists]:
+    """Moves x (V, 3) [m] in place until no edge passes through a face, `rounds` times at most by `step` [m].
+
+    Tangles stand for themselves: one that does not come free is not moved, for what springs back frame by frame would
+    never come to rest. partly: fewer crossings are taken, too.
+    v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`; finder, lists: working memory. Returns
+    how many crossings there were before, and are now, and the lists, longer ones where they were full.
+    """
+    pairs, place, count = crossings_of(x, edges, faces, holds.same, finder, *lists)
+    first = least = count
+    if not first:
+        return 0, 0, (pairs, place)
+    start, best, late = x.copy(), x.copy(), 0
+    reach = NEAR * float(np.sqrt(((x[edges[:, 0]] - x[edges[:, 1]]) ** 2).sum(1).max()))
+    whole, tangled = (edges, faces), pairs[:count].copy()
+    near_edges, near_faces = (
+        near_crossings(x, shape, edges[pairs[:count, 0]], reach) for shape in (edges, faces)
+    )
+    edges, third, faces = edges[near_edges], third[near_edges], faces[near_faces]
+    for _ in range(rounds):
+        pairs, place, count = crossings_of(x, edges, faces, holds.same, finder, pairs, place)
+        if count < least:
+            best[:], least, late = x, count, 0
+        if not count or late > PATIENCE:
+            break
+        late += 1
+        _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step)
+        bound(holds, x, v)
+        mirror(holds, x, v)
+    x[:] = best
+    if least and not partly:
+        pairs, place, count = crossings_of(best, edges, faces, holds.same, finder, pairs, place)
+        left = np.concatenate([edges[pairs[:count, 0]], faces[pairs[:count, 1]]], axis=1)
+        first_pairs = np.concatenate([whole[0][tangled[:, 0]], whole[1][tangled[:, 1]]], axis=1)
+        back = _together_with(left, np.concatenate([first_pairs, left]), edges, (x != start).any(1))
+        x[back] = start[back]
+        pairs, place, least = crossings_of(x, *whole, holds.same, finder, pairs, place)
+        if least >= first:
+            x[:], least = start, first
+    _stop_going_back(x - start, v)
+    return first, least, (pairs, place)

@@ -1,0 +1,51 @@
+"""The published scenes, the choice of mesh and setting for a wanted error, and what comes of a run."""
+
+from sim_core.cloth.scenes.catalogue import (
+    GF_CM,
+    NAMES,
+    PINS,
+    Scene,
+    bar,
+    cases,
+    drape_coefficient,
+    hang_edge,
+    material,
+    scene,
+)
+from sim_core.cloth.scenes.fidelity import FILE, Asked, Choice, bounds, choose, law_terms, table
+from sim_core.cloth.scenes.limb import limb_mesh
+from sim_core.cloth.scenes.pilots import GRID, PILOTS, apart, gap, grid_film, pilot
+from sim_core.cloth.scenes.regular_sheets import disc, equilateral_sheet, sheet_of
+from sim_core.cloth.scenes.teapot import teapot_mesh, teapot_solid
+
+__all__ = [
+    "Asked",
+    "Choice",
+    "FILE",
+    "GF_CM",
+    "GRID",
+    "NAMES",
+    "PILOTS",
+    "PINS",
+    "Scene",
+    "apart",
+    "bar",
+    "bounds",
+    "cases",
+    "choose",
+    "disc",
+    "drape_coefficient",
+    "equilateral_sheet",
+    "gap",
+    "grid_film",
+    "hang_edge",
+    "law_terms",
+    "limb_mesh",
+    "material",
+    "pilot",
+    "scene",
+    "sheet_of",
+    "table",
+    "teapot_mesh",
+    "teapot_solid",
+]

@@ -1,0 +1,252 @@
+"""Flat panels turned into the stencils of the explicit solver: edge tensions and quadratic bending.
+
+Everything is computed from the pattern coordinates of each face's corners, not of vertices: panels that are welded
+along a seam keep their own coordinates there, and what welding changes is an index list.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from sim_core.cloth.sheet.bending import bending_matrix
+from sim_core.cloth.sheet.material import Material
+from sim_core.errors import SimCoreError
+from sim_core.validation import coordinates, numeric, of_kind, told, triangles, vertex_numbers
+
+SHORTEST = 1e-7  # [m], of a face's longest side
+
+
+class Stencil(NamedTuple):
+    """The arrays the compiled loops read. V vertices, E edges, N neighbour entries."""
+
+    inverse_mass: np.ndarray  # (V,) [1/kg], 0 where pinned
+    edges: np.ndarray  # (E, 2) int32
+    length2: np.ndarray  # (E,) squared rest length [m2]
+    own: np.ndarray  # (E,) coefficient of the edge itself [N/m3]
+    around: np.ndarray  # (E, 4) int32, the other edges of its triangles (itself where there is none)
+    coupling: np.ndarray  # (E, 4) their coefficients (0 where there is none)
+    rows: np.ndarray  # (V + 1,) int32 into the neighbour entries
+    neighbour: np.ndarray  # (N,) int32
+    edge_of: np.ndarray  # (N,) int32, -1: neighbour by bending only
+    bend: np.ndarray  # (N,) off-diagonal entries of the bending matrix Q [N/m]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Cloth ready to be simulated: rest (V, 2) [m], faces (F, 3), edges (E, 2), mass (V,) [kg], stencil.
+
+    corner: (F, 3, 2) [m] the faces in their panels; material: the one whose damping and friction hold for all.
+    """
+
+    rest: np.ndarray
+    faces: np.ndarray
+    edges: np.ndarray
+    face_edges: np.ndarray
+    mass: np.ndarray
+    material: Material
+    stencil: Stencil
+    corner: np.ndarray
+
+    @staticmethod
+    def of(rest: np.ndarray, faces: np.ndarray, material: Material) -> Sheet:
+        """Assembles a sheet; rest: (V, 2) float [m], faces: (F, 3) int of either orientation.
+
+        Raises SimCoreError on wrong shapes, non-finite coordinates, indices out of range, needles,
+        unused vertices, faces that are there twice and edges with more than two faces.
+        """
+        rest, faces = _checked_indices(rest, faces)
+        _check_twice(faces)
+        corner = rest[faces]
+        return Sheet._assembled(rest, corner, faces, (material,), np.zeros(len(faces), np.int32))
+
+    @staticmethod
+    def of_corners(
+        corner: np.ndarray, faces: np.ndarray, materials: Sequence[Material], kind: np.ndarray
+    ) -> Sheet:
+        """Assembles panels that share vertices along welded seams.
+
+        corner: (F, 3, 2) float [m], pattern coordinates of each face's corners; faces: (F, 3) int into the welded
+        vertices; kind: (F,) which of `materials` each face is made of. Sides that two panels bring together should
+        be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
+        coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
+        """
+        faces, kind = triangles("faces", faces), numeric("kind", kind, "expected whole numbers (F,)")
+        corner = coordinates("corner", corner)
+        if corner.shape != (*faces.shape, 2) or kind.shape != (len(faces),):
+            raise SimCoreError(
+                f"corner: {corner.shape}, faces: {faces.shape}, kind: {kind.shape} – expected (F, 3, 2), (F, 3), (F,)"
+            )
+        if not isinstance(materials, list | tuple) or not materials:
+            raise SimCoreError(f"materials: {told(materials)} – give a list of Material, at least one")
+        if faces.max() >= faces.size:
+            raise SimCoreError(
+                f"faces: index {faces.max()} – {len(faces)} faces have no more than {faces.size} vertices"
+            )
+        if not np.issubdtype(kind.dtype, np.integer) or kind.min() < 0 or kind.max() >= len(materials):
+            raise SimCoreError(
+                f"kind: {kind.min()} to {kind.max()} – there are materials 0 to {len(materials) - 1}"
+            )
+        count = int(faces.max()) + 1
+        rest = np.full((count, 2), np.nan)
+        rest[faces.ravel()[::-1]] = corner.reshape(-1, 2)[::-1]
+        used = ~np.isnan(rest[:, 0])
+        if not used.all():
+            raise SimCoreError(f"faces: vertex {np.flatnonzero(~used)[0]} belongs to no face – remove it")
+        rest, faces = _checked_indices(rest, faces)
+        return Sheet._assembled(rest, corner, faces, tuple(materials), np.asarray(kind, np.int32))
+
+    @staticmethod
+    def _assembled(
+        rest: np.ndarray,
+        corner: np.ndarray,
+        faces: np.ndarray,
+        materials: tuple[Material, ...],
+        kind: np.ndarray,
+    ) -> Sheet:
+        for material in materials:
+            of_kind("material", material, Material, "a Material is meant")
+        _check_needles(corner)
+        edges, face_edges = face_edge_table(faces)
+        area = _areas(corner)
+        mass, stiffness = np.zeros(len(rest)), np.zeros((len(faces), 3, 3))
+        for number, material in enumerate(materials):
+            own = np.flatnonzero(kind == number)
+            share = np.bincount(faces[own].ravel(), np.repeat(area[own] / 3, 3), len(rest))
+            mass += share * material.density
+            stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
+        own, around, coupling = _membrane(stiffness, face_edges, len(edges))
+        bend = np.array([material.bending() for material in materials])[kind]
+        bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
+        rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
+        length2 = _edge_lengths2(corner, face_edges, len(edges))
+        stencil = Stencil(1 / mass, edges, length2, own, around, coupling, rows, neighbour, edge_of, bend)
+        return Sheet(rest, faces, edges, face_edges, mass, materials[0], stencil, corner)
+
+    def pinned(self, pins: np.ndarray) -> Stencil:
+        """The stencil with the vertices `pins` (K,) held in place."""
+        pins = np.array(vertex_numbers("pins", pins, len(self.mass)), np.int64)
+        inverse = self.stencil.inverse_mass.copy()
+        inverse[pins] = 0.0
+        return self.stencil._replace(inverse_mass=inverse)
+
+
+def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unique edges (E, 2) int32 and, per face, the edge opposite each corner (F, 3) int32."""
+    pairs = np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1).reshape(-1, 2)
+    edges, index = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
+    return edges.astype(np.int32), index.reshape(-1, 3).astype(np.int32)
+
+
+def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    rest = coordinates("rest", rest)
+    if rest.ndim != 2 or rest.shape[1] != 2:
+        raise SimCoreError(f"rest: shape {rest.shape} – expected (V, 2), metres in the pattern plane")
+    faces = triangles("faces", faces, len(rest))
+    unused = np.setdiff1d(np.arange(len(rest)), faces)
+    if len(unused):
+        raise SimCoreError(f"rest: vertex {unused[0]} belongs to no face – remove it")
+    return rest, faces.astype(np.int32)
+
+
+def _check_twice(faces: np.ndarray) -> None:
+    _, first, times = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+    if times.max() > 1:
+        twice = first[times > 1].min()
+        raise SimCoreError(f"faces: face {twice} is there again, with the same three vertices – remove one")
+
+
+def _check_needles(corner: np.ndarray) -> None:
+    sides = corner - np.roll(corner, 1, axis=1)
+    longest = (sides**2).sum(2).max(1)
+    small = np.flatnonzero(longest < SHORTEST**2)
+    if len(small):
+        raise SimCoreError(f"faces: face {small[0]} is smaller than {SHORTEST:g} m – lengths are metres")
+    thin = np.flatnonzero(_areas(corner) < 1e-3 * longest)
+    if len(thin):
+        raise SimCoreError(f"faces: face {thin[0]} is a needle or has no area – re-mesh the panel")
+
+
+def _areas(corner: np.ndarray) -> np.ndarray:
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _edge_lengths2(corner: np.ndarray, face_edges: np.ndarray, count: int) -> np.ndarray:
+    """Squared rest length (E,) [m2]; where two panels meet, of the mean of both their lengths."""
+    side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+    length2 = (side**2).sum(2).ravel()
+    edge = face_edges.ravel()
+    low, high = np.full(count, np.inf), np.zeros(count)
+    np.minimum.at(low, edge, length2)
+    np.maximum.at(high, edge, length2)
+    return np.where(low == high, low, (0.5 * (np.sqrt(low) + np.sqrt(high))) ** 2)
+
+
+def _stiffness(corner: np.ndarray, area: np.ndarray, elastic: np.ndarray) -> np.ndarray:
+    """K (F, 3, 3) of W = eps.K.eps / 2: eps = l^2 - L^2 = R g fixes the Green strain g, so K = A R^-T D R^-1."""
+    side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # side a lies opposite corner a
+    x, y = side[..., 0], side[..., 1]
+    inverse = np.linalg.inv(2 * np.stack([x * x, y * y, 2 * x * y], axis=-1))
+    return area[:, None, None] * np.einsum("fba,bc,fcd->fad", inverse, elastic, inverse)
+
+
+def _membrane(
+    stiffness: np.ndarray, face_edges: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Five coefficients per edge: its own, and those of the other edges of its faces."""
+    own = np.bincount(face_edges.ravel(), stiffness[:, range(3), range(3)].ravel(), count)
+    around = np.repeat(np.arange(count, dtype=np.int32)[:, None], 4, axis=1)
+    coupling = np.zeros((count, 4))
+    filled = np.zeros(count, int)
+    for corner_index in range(3):
+        edge = face_edges[:, corner_index]
+        for step in (1, 2):
+            other = (corner_index + step) % 3
+            # Two faces never share the same (edge, corner) slot in one pass unless their edge repeats.
+            for part in _without_repeats(edge):
+                slot = filled[edge[part]]
+                if (slot >= 4).any():
+                    raise SimCoreError(
+                        f"faces: edge {edge[part][slot >= 4][0]} has more than two faces – cut it"
+                    )
+                around[edge[part], slot] = face_edges[part, other]
+                coupling[edge[part], slot] = stiffness[part, corner_index, other]
+                filled[edge[part]] += 1
+    return own, around, coupling
+
+
+def _without_repeats(values: np.ndarray) -> list[np.ndarray]:
+    """Index arrays that together cover `values`, none naming the same value twice."""
+    parts, left = [], np.arange(len(values))
+    while len(left):
+        _, first = np.unique(values[left], return_index=True)
+        parts.append(left[first])
+        left = np.delete(left, first)
+    return parts
+
+
+def _neighbours(
+    edges: np.ndarray, bending: sparse.csr_array, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """One list per vertex of all it is coupled to: by an edge, by bending, or both (Q's rows sum to 0)."""
+
+    def keys(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        return first.astype(np.int64) * count + second
+
+    hinge = bending.tocoo()
+    hinge.sum_duplicates()
+    apart = hinge.row != hinge.col
+    by_hinge, values = keys(hinge.row[apart], hinge.col[apart]), hinge.data[apart]
+    by_edge = np.concatenate([keys(edges[:, 0], edges[:, 1]), keys(edges[:, 1], edges[:, 0])])
+    all_keys = np.unique(np.concatenate([by_hinge, by_edge]))
+    edge_of = np.full(len(all_keys), -1, np.int32)
+    edge_of[np.searchsorted(all_keys, by_edge)] = np.tile(np.arange(len(edges), dtype=np.int32), 2)
+    bend = np.zeros(len(all_keys))
+    bend[np.searchsorted(all_keys, by_hinge)] = values
+    rows = np.searchsorted(all_keys, np.arange(count + 1, dtype=np.int64) * count)
+    return rows.astype(np.int32), (all_keys % count).astype(np.int32), edge_of, bend

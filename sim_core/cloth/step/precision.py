@@ -1,0 +1,147 @@
+"""How a run is paced, and the state of one that runs over lanes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.cloth.contact.constraints import Holds
+from sim_core.cloth.contact.packed import Packed
+from sim_core.cloth.contact.pairs import Finder
+from sim_core.cloth.contact.repulsion import Shell
+from sim_core.cloth.sheet.sheet import Sheet
+from sim_core.cloth.step.kernels.bands import Bands
+from sim_core.cloth.step.kernels.diagnostics import lane_mode, stored_lanes
+from sim_core.cloth.step.kernels.lanes import Lanes, lattice_lanes, plain_lanes
+from sim_core.cloth.step.leapfrog import Surroundings, room_of
+from sim_core.cloth.step.leapfrog_lanes import advance_lanes
+from sim_core.cloth.step.stability import LEAST_ROUNDS, MOST_ROUNDS, SETTLED, first_mode
+from sim_core.validation import finite, one_of
+
+PRECISIONS = ("double", "single")
+COURANT = 0.7  # share of the stable step that is taken: the tangent may stiffen within a frame
+MOST_COURANT = 0.95
+SLOW = 2  # substeps between two looks at bending; 3 would resonate with the membrane (see DETAILS.md)
+GUARDED_SLOW = 4  # likewise where a little stiffness damping keeps the resonance down
+GUARD = (
+    6.0  # times the damping at which impulses of bending should feed no mode of the membrane; 3 is too little
+)
+
+HASTY_ROUNDS = 4  # of the power iteration in single precision, which is for previews
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Precision of the time loop and the share of the stable step that is taken; beyond 0.7 bending is damped a little.
+
+    Raises SimCoreError for another precision and for a share not within 0.01 to 0.95.
+    """
+
+    precision: str = "double"
+    courant: float = COURANT
+
+    def __post_init__(self) -> None:
+        one_of("pace.precision", self.precision, PRECISIONS)
+        finite("pace.courant: share of the stable step", self.courant, least=0.01, most=MOST_COURANT)
+
+    @property
+    def guarded(self) -> bool:
+        """The step is so long that the membrane's fastest modes would resonate with impulses at every second one."""
+        return self.courant > COURANT
+
+    @property
+    def slow(self) -> int:
+        """Substeps between two looks at bending, where it is soft enough."""
+        return GUARDED_SLOW if self.guarded else SLOW
+
+    def guard(self, step: float, bend_omega2: float) -> float:
+        """Stiffness damping [s] at which impulses of bending, of largest frequency² [1/s²], do not feed the membrane.
+
+        An impulse every T feeds a mode whose half period fits into T at the rate bend² / 2 omega, damping takes
+        beta omega² / 2. step [s]: the largest stable one, 2 / omega of the fastest mode, where the need is greatest
+        as bend² goes with the fourth power of the wave number and omega³ with the third.
+        """
+        return GUARD * bend_omega2 * (0.5 * step) ** 3 if self.guarded else 0.0
+
+
+def lanes_for(sheet: Sheet, bands: Bands, precision: str) -> Lanes | None:
+    """The lanes of a sheet in band order; None in double precision where it is no lattice: its bands serve better."""
+    if precision == "single":
+        return lattice_lanes(sheet, bands, np.float32) or plain_lanes(bands, np.float32)
+    return lattice_lanes(sheet, bands)
+
+
+class Laned:
+    """A sheet in band order ready to be moved over its lanes, in their precision."""
+
+    def __init__(self, sheet: Sheet, lanes: Lanes, longest: int, samples: tuple[int, int]) -> None:
+        count, real = len(sheet.mass), lanes.bands.own.dtype.type
+        self.sheet, self.lanes, self.real = sheet, lanes, real
+        self.room = room_of(lanes.edges, count, longest, samples, real)
+        self._state = [np.zeros((3, count), real) for _ in range(3)]
+        self._ones = np.ones(count, real)
+        self._start = 0.2 * first_mode(count)
+        self._inverse: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+
+    def _cast(self, inverse: np.ndarray) -> np.ndarray:
+        """inverse (V,) [1/kg] as the lanes' numbers, made once; the original is kept so that its id stays its own."""
+        if id(inverse) not in self._inverse:
+            self._inverse[id(inverse)] = inverse, inverse.astype(self.real)
+        return self._inverse[id(inverse)][1]
+
+    def advance(
+        self,
+        inverse: np.ndarray,
+        packed: Packed,
+        samples: tuple[np.ndarray, np.ndarray],
+        holds: Holds,
+        shell: Shell,
+        around: Surroundings,
+        finder: Finder,
+        points: np.ndarray,
+        crossings: np.ndarray,
+        x: np.ndarray,
+        v: np.ndarray,
+        last: float,
+        dt: float,
+        count: int,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """`leapfrog.advance`: x, v (3, V) float64 change in place; single counts free cloth from its middle."""
+        here, there, speed = self._state
+        absolute = (
+            self.real is np.float64 or len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
+        )
+        middle = np.zeros((3, 1)) if absolute else x.mean(axis=1, keepdims=True)
+        here[:] = x - middle
+        speed[:] = v
+        s = self.sheet
+        fixed = (self.lanes, self._cast(inverse), s.edges, s.faces, s.rest, s.stencil.length2, packed)
+        touch = (*samples, holds, shell, around, self.room, finder, points, crossings)
+        pairs = advance_lanes(*fixed, *touch, here, speed, there, last, dt, count)
+        v[:] = speed
+        still = inverse == 0.0
+        kept = x[:, still] + v[:, still] * (dt * count)
+        x[:] = here + middle
+        x[:, still] = kept  # what is pinned is exactly where it was, or was led to
+        return pairs
+
+    def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
+        """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""
+        here, there, _ = self._state
+        here[:] = x - x.mean(axis=1, keepdims=True)
+        there[:] = mode if first else mode + self._start
+        usual = LEAST_ROUNDS if self.real is np.float64 else HASTY_ROUNDS
+        rounds = (MOST_ROUNDS if first else usual, MOST_ROUNDS, SETTLED)
+        value = lane_mode(self.lanes, self._cast(inverse), self.room, here, there, *rounds)
+        mode[:] = there
+        return float(value)
+
+    def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
+        """`diagnostics.stored_energy` [J]."""
+        return float(stored_lanes(self.lanes, inverse, self._ones, self.room, x, v))
+
+    def forget(self) -> None:
+        """Clears what a frame that blew up has left."""
+        for part in self.room:
+            part[:] = 0

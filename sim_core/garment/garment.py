@@ -1,0 +1,178 @@
+"""The `Garment` value: flat panels, how they are welded, the drape, weave, material and where all of it came from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim_core.errors import FileProblem, SimCoreError
+from sim_core.validation.files import read_npz, shown
+
+FORMAT = 2
+_ARRAYS: dict[str, tuple[type, int]] = {
+    "pattern": (float, 2),
+    "pattern_faces": (np.int32, 3),
+    "weld": (np.int32, 0),
+    "panel": (np.int32, 0),
+    "positions": (float, 3),
+}
+
+Colour = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Garment:
+    """A draped garment. P pattern vertices, V draped vertices, F faces.
+
+    pattern (P, 2) [m] in pattern axes (x weft, y down the warp), each panel in its own; pattern_faces (F, 3) int32;
+    weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
+    panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
+    meshed from (`Pattern.to_dict`); weave and material as plain dictionaries; provenance: inputs, seed, versions,
+    seconds per stage, measured errors.
+    """
+
+    name: str
+    pattern: np.ndarray
+    pattern_faces: np.ndarray
+    weld: np.ndarray
+    panel: np.ndarray
+    positions: np.ndarray
+    panels: tuple[str, ...] = ("cloth",)
+    dyes: tuple[Colour | None, ...] = (None,)
+    cut: dict[str, Any] = field(default_factory=dict)
+    weave: dict[str, Any] = field(default_factory=dict)
+    material: dict[str, Any] = field(default_factory=dict)
+    provenance: dict[str, Any] = field(default_factory=dict)
+    dye: Colour | None = None
+
+    def __post_init__(self) -> None:
+        for name, (kind, width) in _ARRAYS.items():
+            array, shape = getattr(self, name), f"(n, {width})" if width else "(n,)"
+            if array.ndim != (2 if width else 1) or array.shape[-1] != (width or len(array)):
+                raise SimCoreError(
+                    f"garment.{name}: {array.shape} {array.dtype} – expected {shape} {np.dtype(kind)}"
+                )
+            if array.dtype != np.dtype(kind):
+                raise SimCoreError(
+                    f"garment.{name}: {array.shape} {array.dtype} – expected {shape} {np.dtype(kind)}"
+                )
+            if kind is float and not np.isfinite(array).all():
+                raise SimCoreError(f"garment.{name}: holds numbers that are not finite")
+        if len(self.pattern) != len(self.weld) or len(self.pattern_faces) != len(self.panel):
+            raise SimCoreError(
+                f"garment: {len(self.pattern)} pattern vertices, {len(self.weld)} welds, {len(self.pattern_faces)} "
+                f"faces, {len(self.panel)} panels – must agree"
+            )
+        if len(self.panels) != len(self.dyes):
+            raise SimCoreError(f"garment: {len(self.panels)} panels, {len(self.dyes)} dyes – must agree")
+        for name, count in (
+            ("pattern_faces", len(self.pattern)),
+            ("weld", len(self.positions)),
+            ("panel", len(self.panels)),
+        ):
+            index = getattr(self, name)
+            if index.size and (index.min() < 0 or index.max() >= count):
+                raise SimCoreError(f"garment.{name}: names number {index.max()} of {count}")
+        if self.weld.size and len(np.unique(self.weld)) != len(self.positions):
+            raise SimCoreError(
+                f"garment.weld: not every one of {len(self.positions)} draped vertices is named"
+            )
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Faces (F, 3) int32 of the draped vertices: welded panels share theirs along a seam."""
+        return self.weld[self.pattern_faces]
+
+    def worn(self) -> np.ndarray:
+        """Draped positions (P, 3) [m] of the pattern vertices."""
+        return self.positions[self.weld]
+
+    def rest_corners(self) -> np.ndarray:
+        """Pattern coordinates (F, 3, 2) [m] of every face's corners."""
+        return self.pattern[self.pattern_faces]
+
+    def dye_of(self, panel: int) -> Colour | None:
+        """The dye of a panel: its own, else the garment's."""
+        return self.dyes[panel] or self.dye
+
+    def save(self, path: Path) -> None:
+        """Writes one .npz: the arrays and a JSON header (text) under `header`."""
+        path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        header = {
+            "format": FORMAT,
+            "name": self.name,
+            "dye": self.dye,
+            "panels": self.panels,
+            "dyes": self.dyes,
+            "cut": self.cut,
+            "weave": self.weave,
+            "material": self.material,
+            "provenance": self.provenance,
+        }
+        text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), np.uint8)
+        beside = path.with_name(path.name + ".part")
+        with beside.open("wb") as stream:
+            np.savez_compressed(stream, header=text, **{name: getattr(self, name) for name in _ARRAYS})
+        beside.replace(path)
+
+    @staticmethod
+    def load(path: Path) -> Garment:
+        """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
+        path = Path(path)
+        what, remedy = "a garment file", "bake the garment again"
+        try:
+            header = json.loads(read_npz(path, ("header",), what, remedy)["header"].tobytes().decode())
+        except FileProblem:
+            raise
+        except (ValueError, RecursionError) as error:
+            raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
+        if not isinstance(header, dict) or header.get("format") != FORMAT:
+            raise FileProblem(f"{path}: written in another format – bake the garment again")
+        data = read_npz(path, tuple(_ARRAYS), what, remedy)
+        try:
+            return Garment(
+                name=str(header["name"]),
+                panels=tuple(str(name) for name in header["panels"]),
+                dyes=tuple(_colour(dye) for dye in header["dyes"]),
+                cut=_facts(header, "cut"),
+                weave=_facts(header, "weave"),
+                material=_facts(header, "material"),
+                provenance=_facts(header, "provenance"),
+                dye=_colour(header.get("dye")),
+                **{name: np.ascontiguousarray(data[name]) for name in _ARRAYS},
+            )
+        except (SimCoreError, KeyError, TypeError, ValueError, OverflowError) as error:
+            raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
+
+    def digest(self) -> str:
+        """A hash of the arrays: equal for two bakes that are equal to the bit, whatever time they took."""
+        hashed = hashlib.sha256()
+        for name in _ARRAYS:
+            array = getattr(self, name)
+            hashed.update(f"{name} {array.shape} {array.dtype}".encode() + array.tobytes())
+        return hashed.hexdigest()
+
+    def noted(self, **facts: Any) -> Garment:
+        """The same garment with more provenance."""
+        return replace(self, provenance={**self.provenance, **facts})
+
+
+def _colour(dye: Any) -> Colour | None:
+    if not dye:
+        return None
+    r, g, b = (float(share) for share in dye)
+    if not all(0 <= share <= 1 for share in (r, g, b)):
+        raise ValueError(f"dye {dye}: sRGB goes from 0 to 1")
+    return r, g, b
+
+
+def _facts(header: dict[str, Any], name: str) -> dict[str, Any]:
+    if not isinstance(header[name], dict):
+        raise TypeError(f"{name} is {shown(header[name])}, no table")
+    return header[name]

@@ -1,0 +1,196 @@
+"""Reads the panels and seams of a pattern file: measures in millimetres, curves, errors that name the key."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim_core.errors import OutlineError
+from sim_core.garment.pattern.measures import measured
+from sim_core.garment.pattern.panels import Panel, Path, Seam, check_extent
+from sim_core.mesh.outline import clean_contours
+
+__all__ = ["CutProblem", "PanelTable", "SeamTable", "read_cut", "read_dye"]
+
+Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
+Measure = Number | str
+CURVE_POINTS = 49  # per curved leg
+EASE = 0.02  # sides of a seam may differ by this share
+
+
+class CutProblem(ValueError):  # noqa: N818 - a problem of a file, told with its key
+    """What is wrong under which key of the file."""
+
+    def __init__(self, key: str, text: str) -> None:
+        super().__init__(f"{key}: {text}")
+
+
+class Table(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class PointTable(Table):
+    name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
+    at: tuple[Measure, Measure]
+    curve: tuple[tuple[Measure, Measure], tuple[Measure, Measure]] | None = None
+
+
+class PanelTable(Table):
+    name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
+    outline: list[PointTable] = Field(min_length=3, max_length=200)
+    layer: int = Field(0, ge=0, le=9)
+    doubled: bool = False
+    along: str | None = None
+    dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
+
+
+class SeamTable(Table):
+    joined: tuple[str, str] | None = None
+    sewn: tuple[str, str] | None = None
+    middle: str | None = None
+
+
+def read_dye(text: str | None) -> tuple[float, float, float] | None:
+    """sRGB 0..1 of '#rrggbb'."""
+    if text is None:
+        return None
+    r, g, b = (int(text[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    return r, g, b
+
+
+def read_cut(
+    measures: Mapping[str, Measure], panels: list[PanelTable], seams: list[SeamTable], *, mirrored: bool
+) -> tuple[tuple[Panel, ...], tuple[Seam, ...]]:
+    """Panels and seams in metres. Raises CutProblem naming the key."""
+    known: dict[str, float] = {}
+    for name, value in measures.items():
+        known[name] = _told(f"measures.{name}", lambda value=value: measured(value, known))
+    made: dict[str, Panel] = {}
+    for table in panels:
+        if table.name in made:
+            raise CutProblem(f"panel.{table.name}", "is there twice – give each panel a name of its own")
+        made[table.name] = _panel(table, known, made)
+    stitched = tuple(_seam(k, table, made, mirrored) for k, table in enumerate(seams))
+    _check_once(stitched, made)
+    return tuple(made.values()), stitched
+
+
+def _told(key: str, do: Callable[[], Any]) -> Any:
+    try:
+        return do()
+    except CutProblem:
+        raise
+    except ValueError as error:
+        raise CutProblem(key, str(error)) from error
+
+
+def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Panel]) -> Panel:
+    key = f"panel.{table.name}"
+
+    def along(text: str) -> float:
+        path = Path.read(text)
+        return 1000 * path.length(_of(path, made))
+
+    def place(point: PointTable, pair: tuple[Measure, Measure], what: str) -> np.ndarray:
+        where = f"{key}.outline.{point.name}.{what}"
+        return np.array([_told(where, lambda v=v: measured(v, known, along)) for v in pair]) / 1000
+
+    names = tuple(point.name for point in table.outline)
+    for name in names:
+        if names.count(name) > 1:
+            raise CutProblem(f"{key}.outline", f"corner {name!r} is there twice – name each corner once")
+    at = [place(point, point.at, "at") for point in table.outline]
+    legs = []
+    for k in range(len(at)):
+        following = table.outline[(k + 1) % len(at)]
+        controls = [place(following, pair, "curve") for pair in following.curve or ()]
+        legs.append(_leg(at[k], controls, at[(k + 1) % len(at)]))
+    panel = Panel(
+        table.name,
+        names,
+        tuple(legs),
+        table.layer,
+        table.doubled,
+        None
+        if table.along is None
+        else _told(f"{key}.along", lambda: _known(Path.read(table.along or ""), made)),
+        read_dye(table.dye),
+    )
+    try:
+        check_extent(panel.outline())
+        clean_contours(panel.outline(), ())
+    except OutlineError as error:
+        raise CutProblem(f"{key}.outline", str(error)) from error
+    return panel
+
+
+def _leg(start: np.ndarray, controls: list[np.ndarray], end: np.ndarray) -> np.ndarray:
+    """A straight leg, or a cubic Bezier curve in fine steps."""
+    if not controls:
+        return np.stack([start, end])
+    t = np.linspace(0, 1, CURVE_POINTS)[:, None]
+    first, second = controls
+    return (1 - t) ** 3 * start + 3 * (1 - t) ** 2 * t * first + 3 * (1 - t) * t**2 * second + t**3 * end
+
+
+def _of(path: Path, made: Mapping[str, Panel]) -> Panel:
+    """The path's panel; ValueError where panel or corners are not known."""
+    if path.panel not in made:
+        raise ValueError(f"{path.panel!r} is no panel above it – panels: {', '.join(made) or 'none'}")
+    panel = made[path.panel]
+    for corner in (path.start, path.end):
+        if corner not in panel.corners:
+            raise ValueError(
+                f"{corner!r} is no corner of {panel.name!r} – its corners: {', '.join(panel.corners)}"
+            )
+    if path.start == path.end:
+        raise ValueError(f"{str(path)!r} has no length – name two corners")
+    return panel
+
+
+def _known(path: Path, made: Mapping[str, Panel]) -> Path:
+    _of(path, made)
+    return path
+
+
+def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bool) -> Seam:
+    key = f"seam.{number + 1}"
+    given = [(kind, value) for kind, value in table.model_dump().items() if value is not None]
+    if len(given) != 1:
+        raise CutProblem(key, "give one of joined = [a, b], sewn = [a, b] or middle = a")
+    kind, value = given[0]
+    texts = [value] if kind == "middle" else list(value)
+    paths = [_told(f"{key}.{kind}", lambda text=text: _known(Path.read(text), made)) for text in texts]
+    if kind == "middle":
+        if not mirrored:
+            raise CutProblem(f"{key}.middle", "only a pattern with mirror = true has a middle")
+        off = max(float(np.abs(leg[:, 0]).max()) for leg in paths[0].legs(made[paths[0].panel]))
+        if off > 1e-6 and made[paths[0].panel].along is None:
+            raise CutProblem(
+                f"{key}.middle", f"{texts[0]!r} leaves x = 0 by {1000 * off:.1f} mm – lay it there"
+            )
+        return Seam("middle", paths[0])
+    lengths = [path.length(made[path.panel]) for path in paths]
+    if abs(lengths[0] - lengths[1]) > EASE * max(lengths):
+        both = " and ".join(f"{1000 * length:.1f}" for length in lengths)
+        raise CutProblem(f"{key}.{kind}", f"sides of {both} mm – make them equal within {EASE:.0%}")
+    counts = [len(path.legs(made[path.panel])) for path in paths]
+    if counts[0] != counts[1] and 1 not in counts:
+        raise CutProblem(
+            f"{key}.{kind}", f"{counts[0]} legs meet {counts[1]} – as many on both sides, or one"
+        )
+    return Seam(kind, paths[0], paths[1])  # type: ignore[arg-type]
+
+
+def _check_once(seams: tuple[Seam, ...], made: Mapping[str, Panel]) -> None:
+    seen: dict[tuple[str, int], tuple[int, int]] = {}
+    for number, seam in enumerate(seams):
+        for side, path in enumerate((seam.a, seam.b)):
+            if path is None:
+                continue
+            for leg in made[path.panel].path(path.start, path.end, ahead=path.ahead):
+                if seen.setdefault((path.panel, leg), (number, side)) != (number, side):
+                    raise CutProblem(f"seam.{number + 1}", f"{str(path)!r} is sewn already – one seam a side")

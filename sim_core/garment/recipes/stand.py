@@ -1,0 +1,80 @@
+"""The dress stand (yihang, 衣桁): two turned posts on feet with a round bar across, as collider and as mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.cloth import Box, Capsule, Cylinder, HalfSpace, Solid, Union
+from sim_core.cloth.contact.solid_meshes import solid_mesh
+from sim_core.errors import SimCoreError
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Sizes in metres: the bar's axis runs along x at `height`, the floor is y = 0, front is +z.
+
+    bar_radius: what the cloth lies on; span: distance of the posts; overhang: bar beyond each post;
+    upturn: how far the bar's ends rise.
+    """
+
+    height: float = 1.5
+    span: float = 0.70
+    bar_radius: float = 0.017
+    post_radius: float = 0.016
+    overhang: float = 0.13
+    upturn: float = 0.035
+    rail: float = 0.17
+
+    def __post_init__(self) -> None:
+        for name in ("height", "span", "bar_radius", "post_radius", "overhang", "rail"):
+            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
+                raise SimCoreError(f"stand.{name}: {getattr(self, name)} – must be a length above 0 [m]")
+
+    def parts(self) -> tuple[Solid, ...]:
+        """Every solid of the stand; what is collided with is exactly what is shown."""
+        h, x, r = self.height, self.span / 2, self.bar_radius
+        parts: list[Solid] = [Capsule((-x - 0.05, h, 0.0), (x + 0.05, h, 0.0), r)]
+        for side in (-1.0, 1.0):
+            parts += self._post(side * x)
+            near, far = side * (x + 0.05), side * (x + self.overhang)
+            tip = (far, h + self.upturn, 0.0)
+            parts += [Capsule((near, h, 0.0), tip, r * 0.92), Capsule(tip, tip, r * 1.35)]
+        parts.append(Capsule((-x, self.rail, 0.0), (x, self.rail, 0.0), r * 0.75))
+        return tuple(parts)
+
+    def _post(self, x: float) -> list[Solid]:
+        """A foot, a turned post with rings, and the saddle under the bar."""
+        r, top = self.post_radius, self.height
+
+        def ring(y: float, radius: float, height: float) -> Cylinder:
+            return Cylinder((x, y - height / 2, 0.0), (x, y + height / 2, 0.0), radius, 0.45 * height)
+
+        return [
+            Box((x, 0.024, 0.0), (0.062, 0.048, 0.44), 0.012),
+            Box((x, 0.062, 0.0), (0.05, 0.03, 0.26), 0.012),
+            Cylinder((x, 0.07, 0.0), (x, 0.115, 0.0), r * 1.75, 0.012),
+            Capsule((x, 0.08, 0.0), (x, top, 0.0), r),
+            ring(0.128, r * 1.45, 0.014),
+            ring(self.rail, r * 1.5, 0.05),
+            ring(top - 0.145, r * 1.3, 0.012),
+            ring(top - 0.105, r * 1.5, 0.03),
+            ring(top - 0.066, r * 1.3, 0.012),
+        ]
+
+    def collider(self) -> Union:
+        """The stand and the floor as one solid with exact distance."""
+        return Union((*self.parts(), HalfSpace((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))))
+
+    def mesh(self, segments: int = 28) -> tuple[np.ndarray, np.ndarray]:
+        """Closed display mesh, vertices (V, 3) [m] and faces (F, 3): one component per part, overlapping."""
+        vertices, faces, count = [], [], 0
+        for part in self.parts():
+            v, f = solid_mesh(part, segments)
+            vertices.append(v)
+            faces.append(f + count)
+            count += len(v)
+        return np.concatenate(vertices), np.concatenate(faces).astype(np.int32)

@@ -1,0 +1,28 @@
+"""The one place where a published number is computed: distances between surfaces, strain, penetration, crossings."""
+
+from sim_core.metrics.compile_time import CompileClock, compile_clock
+from sim_core.metrics.surfaces import (
+    Distances,
+    Penetration,
+    area_strain,
+    hausdorff,
+    intersections,
+    penetration,
+    sample_surface,
+    surface_distance,
+)
+from sim_core.metrics.triangles import winding
+
+__all__ = [
+    "CompileClock",
+    "Distances",
+    "Penetration",
+    "area_strain",
+    "compile_clock",
+    "hausdorff",
+    "intersections",
+    "penetration",
+    "sample_surface",
+    "surface_distance",
+    "winding",
+]

@@ -1,0 +1,260 @@
+"""The one place where a published number is computed: distances between surfaces, strain, penetration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from sim_core.errors import SimCoreError
+from sim_core.metrics.triangles import crossings, nearest, winding
+
+__all__ = [
+    "Distances",
+    "Penetration",
+    "area_strain",
+    "hausdorff",
+    "intersections",
+    "penetration",
+    "sample_surface",
+    "surface_distance",
+]
+
+MANY = 30_000_000  # points x faces above which rays are counted
+COLUMN = 0.01  # [m]
+FAR = 0.1  # [m] nobody asks how far beyond this a cloth is from a solid
+
+
+@dataclass(frozen=True)
+class Distances:
+    """Two-sided surface distance [m]: over both directions, and each way (a to b, b to a) as (mean, p99, max)."""
+
+    mean: float
+    p99: float
+    max: float
+    a_to_b: tuple[float, float, float]
+    b_to_a: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Penetration:
+    """How many vertices, edge midpoints and centroids lie inside a solid, and the least distance [m] of each.
+
+    Distances above FAR are told as FAR.
+    """
+
+    vertices: int
+    midpoints: int
+    centroids: int
+    clearance: tuple[float, float, float]
+
+    @property
+    def total(self) -> int:
+        """All points inside."""
+        return self.vertices + self.midpoints + self.centroids
+
+
+def _mesh(name: str, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    vertices, faces = np.ascontiguousarray(vertices, float), np.ascontiguousarray(faces, np.int32)
+    if (
+        vertices.ndim != 2
+        or vertices.shape[1] != 3
+        or faces.ndim != 2
+        or faces.shape[1] != 3
+        or len(faces) == 0
+    ):
+        raise SimCoreError(
+            f"{name}: shapes {vertices.shape}, {faces.shape} – expected (V, 3) and (F, 3), F > 0"
+        )
+    if not np.isfinite(vertices).all() or faces.min() < 0 or faces.max() >= len(vertices):
+        raise SimCoreError(f"{name}: coordinates that are not finite or faces that name no vertex")
+    return vertices, faces
+
+
+def sample_surface(vertices: np.ndarray, faces: np.ndarray, spacing: float) -> np.ndarray:
+    """Points (N, 3) on every face, no two neighbours further apart than `spacing` [m]; vertices included."""
+    vertices, faces = _mesh("mesh", vertices, faces)
+    corner = vertices[faces]
+    longest = np.sqrt(((corner - np.roll(corner, 1, axis=1)) ** 2).sum(2).max(1))
+    steps = np.maximum(1, np.ceil(longest / spacing)).astype(int)
+    parts = [vertices]
+    for n in np.unique(steps):
+        i, j = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
+        keep = i + j <= n
+        weight = np.stack([i[keep], j[keep], n - i[keep] - j[keep]], axis=1) / n
+        parts.append(np.einsum("kc,fcd->fkd", weight, corner[steps == n]).reshape(-1, 3))
+    return np.concatenate(parts)
+
+
+def surface_distance(
+    points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, *, limit: float = np.inf
+) -> np.ndarray:
+    """Exact unsigned distance (N,) [m] of points (N, 3) to a mesh; beyond `limit` [m] the limit is returned.
+
+    The nearest centroid bounds the distance; every face whose bounding ball could beat it is then measured.
+    """
+    vertices, faces = _mesh("mesh", vertices, faces)
+    points = np.ascontiguousarray(points, float)
+    corner = vertices[faces]
+    centre = corner.mean(1)
+    radius = np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max(1)
+    size = np.ceil(np.log2(np.maximum(radius, 1e-9)))
+    out = np.full(len(points), float(limit))
+    for group in np.unique(size):  # faces in classes of size: a few long ones must not make every search wide
+        member = np.flatnonzero(size == group)
+        tree, reach = KDTree(centre[member]), float(radius[member].max())
+        far, near = tree.query(points, k=min(10, len(member)), distance_upper_bound=limit + reach)
+        far, near = far.reshape(len(points), -1), near.reshape(len(points), -1)
+        close = np.flatnonzero(far[:, 0] - reach < out)
+        found = _to_class(
+            points[close], vertices, faces[member], tree, reach, far[close], near[close], out[close]
+        )
+        out[close] = found
+    return out
+
+
+def _to_class(
+    points: np.ndarray,
+    vertices: np.ndarray,
+    faces: np.ndarray,
+    tree: KDTree,
+    reach: float,
+    far: np.ndarray,
+    near: np.ndarray,
+    limit: np.ndarray,
+) -> np.ndarray:
+    """Distance (N,) to faces of about one size; the few nearest centroids decide most points, the rest search on."""
+    known = np.isfinite(far)
+    start = np.r_[0, np.cumsum(known.sum(1))]
+    best = nearest(points, vertices, faces, start, near[known].astype(np.int64), limit)
+    left = np.flatnonzero(far[:, -1] - reach < best) if far.shape[1] < len(faces) else np.zeros(0, int)
+    for part in np.array_split(left, max(1, len(left) // 20000)):
+        if len(part) == 0:
+            continue
+        found = tree.query_ball_point(points[part], best[part] + reach)
+        start = np.r_[0, np.cumsum([len(entry) for entry in found])]
+        entry = (
+            np.concatenate([np.asarray(e, np.int64) for e in found]) if start[-1] else np.zeros(0, np.int64)
+        )
+        best[part] = nearest(points[part], vertices, faces, start, entry, best[part])
+    return best
+
+
+def hausdorff(
+    vertices_a: np.ndarray,
+    faces_a: np.ndarray,
+    vertices_b: np.ndarray,
+    faces_b: np.ndarray,
+    *,
+    spacing: float,
+) -> Distances:
+    """Sampled two-sided distance of two surfaces; the samples lie `spacing` [m] apart, the foot points are exact.
+
+    Raises SimCoreError on wrong shapes or non-finite input.
+    """
+    there = surface_distance(sample_surface(vertices_a, faces_a, spacing), vertices_b, faces_b)
+    back = surface_distance(sample_surface(vertices_b, faces_b, spacing), vertices_a, faces_a)
+
+    def summary(d: np.ndarray) -> tuple[float, float, float]:
+        return float(d.mean()), float(np.percentile(d, 99)), float(d.max())
+
+    first, second = summary(there), summary(back)
+    both = summary(np.concatenate([there, back]))
+    return Distances(both[0], max(first[1], second[1]), both[2], first, second)
+
+
+def area_strain(rest: np.ndarray, positions: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Relative change of area (F,) between flat and draped faces.
+
+    rest: (V, 2) [m], or (F, 3, 2) by corner where vertices of several panels are welded; positions: (V, 3) [m].
+    """
+    corner = rest if rest.ndim == 3 else rest[faces]
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    flat = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    p, q = positions[faces[:, 1]] - positions[faces[:, 0]], positions[faces[:, 2]] - positions[faces[:, 0]]
+    return np.linalg.norm(np.cross(p, q), axis=1) / flat - 1
+
+
+def _signed(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Signed distance to closed meshes, which may overlap; negative inside any."""
+    distance = surface_distance(points, vertices, faces, limit=FAR)
+    ones = np.ones(3 * len(faces))
+    joined = coo_matrix((ones, (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (len(vertices),) * 2)
+    _, part = connected_components(joined, directed=False)
+    part_of_face = part[faces[:, 0]]
+    for number in np.unique(part_of_face):
+        own = faces[part_of_face == number]
+        low, high = vertices[own].min((0, 1)), vertices[own].max((0, 1))
+        boxed = np.flatnonzero(((points >= low) & (points <= high)).all(1))
+        if len(boxed):
+            # The winding number costs points x faces; many of both are counted along rays instead.
+            many = len(boxed) * len(own) > MANY
+            count = (
+                crossings(points[boxed], vertices, own, COLUMN)
+                if many
+                else winding(points[boxed], vertices, own)
+            )
+            inside = boxed[count > 0.5]
+            distance[inside] = -np.abs(distance[inside])
+    return distance
+
+
+def penetration(
+    vertices: np.ndarray, faces: np.ndarray, solid_vertices: np.ndarray, solid_faces: np.ndarray
+) -> Penetration:
+    """Checks a cloth (V, 3), (F, 3) against closed solid meshes, by winding number and exact distance.
+
+    Independent of any solver's distance function: it looks at the triangles that a visitor sees.
+    """
+    vertices, faces = _mesh("cloth", vertices, faces)
+    solid_vertices, solid_faces = _mesh("solid", solid_vertices, solid_faces)
+    pairs = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    middles, centres = vertices[pairs].mean(1), vertices[faces].mean(1)
+    signed = [_signed(points, solid_vertices, solid_faces) for points in (vertices, middles, centres)]
+    inside = [int((d < 0).sum()) for d in signed]
+    least = (float(signed[0].min()), float(signed[1].min()), float(signed[2].min()))
+    return Penetration(inside[0], inside[1], inside[2], least)
+
+
+@njit(cache=True, error_model="numpy")
+def _crosses(p, q, a, b, c):
+    """Does the segment p q pass through the triangle a b c (shared points excluded by the caller)?"""
+    n = np.cross(b - a, c - a)
+    dp, dq = (p - a) @ n, (q - a) @ n
+    if dp * dq >= 0.0:
+        return False
+    x = p + (q - p) * (dp / (dp - dq))
+    inside = np.cross(b - a, x - a) @ n >= 0.0 and np.cross(c - b, x - b) @ n >= 0.0
+    return inside and np.cross(a - c, x - c) @ n >= 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _count_crossings(vertices, faces, edges, start, entry):
+    hit = np.zeros(len(edges), np.int64)
+    for e in range(len(edges)):
+        i, j = edges[e]
+        for k in range(start[e], start[e + 1]):
+            a, b, c = faces[entry[k]]
+            if i == a or i == b or i == c or j == a or j == b or j == c:
+                continue
+            if _crosses(vertices[i], vertices[j], vertices[a], vertices[b], vertices[c]):
+                hit[e] += 1
+    return hit
+
+
+def intersections(vertices: np.ndarray, faces: np.ndarray) -> int:
+    """Number of (edge, face) pairs of a mesh that pass through each other and share no vertex."""
+    vertices, faces = _mesh("mesh", vertices, faces)
+    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    corner = vertices[faces]
+    centre, middle = corner.mean(1), vertices[edges].mean(1)
+    reach = float(np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max())
+    half = np.sqrt(((vertices[edges[:, 0]] - middle) ** 2).sum(1))
+    near = KDTree(centre).query_ball_point(middle, half + reach)
+    start = np.r_[0, np.cumsum([len(n) for n in near])]
+    entry = np.concatenate([np.asarray(n, int) for n in near])
+    return int(_count_crossings(vertices, faces, edges, start, entry).sum())

@@ -1,0 +1,17 @@
+"""Stills of meshes without a graphics card: smooth two-sided shading, shadows, sky occlusion, sheer cloth."""
+
+from sim_core.picture.raster import depth_map, lit
+from sim_core.picture.shading import Camera, Light, Lighting, Surface, lighting, normals, render, save_png
+
+__all__ = [
+    "Camera",
+    "Light",
+    "Lighting",
+    "Surface",
+    "depth_map",
+    "lighting",
+    "lit",
+    "normals",
+    "render",
+    "save_png",
+]

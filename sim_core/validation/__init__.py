@@ -1,0 +1,43 @@
+"""Checking at the doors: values that callers hand over, files from outside, arguments of commands."""
+
+from sim_core.validation.values import (
+    FURTHEST,
+    GREATEST,
+    MOST,
+    called,
+    coordinates,
+    finite,
+    numeric,
+    of_kind,
+    one_of,
+    points,
+    row,
+    told,
+    triangles,
+    triple,
+    vertex_numbers,
+    vertex_pairs,
+    whole,
+    within,
+)
+
+__all__ = [
+    "FURTHEST",
+    "GREATEST",
+    "MOST",
+    "called",
+    "coordinates",
+    "finite",
+    "numeric",
+    "of_kind",
+    "one_of",
+    "points",
+    "row",
+    "told",
+    "triangles",
+    "triple",
+    "vertex_numbers",
+    "vertex_pairs",
+    "whole",
+    "within",
+]
