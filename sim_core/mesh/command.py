@@ -7,8 +7,8 @@ import warnings
 from pathlib import Path
 from time import perf_counter
 
-from sim_core.arguments import ending, number
 from sim_core.errors import WrongArgument
+from sim_core.validation.arguments import ending, number
 
 __all__ = ["add_parser", "run"]
 
@@ -129,9 +129,9 @@ def run(args: argparse.Namespace) -> int:
         return run_sheet(args)
     if args.edge is None:
         raise WrongArgument("--edge: missing – give the length of a mesh edge in metres, such as --edge 0.01")
-    from sim_core.machine_code import compile_clock
     from sim_core.mesh.files import mesh_picture, write_mesh, write_picture
     from sim_core.mesh.outline.size_field import read_size_field
+    from sim_core.metrics.compile_time import compile_clock
 
     drawing, read = _drawing(args)
     sizes = read_size_field(args.size_field) if args.size_field else None

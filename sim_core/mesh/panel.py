@@ -6,7 +6,6 @@ from time import perf_counter
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.machine_code import CompileClock, compile_clock
 from sim_core.mesh.improvement.best import BestFill, best_fill
 from sim_core.mesh.improvement.smoothing import smoothed
 from sim_core.mesh.measures.report import MeshReport, deviation, measured
@@ -20,6 +19,7 @@ from sim_core.mesh.points.graded import graded_points
 from sim_core.mesh.points.lattice import staggered_points
 from sim_core.mesh.points.raycast import keep_points
 from sim_core.mesh.triangulation.growth import CLOSED, Growth, grow_points
+from sim_core.metrics.compile_time import CompileClock, compile_clock
 
 __all__ = ["QUALITIES", "PanelMesh", "check_options", "filled_mesh", "panel_mesh", "timed"]
 

@@ -14,7 +14,6 @@ from typing import TypeVar
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.machine_code import compile_clock
 from sim_core.mesh.measures.report import deviation
 from sim_core.mesh.outline.contours import (
     check_edge,
@@ -28,6 +27,7 @@ from sim_core.mesh.outline.samples import sampled_rim
 from sim_core.mesh.outline.size_field import SizeField
 from sim_core.mesh.panel import PanelMesh, check_options, filled_mesh, timed
 from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
+from sim_core.metrics.compile_time import compile_clock
 
 __all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
 

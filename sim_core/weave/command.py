@@ -10,8 +10,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from sim_core.arguments import ending, whole
 from sim_core.errors import WeaveError, WrongArgument
+from sim_core.validation.arguments import ending, whole
 from sim_core.weave.chart.command import add_drawing, check_drawing, draw
 
 if TYPE_CHECKING:

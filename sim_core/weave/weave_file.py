@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sim_core.errors import SimCoreError, WeaveError
-from sim_core.reading import read_toml, shown
+from sim_core.validation.files import read_toml, shown
 from sim_core.weave.draft.draft import MOST_MOTIF as MOST
 from sim_core.weave.draft.draft import Draft, plain, satin, twill
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn

@@ -12,8 +12,8 @@ from pydantic import BaseModel
 
 from hall_app.content import BEHAVIOURS
 from hall_app.content.schema import Bilingual, ExhibitFile, HallFile, PlanFile, table_of
-from survey.web.privacy import Controller
 from survey.questionnaire import Text
+from survey.web.privacy import Controller
 
 ASSETS = Path(__file__).parents[2] / "assets"
 README = (ASSETS / "README.md").read_text("utf-8")

@@ -29,7 +29,7 @@ from hall_app.room.surface import (
     texture,
     write,
 )
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 ASSETS = Path(__file__).parents[2] / "assets"
 MB = 1_000_000

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core import reading
-from sim_core.cloth.checkpoint import RunState, load_checkpoint, save_checkpoint
+from sim_core.body import Mannequin
+from sim_core.cloth.run import RunState, load_checkpoint, save_checkpoint
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Garment, Pattern
-from sim_core.garment.mannequin import Mannequin
-from sim_core.garment.measures import measured
+from sim_core.garment.pattern import measured
 from sim_core.mesh.sheets import read_outline
+from sim_core.validation import files as reading
 from sim_core.weave import Weave
 
 ASSETS = Path(__file__).parents[2] / "assets"

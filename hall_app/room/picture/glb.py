@@ -13,7 +13,7 @@ from hall_app.room.patch import Patch
 from hall_app.room.raising import Room
 from hall_app.room.surface.palette import MATERIALS, linear
 from hall_app.room.surface.textures import texture
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 if TYPE_CHECKING:
     from hall_app.light.model import LightMap

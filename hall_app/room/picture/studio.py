@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hall_app.room.surface.palette import linear
-from sim_core.garment.glb_file import GlbFile
+from sim_core.gltf import GlbFile
 
 __all__ = ["studio_glb"]
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.cloth.field import DistanceField
-from sim_core.garment.figure_form import FormSettings, crotch_height, figure_field, section
-from sim_core.garment.figure_source import Body
-from sim_core.garment.mannequin import BONES, Mannequin
+from sim_core.body.making.form import FormSettings, crotch_height, figure_field, section
+from sim_core.body.making.source import Body
+from sim_core.body.mannequin import BONES, Mannequin
+from sim_core.cloth.contact.distance_field import DistanceField
 from sim_core.mesh import split_quads, surface_net
 
 COARSE, MIDDLE, FINE = 0.0165, 0.0125, 0.0095  # [m] of cells: trunk, feet, hands

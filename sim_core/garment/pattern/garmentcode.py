@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim_core.garment.cutting import Panel, Path, Seam, arc_length
 from sim_core.garment.pattern import Pattern
+from sim_core.garment.pattern.panels import Panel, Path, Seam, arc_length
 from sim_core.mesh.outline import signed_area
 from sim_core.mesh.sheets import CodeEdge, CodePanel, GarmentCode, Stitch, cubic_through
-from sim_core.reading import read_toml
+from sim_core.validation.files import read_toml
 
 __all__ = ["code_of_pattern", "read_pattern_code"]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim_core.errors import FileProblem, OutlineError
 from sim_core.mesh.geometry.nearest import SizeBoxes, least_sizes, size_boxes
-from sim_core.reading import read_json, shown
+from sim_core.validation.files import read_json, shown
 
 __all__ = ["SizeField", "check_numbers", "read_size_field"]
 

@@ -16,7 +16,7 @@ from sim_core.mesh.sheets.model import Piece, Sheet
 from sim_core.mesh.sheets.pattern_file import code_of, write_pattern
 from sim_core.mesh.sheets.picture import sheet_picture
 from sim_core.mesh.sheets.reading import Choice, is_sheet, outline_along, read_sheet, sheet_of_code
-from sim_core.reading import read_json
+from sim_core.validation.files import read_json
 
 __all__ = ["run_sheet"]
 

@@ -8,7 +8,7 @@ from sim_core.errors import FileProblem, OutlineWarning
 from sim_core.mesh.outline.size_field import check_numbers
 from sim_core.mesh.sheets.model import Sheet
 from sim_core.mesh.sheets.reading import Choice, is_sheet, panel_of, read_sheet
-from sim_core.reading import read_json, shown
+from sim_core.validation.files import read_json, shown
 
 __all__ = ["Drawing", "drawing_of", "read_outline"]
 

@@ -18,7 +18,7 @@ from sim_core.mesh.sheets.model import Piece, Sheet, Which
 from sim_core.mesh.sheets.sorting import sorted_sheet
 from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
 from sim_core.mesh.sheets.strokes.svg import svg_strokes
-from sim_core.reading import read_json
+from sim_core.validation.files import read_json
 
 __all__ = ["UNITS", "Choice", "is_sheet", "panel_of", "read_sheet", "sheet_of_code"]
 

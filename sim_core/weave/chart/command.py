@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim_core.arguments import ending, whole
 from sim_core.errors import WrongArgument
+from sim_core.validation.arguments import ending, whole
 from sim_core.weave.chart.paper import PAPERS
 
 if TYPE_CHECKING:

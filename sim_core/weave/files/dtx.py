@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 from sim_core.errors import WeaveError
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.files.wif.model import Wif
 from sim_core.weave.files.wif.reader import read_bytes, wif_of_sections
 from sim_core.weave.files.wif.sections import Section, decoded, listed

@@ -22,7 +22,7 @@ from sim_core.errors import FileProblem
 from sim_core.mesh.outline.contours import LARGEST
 from sim_core.mesh.sheets.strokes.stroke import MOST_VISITED, Drawn, Stroke, visited
 from sim_core.mesh.sheets.strokes.words import spoken
-from sim_core.reading import read_bytes
+from sim_core.validation.files import read_bytes
 
 __all__ = ["dxf_strokes"]
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.strokes.stroke import MOST_VISITED
-from sim_core.reading import read_bytes
+from sim_core.validation.files import read_bytes
 
 __all__ = ["LENGTHS", "NUMBER", "check_bounds", "flatten_viewports", "left_out_of", "svg_root"]
 

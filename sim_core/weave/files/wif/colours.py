@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.files.wif.sections import Section, from_one, listed
 
 __all__ = ["Palette", "palette_of", "thread_colours"]

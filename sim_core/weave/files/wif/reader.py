@@ -18,7 +18,7 @@ import re
 from pathlib import Path
 
 from sim_core.errors import FileProblem, WeaveError
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.draft.algebra import Harness
 from sim_core.weave.files.wif.colours import palette_of, thread_colours
 from sim_core.weave.files.wif.model import PRIVATE, Wif, centimetres, tidy

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 
 from sim_core.errors import WeaveError
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.files.wif.model import PRIVATE
 
 __all__ = [

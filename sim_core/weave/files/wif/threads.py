@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.reading import shown
+from sim_core.validation.files import shown
 from sim_core.weave.draft.algebra import Harness, lift_plan
 from sim_core.weave.files.wif.sections import FALSE, TRUE, Section, from_one, listed, whole
 
