@@ -91,6 +91,7 @@ def annealed_here():
     return annealed_sample(), ITEMS
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "sample",
     [
