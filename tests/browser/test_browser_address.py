@@ -92,6 +92,7 @@ def test_an_open_exhibit_is_named_and_back_and_forward_lead_out_and_in(plain_hal
     assert pose(page)["z"] == pytest.approx(-3.0, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_a_long_visit_leaves_one_entry_behind(plain_hall, page):
     page.goto("about:blank")
     enter(page, f"{plain_hall.url}/?lang=en")
@@ -141,6 +142,7 @@ def test_a_link_to_nothing_says_so(plain_hall, page):
     assert (at["x"], at["z"]) == pytest.approx(ENTRANCE, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_loading_again_opens_it_again_and_keeps_the_spot(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     place(page, 1.0, -3.0, 0.7)
@@ -175,6 +177,7 @@ def test_loading_again_comes_back_to_spot_heading_and_eye(plain_hall, page):
     assert 0.05 < walked < 2.0
 
 
+@pytest.mark.nightly
 def test_a_spot_that_is_built_over_by_now_is_left_for_the_nearest_free_one(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     page.evaluate(
@@ -190,6 +193,7 @@ def test_a_spot_that_is_built_over_by_now_is_left_for_the_nearest_free_one(plain
     assert displayed(page)[1] == pytest.approx(at["eye"], abs=0.01)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("kept", ["", "{", "null", '{"x": "here", "z": 1}'])
 def test_a_spoilt_note_is_no_spot(plain_hall, page, kept):
     enter(page, f"{plain_hall.url}/?lang=en")
@@ -202,6 +206,7 @@ def test_a_spoilt_note_is_no_spot(plain_hall, page, kept):
     assert (at["x"], at["z"]) == pytest.approx(ENTRANCE, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_a_fresh_visit_begins_at_the_entrance(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     place(page, 1.0, -3.0, 0.7)
@@ -243,6 +248,7 @@ def test_esc_leaves_an_exhibit_whose_text_does_not_come(page, plain_hall):
     page.keyboard.up("w")
 
 
+@pytest.mark.nightly
 def test_an_exhibit_whose_text_fails_is_said(page, plain_hall):
     enter(page, f"{plain_hall.url}/?lang=en")
     page.route("**/api/exhibits/**", lambda route: route.abort())
@@ -252,6 +258,7 @@ def test_an_exhibit_whose_text_fails_is_said(page, plain_hall):
     is_closed(page)
 
 
+@pytest.mark.nightly
 def test_a_link_opens_also_where_the_line_was_lost_before_entering(page, tmp_path):
     content, port = write_plain_hall(tmp_path / "content"), free_port()
     with running_hall(content, tmp_path / "work", port=port) as hall:
@@ -265,6 +272,7 @@ def test_a_link_opens_also_where_the_line_was_lost_before_entering(page, tmp_pat
         page.close()
 
 
+@pytest.mark.nightly
 def test_of_two_edits_the_later_one_stays_though_the_earlier_arrives_after_it(page, tmp_path):
     content = write_plain_hall(tmp_path / "content")
     toml = content / "exhibits" / "box" / "exhibit.toml"

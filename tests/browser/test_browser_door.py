@@ -19,6 +19,7 @@ def visits(shipped_hall, chromium):
         return [slow_visit(chromium, line) for _ in range(3)]
 
 
+@pytest.mark.nightly
 def test_door_within_a_second_and_a_half(visits):
     """The best of three counts: another program's work is no byte of ours. Bytes and trips hold on any machine."""
     assert min(max(visit["title_s"], visit["painted_s"]) for visit in visits) <= PROMISED
@@ -29,6 +30,7 @@ def test_door_within_a_second_and_a_half(visits):
         assert door["blocking"] == []
 
 
+@pytest.mark.nightly
 def test_first_view_costs_no_more_than_it_must(visits):
     assert max(visit["bytes"] for visit in visits) <= FIRST_VIEW
 

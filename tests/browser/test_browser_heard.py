@@ -3,6 +3,7 @@
 import pytest
 from bench.axe import violations
 from bench.browser import CHOOSE, PATIENCE, stand_before
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
@@ -11,7 +12,7 @@ TABS = ("intro", "pictures", "film", "sound", "data")
 EXHIBIT = "pibo"
 
 
-@pytest.fixture(scope="module", params=SIZES)
+@pytest.fixture(scope="module", params=by_day(["desk"], SIZES))
 def page(request, shipped_hall, chromium):
     """The hall as it ships, before its door."""
     width, height = SIZES[request.param]

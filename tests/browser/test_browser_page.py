@@ -4,6 +4,7 @@ import pytest
 from bench.browser import CHOOSE, displayed, enter, pose, settled, soon
 from bench.readable import CROWDED, TARGETS, faint_texts
 from bench.track import place
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
@@ -14,7 +15,7 @@ DIALOGS = ("list", "settings", "help")
 TABS = ("intro", "pictures", "data")
 
 
-@pytest.fixture(scope="module", params=SIZES, ids=str)
+@pytest.fixture(scope="module", params=by_day([360], SIZES), ids=str)
 def page(request, plain_hall, chromium):
     """A visitor's page at one size; small ones are touched."""
     size = {"width": request.param, "height": SIZES[request.param]}
@@ -106,7 +107,7 @@ def test_panel(page):
     assert wrong == []
 
 
-@pytest.mark.parametrize("width", READ)
+@pytest.mark.parametrize("width", by_day([360], READ))
 def test_questionnaire_is_readable(plain_hall, chromium, width):
     form = chromium.new_page(viewport={"width": width, "height": SIZES[width]})
     wrong = []
@@ -131,6 +132,7 @@ RING = """
 """
 
 
+@pytest.mark.nightly
 def test_focus_ring_is_gold_with_a_dark_halo(plain_hall, chromium):
     page = chromium.new_page(viewport={"width": 1280, "height": 720})
     enter(page, f"{plain_hall.url}/?lang=en")
@@ -144,7 +146,7 @@ def test_focus_ring_is_gold_with_a_dark_halo(plain_hall, chromium):
     assert all(ring.startswith("rgb(217, 182, 91) 3px rgb") and "6px" in ring for ring in seen)
 
 
-@pytest.mark.parametrize("motion", ["reduce", "no-preference"])
+@pytest.mark.parametrize("motion", by_day(["reduce"], ["reduce", "no-preference"]))
 def test_motion_is_reduced_on_request(plain_hall, chromium, motion):
     """Nothing fades, slides or turns by itself, and no view flies."""
     context = chromium.new_context(viewport={"width": 480, "height": 270}, reduced_motion=motion)
@@ -199,7 +201,9 @@ HIT = """
 """
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (390, 844)], ids=["desk", "phone"])
+@pytest.mark.parametrize(
+    ("width", "height"), by_day([(390, 844)], [(1280, 720), (390, 844)]), ids=["desk", "phone"]
+)
 def test_garment_stays_in_the_free_part(plain_hall, chromium, width, height):
     page = chromium.new_page(viewport={"width": width, "height": height})
     enter(page, f"{plain_hall.url}/?lang=en")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from bench.browser import enter, soon
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
 
@@ -93,7 +94,9 @@ def test_a_remembered_level_is_tried_before_the_next(verdicts):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("ratio", "wanted"), [(1, (0.66, 1, 1)), (2, (1, 1.5, 2)), (3, (1, 1.5, 2))])
+@pytest.mark.parametrize(
+    ("ratio", "wanted"), by_day([(1, (0.66, 1, 1))], [(1, (0.66, 1, 1)), (2, (1, 1.5, 2)), (3, (1, 1.5, 2))])
+)
 def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
     context = chromium.new_context(viewport={"width": 360, "height": 640}, device_scale_factor=ratio)
     page = context.new_page()
@@ -107,6 +110,7 @@ def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
     context.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
     context = chromium.new_context(viewport={"width": 480, "height": 270})
@@ -131,6 +135,7 @@ def test_choice_is_made_by_keyboard_and_remembered(plain_hall, chromium):
     context.close()
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     page = chromium.new_page(viewport={"width": 480, "height": 270})

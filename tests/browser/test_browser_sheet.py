@@ -7,6 +7,7 @@ from bench.readable import CROWDED, TARGETS
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
 SIZES = ((320, 568), (360, 640), (390, 844), (568, 320), (640, 360), (667, 375), (844, 390))
+DAY = (320, 568)  # the hardest; the other sizes are of the night
 LEAST_FREE = {"open": 0.25, "folded": 0.40}  # of the picture: nothing of the page lies over it
 READ_AT_ONCE = 80  # [px] of text that is seen at a time, at the least
 FOLD, PANEL = "[data-testid=panel-fold]", "[data-testid=panel]"
@@ -49,7 +50,13 @@ DRAWN = """
 """
 
 
-@pytest.fixture(scope="module", params=SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(size, marks=() if size == DAY else pytest.mark.nightly, id=f"{size[0]}x{size[1]}")
+        for size in SIZES
+    ],
+)
 def page(request, shipped_hall, chromium):
     """A phone's page in the hall, at one size."""
     width, height = request.param

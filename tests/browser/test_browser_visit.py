@@ -9,6 +9,7 @@ import urllib.request
 import pytest
 from bench.browser import displayed, enter, pose, soon, stand_before
 from bench.track import place, walk, watch
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
@@ -86,7 +87,7 @@ def test_hooks_of_the_pinned_client(page):
     assert {found["gestures"][name] for name in ("left", "middle", "right", "wheel")} == {0}
 
 
-@pytest.mark.parametrize("width", [1280, 768, 480, 360])
+@pytest.mark.parametrize("width", by_day([480], [1280, 768, 480, 360]))
 def test_visers_own_panel_is_out_of_sight(page, width):
     closed(page)
     page.set_viewport_size({"width": width, "height": 720})

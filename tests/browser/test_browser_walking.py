@@ -7,6 +7,7 @@ import pytest
 from bench.browser import displayed, enter, pose, soon
 from bench.track import latencies, place, solids_of_scene, walk, watch
 from bench.wire import wire
+from full_matrix import by_day
 from plain_hall import write_plain_hall
 from running_hall import running_hall
 
@@ -15,7 +16,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("br
 VIEW = {"width": 480, "height": 270}
 
 
-@pytest.fixture(scope="module", params=[0.0, 0.08], ids=["0ms", "80ms"])
+@pytest.fixture(scope="module", params=by_day([0.0], [0.0, 0.08]), ids=["0ms", "80ms"])
 def visit(request, plain_hall, chromium):
     """A visitor in the plain hall, with added round trip."""
     with wire(plain_hall.port, request.param) as line:
@@ -129,6 +130,7 @@ def test_minimap_goes_there(visit):
     soon(visit, lambda: pose(visit)["x"] < -2 and pose(visit)["z"] > 2)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("why", ["forced", "no-hooks", "no-grid"])
 def test_server_walks(why, chromium, tmp_path, plain_hall):
     """Mode (b): forced, without page hooks, and without the grid."""

@@ -21,13 +21,12 @@ from sim_core.garment import Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("bake")]
 
 
-@pytest.fixture
-def folder(tmp_path):
+def coarse(place: Path) -> Path:
     """The shipped content with a coarse scarf that has not been baked."""
-    home = tmp_path / "content"
+    home = place / "content"
     shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked"))
     shutil.rmtree(home / "exhibits" / "beizi")  # a minute of its own: tests/sim_core/test_garment_robe.py
     toml = home / "exhibits" / "pibo" / "exhibit.toml"
@@ -35,6 +34,11 @@ def folder(tmp_path):
     lines = ["edge = 0.06" if line.startswith("edge = ") else line for line in lines]
     toml.write_text("\n".join(lines) + "\n", "utf-8")
     return home
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return coarse(tmp_path)
 
 
 def build(folder: Path, *options: str, **more) -> subprocess.CompletedProcess[str]:
@@ -60,8 +64,15 @@ def last_line(done: subprocess.CompletedProcess[str]) -> dict:
     return json.loads(done.stdout.strip().splitlines()[-1])
 
 
-def test_build_is_whole_up_to_date_and_equal_to_the_bit(folder):
-    first = last_line(build(folder))
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The folder with its scarf baked once for all tests that only look at it, and what the command said."""
+    home = coarse(tmp_path_factory.mktemp("built"))
+    return home, last_line(build(home))
+
+
+def test_build_is_whole_and_up_to_date(built):
+    folder, first = built
     baked = folder / "exhibits" / "pibo" / "baked"
     assert first["state"] == "baked"
     assert {"garment.npz", "hall.glb", "close.glb", "bake.json", "drape.jpg"} <= {
@@ -78,14 +89,21 @@ def test_build_is_whole_up_to_date_and_equal_to_the_bit(folder):
         missing
     )  # the film, which was not asked for
     assert last_line(build(folder))["state"] == "up to date"
+
+
+@pytest.mark.nightly
+def test_a_build_by_force_is_equal_to_the_bit(built):
+    folder, first = built
+    baked = folder / "exhibits" / "pibo" / "baked"
     models = {name: (baked / name).read_bytes() for name in ("hall.glb", "close.glb")}
     again = last_line(build(folder, "--force"))
     assert again["digest"] == first["digest"]
     assert {name: (baked / name).read_bytes() for name in models} == models
 
 
-def test_a_changed_pattern_makes_the_bake_stale(folder):
-    last_line(build(folder))
+def test_a_changed_pattern_makes_the_bake_stale(built, tmp_path):
+    folder = tmp_path / "content"
+    shutil.copytree(built[0], folder)
     content = load(folder)
     exhibit = content.exhibit("pibo")
     assert bake_folder(content, exhibit, folder, stale=False) is not None
@@ -98,6 +116,7 @@ def test_a_changed_pattern_makes_the_bake_stale(folder):
     assert [problem for problem in check(folder) if "hall build" in problem.fix]
 
 
+@pytest.mark.nightly
 def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
     toml = (
         folder / "exhibits" / "pibo" / "exhibit.toml"

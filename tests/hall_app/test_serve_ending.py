@@ -74,6 +74,7 @@ def ends(hall: Serving, sign: signal.Signals) -> None:
     assert "viser" not in hall.said()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("word", ["Content ", "Opening the hall", "walking grid", "Open  "])
 def test_ctrl_c_at_every_stage_of_opening(tmp_path: Path, word: str):
     with serving(write_plain_hall(tmp_path / "content"), tmp_path, "--no-light") as hall:

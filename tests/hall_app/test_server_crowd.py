@@ -147,6 +147,7 @@ def test_a_flood_of_any_kind_is_shown_out_with_a_reason(plain_hall, kind):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("opcode", [9, 10, 0])  # pings, pongs, a message in endless pieces
 def test_floods_below_the_messages_are_cut(plain_hall, opcode):
     async def run() -> None:
@@ -166,6 +167,7 @@ def test_floods_below_the_messages_are_cut(plain_hall, opcode):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("message", [camera.__call__, None])
 def test_floods_on_visers_socket_are_shown_out(plain_hall, message):
     import random
@@ -241,6 +243,7 @@ def test_silent_sockets_are_few_and_a_class_gets_in_beside_them(own_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_a_class_of_a_hundred_comes_in_at_once(own_hall):
     """Both sockets of each, all at the same moment, from one address."""
 
@@ -493,6 +496,7 @@ def test_who_waits_and_loads_the_page_again_keeps_his_place(full_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_a_page_on_another_line_has_its_place_though_the_first_has_not_ended(full_hall):
     key = asked(full_hall, "/")[1]["Set-Cookie"].partition(";")[0]
     hello = json.dumps(json.loads(HELLO) | {"page": "one page"})
@@ -596,6 +600,7 @@ def test_connections_that_say_nothing_leave_room_for_others(tight_hall):
     assert "Traceback" not in tight_hall.said()
 
 
+@pytest.mark.nightly
 def test_connections_that_neither_ask_nor_read_are_cut(tight_hall):
     largest = max(re.findall(r"/viser/[0-9a-f]+/viser.js", asked(tight_hall, "/")[2].decode()))
     whole = len(asked(tight_hall, largest)[2])
@@ -659,6 +664,7 @@ def test_who_loads_the_page_again_in_a_full_hall_keeps_his_place(small_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_who_was_away_for_long_makes_room_and_may_come_back(tmp_path):
     soon_away = altered(
         "from hall_app.visit import places",

@@ -155,6 +155,7 @@ def test_no_stall_takes_back_what_was_shown(tab, long_grid):
     assert max(visit.leap() for visit in visits) <= JUMP
 
 
+@pytest.mark.nightly
 def test_no_stall_takes_back_a_walk_among_solids(tab):
     """Any keys, any heading: what the grid does not know exactly may differ, a stall adds nothing."""
     rng, grid = np.random.default_rng(4), bake(FLOOR)

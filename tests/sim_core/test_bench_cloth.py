@@ -79,6 +79,7 @@ def test_the_readme_shows_public_names_alone() -> None:
     assert set(re.findall(r"\b([A-Z]\w+|choose|drape|scene)[.(]", text)) <= set(line.split(", "))
 
 
+@pytest.mark.nightly
 def test_more_substeps_err_less_and_are_told(bench) -> None:
     measures = bench["cloth_measures"]
     settings = [measures.Setting(), *(measures.Setting("explicit", n) for n in (60, 120))]
@@ -93,6 +94,7 @@ def test_more_substeps_err_less_and_are_told(bench) -> None:
     assert set(bench["cloth_curves"].curves_of({"rows": rows})) == {"explicit"}
 
 
+@pytest.mark.nightly
 def test_order_is_that_of_the_steps_from_mesh_to_mesh(bench) -> None:
     found = bench["cloth_measures"].meshes(hang_edge, (1.0, 1.0), 0.12, [0.16, 0.08, 0.04], lambda _: None)
     first, second = found["steps_mm"]
@@ -100,6 +102,7 @@ def test_order_is_that_of_the_steps_from_mesh_to_mesh(bench) -> None:
     assert found["rows"][-1]["from_finest_mm"]["max"] == 0.0
 
 
+@pytest.mark.nightly
 def test_layers_keep_the_teapots_cloth_apart() -> None:
     before, after = (scene("teapot", vertices=300, layers=gap).contact for gap in (0.0, 0.003))
     assert before is not None

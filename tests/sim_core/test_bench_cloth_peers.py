@@ -35,6 +35,7 @@ def test_lame_numbers_give_the_stretch_and_poissons_ratio_back(bench):
     assert (2 * mu + lam) + lam * across == pytest.approx(49.0)
 
 
+@pytest.mark.nightly
 def test_hinges_of_a_bent_strip_store_the_energy_of_a_plate(bench):
     from sim_core.cloth.scenes import GF_CM, hang_edge
 
@@ -116,6 +117,7 @@ class Played:
         return {**times, **about, "positions": given["positions"] + 1 / setting["substeps"] * np.eye(3)[0]}
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, capsys):
     against, figures = bench["cloth_against"], bench["cloth_figures"]
@@ -157,6 +159,7 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     assert (tmp_path / "plot.png").stat().st_size > 5000
 
 
+@pytest.mark.nightly
 def test_settings_that_decide_are_the_cheapest_within_2_mm_and_those_beside_it(bench, tmp_path):
     against, sweeps = bench["cloth_against"], bench["cloth_sweeps"].SWEEPS
     asked = bench["cloth_sweeps"].compared("hang_edge", 60)

@@ -109,6 +109,7 @@ def test_coat_survives_file_detail_and_model(
     assert size < 1_500_000
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_same_bits_also_after_an_interrupt(ling: Weave, figure: Figure, tmp_path: Path, monkeypatch) -> None:
     from sim_core.cloth.run import drape_run as draping

@@ -25,6 +25,17 @@ def started(pgserver, folder: Path):
     raise AssertionError("PostgreSQL did not start in five minutes")
 
 
+POSTGRES_BY_DAY = {"test_survey_store.py", "test_survey_privacy.py"}  # elsewhere PostgreSQL is of the night
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    for item in items:
+        asked = getattr(item, "callspec", None)
+        if asked and asked.params.get("database") == "postgresql" and item.path.name not in POSTGRES_BY_DAY:
+            item.add_marker(pytest.mark.nightly)
+
+
 @pytest.fixture(scope="session")
 def postgres(tmp_path_factory):
     """A PostgreSQL server of our own; a function that makes an empty database and returns its URL."""

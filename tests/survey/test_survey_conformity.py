@@ -11,6 +11,7 @@ import pytest
 EXAMPLES = 40
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_the_api_keeps_to_its_description(tmp_path, monkeypatch):
     pytest.importorskip("schemathesis", reason="not installed (extra 'test')", exc_type=ImportError)

@@ -162,6 +162,7 @@ def test_no_copy_stays_where_the_database_moved_rows_about(tmp_path):
             assert digest not in data
 
 
+@pytest.mark.nightly
 def test_while_somebody_reads_it_says_that_something_stays_and_sees_to_it(service):
     body = a_body(1)
     posted(service, body)
@@ -274,6 +275,7 @@ def test_a_backup_holds_nothing_that_was_withdrawn_before(service, tmp_path):
     assert found_in(copied, [kept])
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_on_postgresql_a_purge_leaves_nothing_in_its_tables(postgres, capsys):
     url, bodies = postgres(), [a_body(number, length=number) for number in range(30)]

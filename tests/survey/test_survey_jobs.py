@@ -276,6 +276,7 @@ def test_who_hangs_up_ends_it(service, path):
     assert service.request("GET", f"{BASE}/export/csv")[0] == 200
 
 
+@pytest.mark.nightly
 @linux
 def test_a_few_at_a_time_the_next_wait_and_more_are_told_when_to_come_again(service):
     with ThreadPoolExecutor(JOBS_OPEN + 2) as pool:
@@ -300,6 +301,7 @@ def test_a_few_at_a_time_the_next_wait_and_more_are_told_when_to_come_again(serv
     assert service.request("GET", f"{BASE}/export/csv")[0] == 200
 
 
+@pytest.mark.nightly
 @linux
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_the_end_of_the_service_is_its_end(service, how):
@@ -346,6 +348,7 @@ def small_disk(folder: Path) -> list[str]:
     return before
 
 
+@pytest.mark.nightly
 @linux
 def test_a_full_temporary_folder_is_told_with_its_remedy(tmp_path):
     small = tmp_path / "small"

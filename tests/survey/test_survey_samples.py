@@ -90,6 +90,7 @@ def annealed_here():
     return annealed_sample(), ITEMS
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "sample",
     [
