@@ -13,7 +13,7 @@ from sim_core.errors import SimCoreError, WrongArgument
 __all__ = ["main"]
 
 ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
-ELSEWHERE = {"mannequin": "sim_core.body.command"}  # commands that share another room
+ELSEWHERE = {"mannequin": "sim_core.body.cli"}  # commands that share another room
 BENCHES = ("weave", "drafts", "mesh", "cloth", "field")
 
 DESCRIPTION = """\
@@ -40,13 +40,13 @@ Arguments behind `--` go to the programs, e.g. `simcore bench mesh -- --quick`.
 
 
 def _room_command(room: str):
-    """Import `sim_core.<room>.command`, or None where that room is not installed."""
+    """Import `sim_core.<room>.cli`, or None where that room is not installed."""
     if room in ELSEWHERE:
         return import_module(ELSEWHERE[room])
     try:
-        return import_module(f"sim_core.{room}.command")
+        return import_module(f"sim_core.{room}.cli")
     except ModuleNotFoundError as error:
-        if error.name in (f"sim_core.{room}", f"sim_core.{room}.command"):
+        if error.name in (f"sim_core.{room}", f"sim_core.{room}.cli"):
             return None
         raise
 

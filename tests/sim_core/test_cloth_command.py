@@ -130,7 +130,7 @@ def test_every_scene_runs_and_says_what_it_cost(name: str, capsys, tmp_path: Pat
 def test_an_interrupted_run_keeps_its_frames_and_goes_on_to_the_same_bits(
     capsys, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from sim_core.cloth import command
+    from sim_core.cloth import cli as command
 
     words = ["flag", "--frames", "8", "--vertices", "200", "--gusts", "0.3", "--seed", "5"]
     summary(capsys, [*words, "--out", str(tmp_path / "whole.npz")])
@@ -188,7 +188,7 @@ def test_a_folder_is_refused_as_a_file_before_anything_runs(capsys, tmp_path: Pa
 
 @pytest.mark.parametrize("name", NAMES)
 def test_code_is_compiled_with_a_scene_of_the_same_loop(name: str) -> None:
-    from sim_core.cloth import WARM
+    from sim_core.cloth.cli import WARM
     from sim_core.cloth.step import Engine
 
     small, whole = (Engine(scene(name, vertices=count).sheet).laned for count in (WARM, None))

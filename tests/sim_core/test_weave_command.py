@@ -21,7 +21,7 @@ def motif(tmp_path):
     ("limit", "reason"), [("MOST_PARTICLES", "more than 100"), ("MOST_WORK", "do not come to rest")]
 )
 def test_a_large_figure_falls_back_to_the_crossings_and_says_so(motif, limit, reason, monkeypatch, capsys):
-    monkeypatch.setattr(f"sim_core.weave.command.{limit}", 100 if limit == "MOST_PARTICLES" else 200_000)
+    monkeypatch.setattr(f"sim_core.weave.cli.{limit}", 100 if limit == "MOST_PARTICLES" else 200_000)
     assert main(["weave", motif, "--relax", "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["note"].startswith("stage A")
