@@ -2,6 +2,7 @@
 
 from sim_core.metrics.compile_time import CompileClock, compile_clock
 from sim_core.metrics.surfaces import (
+    FAR,
     Distances,
     Penetration,
     area_strain,
@@ -14,6 +15,7 @@ from sim_core.metrics.surfaces import (
 from sim_core.metrics.triangles import winding
 
 __all__ = [
+    "FAR",
     "CompileClock",
     "Distances",
     "Penetration",
