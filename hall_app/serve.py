@@ -128,6 +128,7 @@ def _end(number: int, frame: object) -> None:
 
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
     from survey import mount
+    from survey.web import Running
 
     from .house import House
     from .server.app import create_app
@@ -152,7 +153,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
         clip_of=lambda key: _film(house, key),
         offers=OFFERS,
         home=lambda language, exhibit: f"/?lang={language}" + (f"&exhibit={exhibit}" if exhibit else ""),
-        proxies=arguments.proxy,
+        running=Running(proxies=tuple(arguments.proxy)),
     )
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     for problem in survey.problems:

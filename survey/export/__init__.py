@@ -14,7 +14,7 @@ from survey.export.codebook import variables, write_codebook
 from survey.export.csv_file import write_csv
 from survey.export.formats import FORMATS, exported, file_name, put
 from survey.export.json_file import put_rows, put_suggestions, write_json
-from survey.export.r_script import write_r
+from survey.export.r_script import Replication, write_r
 from survey.export.sheet import Sheet, anonymous, of_columns, of_rows, pseudonym, stored_sheet
 from survey.export.sheet import columns as csv_columns
 
@@ -25,6 +25,7 @@ __all__ = [
     "FORMATS",
     "LEFT_OUT",
     "LEVELS",
+    "Replication",
     "Sheet",
     "TooFew",
     "anonymous",

@@ -14,7 +14,17 @@ import pytest
 from openpyxl import load_workbook
 from survey_samples import ASSETS, submission
 
-from survey.export import FORMATS, csv_columns, exported, safe_cell, variables, write_csv, write_json, write_r
+from survey.export import (
+    FORMATS,
+    Replication,
+    csv_columns,
+    exported,
+    safe_cell,
+    variables,
+    write_csv,
+    write_json,
+    write_r,
+)
 from survey.questionnaire import UNSEEN, Answer, read_questionnaire
 from survey.store import Stored
 
@@ -144,7 +154,9 @@ def test_no_answers_make_a_file_all_the_same(kind):
 
 
 def test_the_r_script_names_items_and_choices_and_escapes_names():
-    script = write_r(['a"b', "c"], dropped=["c"], rotation="oblimin", factors=2, missing="pairwise")
+    script = write_r(
+        Replication(['a"b', "c"], dropped=["c"], rotation="oblimin", factors=2, missing="pairwise")
+    )
     assert 'items <- c("a\\"b", "c")' in script
     assert 'dropped <- c("c")' in script
     assert "keep <- 2\n" in script
