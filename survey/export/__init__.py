@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 from survey.export.cells import safe_cell
 from survey.export.codebook import variables, write_codebook
-from survey.export.csv_file import write_csv
 from survey.export.formats import FORMATS, exported, file_name, put
-from survey.export.json_file import put_rows, put_suggestions, write_json
+from survey.export.json_file import put_rows, put_suggestions
 from survey.export.r_script import Replication, write_r
 from survey.export.sheet import Sheet, anonymous, of_columns, of_rows, pseudonym, stored_sheet
 from survey.export.sheet import columns as csv_columns
@@ -43,8 +42,6 @@ __all__ = [
     "stored_sheet",
     "variables",
     "write_codebook",
-    "write_csv",
-    "write_json",
     "write_r",
 ]
 

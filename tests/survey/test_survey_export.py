@@ -21,8 +21,6 @@ from survey.export import (
     exported,
     safe_cell,
     variables,
-    write_csv,
-    write_json,
     write_r,
 )
 from survey.questionnaire import UNSEEN, Answer, read_questionnaire
@@ -85,7 +83,7 @@ def test_plain_text_stays_as_it_is(text):
 @pytest.mark.parametrize("questionnaire", [GARMENT, PLATFORM], ids=["garment", "platform"])
 def test_csv_comes_back_the_same(questionnaire):
     rows = stored(questionnaire)
-    text = write_csv(questionnaire, rows)
+    text = exported("csv", questionnaire, rows).decode()
     assert text.startswith("\ufeff")
     back = list(csv.DictReader(io.StringIO(text.removeprefix("\ufeff"), newline="")))
     scores = [[int(row[item]) if row[item] else None for item in questionnaire.item_ids] for row in back]
@@ -132,7 +130,7 @@ def test_sav_comes_back_with_scores_labels_and_missing_values(questionnaire, tmp
 
 def test_json_holds_the_questionnaire_and_every_answer():
     rows = stored(GARMENT)
-    told = json.loads(write_json(GARMENT, rows))
+    told = json.loads(exported("json", GARMENT, rows))
     assert type(GARMENT).model_validate(told["questionnaire"]) == GARMENT
     assert [list(answer["scores"].values()) for answer in told["answers"]] == given(rows, GARMENT)
     assert [answer["suggestions"]["fabric"] for answer in told["answers"]] == NASTY
