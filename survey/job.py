@@ -96,7 +96,7 @@ def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) ->
     from survey.analysis import AnalysisError, analyse
     from survey.analysis.procedure import Settings, summary
     from survey.errors import AnswerError
-    from survey.scores import dropped, reverse_keyed, stated_groups, stored_scores
+    from survey.scores import context_of, dropped, reverse_keyed, stored_scores
 
     table = stored_scores(whole, archive, texts=False)
     factors = wanted["factors"]
@@ -110,9 +110,10 @@ def _analysed(whole: Questionnaire, archive: Archive, wanted: dict[str, Any]) ->
         seed=wanted["seed"],
         reverse=reverse_keyed(wanted["reverse"], table),
     )
-    told = {"points": whole.points, "unasked": table.unasked, "groups": stated_groups(table.questionnaire)}
     try:
-        return summary(analyse(table.scores, table.items, settings=settings, **told))
+        return summary(
+            analyse(table.scores, table.items, settings=settings, context=context_of(table, whole.points))
+        )
     except AnalysisError as error:
         problem, _, remedy = str(error).partition(" – ")
         raise AnswerError(error.code, problem, remedy or "see survey/README.md") from None

@@ -128,6 +128,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     from hall_app.house.house import House
     from hall_app.web.app import create_app
     from survey import mount
+    from survey.web import Running
 
     _say("Opening the hall …")
 
@@ -149,7 +150,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
         clip_of=lambda key: _film(house, key),
         offers=OFFERS,
         home=lambda language, exhibit: f"/?lang={language}" + (f"&exhibit={exhibit}" if exhibit else ""),
-        proxies=arguments.proxy,
+        running=Running(proxies=tuple(arguments.proxy)),
     )
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     for problem in survey.problems:

@@ -49,7 +49,17 @@ from survey.analysis.errors import (
     WrongShape,
 )
 from survey.analysis.granularity import grim, least_n
-from survey.analysis.procedure import KEYS, Analysis, Group, Scale, Settings, analyse, descriptives, summary
+from survey.analysis.procedure import (
+    KEYS,
+    Analysis,
+    Context,
+    Group,
+    Scale,
+    Settings,
+    analyse,
+    descriptives,
+    summary,
+)
 from survey.analysis.screening import duplicates, hasty, straight_liners
 
 __all__ = [
@@ -64,6 +74,7 @@ __all__ = [
     "Bootstrap",
     "Components",
     "ConstantItem",
+    "Context",
     "Correlation",
     "CrossCheckFailed",
     "DependentItems",

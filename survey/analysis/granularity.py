@@ -9,6 +9,8 @@ from survey.analysis.errors import NotAMean
 
 __all__ = ["grim", "least_n"]
 
+MOST = 10_000  # answers, up to which one number is looked for that makes all means possible
+
 
 def grim(mean: str, n: int, *, items: int = 1, half_up: bool = False) -> bool:
     """Whether n answers of `items` whole numbers each can have this mean, printed with its decimals ("4.46").
@@ -31,9 +33,9 @@ def grim(mean: str, n: int, *, items: int = 1, half_up: bool = False) -> bool:
     return nearest < exact + half or (nearest == exact + half and not half_up)
 
 
-def least_n(means: Sequence[str], *, items: int = 1, most: int = 10_000, half_up: bool = False) -> int | None:
-    """The smallest number of answers with which all the means are possible, None where there is none up to `most`."""
+def least_n(means: Sequence[str], *, items: int = 1, half_up: bool = False) -> int | None:
+    """The smallest number of answers with which all the means are possible, None where there is none up to MOST."""
     fits = (
-        n for n in range(1, most + 1) if all(grim(mean, n, items=items, half_up=half_up) for mean in means)
+        n for n in range(1, MOST + 1) if all(grim(mean, n, items=items, half_up=half_up) for mean in means)
     )
     return next(fits, None)

@@ -68,12 +68,7 @@ def positive(text: str) -> int:
 
 
 def existing_store(args: argparse.Namespace):
-    """The store that the arguments name. Raises SurveyError where none was made yet: no command makes an empty one."""
-    from survey.errors import SurveyError
-    from survey.store import Store
-    from survey.store.database import tables
+    """The store that the arguments name. Raises SurveyError where none was made yet."""
+    from survey.store import existing_store
 
-    file = tables.sqlite_file(where(args))
-    if file is not None and not file.is_file():
-        raise SurveyError(f"{file}: no such store – give --data (or --db) the one that was served")
-    return Store(where(args))
+    return existing_store(where(args))

@@ -58,10 +58,12 @@ def _offers(text: str) -> frozenset[str]:
 
 def _run(args: argparse.Namespace) -> int:
     from survey.questionnaire import content_folder
-    from survey.web import serve, survey_app
+    from survey.web import Running, serve, survey_app
 
     content = content_folder(args.content)
-    app, mounted, problems = survey_app(content, where(args), args.rate, args.offers, args.proxy)
+    app, mounted, problems = survey_app(
+        content, where(args), Running(args.rate, tuple(args.proxy)), args.offers
+    )
     for problem in (*problems, *mounted.hints):
         print(f"survey: {problem}", file=sys.stderr)
     print(f"content {content}: {len(mounted.questionnaires)} questionnaires, {len(problems)} problems")

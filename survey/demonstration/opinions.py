@@ -29,11 +29,11 @@ DELETED = {
 OTHERWISE = {"static_overall": 0.065, "static_drape": 0.135}
 
 
-def primary_opinions(n: int = ROWS, seed: int = SEED) -> NDArray[np.float64]:
-    """(n, 25) what they think of each indicator, before it is made a whole score; the static two as their twins."""
-    rng = np.random.default_rng(seed)
-    ten = rng.normal(size=(n, len(TABLE_3_ITEMS))) @ np.linalg.cholesky(correlation_of_ten()).T
-    own = rng.normal(size=(n, len(primary())))
+def primary_opinions() -> NDArray[np.float64]:
+    """(ROWS, 25) what they think of each indicator, before it is made a whole score; the static two as their twins."""
+    rng = np.random.default_rng(SEED)
+    ten = rng.normal(size=(ROWS, len(TABLE_3_ITEMS))) @ np.linalg.cholesky(correlation_of_ten()).T
+    own = rng.normal(size=(ROWS, len(primary())))
     twin = {item: other for item, other, _ in CLOSE}
     parts = [one.into for one in primary()]
     columns = []
@@ -48,13 +48,13 @@ def primary_opinions(n: int = ROWS, seed: int = SEED) -> NDArray[np.float64]:
     return np.column_stack(columns)
 
 
-def primary_sample(n: int = ROWS, seed: int = SEED) -> NDArray[np.float64]:
-    """(n, 25) whole scores 1–5, in the paper's order of the indicators."""
-    scores = np.clip(np.rint(primary_opinions(n, seed)), 1, 5)
-    rng = np.random.default_rng([seed, 1])
+def primary_sample() -> NDArray[np.float64]:
+    """(ROWS, 25) whole scores 1–5, in the paper's order of the indicators."""
+    scores = np.clip(np.rint(primary_opinions()), 1, 5)
+    rng = np.random.default_rng([SEED, 1])
     for at, one in enumerate(primary()):
         if one.into in OTHERWISE:
-            people = rng.permutation(n)[: round(OTHERWISE[one.into] * n)]
+            people = rng.permutation(ROWS)[: round(OTHERWISE[one.into] * ROWS)]
             step = np.where(rng.integers(2, size=len(people)) == 1, 1.0, -1.0)
             moved = scores[people, at] + step
             scores[people, at] = np.where((moved < 1) | (moved > 5), scores[people, at] - step, moved)

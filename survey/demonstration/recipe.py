@@ -108,20 +108,20 @@ def gappy(table: NDArray[np.float64], share: float, seed: int) -> NDArray[np.flo
     return np.where(np.random.default_rng(seed).random(table.shape) < share, np.nan, table)
 
 
-def annealed_sample(seed: int = SEED, steps: int = STEPS) -> NDArray[np.float64]:
+def annealed_sample() -> NDArray[np.float64]:
     """(20, 12) whole scores 1–5 whose correlations are as near to the twelve's as annealing gets them.
 
     One score changes by one at a time; a worse table is kept with the probability of Metropolis, less and less.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     target = correlation_of_twelve()
     # The spread is as wide as five points allow, so that there are many tables to choose from.
-    table = np.clip(np.rint(3.0 + 1.25 * with_moments(target, N, seed)), 1, 5)
+    table = np.clip(np.rint(3.0 + 1.25 * with_moments(target, N, SEED)), 1, 5)
     unit = np.array([_unit(column) for column in table.T])
     misfit = _misfit(unit, target)
     best, least = table.copy(), misfit
-    for number in range(steps):
-        heat = HOT * (COLD / HOT) ** (number / steps)
+    for number in range(STEPS):
+        heat = HOT * (COLD / HOT) ** (number / STEPS)
         row, item = rng.integers(N), rng.integers(len(ITEMS))
         score = table[row, item] + rng.choice((-1.0, 1.0))
         if not 1 <= score <= 5:

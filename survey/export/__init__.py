@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 from survey.export.cells import safe_cell
 from survey.export.codebook import variables, write_codebook
-from survey.export.csv_file import write_csv
 from survey.export.formats import FORMATS, exported, file_name, put
-from survey.export.json_file import put_rows, put_suggestions, write_json
-from survey.export.r_script import write_r
+from survey.export.json_file import put_rows, put_suggestions
+from survey.export.r_script import Replication, write_r
 from survey.export.sheet import Sheet, anonymous, of_columns, of_rows, pseudonym, stored_sheet
 from survey.export.sheet import columns as csv_columns
 
@@ -25,6 +24,7 @@ __all__ = [
     "FORMATS",
     "LEFT_OUT",
     "LEVELS",
+    "Replication",
     "Sheet",
     "TooFew",
     "anonymous",
@@ -42,8 +42,6 @@ __all__ = [
     "stored_sheet",
     "variables",
     "write_codebook",
-    "write_csv",
-    "write_json",
     "write_r",
 ]
 

@@ -78,6 +78,17 @@ def hide(columns: Columns, heads: Heads, k: int, rng: np.random.Generator) -> Hi
     return Hidden(Anonymity(k, named, n, n - len(rows)), rows, time)
 
 
+@dataclass(frozen=True)
+class _Candidate:
+    """Levels and the answers (n,) that stay with them. loss: how much is made coarse; gone: columns left out."""
+
+    levels: dict[str, int]
+    kept: NDArray[np.bool_]
+    loss: int
+    gone: int
+    suppressed: int
+
+
 def _chosen(
     codes: dict[str, list[NDArray[np.int64]]], n: int, k: int
 ) -> tuple[dict[str, int], NDArray[np.bool_]]:
@@ -88,11 +99,11 @@ def _chosen(
         kept = _shared([codes[column][level] for column, level in chosen.items()], n, k)
         gone = sum(LEVELS[column][level] == LEFT_OUT for column, level in chosen.items())
         loss = sum(_LOSS[column][level] for column, level in chosen.items())
-        found.append((loss, gone, n - int(kept.sum()), chosen, kept))
-    best = min((one for one in found if one[2] == 0), key=lambda one: one[0])
-    rare = [one for one in found if 0 < one[2] <= n // _MOST_SUPPRESSED and one[1] < best[1]]
-    _, _, _, levels, kept = min(rare, key=lambda one: (one[1], one[0], one[2]), default=best)
-    return levels, kept
+        found.append(_Candidate(chosen, kept, loss, gone, n - int(kept.sum())))
+    best = min((one for one in found if one.suppressed == 0), key=lambda one: one.loss)
+    rare = [one for one in found if 0 < one.suppressed <= n // _MOST_SUPPRESSED and one.gone < best.gone]
+    taken = min(rare, key=lambda one: (one.gone, one.loss, one.suppressed), default=best)
+    return taken.levels, taken.kept
 
 
 def _shared(codes: list[NDArray[np.int64]], n: int, k: int) -> NDArray[np.bool_]:

@@ -73,7 +73,19 @@ def variables(questionnaire: Questionnaire) -> list[Variable]:
             gap = None if unseen is None else _both(unseen)
             tags, needs = tuple(item.tags), item.needs or module.needs
             title = _both(module.title)
-            found.append(Variable(item.id, "score", label, title, tags, points, gap, needs, item.reverse))
+            found.append(
+                Variable(
+                    item.id,
+                    "score",
+                    label,
+                    title,
+                    tags,
+                    points,
+                    unseen=gap,
+                    needs=needs,
+                    reverse=item.reverse,
+                )
+            )
     for module in questionnaire.modules:
         if module.suggestion is not None:
             label, title = _both(module.suggestion), _both(module.title)

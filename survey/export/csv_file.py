@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable
 from typing import BinaryIO
 
 from survey.export.cells import safe_cell
-from survey.export.sheet import Sheet, of_rows
-from survey.questionnaire import Questionnaire
-from survey.store import Stored
+from survey.export.sheet import Sheet
 
-__all__ = ["ANONYMITY", "BOM", "put_csv", "write_csv"]
+__all__ = ["ANONYMITY", "BOM", "put_csv"]
 
 BOM = "\ufeff"  # by which Excel knows UTF-8
 ANONYMITY = "_anonymity"  # column that says in every row what was made coarse; no item can be called so
@@ -32,10 +29,3 @@ def put_csv(sheet: Sheet, out: BinaryIO) -> None:
         table.writerow(cells + last)
     text.flush()
     text.detach()
-
-
-def write_csv(questionnaire: Questionnaire, rows: Iterable[Stored]) -> str:
-    """The table as text."""
-    out = io.BytesIO()
-    put_csv(of_rows(questionnaire, rows), out)
-    return out.getvalue().decode()

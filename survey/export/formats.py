@@ -11,7 +11,7 @@ from typing import BinaryIO
 from survey.export.codebook import write_codebook
 from survey.export.csv_file import put_csv
 from survey.export.json_file import put_json
-from survey.export.r_script import write_r
+from survey.export.r_script import Replication, write_r
 from survey.export.sheet import Sheet, of_rows
 from survey.export.spss import put_sav
 from survey.export.xlsx import put_xlsx
@@ -47,12 +47,14 @@ def _script(asked: Questionnaire, k: int | None) -> str:
         f"module_{module.id}": [item.id for item in asked.items_of(module)] for module in asked.modules
     }
     return write_r(
-        asked.item_ids,
-        file=file_name("csv", asked, k),
-        name=file_name("r", asked, k),
-        reverse=asked.reverse_keyed,
-        turn=asked.points + 1,
-        scales=modules,
+        Replication(
+            asked.item_ids,
+            file=file_name("csv", asked, k),
+            name=file_name("r", asked, k),
+            reverse=asked.reverse_keyed,
+            turn=asked.points + 1,
+            scales=modules,
+        )
     )
 
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from typing import Any, BinaryIO
 
-from survey.export.sheet import Record, Sheet, of_rows
-from survey.questionnaire import META_COLUMNS, NOT_ASKED, Questionnaire
-from survey.store import Stored
+from survey.export.sheet import Record, Sheet
+from survey.questionnaire import META_COLUMNS, NOT_ASKED
 
-__all__ = ["put_json", "put_rows", "put_suggestions", "write_json"]
+__all__ = ["put_json", "put_rows", "put_suggestions"]
 
 
 def put_json(sheet: Sheet, out: BinaryIO) -> None:
@@ -28,13 +26,6 @@ def put_json(sheet: Sheet, out: BinaryIO) -> None:
     for number, answer in enumerate(_answers(sheet)):
         out.write((",\n  " if number else "\n  ").encode() + _indented(answer, 2).encode())
     out.write(b"]\n}\n" if number < 0 else b"\n ]\n}\n")
-
-
-def write_json(questionnaire: Questionnaire, rows: Iterable[Stored]) -> str:
-    """The file's text."""
-    out = io.BytesIO()
-    put_json(of_rows(questionnaire, rows), out)
-    return out.getvalue().decode()
 
 
 def put_rows(sheet: Sheet, out: BinaryIO) -> None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from survey.export.cells import safe_cell
 
-__all__ = ["write_r"]
+__all__ = ["Replication", "write_r"]
 
 _SCRIPT = r"""# Repeats `survey analyse` in R.   Rscript @NAME@ [answers.csv [out.json]]
 # install.packages(c("psych", "GPArotation", "jsonlite"))
@@ -105,35 +106,41 @@ if (length(given) > 1)
 """
 
 
-def write_r(
-    items: Sequence[str],
-    *,
-    file: str = "answers.csv",
-    name: str = "analysis.R",
-    dropped: Sequence[str] = (),
-    rotation: str = "varimax",
-    factors: int | str = "kaiser",
-    missing: str = "listwise",
-    method: str = "pearson",
-    reverse: Sequence[str] = (),
-    turn: float = 0.0,
-    scales: Mapping[str, Sequence[str]] | None = None,
-) -> str:
-    """The script's text. file: the CSV that it reads by default. Arguments as `survey analyse` takes them.
+@dataclass(frozen=True)
+class Replication:
+    """What the script is to repeat, as `survey analyse` takes it.
 
-    turn: lowest + highest point, what a reversed score is taken from. scales: name → items stated to belong together.
+    file: the CSV that it reads by default; name: its own. turn: lowest + highest point, what a reversed score is taken
+    from. scales: name → items stated to belong together.
     """
-    if isinstance(factors, int):
-        keep = str(factors)
-    elif factors == "kaiser":
+
+    items: Sequence[str]
+    file: str = "answers.csv"
+    name: str = "analysis.R"
+    dropped: Sequence[str] = ()
+    rotation: str = "varimax"
+    factors: int | str = "kaiser"
+    missing: str = "listwise"
+    method: str = "pearson"
+    reverse: Sequence[str] = ()
+    turn: float = 0.0
+    scales: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+
+def write_r(wanted: Replication) -> str:
+    """The script's text."""
+    if isinstance(wanted.factors, int):
+        keep = str(wanted.factors)
+    elif wanted.factors == "kaiser":
         keep = "sum(values > 1)"
     else:
         keep = 'max(1, fa.parallel(r, n.obs = n, fa = "pc", quant = .95, plot = FALSE)$ncomp)'
+    scales = [f"{_strings([name])} = c({_strings(items)})" for name, items in wanted.scales.items()]
     filled = {
-        "NAME": name, "FILE": file, "ITEMS": _strings(items), "GUARDED": _strings(map(safe_cell, items)),
-        "DROPPED": _strings(dropped), "MISSING": missing, "METHOD": method, "ROTATION": rotation, "KEEP": keep,
-        "REVERSED": _strings(reverse), "TURN": f"{turn:.17g}",
-        "SCALES": ", ".join(f"{_strings([name])} = c({_strings(items)})" for name, items in (scales or {}).items()),
+        "NAME": wanted.name, "FILE": wanted.file, "ITEMS": _strings(wanted.items),
+        "GUARDED": _strings(map(safe_cell, wanted.items)), "DROPPED": _strings(wanted.dropped),
+        "MISSING": wanted.missing, "METHOD": wanted.method, "ROTATION": wanted.rotation, "KEEP": keep,
+        "REVERSED": _strings(wanted.reverse), "TURN": f"{wanted.turn:.17g}", "SCALES": ", ".join(scales),
     }  # fmt: skip
     # All at once: a column's name that looks like one of our marks stays as it is.
     return re.sub(r"@([A-Z]+)@", lambda mark: filled[mark[1]], _SCRIPT)

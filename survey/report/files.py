@@ -12,7 +12,7 @@ from pathlib import Path
 from survey.analysis import Analysis
 from survey.analysis.procedure import descriptives, summary
 from survey.errors import SurveyError
-from survey.export import safe_cell, write_r
+from survey.export import Replication, safe_cell, write_r
 from survey.report.chapters import Further
 from survey.report.page import Part, build
 from survey.scores import ScoreTable
@@ -67,16 +67,20 @@ def _scores(table: ScoreTable) -> str:
 def _repeated(analysis: Analysis) -> str:
     chosen = analysis.settings
     return write_r(
-        analysis.items,
-        file="scores.csv",
-        dropped=analysis.dropped,
-        rotation=chosen.rotation,
-        factors=chosen.factors,
-        missing=chosen.missing,
-        method=chosen.method,
-        reverse=analysis.turned.items,
-        turn=analysis.turned.total,
-        scales={
-            f"{scale.kind}_{scale.key}": scale.items for scale in analysis.scales if scale.kind != "component"
-        },
+        Replication(
+            analysis.items,
+            file="scores.csv",
+            dropped=analysis.dropped,
+            rotation=chosen.rotation,
+            factors=chosen.factors,
+            missing=chosen.missing,
+            method=chosen.method,
+            reverse=analysis.turned.items,
+            turn=analysis.turned.total,
+            scales={
+                f"{scale.kind}_{scale.key}": scale.items
+                for scale in analysis.scales
+                if scale.kind != "component"
+            },
+        )
     )

@@ -7,6 +7,7 @@ them from the store or a synthetic sample, and says which of their items to drop
 from survey.scores.columns import Choice, no_items
 from survey.scores.csv_table import SECONDS, ScoreTable, read_column, read_scores
 from survey.scores.sources import (
+    context_of,
     dropped,
     listed,
     load_scores,
@@ -23,6 +24,7 @@ __all__ = [
     "SECONDS",
     "Choice",
     "ScoreTable",
+    "context_of",
     "dropped",
     "listed",
     "load_scores",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
@@ -15,14 +15,14 @@ from survey.errors import SurveyError
 from survey.questionnaire import Questionnaire, content_folder, find_questionnaire_file, read_questionnaire
 from survey.scores.columns import Choice
 from survey.scores.csv_table import ScoreTable, read_scores
-from survey.store import Store
-from survey.store.database import tables
+from survey.store import Store, existing_store
 
 if TYPE_CHECKING:
-    from survey.analysis.procedure import Group
+    from survey.analysis import Context, Group
     from survey.store.answers import Archive
 
 __all__ = [
+    "context_of",
     "dropped",
     "listed",
     "load_scores",
@@ -45,15 +45,8 @@ def open_stored(
     version: an earlier one; None: the file's. Raises SurveyError where there is no store yet, or no such version.
     """
     questionnaire = find_questionnaire_file(content, key)
-    # Reading must not make an empty store: a mistyped folder would look like a survey without answers.
-    file = tables.sqlite_file(where)
-    if file is not None and not file.is_file():
-        raise SurveyError(f"{file}: no such store – give --data (or --db) the one that was served")
-    store = Store(where)
-    try:
+    with closing(existing_store(where)) as store:
         yield _as_asked(questionnaire, version, store), store
-    finally:
-        store.close()
 
 
 def _as_asked(questionnaire: Questionnaire, version: int | None, store: Store) -> Questionnaire:
@@ -210,9 +203,16 @@ def sample_scores(name: str, content: Path | None) -> ScoreTable:
     )
 
 
+def context_of(table: ScoreTable, points: int | None) -> Context:
+    """What is known of a table's scores beside them. points: of the scale, None: any number is a score."""
+    from survey.analysis import Context
+
+    return Context(table.seconds, points, table.unasked, stated_groups(table.questionnaire), table.aside)
+
+
 def stated_groups(questionnaire: Questionnaire | None) -> tuple[Group, ...]:
     """The items of each module, and of each dimension across the modules, in the order in which they are stated."""
-    from survey.analysis.procedure import Group
+    from survey.analysis import Group
 
     if questionnaire is None:
         return ()

@@ -10,7 +10,7 @@ from survey.store.audit import Audit
 from survey.store.commit import Receipt
 from survey.store.erasure import Overdue
 from survey.store.publication import Public
-from survey.store.store import PATIENCE, Store
+from survey.store.store import PATIENCE, Store, existing_store
 from survey.store.tokens import TOKEN_DAYS, Token, Tokens
 
 __all__ = [
@@ -25,4 +25,5 @@ __all__ = [
     "Stored",
     "Token",
     "Tokens",
+    "existing_store",
 ]

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 
 from sqlalchemy import Connection, select, update
 
-from survey.store.commit import now
-from survey.store.database import tables
+from survey.store.database import Session, in_utc, now, tables
 
-__all__ = ["Audit", "Entry", "in_utc", "note", "note_withdrawal"]
-
-Session = Callable[[], AbstractContextManager[Connection]]
+__all__ = ["Audit", "Entry", "note", "note_withdrawal"]
 
 
 @dataclass(frozen=True)
@@ -74,9 +69,3 @@ class Audit:
         with self._read() as connection:
             found = connection.execute(query).scalar()
         return None if found is None else in_utc(found)
-
-
-def in_utc(at: datetime) -> datetime:
-    """A time as the database gives it."""
-    # SQLite gives the time back without its zone; it was written in UTC.
-    return at.astimezone(UTC) if at.tzinfo else at.replace(tzinfo=UTC)

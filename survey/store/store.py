@@ -11,12 +11,12 @@ from pathlib import Path
 
 from sqlalchemy import Connection, Engine, func, select, update
 
-from survey.errors import AnswerError
+from survey.errors import AnswerError, SurveyError
 from survey.questionnaire import Answer, Questionnaire
 from survey.store.answers import Stored, given_answer, standing, stored_rows
-from survey.store.audit import Audit, in_utc, note
-from survey.store.commit import Entry, Receipt, Writer, commit_batch, freeze_version, now
-from survey.store.database import Place, explained, tables, write_copy
+from survey.store.audit import Audit, note
+from survey.store.commit import Entry, Receipt, Writer, commit_batch, freeze_version
+from survey.store.database import Place, explained, in_utc, now, tables, write_copy
 from survey.store.erasure import (
     Erased,
     Eraser,
@@ -33,7 +33,7 @@ from survey.store.erasure import (
 from survey.store.publication import Public, Publishing, forget
 from survey.store.tokens import Tokens
 
-__all__ = ["PATIENCE", "Receipt", "Store"]
+__all__ = ["PATIENCE", "Store", "existing_store"]
 
 PATIENCE = 5.0  # seconds that are waited for the last bytes of something erased to be gone from the files
 OPENING = 2.0  # the same when a store is opened: a command need not wait for whoever reads
@@ -289,6 +289,17 @@ class Store:
             self._place.check()
             with self._engine.connect() as connection:
                 yield connection
+
+
+def existing_store(where: Path | str) -> Store:
+    """The store in a data folder or a database. Raises SurveyError where none was made yet.
+
+    Reading must not make an empty one: a mistyped folder would look like a survey without answers.
+    """
+    file = tables.sqlite_file(where)
+    if file is not None and not file.is_file():
+        raise SurveyError(f"{file}: no such store – give --data (or --db) the one that was served")
+    return Store(where)
 
 
 _OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))

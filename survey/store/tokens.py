@@ -5,23 +5,19 @@ from __future__ import annotations
 import hashlib
 import hmac
 import secrets
-from collections.abc import Callable
-from contextlib import AbstractContextManager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, datetime, timedelta
 
-from sqlalchemy import Connection, delete, select, update
+from sqlalchemy import delete, select, update
 
 from survey.errors import AnswerError, StoreError
-from survey.store.audit import in_utc, note
-from survey.store.commit import now
-from survey.store.database import tables
+from survey.store.audit import note
+from survey.store.database import Session, in_utc, now, tables
 
 __all__ = ["TOKEN_DAYS", "Token", "Tokens"]
 
 TOKEN_DAYS = 90  # a token is good for so long unless told: a study's analysis, not its researcher's career
-
-Session = Callable[[], AbstractContextManager[Connection]]
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,18 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from survey.web.mounting import Mounted, mount
+    from survey.web.privacy import Running
     from survey.web.service import serve, survey_app
 
-__all__ = ["Mounted", "mount", "serve", "survey_app"]
+__all__ = ["Mounted", "Running", "mount", "serve", "survey_app"]
 
-_LATE = {"Mounted": "mounting", "mount": "mounting", "serve": "service", "survey_app": "service"}
+_LATE = {
+    "Running": "privacy",
+    "Mounted": "mounting",
+    "mount": "mounting",
+    "serve": "service",
+    "survey_app": "service",
+}
 
 
 def __getattr__(name: str) -> object:

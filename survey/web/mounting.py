@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -104,21 +104,20 @@ def mount(
     content: Path,
     data: Path | str,
     problems: list[Problem] | None = None,
-    per_minute: int | None = None,
+    running: Running | None = None,
     clip_of: ClipOf | None = None,
     offers: Offers = None,
     home: Home | None = None,
-    proxies: Sequence[str] | None = None,
 ) -> Mounted:
     """Add the API (/api/v1/…), the form page (/questionnaires/…) and the record of processing (/privacy) to an app.
 
     content: folder that holds questionnaires/*.toml. data: data folder, or a database URL.
     problems: where to report what is wrong; the good questionnaires are served then. Without it, the first
     problem raises QuestionnaireError naming file and key. Raises StoreError when the store cannot be opened.
-    per_minute: new answers that one address may give in a minute; 0: any number; None: the usual.
+    running: how the app is started: new answers that one address may give in a minute, None: the usual; proxies whose
+    word on visitors' addresses it believes, for the record alone.
     clip_of: the film of an exhibit, shown beside items on motion. offers: which of questionnaire.NEEDS the place has;
     what needs another is not asked, None: everything is. home: where a visitor goes on from the thanks page.
-    proxies: whose word on visitors' addresses the app believes, for the record alone; None: not known.
     """
     from survey.web.api import Jobs, Limit, router
     from survey.web.form import form_router
@@ -127,9 +126,10 @@ def mount(
     questionnaires = QuestionnaireFolder(content, patience=PATIENCE)
     if problems is None and questionnaires.problems:
         raise QuestionnaireError(questionnaires.problems)
-    limit = Limit() if per_minute is None else Limit(per_minute)
-    running = Running(limit.per_minute, None if proxies is None else tuple(proxies))
-    mounted = Mounted(Store(data), questionnaires, Jobs(data), content, offers, running)
+    started = running or Running()
+    limit = Limit() if started.per_minute is None else Limit(started.per_minute)
+    started = replace(started, per_minute=limit.per_minute)
+    mounted = Mounted(Store(data), questionnaires, Jobs(data), content, offers, started)
     found = mounted.problems
     if problems is not None:
         problems.extend(found)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from survey.errors import Problem, SurveyError
 from survey.questionnaire import Offers
 from survey.web.mounting import Mounted, mount
+from survey.web.privacy import Running
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -24,9 +25,8 @@ PARTING = 3  # seconds that requests under way have left when the service is end
 def survey_app(
     content: Path,
     data: Path | str,
-    per_minute: int | None = None,
+    running: Running,
     offers: Offers = None,
-    proxies: Sequence[str] = (),
 ) -> tuple[FastAPI, Mounted, list[Problem]]:
     """An app with the API, the form pages and nothing else; the problems of left-out questionnaires."""
     from fastapi import FastAPI
@@ -47,9 +47,8 @@ def survey_app(
         content=content,
         data=data,
         problems=problems,
-        per_minute=per_minute,
+        running=running,
         offers=offers,
-        proxies=proxies,
     )
 
     @app.get("/", include_in_schema=False)

@@ -14,7 +14,15 @@ import pytest
 from openpyxl import load_workbook
 from survey_samples import ASSETS, submission
 
-from survey.export import FORMATS, csv_columns, exported, safe_cell, variables, write_csv, write_json, write_r
+from survey.export import (
+    FORMATS,
+    Replication,
+    csv_columns,
+    exported,
+    safe_cell,
+    variables,
+    write_r,
+)
 from survey.questionnaire import UNSEEN, Answer, read_questionnaire
 from survey.store import Stored
 
@@ -75,7 +83,7 @@ def test_plain_text_stays_as_it_is(text):
 @pytest.mark.parametrize("questionnaire", [GARMENT, PLATFORM], ids=["garment", "platform"])
 def test_csv_comes_back_the_same(questionnaire):
     rows = stored(questionnaire)
-    text = write_csv(questionnaire, rows)
+    text = exported("csv", questionnaire, rows).decode()
     assert text.startswith("\ufeff")
     back = list(csv.DictReader(io.StringIO(text.removeprefix("\ufeff"), newline="")))
     scores = [[int(row[item]) if row[item] else None for item in questionnaire.item_ids] for row in back]
@@ -122,7 +130,7 @@ def test_sav_comes_back_with_scores_labels_and_missing_values(questionnaire, tmp
 
 def test_json_holds_the_questionnaire_and_every_answer():
     rows = stored(GARMENT)
-    told = json.loads(write_json(GARMENT, rows))
+    told = json.loads(exported("json", GARMENT, rows))
     assert type(GARMENT).model_validate(told["questionnaire"]) == GARMENT
     assert [list(answer["scores"].values()) for answer in told["answers"]] == given(rows, GARMENT)
     assert [answer["suggestions"]["fabric"] for answer in told["answers"]] == NASTY
@@ -144,7 +152,9 @@ def test_no_answers_make_a_file_all_the_same(kind):
 
 
 def test_the_r_script_names_items_and_choices_and_escapes_names():
-    script = write_r(['a"b', "c"], dropped=["c"], rotation="oblimin", factors=2, missing="pairwise")
+    script = write_r(
+        Replication(['a"b', "c"], dropped=["c"], rotation="oblimin", factors=2, missing="pairwise")
+    )
     assert 'items <- c("a\\"b", "c")' in script
     assert 'dropped <- c("c")' in script
     assert "keep <- 2\n" in script

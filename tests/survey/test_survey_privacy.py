@@ -18,7 +18,7 @@ from survey import Answer, Store, read_questionnaire
 from survey.cli import main
 from survey.web import privacy
 from survey.web.form import words
-from survey.web.privacy import CONTROLLER_FILE, Controller, read_controller
+from survey.web.privacy import CONTROLLER_FILE, Controller, Running, read_controller
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 WHOLE = """\
@@ -44,9 +44,15 @@ def content(tmp_path) -> Path:
     return folder
 
 
-def shown(content: Path, data: Path, language: str = "en", base: str = "http://testserver", **options) -> str:
+def shown(
+    content: Path,
+    data: Path,
+    language: str = "en",
+    base: str = "http://testserver",
+    running: Running | None = None,
+) -> str:
     app = FastAPI()
-    mounted = survey.mount(app, content=content, data=data, problems=[], **options)
+    mounted = survey.mount(app, content=content, data=data, problems=[], running=running)
     with closing(mounted), TestClient(app, base_url=base) as client:
         reply = client.get(f"/privacy?lang={language}")
     assert reply.status_code == 200
@@ -94,18 +100,18 @@ def test_who_answers_for_it_is_named_and_escaped(content, tmp_path, language, na
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("running", "told"),
     [
-        ({"per_minute": 7}, "At most 7 new answers a minute"),
-        ({"per_minute": 0}, "no limit on answers"),
-        ({}, "At most 300 new answers a minute"),
-        ({"proxies": []}, "No proxy is believed"),
-        ({"proxies": ["10.0.0.2", "10.0.0.3"]}, "believed on where visitors come from: 2"),
-        ({}, "not known to this page"),
+        (Running(per_minute=7), "At most 7 new answers a minute"),
+        (Running(per_minute=0), "no limit on answers"),
+        (None, "At most 300 new answers a minute"),
+        (Running(proxies=()), "No proxy is believed"),
+        (Running(proxies=("10.0.0.2", "10.0.0.3")), "believed on where visitors come from: 2"),
+        (None, "not known to this page"),
     ],
 )
-def test_the_settings_are_those_of_the_running_service(content, tmp_path, options, told):
-    assert told in shown(content, tmp_path / "data", **options)
+def test_the_settings_are_those_of_the_running_service(content, tmp_path, running, told):
+    assert told in shown(content, tmp_path / "data", running=running)
 
 
 def test_the_store_is_told_of_as_it_is(content, tmp_path):

@@ -18,7 +18,7 @@ import pytest
 from survey_samples import ASSETS, given, likert_sample, submission
 
 from survey import Answer
-from survey.analysis import Settings, analyse
+from survey.analysis import Context, Settings, analyse
 from survey.analysis.procedure import KEYS
 from survey.cli import main
 from survey.demonstration import with_moments
@@ -174,7 +174,7 @@ def test_a_dimension_may_be_reverse_keyed_and_is_a_scale_across_the_modules():
 def test_turned_scores_are_low_plus_high_minus_score_and_gaps_stay():
     table = likert_sample(50, 3)
     table[4, 1] = np.nan
-    found = analyse(table, settings=Settings(reverse=("item_2",)), points=7)
+    found = analyse(table, settings=Settings(reverse=("item_2",)), context=Context(points=7))
     assert np.array_equal(found.table[:, 1], 8 - table[:, 1], equal_nan=True)
     assert np.array_equal(found.table[:, 0], table[:, 0])
     assert found.mean[1] == pytest.approx(8 - np.nanmean(table[:, 1]))
@@ -253,8 +253,7 @@ def turned_report(tmp_path):
         scores,
         names,
         settings=Settings(reverse=(names[3],), factors=3),
-        points=5,
-        groups=stated_groups(asked),
+        context=Context(points=5, groups=stated_groups(asked)),
     )
     write_report(tmp_path, ScoreTable(scores, names, questionnaire=asked), found)
     return tmp_path, found

@@ -17,7 +17,7 @@ import pytest
 from survey_samples import ASSETS
 
 import survey.report
-from survey.analysis import Settings, analyse, varimax
+from survey.analysis import Context, Settings, analyse, varimax
 from survey.analysis.procedure import profile
 from survey.cli import main
 from survey.questionnaire import read_questionnaire
@@ -273,7 +273,7 @@ def test_the_chinese_report_says_its_notes_in_chinese():
         Settings(bootstrap=50, missing="pairwise"),
         Settings(drop=(GARMENT.item_ids[3],), draws=0),
     ):
-        found = analyse(scores, GARMENT.item_ids, settings=settings, points=GARMENT.points)
+        found = analyse(scores, GARMENT.item_ids, settings=settings, context=Context(points=GARMENT.points))
         assert [note.form for note in found.notes if note.code == "off_scale"] == ["", "unseen"]
         say = Words("zh", GARMENT)
         for note in found.notes:

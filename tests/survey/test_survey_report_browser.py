@@ -7,7 +7,7 @@ import pytest
 from full_matrix import by_day
 from survey_samples import ASSETS
 
-from survey.analysis import Settings, analyse
+from survey.analysis import Context, Settings, analyse
 from survey.questionnaire import read_questionnaire
 from survey.report import Part, write_report
 from survey.scores import ScoreTable, sample_scores, stated_groups
@@ -33,7 +33,7 @@ def reports(tmp_path_factory):
             table.scores,
             table.items,
             settings=Settings(bootstrap=100),
-            groups=stated_groups(table.questionnaire),
+            context=Context(groups=stated_groups(table.questionnaire)),
         )
         parts = [Part(one, one.questionnaire) for one in beside if one.questionnaire is not None]
         write_report(folder / name, table, found, parts)

@@ -15,7 +15,7 @@ from openpyxl import load_workbook
 from survey_samples import ASSETS, likert_sample, submission
 
 from survey import Answer
-from survey.analysis import Settings, analyse, summary
+from survey.analysis import Context, Settings, analyse, summary
 from survey.analysis.procedure import KEYS
 from survey.cli import main
 from survey.export import FORMATS
@@ -128,7 +128,9 @@ def test_every_choice_of_the_analysis_reaches_it(hall, researcher):
     ):
         reply = hall.client.get(f"{BASE}/garment/analysis", params=query, headers=researcher)
         groups = stated_groups(hall.garment)
-        wanted = summary(analyse(stored, hall.garment.item_ids, settings=settings, groups=groups))
+        wanted = summary(
+            analyse(stored, hall.garment.item_ids, settings=settings, context=Context(groups=groups))
+        )
         assert reply.json() == json.loads(json.dumps(wanted)), query
 
 

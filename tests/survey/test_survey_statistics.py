@@ -14,6 +14,7 @@ from survey_samples import given, likert_sample, paper_sample
 from survey.analysis import (
     AllEqual,
     ConstantItem,
+    Context,
     NotAMean,
     NotPositiveDefinite,
     Settings,
@@ -457,7 +458,7 @@ def test_straight_lines_doubles_and_haste_are_named_and_nothing_is_deleted():
     assert straight_liners(table).tolist() == [4, 9]
     assert [group.tolist() for group in duplicates(table)] == [[20, 30], [40, 41]]
     assert hasty(table, seconds).tolist() == [3, 9]
-    found = analyse(table, seconds=seconds)
+    found = analyse(table, context=Context(seconds=seconds))
     notes = {note.code: note.message for note in found.notes}
     assert "number 5, 10" in notes["straight_line"]
     assert "21 = 31; 41 = 42" in notes["duplicate_answer"]

@@ -17,8 +17,8 @@ from survey import Answer, read_questionnaire
 from survey.errors import AnswerError, StoreError
 from survey.questionnaire import Questionnaire
 from survey.store import Receipt, Store, migrations
-from survey.store.commit import BATCH_SIZE, Writer, now
-from survey.store.database import HEAD, tables
+from survey.store.commit import BATCH_SIZE, Writer
+from survey.store.database import HEAD, now, tables
 
 GARMENT = read_questionnaire(ASSETS / "questionnaires" / "garment.toml")
 

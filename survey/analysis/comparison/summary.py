@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from survey.analysis.comparison.differences import Comparison, Difference, Effect
+from survey.analysis.plain_data import warnings
 
 __all__ = ["comparison_printed", "comparison_summary"]
 
@@ -16,9 +17,7 @@ def comparison_summary(found: Comparison) -> dict[str, Any]:
         "by": found.by,
         "groups": [{"name": name, "n": n} for name, n in zip(found.groups, found.n, strict=True)],
         "items": [_item(one) for one in found.items],
-        "warnings": [
-            {"code": note.code, "items": list(note.items), "message": note.message} for note in found.notes
-        ],
+        "warnings": warnings(found.notes),
     }
 
 

@@ -5,7 +5,6 @@ and rotation, and intervals by `resampling`.
 """
 
 from survey.analysis.components.extraction import (
-    ROTATIONS,
     Components,
     Rotation,
     eigenvalues,
@@ -39,7 +38,6 @@ from survey.analysis.components.sampling_adequacy import (
 )
 
 __all__ = [
-    "ROTATIONS",
     "STARTS",
     "Adequacy",
     "Average",

@@ -14,7 +14,6 @@ from survey.analysis.components.orthogonal_rotation import varimax
 from survey.analysis.errors import NoComponents, WrongShape
 
 __all__ = [
-    "ROTATIONS",
     "Components",
     "Rotation",
     "eigenvalues",
@@ -25,7 +24,6 @@ __all__ = [
 ]
 
 Rotation = Literal["varimax", "oblimin", "none"]
-ROTATIONS: tuple[Rotation, ...] = ("varimax", "oblimin", "none")
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,7 @@ STEPS = 1500
 STARTS = 4
 
 
-def oblimin(
-    loadings: ArrayLike, *, attempts: int = STARTS
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def oblimin(loadings: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Pattern (p, k) and correlations of the components (k, k) at the least quartimin criterion.
 
     Columns are sorted by the sum of squares they explain, Σ over items of pattern × structure, largest first, each
@@ -37,7 +35,7 @@ def oblimin(
     length = row_lengths(start)
     unit = start / length
     # Varimax is close to the end when components correlate little; random starts find other minima.
-    turns = [np.linalg.lstsq(unit, varimax(start) / length, rcond=None)[0], *starts(start.shape[1], attempts)]
+    turns = [np.linalg.lstsq(unit, varimax(start) / length, rcond=None)[0], *starts(start.shape[1], STARTS)]
     ends = [end for turn in turns if (end := _descend(unit, turn)) is not None]
     if not ends:
         raise NotConverged(f"oblimin moves on after {STEPS} steps – the components may be too many")

@@ -118,7 +118,8 @@ def parameters_of(
     places += [(1, cell) for cell in structure.factors] + [(2, cell) for cell in structure.residuals]
     free = dict(zip(places, errors, strict=True))
     out = []
-    for kind, (row, col), left, op, right in _listed(structure):
+    for one in _listed(structure):
+        kind, (row, col) = one.matrix, one.cell
         moved = slopes[:, kind, row, col]
         error = float(np.sqrt(max(moved @ variance @ moved, 0.0)))
         value = float(made[kind][row, col])
@@ -126,7 +127,9 @@ def parameters_of(
         standard = standard or Standard(value, np.nan, np.nan, np.nan)
         estimate = float(raw[kind][row, col])
         out.append(
-            Parameter(left, op, right, estimate, float(free.get((kind, (row, col)), np.nan)), standard)
+            Parameter(
+                one.left, one.op, one.right, estimate, float(free.get((kind, (row, col)), np.nan)), standard
+            )
         )
     return out
 
@@ -136,21 +139,32 @@ def _interval(value: float, error: float) -> tuple[float, float]:
     return value - half, value + half
 
 
-def _listed(structure: Structure) -> Iterator[tuple[int, tuple[int, int], str, Op, str]]:
-    """(matrix, cell, left, op, right) of every parameter, fixed ones too, in the order in which people read them."""
+@dataclass(frozen=True)
+class _Place:
+    """Where `left op right` stands: matrix 0 is Λ, 1 Φ, 2 Θ; cell (row, column)."""
+
+    matrix: int
+    cell: tuple[int, int]
+    left: str
+    op: Op
+    right: str
+
+
+def _listed(structure: Structure) -> Iterator[_Place]:
+    """Every parameter, fixed ones too, in the order in which people read them."""
     items, names = structure.items, structure.model.names
     place, order = ({name: at for at, name in enumerate(known)} for known in (items, names))
     for name, own in structure.model.factors:
         for item in own:
-            yield 0, (place[item], order[name]), name, "=~", item
+            yield _Place(0, (place[item], order[name]), name, "=~", item)
     for a, b in structure.model.correlated:
-        yield 1, (order[b], order[a]), a, "~~", b
+        yield _Place(1, (order[b], order[a]), a, "~~", b)
     for a, b in structure.model.residuals:
-        yield 2, (place[a], place[b]), a, "~~", b
+        yield _Place(2, (place[a], place[b]), a, "~~", b)
     for name, at in order.items():
-        yield 1, (at, at), name, "~~", name
+        yield _Place(1, (at, at), name, "~~", name)
     for item, at in place.items():
-        yield 2, (at, at), item, "~~", item
+        yield _Place(2, (at, at), item, "~~", item)
 
 
 def _slopes(structure: Structure, theta: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -90,8 +90,9 @@ def _of_amounts(found: Likelihood, model: Measurement, rows: int, notes: list[No
     notes = _few(found.seen.n, kind, structure) + notes + _improper(structure, theta)
     loads, factors, _ = standardised(structure, theta)
     return Confirmation(
-        model, kind, found.seen.n, rows, found.fit, tuple(parameters), loads, factors, residual, found.hints,
-        tuple(notes + _freedom(found.fit.df)),
+        model=model, estimator=kind, n=found.seen.n, rows=rows, fit=found.fit, parameters=tuple(parameters),
+        loadings=loads, factors=factors, residual=residual, hints=found.hints,
+        notes=tuple(notes + _freedom(found.fit.df)),
     )  # fmt: skip
 
 
@@ -114,9 +115,9 @@ def _of_categories(
         notes.append(Note("indefinite", (), text, {}))
     loads, factors, _ = standardised(structure, theta)
     return Confirmation(
-        model, "dwls", seen.n, rows, found.fit, tuple(parameters), loads, factors,
-        seen.r - _correlations(structure, theta), found.hints, tuple(notes + _freedom(found.fit.df)),
-        found.scaled, found.factor, found.shift,
+        model=model, estimator="dwls", n=seen.n, rows=rows, fit=found.fit, parameters=tuple(parameters),
+        loadings=loads, factors=factors, residual=seen.r - _correlations(structure, theta), hints=found.hints,
+        notes=tuple(notes + _freedom(found.fit.df)), scaled=found.scaled, factor=found.factor, shift=found.shift,
     )  # fmt: skip
 
 

@@ -49,14 +49,17 @@ def fit_of(tested: Tested, base: Tested, n: float, srmr: float) -> Fit:
     most = max(over, over_base)
     cfi = 1.0 - over / most if most > 0.0 else 1.0
     if df == 0:
-        return Fit(value, 0, None, cfi, 1.0, 0.0, 0.0, 0.0, None, srmr, base)
+        return Fit(
+            value, 0, p=None, cfi=cfi, tli=1.0, rmsea=0.0, rmsea_low=0.0, rmsea_high=0.0, close=None, srmr=srmr,
+            base=base,
+        )  # fmt: skip
     slack = base.chi2 - base.df
     tli = 1.0 - (value - df) * base.df / (df * slack) if slack != 0.0 else 1.0
     low, high = (_noncentrality(value, df, level) for level in ((1.0 + LEVEL) / 2, (1.0 - LEVEL) / 2))
     rmsea, low, high = ((part / (df * n)) ** 0.5 for part in (over, low, high))
     return Fit(
-        value, df, float(chdtrc(df, value)), cfi, tli, rmsea, low, high,
-        1.0 - float(chndtr(value, df, n * df * CLOSE**2)), srmr, base,
+        value, df, p=float(chdtrc(df, value)), cfi=cfi, tli=tli, rmsea=rmsea, rmsea_low=low, rmsea_high=high,
+        close=1.0 - float(chndtr(value, df, n * df * CLOSE**2)), srmr=srmr, base=base,
     )  # fmt: skip
 
 

@@ -74,7 +74,10 @@ def likelihood(
         n,
         _srmr(marker.implied(theta[:q]), mean, free, seen.whole),
     )
-    return Likelihood(marker, theta[:q], variance[:q, :q], mean, mean_variance, fit, free, seen, hints)
+    return Likelihood(
+        marker, theta[:q], variance[:q, :q], mean=mean, mean_variance=mean_variance, fit=fit, free=free, seen=seen,
+        hints=hints,
+    )  # fmt: skip
 
 
 class _Misfit:

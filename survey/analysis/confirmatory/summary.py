@@ -9,6 +9,7 @@ import numpy as np
 
 from survey.analysis.confirmatory.confirmation import Confirmation, Parameter
 from survey.analysis.confirmatory.fit_indices import Fit
+from survey.analysis.plain_data import matrix, number, warnings
 
 __all__ = ["SHOWN", "confirmation_printed", "confirmation_summary"]
 
@@ -35,9 +36,9 @@ def confirmation_summary(found: Confirmation) -> dict[str, Any]:
         if found.scaled is None
         else _fit(found.scaled) | {"scaling_factor": found.factor, "shift": found.shift},
         "parameters": [_parameter(one) for one in found.parameters],
-        "loadings": _matrix(found.items, found.model.names, found.loadings),
-        "factor_correlations": _matrix(found.model.names, found.model.names, found.factors),
-        "residual_correlations": _matrix(found.items, found.items, found.residual),
+        "loadings": matrix(found.items, found.model.names, found.loadings),
+        "factor_correlations": matrix(found.model.names, found.model.names, found.factors),
+        "residual_correlations": matrix(found.items, found.items, found.residual),
         "hints": [
             {
                 "left": one.left,
@@ -48,9 +49,7 @@ def confirmation_summary(found: Confirmation) -> dict[str, Any]:
             }
             for one in found.hints[: 4 * SHOWN]
         ],
-        "warnings": [
-            {"code": note.code, "items": list(note.items), "message": note.message} for note in found.notes
-        ],
+        "warnings": warnings(found.notes),
     }
 
 
@@ -75,27 +74,15 @@ def _parameter(one: Parameter) -> dict[str, Any]:
         "op": one.op,
         "right": one.right,
         "estimate": one.estimate,
-        "se": _number(one.error),
-        "z": _number(one.z),
-        "p": _number(one.p),
+        "se": number(one.error),
+        "z": number(one.z),
+        "p": number(one.p),
     }
     made = one.standard
     if made is None:
         return told | {"standardised": None}
     parts = {"estimate": made.estimate, "se": made.error, "low": made.low, "high": made.high}
-    return told | {"standardised": {key: _number(value) for key, value in parts.items()}}
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
-
-
-def _matrix(rows, cols, values: np.ndarray) -> dict[str, Any]:
-    return {
-        "rows": list(rows),
-        "cols": list(cols),
-        "values": [[_number(value) for value in row] for row in values],
-    }
+    return told | {"standardised": {key: number(value) for key, value in parts.items()}}
 
 
 def confirmation_printed(found: Confirmation) -> str:

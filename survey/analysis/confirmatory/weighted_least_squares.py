@@ -81,8 +81,8 @@ def weighted_of(seen: Polychorics, names: Sequence[str], model: Measurement) -> 
         marker, theta, slope + slope.T, lambda by: 2.0 * (by[:, *pairs] * weight) @ by[:, *pairs].T, seen.n
     )
     return Weighted(
-        marker, theta, variance, fit_of(plain, base, n, srmr), fit_of(robust, robust_base, n, srmr), factor, shift,
-        seen, hints,
+        marker, theta, variance, fit=fit_of(plain, base, n, srmr), scaled=fit_of(robust, robust_base, n, srmr),
+        factor=factor, shift=shift, seen=seen, hints=hints,
     )  # fmt: skip
 
 

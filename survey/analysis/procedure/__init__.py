@@ -4,8 +4,9 @@
 text (`json_summary`, `text_summary`). `profiles` are the means by module and dimension of III.C.
 """
 
+from survey.analysis.procedure.factoring import Settings
 from survey.analysis.procedure.json_summary import KEYS, descriptives, summary
-from survey.analysis.procedure.pipeline import Analysis, Settings, analyse
+from survey.analysis.procedure.pipeline import Analysis, Context, analyse
 from survey.analysis.procedure.profiles import Profile, profile
 from survey.analysis.procedure.scales import Group, Scale
 from survey.analysis.procedure.text_summary import printed
@@ -13,6 +14,7 @@ from survey.analysis.procedure.text_summary import printed
 __all__ = [
     "KEYS",
     "Analysis",
+    "Context",
     "Group",
     "Profile",
     "Scale",

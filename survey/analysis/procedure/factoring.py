@@ -35,11 +35,30 @@ from survey.analysis.correlation import (
 from survey.analysis.errors import AnalysisError, GapsLeft, NoComponents
 from survey.analysis.screening import Note, Prepared, named
 
-__all__ = ["Factored", "Method", "correlation_of", "covariance_of", "factor", "step"]
+__all__ = ["Factored", "Method", "Missing", "Settings", "correlation_of", "covariance_of", "factor", "step"]
 
 Method = Literal["pearson", "polychoric"]
 Factors = int | Literal["kaiser", "parallel"]
+Missing = Literal["listwise", "pairwise", "fiml"]
 Part = TypeVar("Part")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to analyse. factors: a number, "kaiser" or "parallel"; bootstrap, draws: 0 leaves that step out.
+
+    reverse: items whose scores are turned to low + high − score before everything else.
+    """
+
+    drop: tuple[str, ...] = ()
+    factors: Factors = "kaiser"
+    rotation: Rotation = "varimax"
+    missing: Missing = "listwise"
+    method: Method = "pearson"
+    bootstrap: int = 0
+    draws: int = 1000
+    seed: int = 0
+    reverse: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -58,16 +77,9 @@ class Factored:
     correlation: Correlation | None = None
 
 
-def factor(
-    ready: Prepared,
-    method: Method,
-    factors: Factors,
-    rotation: Rotation,
-    draws: int,
-    seed: int,
-    notes: list[Note],
-) -> Factored:
-    """All steps over the factored items, a note for each that fails. draws: 0 leaves parallel analysis out."""
+def factor(ready: Prepared, chosen: Settings, notes: list[Note]) -> Factored:
+    """All steps over the factored items, a note for each that fails."""
+    method, draws = chosen.method, chosen.draws
     names, table = named(ready.names, ready.factored), ready.rows_of(ready.factored)
     n, p = table.shape
     if p < 2:
@@ -88,9 +100,9 @@ def factor(
         notes.append(Note("barely_enough_rows", (), text, {"n": n, "p": p}))
     plain = method == "pearson" and not ready.pairwise
     fit = step(notes, lambda: adequacy(table, names) if plain else adequacy_of(found.r, n, names))
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(chosen.seed)
     parallel = step(notes, lambda: parallel_analysis(found.r, n, rng, draws=draws)) if draws else None
-    components = step(notes, lambda: _components(found, names, factors, rotation, parallel, notes))
+    components = step(notes, lambda: _components(found, names, chosen, parallel, notes))
     omega = step(notes, lambda: omega_of(found.r, np.nanstd(table, axis=0, ddof=1), n, names))
     if omega is not None and (omega.uniqueness < HEYWOOD + 1e-9).any():
         over = named(names, omega.uniqueness < HEYWOOD + 1e-9)
@@ -105,7 +117,10 @@ def factor(
         )
     average = minimum_average_partial(found.r)
     _disagreement(found, parallel, average, notes)
-    return Factored(n, names, eigenvalues(found.r), fit, components, alpha, omega, parallel, average, found)
+    return Factored(
+        n, names, eigenvalues=eigenvalues(found.r), adequacy=fit, components=components, reliability=alpha, omega=omega,
+        parallel=parallel, average=average, correlation=found,
+    )  # fmt: skip
 
 
 def _alpha(
@@ -129,17 +144,16 @@ def covariance_of(
 def _components(
     found: Correlation,
     names: tuple[str, ...],
-    factors: Factors,
-    rotation: Rotation,
+    chosen: Settings,
     parallel: Parallel | None,
     notes: list[Note],
 ) -> Components:
-    keep = factors if isinstance(factors, int) else None
-    if factors == "parallel":
+    keep = chosen.factors if isinstance(chosen.factors, int) else None
+    if chosen.factors == "parallel":
         if parallel is None or parallel.kept < 1:
             raise NoComponents("parallel analysis keeps no component – give a number of factors, or kaiser")
         keep = parallel.kept
-    components = principal_components(found.r, keep=keep, rotation=rotation)
+    components = principal_components(found.r, keep=keep, rotation=chosen.rotation)
     if components.kept < len(names) and (components.communalities >= 1.0 - 1e-9).any():
         over = named(names, components.communalities >= 1.0 - 1e-9)
         notes.append(

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from survey.analysis.components import Adequacy, Average, Bootstrap, Components, Parallel
+from survey.analysis.plain_data import matrix, number, warnings
 from survey.analysis.procedure.pipeline import Analysis
 from survey.analysis.procedure.scales import Scale
 
-__all__ = ["KEYS", "column_names", "descriptives", "number", "summary"]
+__all__ = ["KEYS", "column_names", "descriptives", "summary"]
 
 KEYS = (
     "n", "items", "dropped", "correlation", "p", "kmo", "kmo_per_item", "bartlett", "eigenvalues", "variance",
@@ -28,8 +29,8 @@ def summary(analysis: Analysis) -> dict[str, Any]:
         "n": analysis.n,
         "items": list(analysis.items),
         "dropped": list(analysis.dropped),
-        "correlation": None if found is None else _matrix(analysis.items, analysis.items, found.r),
-        "p": None if found is None else _matrix(analysis.items, analysis.items, found.p),
+        "correlation": None if found is None else matrix(analysis.items, analysis.items, found.r),
+        "p": None if found is None else matrix(analysis.items, analysis.items, found.p),
         **_adequacy(kept, analysis.adequacy),
         **_components(analysis),
         "alpha": None if alpha is None else alpha.alpha,
@@ -41,9 +42,7 @@ def summary(analysis: Analysis) -> dict[str, Any]:
         "parallel": None if analysis.parallel is None else _parallel(analysis.parallel),
         "map": None if analysis.average is None else _map(analysis.average),
         "bootstrap": None if analysis.bootstrap is None else _bootstrap(analysis, analysis.bootstrap),
-        "warnings": [
-            {"code": note.code, "items": list(note.items), "message": note.message} for note in analysis.notes
-        ],
+        "warnings": warnings(analysis.notes),
     }
 
 
@@ -93,12 +92,12 @@ def _components(analysis: Analysis) -> dict[str, Any]:
             "initial": _variance(found.eigenvalues, len(items)),
             "rotated": _variance(found.rotated, len(items)),
         },
-        "loadings": _matrix([items[row] for row in order], columns, found.loadings[order]),
+        "loadings": matrix([items[row] for row in order], columns, found.loadings[order]),
         "rotation": {
             "method": found.rotation,
             "normalisation": None if found.rotation == "none" else "kaiser",
-            "matrix": _matrix(columns, columns, found.transformation),
-            "correlation": _matrix(columns, columns, found.correlation),
+            "matrix": matrix(columns, columns, found.transformation),
+            "correlation": matrix(columns, columns, found.correlation),
         },
     }
 
@@ -150,7 +149,7 @@ def _bootstrap(analysis: Analysis, found: Bootstrap) -> dict[str, Any]:
         order, columns = analysis.components.sorted_items(), column_names(analysis.components)
         rows = [analysis.factored[row] for row in order]
         loadings = {
-            side: _matrix(rows, columns, edge[order])
+            side: matrix(rows, columns, edge[order])
             for side, edge in zip(("low", "high"), found.loadings, strict=True)
         }
     return {
@@ -168,18 +167,5 @@ def _bootstrap(analysis: Analysis, found: Bootstrap) -> dict[str, Any]:
     }
 
 
-def number(value: float) -> float | None:
-    """JSON knows no NaN."""
-    return float(value) if np.isfinite(value) else None
-
-
 def _by_item(items: Sequence[str], values: np.ndarray) -> dict[str, float | None]:
     return {item: number(value) for item, value in zip(items, values, strict=True)}
-
-
-def _matrix(rows: Sequence[str], cols: Sequence[str], values: np.ndarray) -> dict[str, Any]:
-    return {
-        "rows": list(rows),
-        "cols": list(cols),
-        "values": [[number(value) for value in row] for row in values],
-    }

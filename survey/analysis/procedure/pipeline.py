@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from survey.analysis.components import Adequacy, Average, Bootstrap, Components, Parallel, Rotation, bootstrap
+from survey.analysis.components import Adequacy, Average, Bootstrap, Components, Parallel, bootstrap
 from survey.analysis.consistency import Omega, Reliability
 from survey.analysis.correlation import Correlation
-from survey.analysis.procedure.factoring import Factored, Method, correlation_of, covariance_of, factor, step
+from survey.analysis.procedure.factoring import (
+    Factored,
+    Settings,
+    correlation_of,
+    covariance_of,
+    factor,
+    step,
+)
 from survey.analysis.procedure.scales import Group, Scale, grouped, running_against, scales_of
 from survey.analysis.screening import (
     Flags,
@@ -30,30 +36,26 @@ from survey.analysis.screening import (
     turned,
 )
 
-__all__ = ["Analysis", "Missing", "Settings", "analyse"]
+__all__ = ["Analysis", "Context", "analyse"]
 
 PAIR_R, PAIR_P = 0.93, 0.01  # the paper's second pair stands at exactly .930, so r ≥ .93 at three decimals
 SMALL = 50
 
-Missing = Literal["listwise", "pairwise", "fiml"]
-
 
 @dataclass(frozen=True)
-class Settings:
-    """How to analyse. factors: a number, "kaiser" or "parallel"; bootstrap, draws: 0 leaves that step out.
+class Context:
+    """What is known of scores (n, p) beside them.
 
-    reverse: items whose scores are turned to low + high − score before everything else.
+    seconds: (n,) spent on each answer, NaN unknown. points: of the scale 1, 2, …; a score beside it becomes a note;
+    None: any number is a score. unasked: item → in how many answers it was not asked, that the analysis may tell of it.
+    groups: items that the questionnaire states to belong together. aside: column of the table → why it is no item.
     """
 
-    drop: tuple[str, ...] = ()
-    factors: int | Literal["kaiser", "parallel"] = "kaiser"
-    rotation: Rotation = "varimax"
-    missing: Missing = "listwise"
-    method: Method = "pearson"
-    bootstrap: int = 0
-    draws: int = 1000
-    seed: int = 0
-    reverse: tuple[str, ...] = ()
+    seconds: ArrayLike | None = None
+    points: int | None = None
+    unasked: Mapping[str, int] = field(default_factory=dict)
+    groups: Sequence[Group] = ()
+    aside: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -95,45 +97,39 @@ def analyse(
     items: Sequence[str] | None = None,
     *,
     settings: Settings | None = None,
+    context: Context | None = None,
     drop: Sequence[str] = (),
-    seconds: ArrayLike | None = None,
-    points: int | None = None,
-    unasked: Mapping[str, int] | None = None,
-    groups: Sequence[Group] = (),
-    aside: Mapping[str, str] | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> Analysis:
     """Run the whole procedure on scores (n, p); NaN is a missing score.
 
-    settings: see `Settings`; drop: shorthand for settings.drop. seconds: (n,) spent on each answer, NaN unknown.
-    points: of the scale 1, 2, …; a score beside it becomes a note. None: any number is a score.
-    unasked: in how many answers an item was not asked, here named that the analysis may tell of it.
-    groups: items that the questionnaire states to belong together. aside: column of the table → why it is no item.
-    progress: called with the number of resamples just done.
+    settings: how; drop: shorthand for settings.drop. context: what is known beside the scores. progress: called with
+    the number of resamples just done.
     Raises NotFinite for infinite scores or an item without any, TooFewRows below two usable answers, AllEqual when
     nothing varies, UnknownItem in `drop` or `reverse`. What stops a single step only (a constant item,
     dependent items, n ≤ p) becomes a note and leaves that step None.
     """
-    chosen = settings or Settings(drop=tuple(drop))
+    chosen, known = settings or Settings(drop=tuple(drop)), context or Context()
     ready, notes = prepare(scores, items, chosen.drop, pairwise=chosen.missing != "listwise")
     if chosen.missing == "fiml":
         ready, notes = replace(ready, likely=True), [likely_gaps(note) for note in notes]
-    if points is not None:
-        notes = off_scale(ready.table, ready.names, points) + notes
-    notes = left_out(aside or {}) + asking(unasked or {}, ready.names, len(ready.table)) + notes
-    ready, reversed_items = turned(ready, chosen.reverse, points, notes)
+    if known.points is not None:
+        notes = off_scale(ready.table, ready.names, known.points) + notes
+    notes = left_out(known.aside) + asking(known.unasked, ready.names, len(ready.table)) + notes
+    ready, reversed_items = turned(ready, chosen.reverse, known.points, notes)
     correlation = _all_correlations(ready, chosen, notes)
-    part = factor(ready, chosen.method, chosen.factors, chosen.rotation, chosen.draws, chosen.seed, notes)
-    scales = _scales(ready, part, chosen, groups, notes)
+    part = factor(ready, chosen, notes)
+    scales = _scales(ready, part, chosen, known.groups, notes)
     resampled = _resampled(ready, part, chosen, notes, progress)
     _banner(part, resampled, notes)
-    flags, more = flagged(ready.table, seconds)
+    flags, more = flagged(ready.table, known.seconds)
     mean, sd, answered = _descriptives(ready.table)
     return Analysis(
-        part.n, ready.names, ready.dropped, mean, sd, answered, correlation, part.names,
-        part.eigenvalues, part.adequacy, part.components, part.reliability, part.omega, part.parallel, part.average,
-        resampled, flags, (*notes, *more), chosen, ready.table,
-        reversed_items, scales,
+        n=part.n, items=ready.names, dropped=ready.dropped, mean=mean, sd=sd, answered=answered,
+        correlation=correlation, factored=part.names, eigenvalues=part.eigenvalues, adequacy=part.adequacy,
+        components=part.components, reliability=part.reliability, omega=part.omega, parallel=part.parallel,
+        average=part.average, bootstrap=resampled, flags=flags, notes=(*notes, *more), settings=chosen,
+        table=ready.table, turned=reversed_items, scales=scales,
     )  # fmt: skip
 
 

@@ -33,8 +33,8 @@ def _means(found: dict[str, Any], means: list[dict[str, Any]]) -> Iterator[str]:
         yield line
 
 
-def _cell(value: float | None, wide: int = 8, digits: int = 3) -> str:
-    return f"{'–':>{wide}}" if value is None else f"{value:{wide}.{digits}f}"
+def _cell(value: float | None, wide: int = 8) -> str:
+    return f"{'–':>{wide}}" if value is None else f"{value:{wide}.3f}"
 
 
 def _correlations(found: dict[str, Any]) -> Iterator[str]:

@@ -149,7 +149,7 @@ def _report_of_the_sample(args: argparse.Namespace, error: AnalysisError) -> int
 
 def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
     from survey.analysis import analyse
-    from survey.scores import stated_groups
+    from survey.scores import context_of
 
     settings = _settings(args, table)
     run = partial(
@@ -157,11 +157,7 @@ def _analysed(table: ScoreTable, args: argparse.Namespace) -> Analysis:
         table.scores,
         table.items,
         settings=settings,
-        seconds=table.seconds,
-        points=points_of(table, args),
-        unasked=table.unasked,
-        groups=stated_groups(table.questionnaire),
-        aside=table.aside,
+        context=context_of(table, points_of(table, args)),
     )
     if settings.bootstrap * table.scores.size < 50_000_000:
         return run()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 
 from sqlalchemy import ColumnElement, Connection, Table, select
 
 from survey.errors import AnswerError
 from survey.questionnaire import Answer, Language, Questionnaire
-from survey.store.database import tables
+from survey.store.database import in_utc, tables
 
 __all__ = ["WITHDRAWN", "Stored", "given_answer", "standing", "stored_rows"]
 
@@ -86,6 +86,4 @@ def _stored(questionnaire: Questionnaire, head, scores: dict, texts: dict) -> St
         suggestions=tuple((m.id, texts[m.id]) for m in questionnaire.modules if m.id in texts),
         exhibit=head.exhibit,
     )
-    # SQLite gives the time back without its zone; it was written in UTC.
-    received = head.received if head.received.tzinfo else head.received.replace(tzinfo=UTC)
-    return Stored(answer, received.astimezone(UTC))
+    return Stored(answer, in_utc(head.received))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 
 from sqlalchemy import Connection, Table, select
 from sqlalchemy.dialects import postgresql, sqlite
@@ -13,9 +12,9 @@ from sqlalchemy.dialects import postgresql, sqlite
 from survey.errors import AnswerError
 from survey.questionnaire import Answer, Questionnaire
 from survey.store.answers import WITHDRAWN
-from survey.store.database import tables
+from survey.store.database import now, tables
 
-__all__ = ["Entry", "Receipt", "commit_batch", "freeze_version", "insert_new", "now"]
+__all__ = ["Entry", "Receipt", "commit_batch", "freeze_version", "insert_new"]
 
 Entry = tuple[Questionnaire, Answer]
 
@@ -26,11 +25,6 @@ class Receipt:
 
     id: str
     replayed: bool
-
-
-def now() -> datetime:
-    """To the second: finer times could tell who sat next to whom."""
-    return datetime.now(UTC).replace(microsecond=0)
 
 
 def commit_batch(connection: Connection, entries: Sequence[Entry]) -> list[Receipt | AnswerError]:

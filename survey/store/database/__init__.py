@@ -1,6 +1,7 @@
 """The database itself: `tables` and how it is opened, `schema` and its upgrades, its `place` on the disk, `backup`.
 
-`permissions` sees that what is written is its owner's alone; `tables` is handed out as a whole: `tables.answer`, …
+`permissions` sees that what is written is its owner's alone, `sessions` are what the store's parts work with; `tables`
+is handed out as a whole: `tables.answer`, …
 """
 
 from survey.store.database import tables
@@ -8,6 +9,19 @@ from survey.store.database.backup import write_copy
 from survey.store.database.permissions import make_private, take_rights
 from survey.store.database.place import Place, explained
 from survey.store.database.schema import HEAD
+from survey.store.database.sessions import Session, in_utc, now
 from survey.store.database.tables import open_engine
 
-__all__ = ["HEAD", "Place", "explained", "make_private", "open_engine", "tables", "take_rights", "write_copy"]
+__all__ = [
+    "HEAD",
+    "Place",
+    "Session",
+    "explained",
+    "in_utc",
+    "make_private",
+    "now",
+    "open_engine",
+    "tables",
+    "take_rights",
+    "write_copy",
+]

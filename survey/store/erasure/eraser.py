@@ -13,15 +13,13 @@ import logging
 import threading
 import time
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future
-from contextlib import AbstractContextManager
 from pathlib import Path
 
 from sqlalchemy import Connection, delete, select
 
-from survey.store.commit import now
-from survey.store.database import tables
+from survey.store.database import Session, now, tables
 from survey.store.erasure.leftovers import Erased, everything, left_over
 
 __all__ = ["Eraser", "add_trace", "clear_traces", "rewrite_tables", "traces"]
@@ -33,8 +31,6 @@ REST = 20.0  # after a rewriting, during which nothing is written, none for so m
 LINGERING = 60.0  # seconds after which what another process left is taken up
 
 _LOG = logging.getLogger(__name__)
-
-Session = Callable[[], AbstractContextManager[Connection]]
 
 
 def add_trace(connection: Connection) -> str:

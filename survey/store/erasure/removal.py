@@ -10,9 +10,8 @@ from sqlalchemy import ColumnElement, Connection, delete, func, select, update
 from survey.errors import AnswerError
 from survey.questionnaire import Questionnaire
 from survey.store.answers import standing
-from survey.store.audit import in_utc, note_withdrawal
-from survey.store.commit import now
-from survey.store.database import tables
+from survey.store.audit import note_withdrawal
+from survey.store.database import in_utc, now, tables
 from survey.store.erasure.eraser import add_trace
 from survey.store.erasure.leftovers import Erased, erased_answer
 

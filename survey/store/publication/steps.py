@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 
 from sqlalchemy import Connection, delete, func, select, update
@@ -14,12 +13,10 @@ from survey.errors import StoreError
 from survey.questionnaire import Questionnaire
 from survey.store.answers import standing
 from survey.store.commit import insert_new
-from survey.store.database import tables
+from survey.store.database import Session, tables
 from survey.store.publication.disclosure import STEP, Figure, Scores, Shown, moved_on
 
 __all__ = ["Public", "Publishing", "forget"]
-
-Session = Callable[[], AbstractContextManager[Connection]]
 
 MANY = 10_000  # answers over which a step takes longer than anybody should wait
 PATIENCE = 0.1  # seconds that it is waited for then

@@ -67,13 +67,13 @@ def record_of(
         database = "sqlite" if file is not None else connection.dialect.name
     versions = {(one.id, one.version): one for one in (*store.all_frozen(), *asked)}
     return Record(
-        statement,
-        tuple(versions[key] for key in sorted(versions)),
-        running,
-        sum(not token.expired(today) for token in store.tokens.all()),
-        database,
-        None if file is None else bool(file.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH)),
-        purged,
-        frozen,
-        today,
+        statement=statement,
+        asked=tuple(versions[key] for key in sorted(versions)),
+        running=running,
+        tokens=sum(not token.expired(today) for token in store.tokens.all()),
+        database=database,
+        others_read=None if file is None else bool(file.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH)),
+        purged=purged,
+        frozen=frozen,
+        today=today,
     )
