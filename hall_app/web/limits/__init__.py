@@ -1,8 +1,8 @@
 """What strangers may ask for.
 
 budgets: of each kind, with a clock in the hand; addresses: the same per address, asked by the doorkeeper; open_lines:
-which connections are open; portions: large answers, bit by bit; descriptors: how many files may be open. lines and
-listener put them into uvicorn, and are imported where it runs.
+which connections are open; portions: large answers, bit by bit; descriptors: how many files may be open. lines puts
+them into uvicorn, and is imported where it runs.
 """
 
 from hall_app.web.limits.addresses import MOST_SILENT, MOST_SILENT_IN_ALL, RATES, Addresses, name_of
