@@ -11,13 +11,7 @@ if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
     from hall_app.build.garment import bake_garment, budget
 
-__all__ = [
-    "SOUND_RATE",
-    "bake_garment",
-    "budget",
-    "encode_film",
-    "film_possible",
-]
+__all__ = ["SOUND_RATE", "bake_garment", "budget", "encode_film", "film_possible"]
 
 _HOME = {
     "SOUND_RATE": "encoding",

@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hall_app.media.encode import mux_sound
+from hall_app.media.strings import RATE
+
 __all__ = ["FilmUnavailableError", "encode_film", "film_possible"]
 
 Picture = NDArray[np.uint8]
 
-SOUND_RATE = 48_000  # [Hz], the one Opus has
+SOUND_RATE = RATE  # [Hz] 48,000, the one Opus has
 
 
 @dataclass(frozen=True)
@@ -77,7 +80,7 @@ def encode_film(
         video.options = codecs.options
         _write_pictures(container, video, frames, count)
         if sound is not None:
-            _write_sound(container, audio, _fitted(sound, count / rate))
+            mux_sound(container, audio, codecs.sound, _fitted(sound, count / rate)[:, None])
     partial.replace(path)
 
 
@@ -100,16 +103,3 @@ def _fitted(sound: NDArray[np.float32], seconds: float) -> NDArray[np.float32]:
     fitted[: min(wanted, len(sound))] = sound[:wanted]
     ramp = np.minimum(1.0, np.arange(wanted) / (0.5 * SOUND_RATE))
     return (fitted * ramp * ramp[::-1]).astype(np.float32)
-
-
-def _write_sound(container, stream, sound: NDArray[np.float32]) -> None:
-    import av
-
-    form, piece = ("flt", 960) if stream.codec_context.name == "libopus" else ("fltp", 1024)
-    frame = av.AudioFrame.from_ndarray(sound.reshape(1, -1), format=form, layout="mono")
-    frame.sample_rate = SOUND_RATE
-    # The encoder wants frames of its own size; the resampler's buffer cuts them.
-    resampler = av.AudioResampler(format=form, layout="mono", rate=SOUND_RATE, frame_size=piece)
-    for part in [*resampler.resample(frame), *resampler.resample(None)]:
-        container.mux(stream.encode(part))
-    container.mux(stream.encode(None))

@@ -11,11 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from hall_app.check.folder import CHECKS, check, hints
 
-__all__ = [
-    "CHECKS",
-    "check",
-    "hints",
-]
+__all__ = ["CHECKS", "check", "hints"]
 
 _HOME = {
     "CHECKS": "folder",

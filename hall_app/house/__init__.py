@@ -14,14 +14,7 @@ if TYPE_CHECKING:
     from hall_app.house.floor_grid import grid_beside, ready_grid
     from hall_app.house.house import House
 
-__all__ = [
-    "Following",
-    "House",
-    "Latest",
-    "grid_beside",
-    "in_thread",
-    "ready_grid",
-]
+__all__ = ["Following", "House", "Latest", "grid_beside", "in_thread", "ready_grid"]
 
 _HOME = {
     "Following": "edits",

@@ -12,10 +12,7 @@ if TYPE_CHECKING:
     from hall_app.web.app import create_app
     from hall_app.web.progress_line import ProgressLine
 
-__all__ = [
-    "ProgressLine",
-    "create_app",
-]
+__all__ = ["ProgressLine", "create_app"]
 
 _HOME = {
     "ProgressLine": "progress_line",

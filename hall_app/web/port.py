@@ -35,8 +35,7 @@ def server(
     """uvicorn behind the hall's door, its limits narrowed; connections: how many at a time."""
     import uvicorn
 
-    from hall_app.web.limits.lines import LONGEST, Socket, line_class
-    from hall_app.web.limits.listener import AT_A_TIME, Listener
+    from hall_app.web.limits.lines import AT_A_TIME, LONGEST, Listener, Socket, line_class
     from hall_app.web.limits.open_lines import OpenLines
 
     lines = OpenLines(connections)

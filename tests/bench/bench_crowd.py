@@ -46,12 +46,9 @@ def elsewhere(command: Sequence[str], *, nice: int = 0) -> subprocess.Popen:
 
 
 def open_hall(checkout: Path, stack: contextlib.ExitStack, arguments: argparse.Namespace) -> Any:
-    """`hall serve` of a checkout on the first core; one from before `--visitors` has its constant raised."""
+    """`hall serve` of a checkout on the first core."""
     begin = f"import sys, runpy; sys.path.insert(0, {str(checkout)!r}); sys.argv[0] = 'hall'"
     options = [*arguments.options.split(), "--visitors", str(max(arguments.visitors, OTHERS + 10))]
-    if not (checkout / "hall_app" / "places.py").exists():
-        begin += f"; import hall_app.web.sockets.relay as r; r.MOST_VISITORS = {arguments.visitors}"
-        options = options[:-2]
     begin += "; runpy.run_module('hall_app', run_name='__main__')"
     program = ("taskset", "-c", str(CORES[0]), sys.executable, "-c", begin)
     work = Path(stack.enter_context(tempfile.TemporaryDirectory()))

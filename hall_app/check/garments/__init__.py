@@ -3,23 +3,20 @@
 limits: what a figure may be; measurement: the cheap figures measured again; quality: both against the bake's record.
 """
 
-from hall_app.check.garments.limits import LIMITS, PIBO, ROBE, SCARF, Limit, limits_of
+from hall_app.check.garments.limits import PIBO, ROBE, SCARF
 from hall_app.check.garments.measurement import Measured, cloth_in, measured_again
 from hall_app.check.garments.quality import Line, figure_lines, garment_lines, garments_checked, table
 
 __all__ = [
-    "LIMITS",
     "PIBO",
     "ROBE",
     "SCARF",
-    "Limit",
     "Line",
     "Measured",
     "cloth_in",
     "figure_lines",
     "garment_lines",
     "garments_checked",
-    "limits_of",
     "measured_again",
     "table",
 ]

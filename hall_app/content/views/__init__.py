@@ -4,7 +4,6 @@ markdown: curators' texts as HTML; measurements: what a bake measured, in words;
 """
 
 from hall_app.content.views.markdown import html_of, link_allowed, pictures_in, raw_html_in
-from hall_app.content.views.measurements import measured_lines
 from hall_app.content.views.scene import (
     TYPES,
     exhibit_json,
@@ -22,7 +21,6 @@ __all__ = [
     "exhibit_json",
     "html_of",
     "link_allowed",
-    "measured_lines",
     "media_file",
     "media_type",
     "own_file",

@@ -8,25 +8,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from hall_app.house.baking.preparation import (
-        ROOM,
-        Preparation,
-        bake_places,
-        forsake,
-        stale_garments,
-        wanted_bakes,
-    )
-    from hall_app.house.baking.queue import Bake, BakingQueue, Build, Decision, decide
+    from hall_app.house.baking.preparation import ROOM, Preparation, forsake, stale_garments, wanted_bakes
+    from hall_app.house.baking.queue import Bake, BakingQueue, Decision, decide
     from hall_app.house.baking.retention import tidy
 
 __all__ = [
     "ROOM",
     "Bake",
     "BakingQueue",
-    "Build",
     "Decision",
     "Preparation",
-    "bake_places",
     "decide",
     "forsake",
     "stale_garments",
@@ -38,10 +29,8 @@ _HOME = {
     "ROOM": "preparation",
     "Bake": "queue",
     "BakingQueue": "queue",
-    "Build": "queue",
     "Decision": "queue",
     "Preparation": "preparation",
-    "bake_places": "preparation",
     "decide": "queue",
     "forsake": "preparation",
     "stale_garments": "preparation",

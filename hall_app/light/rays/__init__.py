@@ -3,8 +3,4 @@
 from hall_app.light.rays.bvh import Tree, build_tree
 from hall_app.light.rays.tracing import cast
 
-__all__ = [
-    "Tree",
-    "build_tree",
-    "cast",
-]
+__all__ = ["Tree", "build_tree", "cast"]

@@ -4,10 +4,4 @@ from hall_app.room.picture.environment import environment_jpeg, painted, seen
 from hall_app.room.picture.glb import room_glb
 from hall_app.room.picture.studio import studio_glb
 
-__all__ = [
-    "environment_jpeg",
-    "painted",
-    "room_glb",
-    "seen",
-    "studio_glb",
-]
+__all__ = ["environment_jpeg", "painted", "room_glb", "seen", "studio_glb"]

@@ -1,11 +1,16 @@
-"""uvicorn's protocols with the doors narrowed: what one connection may cost before the application hears of it."""
+"""uvicorn with the doors narrowed: what one connection may cost before the application hears of it.
+
+Its protocols read little at a time, its server takes connections in a few at a time and looks after them.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import Collection
 from typing import Any
 
+import uvicorn
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
@@ -13,7 +18,7 @@ from hall_app.web.limits.addresses import Addresses, name_of
 from hall_app.web.limits.budgets import Bucket, Rate
 from hall_app.web.limits.open_lines import OpenLine, OpenLines
 
-__all__ = ["LONGEST", "Socket", "line_class"]
+__all__ = ["AT_A_TIME", "LONGEST", "Listener", "Socket", "line_class"]
 
 LONGEST = 64 << 10  # [bytes] of one message: what a browser sends us is small
 _BITE = 4 << 10  # [bytes] read at a time: a flood of tiny frames leaves the others their turn
@@ -21,6 +26,9 @@ _REST = 0.01  # [s] between two bites from a page that was thrown out
 _FAREWELL = 1.0  # [s] for a page that was thrown out to hang up by itself
 _CONTROL = Rate(60, 5)  # pings, pongs and fragments; a browser sends a pong in 20 s
 _POLICY_VIOLATION = 1008
+AT_A_TIME = 16  # connections accepted before the first is counted: asyncio's loop takes a whole backlog
+_WAITING = 2048  # that the system keeps for us meanwhile
+_SWEEP = 50  # of uvicorn's ticks, ten a second
 
 
 class Socket(WebSocketsSansIOProtocol, asyncio.BufferedProtocol):
@@ -113,8 +121,28 @@ def line_class(addresses: Addresses, lines: OpenLines, proxies: Collection[str])
             if self.line is not None:
                 self.line.asked()
             super().handle_websocket_upgrade()
-            socket = self.transport.get_protocol()
-            if isinstance(socket, Socket):
-                socket.line = self.line  # the connection is the socket's from now on
+            upgraded = self.transport.get_protocol()
+            if isinstance(upgraded, Socket):
+                upgraded.line = self.line  # the connection is the socket's from now on
 
     return Line
+
+
+class Listener(uvicorn.Server):
+    """A server that keeps `lines` in bounds."""
+
+    def __init__(self, config: uvicorn.Config, lines: OpenLines) -> None:
+        super().__init__(config)
+        self._lines = lines
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        for server in getattr(self, "servers", ()):
+            for listening in server.sockets:
+                with listening.dup() as same:
+                    same.listen(_WAITING)  # asyncio has told the system AT_A_TIME
+
+    async def on_tick(self, counter: int) -> Any:
+        if counter % _SWEEP == 0:
+            self._lines.sweep()
+        return await super().on_tick(counter)
