@@ -15,8 +15,8 @@ from sim_core.mesh.outline import (
     check_count,
     check_edge,
     clean_contours,
-    outline_samples,
     read_size_field,
+    sampled_contours,
     signed_area,
 )
 from sim_core.mesh.panel import PanelMesh, panel_mesh
@@ -39,7 +39,7 @@ __all__ = [
     "keep_points",
     "mesh_fault",
     "mesh_picture",
-    "outline_samples",
+    "sampled_contours",
     "panel_mesh",
     "quality",
     "read_size_field",

@@ -15,8 +15,8 @@ from sim_core.mesh import (
     inside,
     keep_points,
     mesh_picture,
-    outline_samples,
     panel_mesh,
+    sampled_contours,
     staggered_points,
 )
 from sim_core.mesh.outline import clean_contours
@@ -62,7 +62,7 @@ def figure_2(path: Path) -> None:
     low, high = outline.min(axis=0), outline.max(axis=0)
     page = Sheet(low - 0.09, high + 0.06, 620)
     contours = clean_contours(outline, ())
-    samples = [outline_samples(contours[0], edge)]
+    samples = sampled_contours(contours, edge)
     points = staggered_points(low, high, edge)
     kept = {tuple(p) for p in keep_points(points, samples, edge=edge)}
     page.line([*samples[0], samples[0][0]], INK)

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from sim_core.mesh import inside, keep_points, outline_samples, quality, staggered_points
-from sim_core.mesh.outline import sampled_contours
+from sim_core.mesh import inside, keep_points, quality, sampled_contours, staggered_points
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 CIRCLE = np.column_stack([np.cos(t := np.arange(200) * np.pi / 100), np.sin(t)])
 
 
 def test_samples_keep_corners_and_step_at_most_the_edge():
-    samples = outline_samples(SQUARE, 0.3)
+    (samples,) = sampled_contours([SQUARE], 0.3)
     assert len(samples) == 16
     assert {tuple(p) for p in SQUARE} <= {tuple(p) for p in samples}
     steps = np.hypot(*(np.roll(samples, -1, axis=0) - samples).T)
@@ -19,7 +18,7 @@ def test_samples_keep_corners_and_step_at_most_the_edge():
 
 
 def test_samples_of_a_smooth_curve_are_even():
-    samples = outline_samples(CIRCLE, 0.2)
+    (samples,) = sampled_contours([CIRCLE], 0.2)
     steps = np.hypot(*(np.roll(samples, -1, axis=0) - samples).T)
     assert len(samples) == 32
     assert np.ptp(steps) < 1e-4
@@ -70,7 +69,7 @@ def test_inside_agrees_with_winding_number_on_a_star():
 
 def test_kept_points_stay_off_the_outline():
     edge, threshold = 0.05, 0.7
-    samples = [outline_samples(SQUARE, edge)]
+    samples = sampled_contours([SQUARE], edge)
     lattice = staggered_points(SQUARE.min(axis=0), SQUARE.max(axis=0), edge)
     kept = keep_points(lattice, samples, edge=edge, threshold=threshold)
     clearance = np.minimum(kept, 1 - kept).min(axis=1)
@@ -102,6 +101,13 @@ def foreign_in_circles(samples: list[np.ndarray]) -> np.ndarray:
     return np.array(lengths)
 
 
+def even_steps(polygon: np.ndarray, edge: float) -> np.ndarray:
+    """The corners of a polygon (n, 2), and even steps of at most `edge` on its sides."""
+    sides = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
+    counts = [(a, b, int(np.ceil(np.hypot(*(b - a)) / edge))) for a, b in sides]
+    return np.concatenate([a + (b - a) * np.arange(n)[:, None] / n for a, b, n in counts])
+
+
 @pytest.mark.parametrize("gap", [0.09, 0.06, 0.03])
 def test_steps_are_halved_where_contours_run_close(gap):
     """A panel with a slot of width `gap`, and a hole as near to its border."""
@@ -109,7 +115,7 @@ def test_steps_are_halved_where_contours_run_close(gap):
     outline = np.array([[0, 0], [1, 0], [1, 1], [x + gap, 1], [x + gap, 0.2], [x, 0.25], [x, 1], [0, 1.0]])
     hole = np.array([[gap, 0.31], [gap, 0.84], [0.3, 0.66]])
     contours, edge = [outline, hole], 0.2
-    before = [outline_samples(contour, edge) for contour in contours]
+    before = [even_steps(contour, edge) for contour in contours]
     assert len(foreign_in_circles(before)) > 0
     samples = sampled_contours(contours, edge)
     assert len(foreign_in_circles(samples)) == 0

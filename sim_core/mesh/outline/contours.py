@@ -1,4 +1,4 @@
-"""Outlines: what may be meshed, and sampling at equal steps that keeps the corners."""
+"""Outlines: what may be meshed, where they turn and what they enclose."""
 
 from math import fsum, isfinite, sqrt
 
@@ -17,7 +17,6 @@ __all__ = [
     "clean_contours",
     "clean_points",
     "cleaned_contours",
-    "outline_samples",
     "outline_turning",
     "sharpest_corner",
     "signed_area",
@@ -198,25 +197,6 @@ def _check_nesting(names: list[str], contours: list[np.ndarray]) -> None:
         raise OutlineError(f"{inner}: lies inside {outer} – holes must not be nested")
 
 
-def outline_samples(contour: np.ndarray, edge: float) -> np.ndarray:
-    """Samples of a closed contour: every corner, and equal arc steps of at most `edge` between corners.
-
-    contour: (n, 2) [m], closing point not repeated; a corner turns by more than 20 degrees.  edge: [m].
-    Returns (m, 2) [m] in the same direction; smooth closed curves start at their first point.
-    """
-    corners = np.flatnonzero(outline_turning(contour) > CORNER_DEGREES)
-    if corners.size == 0:
-        corners = np.array([0])
-    turned = np.roll(contour, -corners[0], axis=0)
-    marks = np.append(corners - corners[0], len(contour))
-    closed = np.vstack([turned, turned[:1]])
-    least = max(1, -(-3 // corners.size))
-    chains = [
-        _equal_steps(closed[a : b + 1], edge, least) for a, b in zip(marks[:-1], marks[1:], strict=True)
-    ]
-    return np.concatenate(chains)
-
-
 def outline_turning(contour: np.ndarray) -> np.ndarray:
     """Angle [degrees] by which a closed contour turns at each point."""
     ahead = np.roll(contour, -1, axis=0) - contour
@@ -239,11 +219,3 @@ def sharpest_corner(contours: list[np.ndarray]) -> float:
         inner = np.degrees(np.arctan2(cross, (ahead * behind).sum(axis=1))) % 360
         least = min(least, float(inner.min()))
     return least
-
-
-def _equal_steps(chain: np.ndarray, edge: float, least: int) -> np.ndarray:
-    """Points at equal arc length along an open chain, its last point left out."""
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(chain, axis=0).T))])
-    steps = max(least, int(np.ceil(arc[-1] / edge - 1e-9)))
-    at = np.linspace(0.0, arc[-1], steps + 1)[:-1]
-    return np.column_stack([np.interp(at, arc, chain[:, 0]), np.interp(at, arc, chain[:, 1])])
