@@ -1,4 +1,4 @@
-"""Errors of the survey, each a single line that names what, where and the remedy."""
+"""Errors of the survey, each a single line that names what, where and the remedy; a full temporary folder is one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands read: a questionnaire with its store, a table of scores, the items to drop."""
+"""Where scores come from: a file, a questionnaire with its store, a sample; and which items to drop, turn or group."""
 
 from __future__ import annotations
 

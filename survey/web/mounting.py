@@ -1,4 +1,4 @@
-"""Putting the survey into a web application: its own or the hall's."""
+"""Putting the survey into a web application, its own or the hall's: every version as it was first asked."""
 
 from __future__ import annotations
 

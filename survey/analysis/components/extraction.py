@@ -1,4 +1,4 @@
-"""Principal components of a correlation matrix and their rotation (the paper's Tables 2 and 3)."""
+"""Principal components of a correlation matrix, rotated (the paper's Tables 2 and 3), and names proposed for them."""
 
 from __future__ import annotations
 

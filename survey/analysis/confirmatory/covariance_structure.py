@@ -1,4 +1,7 @@
-"""What a measurement model implies: Σ = Λ Φ Λᵀ + Θ as a function of its free parameters, and its derivatives."""
+"""What a measurement model implies: Σ = Λ Φ Λᵀ + Θ as a function of its free parameters, its derivatives, and a start.
+
+A fit starts from each factor's first component among its own items, and from how these components are correlated.
+"""
 
 from __future__ import annotations
 
