@@ -25,7 +25,7 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[1]
 # Two processes, a file's tests on one of them, as .ci/run has it.
-USUAL = ("-q", "-n", "2", "--dist", "loadgroup")
+USUAL = ("-q", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
 
 
 def numpy_loops() -> str:

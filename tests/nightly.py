@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-SUITE = (sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadgroup")
+SUITE = (sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
 OTHER = (sys.executable, "tests/machines.py", "--only")
 DAY = ("--", "-m", "not nightly and not browser")
 # Name -> command. Browsers draw alike on every processor, so those take part on this one only.

@@ -10,7 +10,7 @@ from bench.track import place
 from plain_hall import write_plain_hall
 from running_hall import free_port, running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 BOX = (2.5, 3.0)  # where it stands [m]
 ENTRANCE = (0.0, 4.0)

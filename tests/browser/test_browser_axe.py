@@ -3,7 +3,7 @@
 import pytest
 from bench.axe import violations
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 GOOD = '<html lang="en"><title>t</title><main><h1>A hall</h1><p>of dress</p></main></html>'
 BAD = '<html><title>t</title><main><h1>A hall</h1><h3>of dress</h3><img src="data:,"></main></html>'

@@ -4,7 +4,7 @@ import pytest
 from bench.axe import violations
 from full_matrix import by_day
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SHOWN = "() => document.querySelectorAll('img').forEach((one) => { one.loading = 'eager'; })"
 SMALL = """

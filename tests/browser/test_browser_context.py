@@ -8,7 +8,7 @@ from bench.browser import PATIENCE, enter, pose
 from bench.track import place
 from PIL import Image
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 480, "height": 540}
 NOTE = "[data-testid=curtain-note]"

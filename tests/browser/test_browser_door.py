@@ -5,7 +5,7 @@ from bench.browser import enter
 from bench.door import BITS, ROUND_TRIP, longest_stand, slow_visit
 from bench.wire import wire
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 PROMISED = 1.5  # [s] until the title can be read
 FIRST_FLIGHT = 14_600  # [bytes] ten packets, what a server may send before the first acknowledgement

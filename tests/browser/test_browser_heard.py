@@ -5,7 +5,7 @@ from bench.axe import violations
 from bench.browser import CHOOSE, PATIENCE, stand_before
 from full_matrix import by_day
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SIZES = {"desk": (1280, 720), "phone": (390, 844)}
 TABS = ("intro", "pictures", "film", "sound", "data")

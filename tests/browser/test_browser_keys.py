@@ -9,7 +9,7 @@ from full_matrix import by_day
 from plain_hall import EXHIBIT, write_plain_hall
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 640, "height": 480}
 STEP = math.radians(15)

@@ -6,7 +6,7 @@ from bench.readable import CROWDED, TARGETS, faint_texts
 from bench.track import place
 from full_matrix import by_day
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SIZES = {1280: 720, 1024: 768, 768: 1024, 480: 800, 360: 640}
 READ = (1280, 360)  # where every text's contrast is measured: style changes with width, colours hardly

@@ -6,7 +6,7 @@ import pytest
 from bench.browser import enter, soon
 from full_matrix import by_day
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+pytestmark = pytest.mark.browser
 
 JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "picture" / "judge.js"
 FEED = """

@@ -5,7 +5,7 @@ from bench.browser import PATIENCE, enter, pose, soon
 from plain_hall import write_plain_hall
 from running_hall import free_port, running_hall
 
-pytestmark = [pytest.mark.nightly, pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.nightly, pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 480, "height": 270}
 LONG = 42_000  # [ms] enough refusals in that time and Chromium opens no more sockets in time

@@ -4,7 +4,7 @@ import pytest
 from bench.browser import CHOOSE, PATIENCE, displayed
 from bench.readable import CROWDED, TARGETS
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SIZES = ((320, 568), (360, 640), (390, 844), (568, 320), (640, 360), (667, 375), (844, 390))
 DAY = (320, 568)  # the hardest; the other sizes are of the night

@@ -14,7 +14,7 @@ from running_hall import running_hall
 
 from hall_app.walk import ARREARS
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 480, "height": 270}
 SPEED = 1.6  # [m/s]

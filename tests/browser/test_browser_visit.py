@@ -11,7 +11,7 @@ from bench.browser import displayed, enter, pose, soon, stand_before
 from bench.track import place, walk, watch
 from full_matrix import by_day
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 GARMENT = "pibo"
 

@@ -21,7 +21,7 @@ from sim_core.garment import Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("bake")]
+pytestmark = pytest.mark.slow
 
 
 def coarse(place: Path) -> Path:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from walk_page import HEAD
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+pytestmark = pytest.mark.browser
 
 # Each play: {calm, pitch, dts, events: [[time, "press" | "lift" | "level", code, sign]…]} -> [yaw, pitch] a frame.
 # An event is heard between two frames, as the page hears it.

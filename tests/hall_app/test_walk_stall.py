@@ -13,7 +13,7 @@ from walk_page import Crowd
 
 from hall_app.walk import BUCKET, MAX_INPUT_DT, SPEED, Floor, Grid, Keys, Pose, WalkSession, bake
 
-pytestmark = [pytest.mark.browser, pytest.mark.xdist_group("browser")]
+pytestmark = pytest.mark.browser
 
 OPEN = Floor(((0, 0), (60, 0), (60, 3), (0, 3)), ())
 START = Pose(58.0, 1.5, math.pi / 2)  # looking along the floor
