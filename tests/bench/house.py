@@ -35,13 +35,15 @@ class Tree:
 
     @staticmethod
     def of(revision: str | None) -> Tree:
-        """A revision's files; None: those of the working tree that git knows or does not ignore."""
+        """A revision's files; None: those of the working tree."""
         if revision is None:
-            listed = _git("ls-files", "-co", "--exclude-standard", *PACKAGES).decode().split("\n")
-            there = {name: ROOT / name for name in listed if name and (ROOT / name).is_file()}
-            return Tree(
-                "now", {n: p.read_text("utf-8") if n.endswith(".py") else "" for n, p in there.items()}
-            )
+            there = [path for name in PACKAGES for path in (ROOT / name).rglob("*") if path.is_file()]
+            kept = [path for path in there if "__pycache__" not in path.parts]
+            read = {
+                p.relative_to(ROOT).as_posix(): p.read_text("utf-8") if p.suffix == ".py" else ""
+                for p in kept
+            }
+            return Tree("now", read)
         files: dict[str, str] = {}
         with tarfile.open(fileobj=io.BytesIO(_git("archive", revision, *PACKAGES))) as archive:
             for member in archive:
