@@ -66,8 +66,8 @@ def test_pages_of_the_room_name_files_and_tests_that_are_there() -> None:
         text = (room / page).read_text("utf-8")
         for name in set(re.findall(r"`(?:test_cloth_\w+\.py: )?(test_\w+)`", text)):
             assert f"def {name}(" in known, f"{page}: {name}"
-        for name in set(re.findall(r"`(\w+\.(?:py|toml|json))\b", text)):
-            assert (room / name).exists() or (tests / name).exists(), f"{page}: {name}"
+        for name in set(re.findall(r"`([\w/]+\.(?:py|toml|json))\b", text)):
+            assert any((*room.rglob(name), *tests.glob(name), *ROOT.glob(name))), f"{page}: {name}"
         for link in re.findall(r"\]\(([^)#]+)", text):
             assert (room / link).exists(), f"{page}: {link}"
 

@@ -13,10 +13,10 @@ from sim_core.cloth.scenes import (
     choose,
     gap,
     grid_film,
+    pilot,
     scene,
     table,
 )
-from sim_core.cloth.scenes import pilots as pilot
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError, WrongArgument
 
