@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim_core.body.beneath import Beneath, Surface
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
 from sim_core.cloth.contact.distance_field import field_of
@@ -58,6 +59,16 @@ class Figure:
             posed, self.mannequin.faces, cell=self.cell, band=0.04, hulls=hands, box=self._box(), far=False
         )
         return made.values
+
+    def beneath(self, pose: Pose) -> Beneath:
+        """The whole posed figure as what lies beneath cloth; its nodes are those of `field` and their mirror images."""
+        low, high = self._box()
+        reach = self.cell * float(np.ceil(high[0] / self.cell))
+        weights, bones = self.mannequin.weights, self.mannequin.bones
+        hands = tuple(np.flatnonzero(weights[:, bones.index(hand)] > 0.5).astype(np.int32) for hand in HANDS)
+        vertices, faces = self.mesh(pose)
+        box = (-reach, low[1], low[2]), (reach, high[1], high[2])
+        return Beneath((Surface(vertices, faces, hands),), cell=self.cell, box=box)
 
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         """The posed figure: vertices (V, 3) [m], faces (F, 3)."""

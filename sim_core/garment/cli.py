@@ -182,8 +182,8 @@ def _draw(path: Path, garment: Garment, figure: tuple[np.ndarray, np.ndarray] | 
     """The garment on its stand or figure from the front, from the side and from behind."""
     import numpy as np
 
+    from sim_core.body.stand import Stand
     from sim_core.garment.glb import LACQUER, LINEN
-    from sim_core.garment.recipes.stand import Stand
     from sim_core.picture import Camera, Surface, render, save_png
 
     sheer = figure is None

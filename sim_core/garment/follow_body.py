@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.run.drape_run import FRAME
+from sim_core.cloth.sheet import evened
+from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.recipes.halves import APART
@@ -18,12 +19,15 @@ from sim_core.garment.recipes.schedule import UNTANGLE
 
 __all__ = ["follow", "garment_sheet"]
 
-CONTACT = Contact(0.005, 0.0025, 0.004, speed_limit=8.0, untangle=UNTANGLE)
+CONTACT = Contact(
+    0.005, 0.0025, 0.004, speed_limit=8.0, untangle=UNTANGLE
+)  # of cloth that does not say its own
 DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
+FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
 
 
 def garment_sheet(garment: Garment) -> Sheet:
-    """The garment as a sheet: its welded vertices, the pattern's lengths, the materials it was draped with.
+    """The garment as a sheet: its welded vertices, the pattern's lengths, the materials and masses it was draped with.
 
     Raises SimCoreError where the garment does not say what it is made of.
     """
@@ -33,44 +37,80 @@ def garment_sheet(garment: Garment) -> Sheet:
     apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)] or [0]
     own = garment.panel % len(doubled)  # the right half's panels follow the left's
     corner = garment.rest_corners() + APART * np.array(apart)[own][:, None, None] * np.array([1.0, 0.0])
-    if not any(doubled):
-        return Sheet.of_corners(corner, garment.faces, [single], np.zeros(len(own), np.int32))
-    twice = _material(garment, garment.material.get("doubled"))
-    return Sheet.of_corners(corner, garment.faces, [single, twice], np.array(doubled, np.int32)[own])
+    materials, kinds = [single], np.zeros(len(own), np.int32)
+    if any(doubled):
+        materials = [single, _material(garment, garment.material.get("doubled"))]
+        kinds = np.array(doubled, np.int32)[own]
+    sheet = Sheet.of_corners(corner, garment.faces, materials, kinds)
+    if garment.settled is None or not garment.settled.even:
+        return sheet
+    return evened(sheet, np.array([material.density for material in materials])[kinds])
 
 
 def follow(
     garment: Garment,
-    body: np.ndarray,
-    faces: np.ndarray,
+    body: np.ndarray | None = None,
+    faces: np.ndarray | None = None,
     *,
     seconds: float | None = None,
     cell: float = 0.008,
-    contact: Contact = CONTACT,
-    damping: float = DAMPING,
+    contact: Contact | None = None,
+    damping: float | None = None,
     progress: Callable[[float, str], None] | None = None,
     on_frame: Callable[[int, np.ndarray], None] | None = None,
     checkpoint: Path | None = None,
 ) -> Drape:
-    """Lets the garment follow its wearer, frame by frame of 1/25 s.
+    """Lets the garment hang on, or follow its wearer, frame by frame of 1/25 s.
 
-    body (T, B, 3) [m]: the wearer's vertices at the begin and then at the end of every frame, the first as the garment
-    was draped on; faces (F, 3): closed, counter-clockwise from outside. T = 1: a wearer who stands still, for
-    `seconds`; otherwise `seconds` more than the motion are stood still at its end. cell [m]: of the distance fields.
+    Without a body it goes on for `seconds` where it was settled, with the contact, holds, friction and damping it was
+    settled with: what came to rest stays at rest. body (T, B, 3) [m]: the wearer's vertices at the begin and then at
+    the end of every frame, the first as the garment was draped on; faces (F, 3): closed, counter-clockwise from
+    outside. T = 1: a wearer who stands still, for `seconds`; otherwise `seconds` more than the motion are stood still
+    at its end. cell [m]: of the distance fields. contact, damping: other than the garment's own.
     on_frame(index, positions (V, 3) float32) hears every frame; checkpoint: file to go on from.
-    Raises SimCoreError before anything runs where the wearer's mesh is open, not finite, or there is no time to run.
+    Raises SimCoreError before anything runs where the wearer's mesh is open, not finite, there is no time to run, or
+    the garment does not say what it was settled with and no wearer is given.
     """
+    settled = garment.settled
+    hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
+    if body is None or faces is None:
+        if settled is None:
+            raise SimCoreError(
+                f"follow: garment {garment.name} does not say what it was settled with – give its wearer's vertices "
+                "and faces, or bake it again"
+            )
+        if not seconds:
+            raise SimCoreError("follow: the wearer stands still – say for how many seconds")
+        phase = settled.phase(seconds)
+        phase = phase if damping is None else replace(phase, damping=damping)
+        given = {
+            "collider": settled.beneath.solid(),
+            "contact": contact or settled.contact,
+            "holds": settled.holds,
+        }
+        return drape(garment_sheet(garment), garment.positions, [phase], **given, **hooks)
     wearer = moving_mesh(body, faces, cell=cell)
+    usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
+    if settled is not None:
+        usual["friction"] = settled.last.friction
+        hooks["holds"] = settled.holds
+        contact = contact or replace(settled.contact, speed_limit=max(FASTEST, settled.contact.speed_limit))
     phases: list[Phase] = []
     if wearer.count > 1:
         way = (0.0, float(wearer.count - 1))
-        phases.append(Phase((wearer.count - 1) * FRAME, damping=damping, label="following", body=way))
+        phases.append(Phase((wearer.count - 1) * FRAME, label="following", body=way, **usual))
     if seconds:
-        phases.append(Phase(seconds, damping=damping, label="standing"))
+        phases.append(Phase(seconds, label="standing", **usual))
     if not phases:
         raise SimCoreError("follow: the wearer stands still – say for how many seconds")
-    hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
-    return drape(garment_sheet(garment), garment.positions, phases, collider=wearer, contact=contact, **hooks)
+    return drape(
+        garment_sheet(garment),
+        garment.positions,
+        phases,
+        collider=wearer,
+        contact=contact or CONTACT,
+        **hooks,
+    )
 
 
 def _material(garment: Garment, told: object) -> Material:

@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
+from sim_core.garment.settled import Settled
 from sim_core.validation.files import read_npz, shown
 
-FORMAT = 2
+FORMAT = 3
+WITHOUT_SETTLED = 2  # the format before: such a garment does not say what it was settled with
 _ARRAYS: dict[str, tuple[type, int]] = {
     "pattern": (float, 2),
     "pattern_faces": (np.int32, 3),
@@ -33,7 +35,7 @@ class Garment:
     weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
     panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
     meshed from (`Pattern.to_dict`); weave and material as plain dictionaries; provenance: inputs, seed, versions,
-    seconds per stage, measured errors.
+    seconds per stage, measured errors; settled: what it came to rest in, for whoever carries it on.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Garment:
     material: dict[str, Any] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
     dye: Colour | None = None
+    settled: Settled | None = None
 
     def __post_init__(self) -> None:
         for name, (kind, width) in _ARRAYS.items():
@@ -114,11 +117,14 @@ class Garment:
             "weave": self.weave,
             "material": self.material,
             "provenance": self.provenance,
+            "settled": self.settled and self.settled.to_header(),
         }
         text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), np.uint8)
         beside = path.with_name(path.name + ".part")
         with beside.open("wb") as stream:
-            np.savez_compressed(stream, header=text, **{name: getattr(self, name) for name in _ARRAYS})
+            arrays = {name: getattr(self, name) for name in _ARRAYS}
+            arrays |= self.settled.arrays() if self.settled else {}
+            np.savez_compressed(stream, header=text, **arrays)
         beside.replace(path)
 
     @staticmethod
@@ -132,9 +138,14 @@ class Garment:
             raise
         except (ValueError, RecursionError) as error:
             raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
+        if not isinstance(header, dict) or header.get("format") not in (WITHOUT_SETTLED, FORMAT):
             raise FileProblem(f"{path}: written in another format – bake the garment again")
-        data = read_npz(path, tuple(_ARRAYS), what, remedy)
+        try:
+            told = header["settled"] if header["format"] == FORMAT else None
+            names = Settled.names(told) if told else ()
+        except (KeyError, TypeError, ValueError) as error:
+            raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
+        data = read_npz(path, (*_ARRAYS, *names), what, remedy)
         try:
             return Garment(
                 name=str(header["name"]),
@@ -145,6 +156,7 @@ class Garment:
                 material=_facts(header, "material"),
                 provenance=_facts(header, "provenance"),
                 dye=_colour(header.get("dye")),
+                settled=Settled.of(told, data) if told else None,
                 **{name: np.ascontiguousarray(data[name]) for name in _ARRAYS},
             )
         except (SimCoreError, KeyError, TypeError, ValueError, OverflowError) as error:

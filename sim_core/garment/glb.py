@@ -9,11 +9,11 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from sim_core.body.stand import Stand
 from sim_core.cloth import Cylinder
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Colour, Garment
-from sim_core.garment.recipes.stand import Stand
 from sim_core.garment.slub import slub_normal
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals

@@ -1,5 +1,6 @@
 """The robe recipe on coarse meshes and the shipped figure: outside the body, sewn, alike on both sides, resumable."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from sim_core import metrics
 from sim_core.body import Figure, Mannequin, Pose
 from sim_core.cloth.step import schedule
 from sim_core.errors import SimCoreError
-from sim_core.garment import Garment, Pattern, detail, robe_on_figure, write_glb
+from sim_core.garment import Garment, Pattern, detail, follow, robe_on_figure, write_glb
 from sim_core.garment.levels import shown_figure
 from sim_core.garment.placement import Laying, laid
 from sim_core.garment.recipes import Schedule
@@ -75,6 +76,19 @@ def test_a_coarse_coat_keeps_the_limits(coat: Garment) -> None:
     assert x[front, 0].min() > 0.0  # no front passes the middle
     assert 0.1 < x[:, 1].min() < 0.45
     assert 1.30 < x[:, 1].max() < 1.50
+
+
+@pytest.mark.slow
+def test_a_coat_at_rest_stays_at_rest_with_nothing_but_itself_given(coat: Garment, tmp_path: Path) -> None:
+    """Contact, friction, holds and figure come along with it, also through a file, to the same bits."""
+    frames = [coat.positions]
+    end = follow(coat, seconds=1.0, on_frame=lambda index, x: frames.append(x))
+    ways = [np.linalg.norm(after - before, axis=1) for before, after in pairwise(frames)]
+    assert max(np.percentile(way, 99) for way in ways) <= 5e-5
+    assert np.linalg.norm(end.positions - coat.positions, axis=1).max() <= 1e-3
+    coat.save(tmp_path / "coat.npz")
+    again = follow(Garment.load(tmp_path / "coat.npz"), seconds=1.0)
+    assert again.positions.tobytes() == end.positions.tobytes()
 
 
 def test_it_settles_on_the_figure_as_the_arms_came_down() -> None:

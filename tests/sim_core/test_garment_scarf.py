@@ -1,5 +1,6 @@
 """The scarf recipe on coarse meshes: bit-equal, resumable, outside the stand, unstretched; and its picture."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from sim_core import metrics
 from sim_core.cloth import Phase
 from sim_core.errors import SimCoreError
-from sim_core.garment import Garment, Gathering, Pattern, Stand, scarf_on_stand
+from sim_core.garment import Garment, Gathering, Pattern, Stand, follow, scarf_on_stand
 from sim_core.garment.placement import gathered_strip
 from sim_core.garment.recipes import PHASES
 from sim_core.mesh import panel_mesh
@@ -30,9 +31,14 @@ def gauze() -> Weave:
     return Weave("gauze", draft, yarn, yarn, 6200.0, 4500.0)
 
 
+@pytest.fixture(scope="module")
+def scarf(gauze: Weave) -> Garment:
+    return scarf_on_stand(strip(), gauze, edge=0.03, seed=3)
+
+
 @pytest.mark.slow
-def test_a_coarse_scarf_lies_on_the_bar(gauze: Weave) -> None:
-    garment = scarf_on_stand(strip(), gauze, edge=0.03, seed=3)
+def test_a_coarse_scarf_lies_on_the_bar(scarf: Garment) -> None:
+    garment = scarf
     assert garment.provenance["gathering"]["folds"] < Gathering().folds  # fewer, as so coarse a mesh resolves
     facts = garment.provenance["errors"]
     assert facts["inside_vertices"] + facts["inside_midpoints"] + facts["inside_centroids"] == 0
@@ -46,6 +52,18 @@ def test_a_coarse_scarf_lies_on_the_bar(gauze: Weave) -> None:
     assert 1.5 < high[1] < 1.63  # on so coarse a mesh a crest stands off the bar
     assert high[0] - low[0] < 0.4
     assert {"mesh", "weave", "drape", "check"} <= set(garment.provenance["seconds"])
+
+
+@pytest.mark.slow
+def test_it_goes_on_hanging_where_it_was_settled(scarf: Garment, tmp_path: Path) -> None:
+    """As slowly as it came to rest, and a scarf from a file to the same bits as one never saved."""
+    at_rest, frames = scarf.provenance["errors"]["rest_p99_m"], [scarf.positions]
+    end = follow(scarf, seconds=0.4, on_frame=lambda index, x: frames.append(x))
+    ways = [np.linalg.norm(after - before, axis=1) for before, after in pairwise(frames)]
+    assert max(np.percentile(way, 99) for way in ways) < 1.5 * at_rest
+    scarf.save(tmp_path / "scarf.npz")
+    again = follow(Garment.load(tmp_path / "scarf.npz"), seconds=0.4)
+    assert again.positions.tobytes() == end.positions.tobytes()
 
 
 def test_same_seed_same_bits_other_seed_other_folds(gauze: Weave) -> None:

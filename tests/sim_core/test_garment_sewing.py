@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.garment import Pattern
-from sim_core.garment.pattern import Cloth, Panel, cut_cloth
+from sim_core.garment.pattern import SIDES, Cloth, Panel, cut_cloth
 from sim_core.garment.pattern import Path as Way
 from sim_core.garment.recipes import (
     GAP,
@@ -79,11 +79,18 @@ def test_both_sides_have_the_same_steps_at_most_the_edge(tmp_path: Path, kind: s
 
 
 def test_a_half_doubled_pairs_and_numbers_each_side_for_itself(half: tuple[Pattern, Cloth]) -> None:
-    _, cloth = half
+    pattern, cloth = half
     whole, count = cloth.mirrored(), len(cloth.vertices)
     assert len(whole.pairs) == 2 * len(cloth.pairs)
-    assert (whole.pairs[: len(cloth.pairs)] < count).all()
-    assert (whole.pairs[len(cloth.pairs) :] >= count).all()
+    sewn = set()
+    for side in SIDES:
+        for seam in pattern.seams:
+            if seam.kind == "sewn" and seam.b is not None:
+                ends = [whole.along(p, pattern.panel(p.panel), side) for p in (seam.a, seam.b)]
+                sewn |= {tuple(sorted(pair)) for pair in whole.joined[np.column_stack(ends)].tolist()}
+    assert {tuple(sorted(pair)) for pair in whole.pairs.tolist()} == {(a, b) for a, b in sewn if a != b}
+    left, right = (whole.along(seam.a, pattern.panel(seam.a.panel), side) for side in SIDES)
+    assert whole.vertices[right] == pytest.approx(whole.vertices[left] * [-1.0, 1.0])
     assert (whole.panel_of[:count] == cloth.panel_of).all()
     assert (whole.panel_of[count:] == cloth.panel_of + len(cloth.names)).all()
     assert (whole.panel_of[whole.faces] == whole.panel[:, None]).all()

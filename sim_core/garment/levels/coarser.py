@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from sim_core import metrics
+from sim_core.body.stand import Stand
 from sim_core.cloth import Solid
 from sim_core.cloth.contact.collisions import collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet.sheet import face_edge_table
@@ -16,7 +17,6 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.levels.thinning import Thinning
 from sim_core.garment.pattern.pattern import Pattern
-from sim_core.garment.recipes.stand import Stand
 from sim_core.mesh import panel_mesh
 
 SHARES = tuple(

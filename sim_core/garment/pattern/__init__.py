@@ -1,11 +1,12 @@
 """A garment as it is cut: panels, seams, pattern files and GarmentCode, and the cloth they are meshed to."""
 
-from sim_core.garment.pattern.cloth import Cloth, cut_cloth
+from sim_core.garment.pattern.cloth import SIDES, Cloth, cut_cloth
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam
 from sim_core.garment.pattern.pattern import Pattern
 
 __all__ = [
+    "SIDES",
     "Cloth",
     "Panel",
     "Path",

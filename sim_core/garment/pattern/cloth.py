@@ -13,8 +13,9 @@ from sim_core.garment.pattern.panels import Panel, Path, Seam, arc_length, at_le
 from sim_core.mesh import panel_mesh
 from sim_core.mesh.outline import check_edge, signed_area
 
-__all__ = ["MOST_VERTICES", "Cloth", "cut_cloth"]
+__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth"]
 
+SIDES = (" left", " right")  # of the wearer: a panel of a whole cloth is called so behind its name
 MOST_VERTICES = 200_000  # of a panel that is to be draped: a night's work
 
 
@@ -38,11 +39,11 @@ class Cloth:
     middle: np.ndarray
     paths: dict[str, np.ndarray]
 
-    def along(self, path: Path, panel: Panel) -> np.ndarray:
-        """Numbers of the pattern vertices on a path, in its direction."""
+    def along(self, path: Path, panel: Panel, side: str = "") -> np.ndarray:
+        """Numbers of the pattern vertices on a path, in its direction; side: of a whole cloth, one of SIDES."""
         parts = []
         for leg in panel.path(path.start, path.end, ahead=path.ahead):
-            index = self.paths[f"{panel.name}/{leg}"]
+            index = self.paths[f"{panel.name}{side}/{leg}"]
             parts.append(index if path.ahead else index[::-1])
         return np.concatenate([parts[0][:1], *(part[1:] for part in parts)])
 
@@ -50,7 +51,7 @@ class Cloth:
         """Both halves: the second is the first turned over about x = 0; middles are joined to their images."""
         count = len(self.vertices)
         flipped = self.faces[:, [0, 2, 1]] + count
-        names = tuple(f"{name} {side}" for side in ("left", "right") for name in self.names)
+        names = tuple(name + side for side in SIDES for name in self.names)
 
         def doubled(index: np.ndarray) -> np.ndarray:
             image = index + index.max() + 1
@@ -58,18 +59,29 @@ class Cloth:
             image[np.isin(index, on)] = index[np.isin(index, on)]
             return np.unique(np.r_[index, image], return_inverse=True)[1].astype(np.int32)
 
+        joined = doubled(self.joined)
+        first = np.unique(self.joined, return_index=True)[1]  # a pattern vertex of each joined one
+        ends = first[self.pairs]
+        paths = {f"{name}{SIDES[0]}/{leg}": index for (name, leg), index in self._legs()}
+        paths |= {f"{name}{SIDES[1]}/{leg}": index + count for (name, leg), index in self._legs()}
         return Cloth(
             names,
             np.concatenate([self.vertices, self.vertices * [-1.0, 1.0]]),
             np.concatenate([self.faces, flipped]).astype(np.int32),
             np.r_[self.panel, self.panel + len(self.names)].astype(np.int32),
             np.r_[self.panel_of, self.panel_of + len(self.names)].astype(np.int32),
-            doubled(self.joined),
+            joined,
             doubled(self.closed),
-            np.concatenate([self.pairs, self.pairs + count]).astype(np.int32),
+            np.concatenate([joined[ends], joined[ends + count]]).astype(np.int32).reshape(-1, 2),
             np.zeros(0, np.int32),
-            {},
+            paths,
         )
+
+    def _legs(self) -> Iterator[tuple[tuple[str, str], np.ndarray]]:
+        """Panel and number of every leg, with its vertices."""
+        for key, index in self.paths.items():
+            name, _, leg = key.rpartition("/")
+            yield (name, leg), index
 
 
 def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cloth:

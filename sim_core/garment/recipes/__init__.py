@@ -14,7 +14,6 @@ from sim_core.garment.recipes.pibo import (
 from sim_core.garment.recipes.robe import robe_on_figure
 from sim_core.garment.recipes.scarf import PHASES, scarf_on_stand
 from sim_core.garment.recipes.schedule import Schedule
-from sim_core.garment.recipes.stand import Stand
 from sim_core.garment.recipes.worn_solid import capped
 
 __all__ = [
@@ -26,7 +25,6 @@ __all__ = [
     "PiboSettings",
     "SAG",
     "Schedule",
-    "Stand",
     "capped",
     "field_under",
     "half_sheet",

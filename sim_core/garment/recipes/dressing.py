@@ -9,14 +9,15 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from sim_core.body.pose import Pose
+from sim_core.body import Beneath, Pose
 from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
 from sim_core.cloth.step.phases import schedule
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.flat import Laying, laid
-from sim_core.garment.recipes.halves import Half, half_sheet
+from sim_core.garment.recipes.halves import Half, half_sheet, whole_holds
 from sim_core.garment.recipes.schedule import GRAVITY, LIMIT, SHELL, UNTANGLE, Schedule
+from sim_core.garment.settled import Settled
 from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
 __all__ = ["FigureLike", "Worn", "dress"]
@@ -41,6 +42,7 @@ class FigureLike(Protocol):
     def cell(self) -> float: ...
     def field(self, pose: Pose) -> np.ndarray: ...
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]: ...
+    def beneath(self, pose: Pose) -> Beneath: ...
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,7 @@ class Worn:
     gap: float
     materials: list[Material]
     choices: dict[str, str]
+    settled: Settled
 
 
 def dress(
@@ -126,7 +129,10 @@ def dress(
     for file in (checkpoint, *files):
         if file:
             file.unlink(missing_ok=True)
-    return Worn(cloth, x[shut.number], shut, tuple(runs), gap, materials, choices)
+    last = timing.settling(())[-1]
+    holds = whole_holds(robe_holds(pattern, cloth, shut, stitch, x), shut, cloth)
+    settled = Settled(SETTLING, last, holds, figure.beneath(timing.pose))
+    return Worn(cloth, x[shut.number], shut, tuple(runs), gap, materials, choices, settled)
 
 
 class _Stages:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth import Material, Sheet
+from sim_core.cloth import Holds, Material, Sheet
 from sim_core.cloth.sheet.mass_lumping import evened
 from sim_core.garment.pattern.cloth import Cloth
 
-__all__ = ["Half", "half_sheet"]
+__all__ = ["Half", "half_sheet", "whole_holds"]
 
 RINGS = 3  # of images: what bends at the middle is a face, its neighbours, and at a border theirs
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
@@ -79,3 +79,14 @@ def half_sheet(
         sheet = evened(sheet, density[kinds], own=len(on))
     slaves = np.column_stack([image[masters], masters]).astype(np.int32)
     return Half(sheet, number, middle, slaves, len(on))
+
+
+def whole_holds(holds: Holds, half: Half, cloth: Cloth) -> Holds:
+    """The holds of one half and its mirror image, of the draped vertices of both: bounds and the limit of lengths."""
+    weld = cloth.mirrored().closed
+    count, own = int(weld.max()) + 1, len(cloth.vertices)
+    low, high = np.full(count, -np.inf), np.full(count, np.inf)
+    if len(holds.low):
+        low[weld[:own]], high[weld[:own]] = holds.low[half.number], holds.high[half.number]
+        low[weld[own:]], high[weld[own:]] = -holds.high[half.number], -holds.low[half.number]
+    return Holds.of(count, low=low, high=high, limit=holds.limit)

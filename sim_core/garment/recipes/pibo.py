@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from sim_core import metrics
+from sim_core.body import Beneath, Surface
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
 from sim_core.cloth import Contact, Drape, Holds, Phase, drape
@@ -22,11 +23,12 @@ from sim_core.garment.garment import Garment
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.along_path import Accordion, arranged_path, swept
-from sim_core.garment.recipes.halves import Half, half_sheet
+from sim_core.garment.recipes.halves import Half, half_sheet, whole_holds
 from sim_core.garment.recipes.records import Clock, versions
 from sim_core.garment.recipes.scarf import scarf_material
 from sim_core.garment.recipes.schedule import LIMIT, UNTANGLE
 from sim_core.garment.recipes.worn_solid import capped
+from sim_core.garment.settled import Settled
 from sim_core.weave import Weave, parameters_of, solve
 
 __all__ = ["HELD", "PiboSettings", "field_under", "laid_along", "pibo_on_figure", "solids_under"]
@@ -118,7 +120,12 @@ def pibo_on_figure(
     hooks = _Hooks(half, phases, progress, on_frame, checkpoint)
     worn = _draped(half, start, field, s, phases, hooks)
     clock.lap("drape")
-    garment = _garment(pattern, weave, cloth, worn, half, {**asdict(material), "choices": choices})
+    run = len(phases) - 1
+    lying = _beneath(solids, field, s)
+    settled = Settled(
+        _contact(s, run, last=True), phases[-1][-1], whole_holds(_holds(half), half, cloth), lying
+    )
+    garment = _garment(pattern, weave, cloth, worn, half, {**asdict(material), "choices": choices}, settled)
     errors = pibo_errors(garment, solids) | {
         "rest_p99_m": worn.rest_p99,
         "rest_max_m": worn.rest_max,
@@ -196,12 +203,7 @@ def _draped(
     """All runs; frames and substeps of the result are those of all."""
     solid, holds, runs = field.solid(), _holds(half), []
     for run, course in enumerate(phases):
-        last, friction = run == len(phases) - 1, s.self_friction[min(run, len(s.self_friction) - 1)]
-        shell = {"spring": s.spring, "self_friction": friction, "every": 2, "partly": not last}
-        shell |= {"separation": s.separation} if last else {}
-        contact = Contact(
-            s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell
-        )
+        contact = _contact(s, run, last=run == len(phases) - 1)
         runs.append(
             drape(
                 half.sheet,
@@ -221,6 +223,25 @@ def _draped(
         substeps=sum(run.substeps for run in runs),
         rollbacks=sum(run.rollbacks for run in runs),
     )
+
+
+def _contact(s: PiboSettings, run: int, *, last: bool) -> Contact:
+    """How the scarf touches in a run; with the last nothing is taken apart in part."""
+    friction = s.self_friction[min(run, len(s.self_friction) - 1)]
+    shell: dict[str, Any] = {"spring": s.spring, "self_friction": friction, "every": 2, "partly": not last}
+    shell |= {"separation": s.separation} if last else {}
+    return Contact(s.clearance, 0.5 * s.clearance, s.shell, speed_limit=2.5, untangle=UNTANGLE, **shell)
+
+
+def _beneath(solids: dict[str, Solid], field: DistanceField, s: PiboSettings) -> Beneath:
+    """Body and robe as both halves lie on them, with the nodes of the half's field and their mirror images."""
+    surfaces = tuple(
+        Surface(vertices, faces, thicker=s.robe if name == "robe" else 0.0)
+        for name, (vertices, faces) in solids.items()
+    )
+    low, high = ([float(c) for c in corner] for corner in field.box())
+    reach = s.cell * float(np.ceil(high[0] / s.cell))
+    return Beneath(surfaces, cell=s.cell, box=((-reach, low[1], low[2]), (reach, high[1], high[2])))
 
 
 def solids_under(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str, Solid]:
@@ -280,7 +301,13 @@ def _holds(half: Half) -> Holds:
 
 
 def _garment(
-    pattern: Pattern, weave: Weave, cloth: Cloth, worn: Drape, half: Half, material: dict[str, Any]
+    pattern: Pattern,
+    weave: Weave,
+    cloth: Cloth,
+    worn: Drape,
+    half: Half,
+    material: dict[str, Any],
+    settled: Settled,
 ) -> Garment:
     own, both = worn.positions[half.number], cloth.mirrored()
     positions = np.zeros((int(both.closed.max()) + 1, 3))
@@ -298,6 +325,7 @@ def _garment(
         weave=weave.to_dict(),
         material=material,
         dye=pattern.dye,
+        settled=settled,
     )
 
 

@@ -141,4 +141,5 @@ def _garment(pattern: Pattern, weave: Weave, worn: Worn) -> Garment:
         weave=weave.to_dict(),
         material={**single, "doubled": doubled, "choices": worn.choices},
         dye=pattern.dye,
+        settled=worn.settled,
     )

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from sim_core import metrics
+from sim_core.body import Beneath
+from sim_core.body.stand import Stand
 from sim_core.cloth import Contact, Drape, Holds, Material, Phase, Sheet, drape
 from sim_core.cloth.run.drape_run import ENGINE_VERSION
 from sim_core.errors import SimCoreError
@@ -20,7 +22,7 @@ from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.over_bar import Gathering, gathered_strip
 from sim_core.garment.recipes.records import Clock, versions
 from sim_core.garment.recipes.schedule import GRAVITY, LIMIT, UNTANGLE
-from sim_core.garment.recipes.stand import Stand
+from sim_core.garment.settled import Settled
 from sim_core.weave import ClothParameters, Weave, parameters_of, solve
 
 SAG = 0.005  # strain at the bar under the hanging end's own weight; more stretch than this would be seen
@@ -83,11 +85,17 @@ def scarf_on_stand(
         "errors": errors,
     }
     material_facts = {**asdict(material), "choices": choices, "provenance": dict(parameters.provenance)}
-    return _garment(pattern, weave, sheet, result, material_facts).noted(**facts)
+    settled = Settled(contact, phases[-1], holds, Beneath(stand=stand), even=False)
+    return _garment(pattern, weave, sheet, result, material_facts, settled).noted(**facts)
 
 
 def _garment(
-    pattern: Pattern, weave: Weave, sheet: Sheet, result: Drape, material: dict[str, Any]
+    pattern: Pattern,
+    weave: Weave,
+    sheet: Sheet,
+    result: Drape,
+    material: dict[str, Any],
+    settled: Settled,
 ) -> Garment:
     solver = {"simulated": result.frames / 25, "substeps": result.substeps, "rollbacks": result.rollbacks}
     return Garment(
@@ -102,6 +110,7 @@ def _garment(
         material=material,
         provenance={"recipe": "scarf_on_stand", "versions": versions(), **solver},
         dye=pattern.dye,
+        settled=settled,
     )
 
 

@@ -1,0 +1,77 @@
+"""What lies beneath cloth: closed surfaces (a figure in a pose, garments worn under it) or a stand, as one solid."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.body.stand import Stand
+from sim_core.cloth import Solid, field_of
+from sim_core.cloth.contact import DistanceField, united
+from sim_core.errors import SimCoreError
+
+__all__ = ["Beneath", "Surface"]
+
+BAND = 0.04  # [m] of the distance fields: further off cloth asks for nothing
+MARGIN = 0.06  # [m] of a field around what lies beneath
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A closed mesh that cloth lies on: vertices (V, 3) float64 [m], faces (F, 3) int32 counter-clockwise from outside.
+
+    hulls: point sets (N,) int32 of its vertices whose convex hulls count as solid, hands that cloth must slide over;
+    thicker [m]: by how much it reaches beyond its mesh, as a garment beneath another does.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    hulls: tuple[np.ndarray, ...] = ()
+    thicker: float = 0.0
+
+
+@dataclass(frozen=True)
+class Beneath:
+    """What lies beneath: closed surfaces, the first of which is the wearer, or a stand.
+
+    cell [m] of their distance field; box: its lowest and highest corner [m] (None: around the surfaces). Equal nodes
+    make equal values, so a field is kept with where its nodes lie.
+    """
+
+    surfaces: tuple[Surface, ...] = ()
+    stand: Stand | None = None
+    cell: float = 0.008
+    box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+
+    def solid(self) -> Solid | None:
+        """What cloth is kept out of, made anew from the surfaces: the same values on one machine."""
+        if self.stand is not None:
+            return self.stand.collider()
+        return self.field().solid() if self.surfaces else None
+
+    def field(self) -> DistanceField:
+        """min(first, others - thicker) around all of them. Raises SimCoreError where there is no surface."""
+        if not self.surfaces:
+            raise SimCoreError("beneath: no surface – a field needs one")
+        points = np.concatenate([surface.vertices for surface in self.surfaces])
+        box = self.box or (points.min(0) - MARGIN, points.max(0) + MARGIN)
+        found: DistanceField | None = None
+        for surface in self.surfaces:
+            hulls = [surface.vertices[index] for index in surface.hulls]
+            made = field_of(
+                surface.vertices, surface.faces, cell=self.cell, band=BAND, hulls=hulls, box=box, far=False
+            )
+            found = made if found is None else united(found, made, thicker=surface.thicker)
+        assert found is not None
+        return found
+
+    def digest(self) -> str:
+        """A hash of all that decides the field."""
+        hashed = hashlib.sha256(repr((self.stand, self.cell, self.box)).encode())
+        for surface in self.surfaces:
+            for array in (surface.vertices, surface.faces, *surface.hulls):
+                hashed.update(array.tobytes())
+            hashed.update(repr(surface.thicker).encode())
+        return hashed.hexdigest()[:16]

@@ -1,0 +1,106 @@
+"""What a garment was settled with: contact, holds, damping, friction and the solids it lies on.
+
+Whoever carries a garment on (lets it hang on, moves its wearer, learns from it) needs nothing else, and what hung
+still goes on hanging still: cloth at rest is at rest between these forces and no others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from sim_core.body.beneath import Beneath, Surface
+from sim_core.body.stand import Stand
+from sim_core.cloth import Contact, Holds, Phase
+
+__all__ = ["Settled"]
+
+
+@dataclass(frozen=True)
+class Settled:
+    """contact: how the cloth touched; last: the phase it came to rest in (gravity, damping, friction); holds: ties,
+    bounds and the limit of its threads, of the draped vertices; beneath: what it lies on; even: whether the sheet's
+    mass is shared out for longer steps (`cloth.sheet.evened`).
+    """
+
+    contact: Contact
+    last: Phase
+    holds: Holds
+    beneath: Beneath = field(default_factory=Beneath)
+    even: bool = True
+
+    def phase(self, seconds: float, label: str = "standing") -> Phase:
+        """More of what the garment came to rest in."""
+        gravity, sewing = self.last.gravity[1], self.last.sewing[1]
+        steady = {"gravity": (gravity, gravity), "sewing": (sewing, sewing)}
+        return replace(self.last, seconds=seconds, label=label, rest=None, body=None, **steady)
+
+    def to_header(self) -> dict[str, Any]:
+        """What JSON can hold of it; `arrays` are the rest."""
+        return {
+            "contact": asdict(self.contact),
+            "last": asdict(self.last),
+            "limit": list(self.holds.limit),
+            "even": self.even,
+            "stand": self.beneath.stand and asdict(self.beneath.stand),
+            "cell": self.beneath.cell,
+            "box": self.beneath.box,
+            "surfaces": [
+                {"thicker": surface.thicker, "hulls": len(surface.hulls)} for surface in self.beneath.surfaces
+            ],
+        }
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The arrays of a file, by name."""
+        out = {f"holds_{name}": getattr(self.holds, name) for name in _HOLDS}
+        for k, surface in enumerate(self.beneath.surfaces):
+            out[f"surface{k}_vertices"], out[f"surface{k}_faces"] = surface.vertices, surface.faces
+            for j, hull in enumerate(surface.hulls):
+                out[f"surface{k}_hull{j}"] = hull
+        return out
+
+    @staticmethod
+    def names(header: Mapping[str, Any]) -> tuple[str, ...]:
+        """The arrays that a file with this header holds."""
+        names = [f"holds_{name}" for name in _HOLDS]
+        for k, surface in enumerate(header["surfaces"]):
+            names += [f"surface{k}_vertices", f"surface{k}_faces"]
+            names += [f"surface{k}_hull{j}" for j in range(int(surface["hulls"]))]
+        return tuple(names)
+
+    @staticmethod
+    def of(header: Mapping[str, Any], data: Mapping[str, np.ndarray]) -> Settled:
+        """From `to_header` and `arrays`; raises KeyError, TypeError or ValueError for what is none."""
+        surfaces = tuple(
+            Surface(
+                np.ascontiguousarray(data[f"surface{k}_vertices"], float),
+                np.ascontiguousarray(data[f"surface{k}_faces"], np.int32),
+                tuple(data[f"surface{k}_hull{j}"] for j in range(int(told["hulls"]))),
+                float(told["thicker"]),
+            )
+            for k, told in enumerate(header["surfaces"])
+        )
+        stand = Stand(**header["stand"]) if header["stand"] else None
+        shorter, longer = (float(share) for share in header["limit"])
+        kept = {name: np.ascontiguousarray(data[f"holds_{name}"]) for name in _HOLDS}
+        last: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in header["last"].items()}
+        return Settled(
+            Contact(**header["contact"]),
+            Phase(**last),
+            Holds(**kept, limit=(shorter, longer)),
+            Beneath(surfaces, stand, float(header["cell"]), _box(header["box"])),
+            bool(header["even"]),
+        )
+
+
+_HOLDS = ("pairs", "spans", "same", "low", "high", "slaves")
+
+
+def _box(told: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+    if told is None:
+        return None
+    (a, b, c), (d, e, f) = told
+    return (float(a), float(b), float(c)), (float(d), float(e), float(f))
