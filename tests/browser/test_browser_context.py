@@ -127,6 +127,7 @@ def test_before_entering(shipped_hall, page):
     same(before, picture(page))
 
 
+@pytest.mark.nightly
 def test_lost_while_the_hall_still_loads(plain_hall, page):
     """Lost before the first picture: once given back, the hall opens within its patience, not after two minutes."""
     page.goto(f"{plain_hall.url}/?lang=en")

@@ -35,6 +35,7 @@ def test_first_view_costs_no_more_than_it_must(visits):
     assert max(visit["bytes"] for visit in visits) <= FIRST_VIEW
 
 
+@pytest.mark.nightly
 def test_progress_is_true(visits):
     """It never goes back, says what is under way, and while bytes flow it does not stand still for seconds."""
     for visit in visits:
@@ -52,6 +53,7 @@ def test_progress_is_true(visits):
     assert longest_stand(calm) <= 0.15 * calm["ready_s"]
 
 
+@pytest.mark.nightly
 def test_reloading_brings_nothing_large_again(plain_hall, chromium):
     with wire(plain_hall.port) as line:
         page = chromium.new_page(viewport={"width": 480, "height": 270})

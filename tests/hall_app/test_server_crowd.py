@@ -261,6 +261,7 @@ def test_a_class_of_a_hundred_comes_in_at_once(own_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_the_thrown_out_find_the_door_shut(own_hall):
     """Back at full speed after each kick: soon no socket is opened from there; others are let in."""
 
@@ -377,6 +378,7 @@ async def shows_nothing(socket) -> None:
             await socket.recv()
 
 
+@pytest.mark.nightly
 def test_views_are_for_those_inside(small_hall):
     """Who waits sees nothing, on a socket that is open; who is let in looks at once, though others would take it."""
 
@@ -431,6 +433,7 @@ async def dismissed(look) -> None:
     assert look.close_code == 1013
 
 
+@pytest.mark.nightly
 def test_a_view_ends_with_its_visit(hasty_hall):
     """Whoever comes, looks and leaves again and again leaves no views behind."""
 
@@ -445,6 +448,7 @@ def test_a_view_ends_with_its_visit(hasty_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_a_view_without_a_visit_ends(hasty_hall):
     async def run() -> None:
         async with view(hasty_hall) as look:

@@ -26,6 +26,7 @@ def length(places: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_hundred_thousand_random_moves_never_end_inside():
     result = random_walk((dense_floor(np.random.default_rng(1)), 100_000, 1))

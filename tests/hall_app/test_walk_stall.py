@@ -143,6 +143,7 @@ def random_visit(rng: np.random.Generator, grid: Grid, floor: Floor, count: int,
     )
 
 
+@pytest.mark.nightly
 def test_no_stall_takes_back_what_was_shown(tab, long_grid):
     """Straight on, 2000 visits with stalls of server, line and page: nothing is refused, nobody is thrown back."""
     rng = np.random.default_rng(18)

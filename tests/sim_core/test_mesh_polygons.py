@@ -16,6 +16,7 @@ def test_a_point_that_smoothing_moves_into_a_hole_is_dropped():
     assert report_faults(5667) == []
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_more_random_panels_are_sound_and_exactly_delaunay():
     assert {seed: f for seed in range(300, 1500) if (f := report_faults(seed))} == {}
