@@ -191,10 +191,8 @@ def test_sheet_by_keyboard(page):
     before, seen = page.evaluate("() => document.querySelector('.panel-body').scrollTop"), displayed(page)
     for _ in range(6):
         page.keyboard.press("ArrowDown")
-    page.wait_for_timeout(400)
-    assert (
-        page.evaluate("() => document.querySelector('.panel-body').scrollTop") > before
-    )  # it is read, not turned
+    # It is read, not turned; how soon depends on how long a frame takes.
+    page.wait_for_function("(before) => document.querySelector('.panel-body').scrollTop > before", arg=before)
     assert displayed(page) == pytest.approx(seen, abs=1e-6)
 
 
