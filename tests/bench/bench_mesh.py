@@ -8,6 +8,7 @@ growth    Every engine triangulates the same filtered points of three outlines; 
 panels    Outline in, checked mesh out, beside gmsh's Frontal-Delaunay on the same outline steps.
 growing   Stars, combs, spirals and clusters of holes of ever more points, and small holes at long edges: time by the
           number of vertices, angles below 30 degrees, and counts beside Triangle's (`mesh_growing.py`).
+corners   Lines that cross at any angle: vertices, shortest sides, small angles beside Triangle's (`mesh_corners.py`).
 cloth     How far the sheet that hangs by one edge is from the converged one, by the edge length of its mesh.
 
 Triangle and gmsh are no dependencies: `--peers` makes an environment of their own from tests/bench/peers.txt (in
@@ -213,7 +214,9 @@ def main() -> int:
         metavar="FOLDER",
         help="with Triangle and gmsh",
     )
-    parser.add_argument("--only", choices=("growth", "panels", "growing", "cloth"), help="one part")
+    parser.add_argument(
+        "--only", choices=("growth", "panels", "growing", "corners", "cloth"), help="one part"
+    )
     parser.add_argument("--panel", choices=tuple(PANELS), help="one outline")
     parser.add_argument("--json", type=Path, help="write the figures as JSON")
     parser.add_argument(
@@ -244,6 +247,10 @@ def main() -> int:
         figures["growing"] = growing(GROWING["quick" if args.quick else "usual"], peers)
         figures["grading"] = grading([100] if args.quick else [100, 400, 1600], peers)
         print(f"time grows as vertices to the power {growing_exponents(figures['growing'])}")
+    if args.only in (None, "corners"):
+        from mesh_corners import corners
+
+        figures["corners"] = corners(1 if args.quick else 8, peers)
     if args.only in (None, "cloth"):
         from mesh_cloth import hanging
 

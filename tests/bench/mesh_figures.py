@@ -169,6 +169,25 @@ def _panels_table(found: dict) -> list[str]:
     return lines
 
 
+def _corners_table(found: dict) -> list[str]:
+    lines = [
+        "| Least angle between lines | meshes | vertices, median (most) | shortest side | small angles |",
+        "|---|---|---|---|---|",
+    ]
+    for row in found["corners"]:
+        low, high = row["angles"]
+        both = [row[name] for name in ("best", "Triangle") if name in row]
+        cells = [
+            f"{row['kind']}, {f'{low:g}–{high:g}°' if high < 90 else f'above {low:g}°'}",
+            str(row["meshes"]),
+            " / ".join(f"{of['vertices_median']:,.0f} ({of['vertices_most']:,})" for of in both),
+            " / ".join(f"{of['side_by_feature']:.4f}" for of in both),
+            " / ".join(f"{of['small']:,} in {of['meshes_with_small']}" for of in both),
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
 def _cloth_table(found: dict) -> list[str]:
     cloth = found["cloth"]
     lines = [
@@ -200,6 +219,7 @@ def main() -> int:
         ],
         _growth_table(found),
         _panels_table(found),
+        _corners_table(found),
         _cloth_table(found),
     ]
     text = "\n\n".join("\n".join(lines) for lines in parts)

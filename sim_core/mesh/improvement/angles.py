@@ -4,7 +4,7 @@ import numpy as np
 
 __all__ = ["edge_keys", "sharp_corners", "small_angles"]
 
-SHARP = np.radians(60.0)
+SHARP = np.radians(91.0)  # points of a step cannot lie in circles over another that leaves at a larger angle
 
 
 def small_angles(places: np.ndarray, faces: np.ndarray, steps: np.ndarray) -> np.ndarray:
@@ -27,7 +27,7 @@ def edge_keys(ends: np.ndarray, count: int) -> np.ndarray:
 
 
 def sharp_corners(places: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Points (V,) bool, of places (V, 2), where two steps (m, 2) meet at less than 60 degrees."""
+    """Points (V,) bool, of places (V, 2), where two steps (m, 2) meet at less than `SHARP`."""
     pairs = np.unique(np.sort(steps, axis=1), axis=0)
     both = np.concatenate([pairs, pairs[:, ::-1]])
     along = places[both[:, 1]] - places[both[:, 0]]

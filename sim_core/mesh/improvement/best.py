@@ -1,6 +1,8 @@
 """`--quality best`: a row along the outline, lattice inside, and smoothing between growths until no angle is small."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +10,7 @@ import numpy as np
 from sim_core.mesh.improvement.angles import small_angles
 from sim_core.mesh.improvement.refinement import refined
 from sim_core.mesh.improvement.repair import SPOTS, repaired
-from sim_core.mesh.improvement.smoothing import centre, open_angles, sharpest_angle
+from sim_core.mesh.improvement.smoothing import centre, open_angles, sharp_angles, sharpest_angle
 from sim_core.mesh.measures.triangles import stars
 from sim_core.mesh.outline.samples import Rim
 from sim_core.mesh.outline.size_field import SizeField
@@ -33,7 +35,8 @@ ADDED, ADDED_AT_LEAST = (
     100_000,
 )  # points put in where angles are small: by the point there is, and in any case
 GRADED_PASSES = 4
-POLISHES = 4
+POLISHES = 4  # times that small angles are opened
+GRADED_POLISHES = 16  # the same where points were put in
 ENOUGH = np.cos(np.radians(42.0))  # angles are opened up to this
 GRADED_ENOUGH = np.cos(np.radians(34.0))  # the same where points were put in: edges that grow leave no more
 SMALL = np.cos(np.radians(30.0))
@@ -88,7 +91,10 @@ def _refined(rim: Rim, places: np.ndarray, grown: Growth, edge: float) -> tuple[
     regrown = grow_points(made.places, steps)
     free = np.ones(len(made.places), dtype=bool)
     free[steps.ravel()] = False
-    _, moved, regrown = _opened(made.places, regrown, steps, np.flatnonzero(free), GRADED_ENOUGH)
+    # angles that nothing can open, of narrow corners, are no reason to leave the others as they are
+    judged = partial(sharp_angles, free=free, cosine=SMALL)
+    aim = _Aim(GRADED_ENOUGH, GRADED_POLISHES, judged)
+    _, moved, regrown = _opened(made.places, regrown, steps, np.flatnonzero(free), aim)
     return (divided, moved, regrown) if regrown.status == CLOSED else (rim, places, grown)
 
 
@@ -117,7 +123,7 @@ def _relaxed(places, steps, free, weights, passes: int) -> tuple[np.ndarray, Gro
         start, items = stars(grown.faces, len(places))
         centre(places, grown.faces, start, items, free, weights, SWEEPS)
         grown = grow_points(places, steps)
-    angle, places, grown = _opened(places, grown, steps, free)
+    (angle,), places, grown = _opened(places, grown, steps, free)
     few = angle <= SMALL or (
         grown.status == CLOSED and small_angles(places, grown.faces, steps).sum() <= SPOTS
     )
@@ -127,7 +133,7 @@ def _relaxed(places, steps, free, weights, passes: int) -> tuple[np.ndarray, Gro
         again, weights, free = repaired(places, grown.faces, free, weights)
         regrown = grow_points(again, steps)
         if regrown.status == CLOSED:
-            again_angle, again, regrown = _opened(again, regrown, steps, free)
+            (again_angle,), again, regrown = _opened(again, regrown, steps, free)
             if again_angle < angle:
                 places, grown = again, regrown
     return places, grown
@@ -144,23 +150,39 @@ def _without_strays(rim: Rim, places: np.ndarray, grown: Growth) -> tuple[Rim, n
     return replace(rim, loops=loops, lines=lines), places[kept], grown._replace(faces=number[grown.faces])
 
 
-def _opened(places: np.ndarray, grown: Growth, steps: np.ndarray, free: np.ndarray, enough: float = ENOUGH):
-    """Open small angles and grow again as long as that helps: (cosine of the smallest angle, places, growth)."""
+def _sharpest(places: np.ndarray, faces: np.ndarray) -> tuple[float]:
+    return (sharpest_angle(places, faces),)
+
+
+class _Aim(NamedTuple):
+    """Angles below arccos(`enough`) are opened, and points grown again, so many times at most while what is judged of
+    places and faces, a tuple with the cosine of the smallest angle at its end, gets less."""
+
+    enough: float = ENOUGH
+    times: int = POLISHES
+    judged: Callable[[np.ndarray, np.ndarray], tuple] = _sharpest
+
+
+ORDINARY = _Aim()
+
+
+def _opened(places: np.ndarray, grown: Growth, steps: np.ndarray, free: np.ndarray, aim: _Aim = ORDINARY):
+    """Open small angles and grow again as long as that helps: (what is judged, places, growth)."""
     if grown.status != CLOSED:
-        return 2.0, places, grown
-    best = sharpest_angle(places, grown.faces), places, grown
-    for _ in range(POLISHES):
-        if best[0] <= enough:
+        return (2.0,), places, grown
+    best = aim.judged(places, grown.faces), places, grown
+    for _ in range(aim.times):
+        if best[0][-1] <= aim.enough:
             break
         start, items = stars(best[2].faces, len(places))
         places = best[1].copy()
-        if open_angles(places, best[2].faces, start, items, free, enough, 6) == 0:
+        if open_angles(places, best[2].faces, start, items, free, aim.enough, 6) == 0:
             break
         grown = grow_points(places, steps)
         if grown.status != CLOSED:
             break
-        angle = sharpest_angle(places, grown.faces)
-        if angle >= best[0]:
+        found = aim.judged(places, grown.faces)
+        if found >= best[0]:
             break
-        best = angle, places, grown
+        best = found, places, grown
     return best

@@ -3,7 +3,8 @@
 A triangle with a small angle gets a point in the middle of its circle, or nearer where the angle already comes out
 right from there (off-centres, Üngör 2009). Where that point would lie in the circle over a step as diameter, or
 beyond it, the step is divided instead (Ruppert 1995); steps that end in a sharp corner are divided at powers of two
-from it, so that the points on both sides of the corner lie on the same circles around it (Shewchuk 2002).
+from it, so that the points on both sides of the corner lie on the same circles around it (Shewchuk 2002). Those that
+end in a narrow one stay when dividing them would only make the corner ask for more (`corners.py`).
 """
 
 from heapq import heappop, heappush
@@ -13,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.mesh.improvement.angles import edge_keys, sharp_corners
+from sim_core.mesh.improvement.corners import flat_over, held
 from sim_core.mesh.triangulation.flips import (
     AHEAD,
     KEPT,
@@ -36,7 +38,6 @@ ROUNDS = 7  # the last goes down to 4e-9 of the edge: contours have no points ne
 HOPELESS = 4  # times the points that may be put in: a round that seems to need so many is not begun
 DOUBLING = 8  # points put in for each time that sides double away from a short one
 ROOM = 4096  # points there is room for at first
-SAME = 1e-5  # distances from a corner that differ by less than this share are one
 
 
 class Refined(NamedTuple):
@@ -64,10 +65,6 @@ def refined(
     count = len(places)
     _keep(flips, steps[kept])
     sharp = longer(sharp_corners(places, steps), len(flips.places), False)
-    corner = np.full(len(flips.places), -1, np.int64)
-    for a, b in ((0, 1), (1, 0)):
-        legs = sharp[steps[:, a]]
-        corner[steps[legs, b]] = steps[legs, a]
     divided = np.zeros((len(flips.places) - count, 3), np.int64)
     made, end, least = 0, count + 4, edge
     for _ in range(ROUNDS):
@@ -79,9 +76,9 @@ def refined(
             if flips.count[0] == len(flips.places):
                 room = min(count + 4 + most, 2 * len(flips.places))
                 flips = enlarged(flips, room)
-                sharp, corner = longer(sharp, room, False), longer(corner, room, -1)
+                sharp = longer(sharp, room, False)
                 divided = longer(divided, room - count, 0)
-            more, closed = _refine(flips, sharp, corner, divided, more, least)
+            more, closed = _refine(flips, sharp, divided, more, least)
         if not closed:
             break
         made, end = more, int(flips.count[0])
@@ -99,11 +96,8 @@ def _keep(f: Flips, steps: np.ndarray) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def _refine(f, sharp, corner, divided, made, least):
-    """Put points in; returns how many steps are divided, and whether all was done in the room there is.
-
-    corner: (n,) of points of divided steps the sharp corner whose circle they lie on, or -1.
-    """
+def _refine(f, sharp, divided, made, least):
+    """Put points in; returns how many steps are divided, and whether all was done in the room there is."""
     seen = np.full(f.faces.shape[0], -1, np.int64)
     waiting, cavity = [(0.0, 0, 0, 0, 0)], [0]
     waiting.clear()
@@ -120,7 +114,7 @@ def _refine(f, sharp, corner, divided, made, least):
         if there and k >= 0 and f.fixed[u, k]:
             there = False
         if there:
-            u2, k2 = _encroached(f, u, x, y, seen, done, cavity)
+            u2, k2 = _encroached(f, u, x, y, sharp, square, seen, done, cavity)
             if u2 >= 0:
                 u, k, there = u2, k2, False
         v = f.count[0]
@@ -132,10 +126,7 @@ def _refine(f, sharp, corner, divided, made, least):
             if k < 0 or not f.fixed[u, k] or f.slot[u, k] == KEPT:
                 continue
             p, q = f.faces[u, k], f.faces[u, AHEAD[k]]
-            tip = _corner_across(f, t, corner)
-            if tip >= 0 and (p == tip or q == tip):
-                continue  # else the sides of a sharp corner would be divided for ever
-            if not _divide(f, u, k, v, sharp, corner, least):
+            if held(f, u, k, sharp, square) or not _divide(f, u, k, v, sharp, least):
                 continue
             divided[made, 0], divided[made, 1], divided[made, 2] = p, q, v
             made += 1
@@ -224,19 +215,6 @@ def _note(f, t, least, waiting):
 
 
 @njit(cache=True, error_model="numpy")
-def _corner_across(f, t, corner):
-    """The sharp corner between whose sides the shortest side of face t runs, at one distance from it, or -1."""
-    k = _shortest(f, t)[0]
-    a, b = f.faces[t, k], f.faces[t, AHEAD[k]]
-    v = corner[a]
-    if v < 0 or v != corner[b]:
-        return -1
-    r = np.hypot(f.places[a, 0] - f.places[v, 0], f.places[a, 1] - f.places[v, 1])
-    s = np.hypot(f.places[b, 0] - f.places[v, 0], f.places[b, 1] - f.places[v, 1])
-    return v if abs(r - s) < SAME * r else -1
-
-
-@njit(cache=True, error_model="numpy")
 def _off_centre(f, t):
     """Where a point opens the smallest angle of face t: the middle of its circle, or nearer to its shortest side."""
     k = _shortest(f, t)[0]
@@ -252,9 +230,10 @@ def _off_centre(f, t):
 
 
 @njit(cache=True, error_model="numpy")
-def _encroached(f, t, x, y, seen, stamp, cavity):
-    """A fixed edge whose diametral circle holds (x, y), among those around the faces whose circles do: (face, edge) or
-    (-1, -1). seen: (m,) marks of faces; stamp: of this search."""
+def _encroached(f, t, x, y, sharp, square, seen, stamp, cavity):
+    """A fixed edge whose diametral circle holds (x, y), among those around the faces whose circles do: (face, edge),
+    (-1, -1) where there is none, (face, -1) where one is too near that stays (`corners.py`). square: of the side that
+    asks.  seen: (m,) marks of faces; stamp: of this search."""
     cavity.clear()
     cavity.append(t)
     seen[t] = stamp
@@ -266,7 +245,9 @@ def _encroached(f, t, x, y, seen, stamp, cavity):
             u = f.across[t, k]
             if f.fixed[t, k]:
                 if px * qx + py * qy < 0.0:
-                    return t, k
+                    stays = held(f, t, k, sharp, square)
+                    if not stays or flat_over(f, a, b, x, y):
+                        return t, -1 if stays else k
                 continue
             if u < 0 or seen[u] == stamp:
                 continue
@@ -281,7 +262,7 @@ def _encroached(f, t, x, y, seen, stamp, cavity):
 
 
 @njit(cache=True, error_model="numpy")
-def _divide(f, t, k, v, sharp, corner, least):
+def _divide(f, t, k, v, sharp, least):
     """Where to divide edge k of face t goes to vertex v; False where the halves would be too short."""
     a, b = f.faces[t, k], f.faces[t, AHEAD[k]]
     ux, uy = f.places[b, 0] - f.places[a, 0], f.places[b, 1] - f.places[a, 1]
@@ -291,7 +272,6 @@ def _divide(f, t, k, v, sharp, corner, least):
     part = 0.5
     if sharp[a] != sharp[b]:
         part = 2.0 ** np.floor(np.log2(length * 2 / 3)) / length
-        corner[v] = a if sharp[a] else b
         if sharp[b]:
             part = 1 - part
     f.places[v, 0], f.places[v, 1] = f.places[a, 0] + part * ux, f.places[a, 1] + part * uy

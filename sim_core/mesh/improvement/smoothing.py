@@ -8,7 +8,7 @@ from numba import njit
 
 from sim_core.mesh.measures.triangles import triangle_areas
 
-__all__ = ["centre", "open_angles", "sharpest_angle", "smoothed"]
+__all__ = ["centre", "open_angles", "sharp_angles", "sharpest_angle", "smoothed"]
 
 TURNS = np.arange(8) * np.pi / 4
 WAYS = np.column_stack([np.cos(TURNS), np.sin(TURNS)])  # directions a point is tried in
@@ -113,13 +113,32 @@ def sharpest_angle(places, faces):
     """Cosine of the smallest angle of a mesh with y up; 2 where a triangle is turned over."""
     worst = -1.0
     for f in range(faces.shape[0]):
-        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
-        wx, wy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
-        if ux * wy - uy * wx <= 0.0:
-            return 2.0
-        u, w, t = ux * ux + uy * uy, wx * wx + wy * wy, (wx - ux) ** 2 + (wy - uy) ** 2
-        least = min(u, min(w, t))
-        product = u * w if least == t else (t * w if least == u else t * u)
-        worst = max(worst, (u + w + t - 2 * least) / (2 * np.sqrt(product)))
+        worst = max(worst, _sharpest_of(places, faces, f))
     return worst
+
+
+@njit(cache=True, error_model="numpy")
+def sharp_angles(places, faces, free, cosine):
+    """How many triangles with a vertex that may move have an angle of larger cosine than `cosine`, and the cosine of
+    their smallest angle: (count, cosine), the latter 2 where a triangle is turned over. free: (V,) bool, may move."""
+    worst, count = -1.0, 0
+    for f in range(faces.shape[0]):
+        angle = _sharpest_of(places, faces, f)
+        if angle > 1.0 or free[faces[f, 0]] or free[faces[f, 1]] or free[faces[f, 2]]:
+            worst = max(worst, angle)
+            count += angle > cosine
+    return count, worst
+
+
+@njit(cache=True, error_model="numpy")
+def _sharpest_of(places, faces, f):
+    """Cosine of the smallest angle of triangle f; 2 where it is turned over."""
+    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+    ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
+    wx, wy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
+    if ux * wy - uy * wx <= 0.0:
+        return 2.0
+    u, w, t = ux * ux + uy * uy, wx * wx + wy * wy, (wx - ux) ** 2 + (wy - uy) ** 2
+    least = min(u, min(w, t))
+    product = u * w if least == t else (t * w if least == u else t * u)
+    return (u + w + t - 2 * least) / (2 * np.sqrt(product))

@@ -15,6 +15,7 @@ from sim_core.mesh.outline.contours import (
     signed_area,
 )
 from sim_core.mesh.outline.crossings import close_contours, crossed_steps, enclosing, first_crossing
+from sim_core.mesh.outline.inner_lines import clean_lines
 from sim_core.mesh.outline.samples import Rim, sampled_contours, sampled_rim
 from sim_core.mesh.outline.size_field import SizeField, read_size_field
 
@@ -25,6 +26,7 @@ __all__ = [
     "check_count",
     "check_edge",
     "clean_contours",
+    "clean_lines",
     "cleaned_contours",
     "close_contours",
     "crossed_steps",

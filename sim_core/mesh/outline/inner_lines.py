@@ -87,7 +87,7 @@ def clean_lines(
     _check_inside(given, contours, near)
     given, contours, kept = _joined_to_contours(given, contours, near)
     given = _joined_to_each_other(given, near)
-    edges = _off_contours(_noded(given), contours, near / 2)
+    edges = _off_contours(_noded(given, near), contours, near / 2)
     merged = line_merge(edges) if edges.geom_type == "MultiLineString" else edges
     parts = list(getattr(merged, "geoms", [merged]))
     found = tuple(np.array(part.coords) for part in parts if not part.is_empty and part.length > near)
@@ -194,15 +194,45 @@ def _end_on(point: np.ndarray, chains: _Chains, steps: list[int], near: float) -
         chains.insert(steps[best], share, point)
 
 
-def _noded(given: list[np.ndarray]):
+def _noded(given: list[np.ndarray], near: float):
     """The lines cut where they meet, each stretch once. Where they meet at ends of steps only, they are so already:
     GEOS would try all pairs of those that meet at one place."""
     from shapely import MultiLineString, unary_union
 
     edges = MultiLineString([points.tolist() for points in given])
     if any(marks.any() for marks in crossed_steps(given)) or _side_by_side(given):
-        return unary_union(edges)
+        edges = unary_union(edges)
+        return _snapped(edges, np.concatenate(given), near) if _nearly_meet(edges, near) else edges
     return edges
+
+
+def _nearly_meet(edges, near: float) -> bool:
+    """Whether a point of noded lines lies as near to another one as rounding leaves it, or to a step between two."""
+    from shapely import STRtree, linestrings, points
+
+    steps = _steps(edges)
+    places, ends = np.unique(steps.reshape(-1, 2), axis=0, return_inverse=True)
+    of, found = STRtree(np.asarray(linestrings(steps))).query(
+        points(places), predicate="dwithin", distance=near
+    )
+    return bool((ends.reshape(-1, 2)[found] != of[:, None]).all(axis=1).any())
+
+
+def _snapped(edges, given: np.ndarray, near: float):
+    """Noded lines on a grid of `near` [m], where what nearly meets does meet; points that were given stay in place."""
+    from scipy.spatial import KDTree
+    from shapely import linestrings, unary_union
+
+    steps = _steps(unary_union(edges, grid_size=near))
+    away, which = KDTree(given).query(steps)
+    steps = np.where((away < near)[..., None], given[which], steps)
+    return unary_union(linestrings(steps[(steps[:, 0] != steps[:, 1]).any(axis=1)]))
+
+
+def _steps(edges) -> np.ndarray:
+    """All steps of lines. (k, 2, 2) [m]"""
+    parts = [np.array(part.coords) for part in getattr(edges, "geoms", [edges])]
+    return np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in parts])
 
 
 def _side_by_side(given: list[np.ndarray]) -> bool:
@@ -223,8 +253,7 @@ def _off_contours(edges, contours: list[np.ndarray], near: float):
     """Noded lines as single steps, without those that run wholly along a contour: they are that contour already."""
     from shapely import LineString, MultiLineString, covers, linestrings, points, prepare
 
-    coords = [np.array(part.coords) for part in getattr(edges, "geoms", [edges])]
-    steps = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in coords])
+    steps = _steps(edges)
     rims = _Chains(contours, closed=True)
     middle = points(steps.mean(axis=1))
     of, found = rims.tree.query(middle, predicate="dwithin", distance=near)
