@@ -7,7 +7,13 @@ import warnings
 from pathlib import Path
 from time import perf_counter
 
-from sim_core.errors import WrongArgument
+import numpy as np
+
+from sim_core.errors import OutlineError, OutlineWarning, WrongArgument
+from sim_core.mesh.files import mesh_picture, write_mesh, write_picture
+from sim_core.mesh.outline.size_field import SizeField, read_size_field
+from sim_core.mesh.panel import panel_mesh
+from sim_core.metrics.compile_time import compile_clock
 from sim_core.validation.arguments import ending, number
 
 __all__ = ["add_parser", "run"]
@@ -129,10 +135,6 @@ def run(args: argparse.Namespace) -> int:
         return run_sheet(args)
     if args.edge is None:
         raise WrongArgument("--edge: missing – give the length of a mesh edge in metres, such as --edge 0.01")
-    from sim_core.mesh.files import mesh_picture, write_mesh, write_picture
-    from sim_core.mesh.outline.size_field import read_size_field
-    from sim_core.metrics.compile_time import compile_clock
-
     drawing, read = _drawing(args)
     sizes = read_size_field(args.size_field) if args.size_field else None
     with compile_clock(_tell_compiling):
@@ -151,9 +153,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _meshed(args: argparse.Namespace, drawing, sizes):
     """The mesh, and the warnings that came with it."""
-    from sim_core.errors import OutlineError, OutlineWarning
-    from sim_core.mesh import panel_mesh
-
     try:
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always", OutlineWarning)
@@ -177,7 +176,6 @@ def _tell_compiling() -> None:
 
 def _drawing(args: argparse.Namespace) -> tuple:
     """What is to be meshed, and the warnings of its reader."""
-    from sim_core.errors import OutlineWarning
     from sim_core.mesh.sheets.outline_file import drawing_of, read_outline
     from sim_core.mesh.sheets.reading import Choice, sheet_of_code
 
@@ -193,10 +191,6 @@ def _drawing(args: argparse.Namespace) -> tuple:
 def _warm_up(quality: str, *, graded: bool) -> float:
     """Load or compile every kernel on a small panel, so that `seconds` is the work alone."""
     begin = perf_counter()
-    import numpy as np
-
-    from sim_core.mesh import SizeField, panel_mesh
-
     square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
     line = [[0.2, 0.1], [0.2, 0.9]]
     field = SizeField(np.zeros((1, 2)), np.array([0.05])) if graded else None

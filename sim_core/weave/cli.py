@@ -8,17 +8,30 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 from sim_core.errors import WeaveError, WrongArgument
 from sim_core.validation.arguments import ending, whole
 from sim_core.weave.chart.command import add_drawing, check_drawing, draw
-
-if TYPE_CHECKING:
-    from sim_core.weave.files.sources import Source
-    from sim_core.weave.model import Weave
-    from sim_core.weave.yarns.geometry import YarnGeometry
-    from sim_core.weave.yarns.particles.cell import ParticleCell
+from sim_core.weave.draft.draft import plain
+from sim_core.weave.files.profiles import unit_of
+from sim_core.weave.files.sources import Source, blocked_source, dressed, source_of
+from sim_core.weave.files.wif.model import wif_of
+from sim_core.weave.files.wif.writer import write_wif
+from sim_core.weave.maps.surface import lit_cloth, surface_maps
+from sim_core.weave.maps.tubes import write_yarns
+from sim_core.weave.model import Weave
+from sim_core.weave.summary import facts_of, summary_of, summary_text
+from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.particles.cell import (
+    MOST_STEPS,
+    NotAtRest,
+    ParticleCell,
+    is_figure,
+    relax_particles,
+)
+from sim_core.weave.yarns.paths import strands
+from sim_core.weave.yarns.progress import progress_report
+from sim_core.weave.yarns.solver import solve
 
 __all__ = ["add_parser", "run"]
 
@@ -100,9 +113,6 @@ def add_parser(subparsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Tell, relax, draw and write; returns the exit status."""
-    from sim_core.weave.files.sources import blocked_source, source_of
-    from sim_core.weave.summary import facts_of, summary_text
-
     _check_words(args)
     _check_places(args)
     source = source_of(args.source)
@@ -117,9 +127,6 @@ def run(args: argparse.Namespace) -> int:
     if args.wif:
         _write_wif(source, args.wif)
     if cloth is not None and args.yarns:
-        from sim_core.weave.maps.tubes import write_yarns
-        from sim_core.weave.yarns.paths import strands
-
         write_yarns(strands(cloth.weave, cloth.geometry), args.yarns)
     if cloth is not None and args.maps:
         _write(args.maps, cloth, args.size, summary)
@@ -139,8 +146,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _check_words(args: argparse.Namespace) -> None:
     """Arguments that say nothing without others, and structures that are none, are refused before the work."""
-    from sim_core.weave.files.profiles import unit_of
-
     check_drawing(args)
     if args.blocks:
         try:
@@ -174,11 +179,6 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
 
     A large draft is relaxed only for who asks for it: what needs no physics is answered at once.
     """
-    from sim_core.weave.draft.draft import plain
-    from sim_core.weave.files.sources import dressed
-    from sim_core.weave.summary import summary_of
-    from sim_core.weave.yarns.particles.cell import relax_particles
-
     asked = args.relax or args.maps or args.yarns
     crossings = source.factors.picks * source.factors.ends
     if not asked and crossings > (MOST_OURS if source.made is not None else MOST_UNASKED):
@@ -199,9 +199,6 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
 
 def _write_wif(source: Source, path: Path) -> None:
     """The file of another program as it stands, else our draft with all that WIF cannot say."""
-    from sim_core.weave.files.wif.model import wif_of
-    from sim_core.weave.files.wif.writer import write_wif
-
     own = source.made is None and source.wif is not None
     write_wif(source.wif if own and source.wif is not None else wif_of(source.weave[0]), path)
 
@@ -211,10 +208,6 @@ def _relaxed(weave, particles: bool):
 
     Satins and twills are no large repeats: one pick of them is relaxed, or pins bring them to rest soon.
     """
-    from sim_core.weave.yarns.particles.cell import MOST_STEPS, NotAtRest, is_figure
-    from sim_core.weave.yarns.progress import progress_report
-    from sim_core.weave.yarns.solver import solve
-
     count = 2 * PER * weave.draft.lift.size
     large = particles and is_figure(weave.draft.lift)
     with progress_report(weave.name) as watch:
@@ -232,8 +225,6 @@ def _relaxed(weave, particles: bool):
 
 def _write(folder: Path, cloth: _Cloth, size: int, summary: dict) -> None:
     from PIL import Image
-
-    from sim_core.weave.maps.surface import lit_cloth, surface_maps
 
     maps = surface_maps(cloth.weave, cloth.geometry, pixels=size)
     for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():

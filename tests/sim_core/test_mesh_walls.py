@@ -33,7 +33,7 @@ def test_hidden_agrees_with_every_wall_tried():
     for a, b, c in rng.integers(0, len(places), (3000, 3)):
         if len({a, b, c}) < 3:
             continue
-        told = walls.hidden(places, a, b, c, cells, found)
+        told = walls.hidden(places, a, b, c, cells.grid, found)
         answers.append(told)
         assert told == any(
             walls.crosses(places, end, c, p, q) for end in (a, b) for p, q in found.ends.tolist()
@@ -55,7 +55,7 @@ def test_a_point_across_a_narrow_gap_is_hidden_after_few_walls(monkeypatch):
     monkeypatch.setattr(walls, "_wall_between", walls._wall_between.py_func)
     a, b = rank[count], rank[count + 1]
     for far in range(count // 4, 3 * count // 4):
-        assert walls.hidden.py_func(places, a, b, rank[far], cells, found)
+        assert walls.hidden.py_func(places, a, b, rank[far], cells.grid, found)
     assert len(tried) < 4 * count  # a few each, of a thousand
 
 

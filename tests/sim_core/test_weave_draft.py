@@ -5,12 +5,13 @@ import pytest
 
 from sim_core.errors import WeaveError
 from sim_core.weave import Draft, Weave, Yarn, plain, satin, twill
+from sim_core.weave.draft import float_statistics
 
 
 def test_plain_alternates():
     np.testing.assert_array_equal(plain().lift, [[1, 0], [0, 1]])
     assert plain().face == "same"
-    assert plain().float_lengths() == {"warp": [1, 1], "weft": [1, 1]}
+    assert [floats.face for floats in float_statistics(plain())] == [((1, 2),), ((1, 2),)]
 
 
 @pytest.mark.parametrize(
@@ -21,7 +22,7 @@ def test_twill_floats_and_face(up, down, face):
     size = up + down
     assert draft.lift.shape == (size, size)
     assert draft.face == face
-    assert draft.float_lengths() == {"warp": [up] * size, "weft": [down] * size}
+    assert [floats.face for floats in float_statistics(draft)] == [((up, size),), ((down, size),)]
     np.testing.assert_array_equal(draft.lift, np.roll(draft.lift, (1, 1), axis=(0, 1)))
 
 
@@ -38,7 +39,7 @@ def test_satin_binds_every_yarn_once_and_never_beside(ends, step):
     for move in ((1, 1), (1, -1), (0, 1), (1, 0)):
         assert not (binding & np.roll(binding, move, axis=(0, 1))).any()
     assert draft.face == "warp"
-    assert draft.float_lengths()["warp"] == [ends - 1] * ends
+    assert float_statistics(draft)[0].face == ((ends - 1, ends),)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ from sim_core.weave.yarns.particles import (
     STATIC,
     CommonWaves,
     NotAtRest,
+    System,
+    Units,
     contact_forces,
     curve_gaps,
     gathered,
@@ -143,14 +145,16 @@ def test_a_common_wave_goes_back_by_its_share():
     rng = np.random.default_rng(4)
     wave = rng.standard_normal((9, 12))
     wave -= wave.mean()
-    numbers = (0.5, 0.4, 1.3, 0.7, 0.1, 0.2)
+    spare = {"wide": 1.0, "reach": 3, "spacing": 2.0, "side": 0.0, "high": 1.0}
+    warp_units = System(piece=0.5, bend=1.3, pull=0.1, **spare)
+    units = Units(warp_units, System(piece=0.4, bend=0.7, pull=0.2, **spare), friction=0.3)
     warp, weft = beam_stiffness(9, 3.0, 1.3, 0.1)[:, None], beam_stiffness(12, 2.4, 0.7, 0.2)
     bent_warp = np.fft.ifft(np.fft.fft(wave, axis=0) * warp, axis=0).real
     bent_weft = np.fft.ifft(np.fft.fft(wave, axis=1) * weft, axis=1).real
     along_warp, along_weft = np.zeros((12, 54)), np.zeros((9, 72))
     along_warp[:, ::6], along_weft[:, ::6] = -bent_warp.T, -bent_weft  # at the crossings themselves
     moved_warp, moved_weft = np.zeros((12, 54)), np.zeros((9, 72))
-    CommonWaves.of((9, 12), 6, numbers, 1e-6).move(moved_warp, moved_weft, along_warp, along_weft)
+    CommonWaves.of((9, 12), 6, units, 1e-6).move(moved_warp, moved_weft, along_warp, along_weft)
     np.testing.assert_allclose(moved_warp[:, ::6].T, -0.8 * wave, atol=1e-5)
     np.testing.assert_allclose(moved_weft[:, ::6], -0.8 * wave, atol=1e-5)
 

@@ -9,12 +9,4 @@ from sim_core.mesh.geometry.nearest import nearest_others, size_boxes
 from sim_core.mesh.geometry.predicates import incircle, orient
 from sim_core.mesh.geometry.surface_nets import split_quads, surface_net
 
-__all__ = [
-    "incircle",
-    "nearest_others",
-    "orient",
-    "point_cells",
-    "size_boxes",
-    "split_quads",
-    "surface_net",
-]
+__all__ = ["incircle", "nearest_others", "orient", "point_cells", "size_boxes", "split_quads", "surface_net"]

@@ -5,24 +5,26 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-__all__ = ["Cells", "bounds", "cell_of", "point_cells"]
+__all__ = ["Cells", "Grid", "bounds", "cell_of", "point_cells"]
 
 PER_CELL = 1.0  # points on average; one search meets about six cells
 
 
-class Cells(NamedTuple):
-    """A square grid over points in growth order.
+class Grid(NamedTuple):
+    """Square cells. x0, y0: their lower corner.  per_metre: cells a metre.  columns, rows: how many there are."""
 
-    start: (columns * rows + 1,) int32, first point of each cell, row by row.  x0, y0: its lower corner.
-    per_metre: cells a metre.  columns, rows: its size.
-    """
-
-    start: np.ndarray
     x0: float
     y0: float
     per_metre: float
     columns: int
     rows: int
+
+
+class Cells(NamedTuple):
+    """A grid over points in growth order. start: (columns * rows + 1,) int32, first point of each cell, row by row."""
+
+    start: np.ndarray
+    grid: Grid
 
 
 @njit(cache=True, error_model="numpy")
@@ -56,14 +58,15 @@ def point_cells(points: np.ndarray) -> tuple[np.ndarray, Cells]:
     count = len(points)
     cell = max(np.sqrt(PER_CELL * wide * high / count), PER_CELL * longest / count)
     columns, rows = int(wide / cell) + 1, int(high / cell) + 1
-    x0, y0, per_metre = left, low, 1.0 / float(cell)
-    order, start = _sorted(points, x0, y0, per_metre, columns, rows)
-    return order, Cells(start, x0, y0, per_metre, columns, rows)
+    grid = Grid(left, low, 1.0 / float(cell), columns, rows)
+    order, start = _sorted(points, grid)
+    return order, Cells(start, grid)
 
 
 @njit(cache=True, error_model="numpy")
-def _sorted(points, x0, y0, per_metre, columns, rows):
+def _sorted(points, grid):
     """Counting sort by cell, then by (y, x) within each: short cells by insertion, long ones by numpy."""
+    x0, y0, per_metre, columns, rows = grid
     count = points.shape[0]
     start = np.zeros(columns * rows + 1, np.int32)
     place = np.zeros(count, np.int32)

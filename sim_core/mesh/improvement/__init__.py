@@ -7,8 +7,4 @@ where a feature is small; `best` is the order in which they are tried.
 from sim_core.mesh.improvement.angles import small_angles
 from sim_core.mesh.improvement.best import BestFill, best_fill
 
-__all__ = [
-    "BestFill",
-    "best_fill",
-    "small_angles",
-]
+__all__ = ["BestFill", "best_fill", "small_angles"]

@@ -8,10 +8,4 @@ from sim_core.mesh.measures.report import MeshReport, deviation
 from sim_core.mesh.measures.triangles import quality, triangle_areas
 from sim_core.mesh.measures.verification import mesh_fault
 
-__all__ = [
-    "MeshReport",
-    "deviation",
-    "mesh_fault",
-    "quality",
-    "triangle_areas",
-]
+__all__ = ["MeshReport", "deviation", "mesh_fault", "quality", "triangle_areas"]

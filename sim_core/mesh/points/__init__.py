@@ -8,11 +8,4 @@ from sim_core.mesh.points.graded import graded_points, lattice_near
 from sim_core.mesh.points.lattice import staggered_points
 from sim_core.mesh.points.raycast import distance_below, inside, keep_points
 
-__all__ = [
-    "distance_below",
-    "graded_points",
-    "inside",
-    "keep_points",
-    "lattice_near",
-    "staggered_points",
-]
+__all__ = ["distance_below", "graded_points", "inside", "keep_points", "lattice_near", "staggered_points"]

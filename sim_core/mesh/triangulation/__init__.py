@@ -8,10 +8,4 @@ from sim_core.mesh.triangulation.growth import PATIENCE, grow_points
 from sim_core.mesh.triangulation.incremental import inner_faces, joined_points
 from sim_core.mesh.triangulation.point_set import triangulate
 
-__all__ = [
-    "PATIENCE",
-    "grow_points",
-    "inner_faces",
-    "joined_points",
-    "triangulate",
-]
+__all__ = ["PATIENCE", "grow_points", "inner_faces", "joined_points", "triangulate"]

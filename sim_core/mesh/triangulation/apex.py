@@ -20,18 +20,19 @@ FLAT = 1e-7  # share of cancellation in a triangle's area below which its circle
 
 
 @njit(cache=True, error_model="numpy")
-def apex(places, a, b, cells, boxes, walls, unsure, spent):
+def apex(places, a, b, start, grid, boxes, walls, unsure, spent):
     """The optimal point C left of a -> b (Eq. 9 with the fan rule), or -1 where no point lies there.
 
-    places: (n, 2) in growth order, sorted into `cells`.  boxes: `block_boxes`.  walls: `Walls` or None.
-    unsure: (n,) int32, room for points that rounding cannot tell from the circle of the best so far; most of them
-    are settled by a better point, the rest exactly in the end.  spent: (1,) int64, points looked at, counted on.
+    places: (n, 2) in growth order, sorted into the cells of `grid`, each from `start` on.  boxes: `block_boxes`.
+    walls: `Walls` or None.  unsure: (n,) int32, room for points that rounding cannot tell from the circle of the best
+    so far; most of them are settled by a better point, the rest exactly in the end.  spent: (1,) int64, points looked
+    at, counted on.
     Fan rule: points on one circle become a fan from the one that comes first in growth order. If that is not an end
     of the edge, take it; if it is, take the neighbour of the edge's other end along the circle.
 
     One long function on purpose: the search lives in registers, and passing it between functions costs twice its time.
     """
-    start, x0, y0, per_metre, columns, rows = cells
+    x0, y0, per_metre, columns, rows = grid
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     ux, uy = bx - ax, by - ay
     us = ux * ux + uy * uy
@@ -102,7 +103,7 @@ def apex(places, a, b, cells, boxes, walls, unsure, spent):
                         waiting += 1
                     continue
             if walls is not None:
-                if hidden(places, a, b, k, cells, walls):
+                if hidden(places, a, b, k, grid, walls):
                     continue
             best = k
             # The circle through a, b and k, seen from a: inside it alpha x + beta y + gamma (x x + y y) < 0.
@@ -126,11 +127,11 @@ def apex(places, a, b, cells, boxes, walls, unsure, spent):
     spent[0] += work + waiting
     if waiting == 0:
         return best
-    return _settled(places, a, b, best, unsure, waiting, cells, walls)
+    return _settled(places, a, b, best, unsure, waiting, grid, walls)
 
 
 @njit(cache=True, error_model="numpy")
-def _settled(places, a, b, best, unsure, waiting, cells, walls):
+def _settled(places, a, b, best, unsure, waiting, grid, walls):
     """The optimal point among `best` and those that rounding could not tell from its circle; ties by the fan rule."""
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     lowest, near_a, near_b = best, best, best
@@ -140,7 +141,7 @@ def _settled(places, a, b, best, unsure, waiting, cells, walls):
         if side < 0 or k == best:
             continue
         if walls is not None:
-            if hidden(places, a, b, k, cells, walls):
+            if hidden(places, a, b, k, grid, walls):
                 continue
         if side > 0:
             best, lowest, near_a, near_b = k, k, k, k
@@ -174,9 +175,8 @@ def _right_of(box, ax, ay, ux, uy):
 
 
 @njit(cache=True, error_model="numpy")
-def block_boxes(places, cells):
+def block_boxes(places, start, columns, rows):
     """Bounding box (left, low, right, high) of the points in each block of 8 x 8 cells; left > right where empty."""
-    start, columns, rows = cells.start, cells.columns, cells.rows
     boxes = np.zeros(((rows - 1) // BLOCK + 1, (columns - 1) // BLOCK + 1, 4))
     boxes[:, :, :2], boxes[:, :, 2:] = np.inf, -np.inf
     for i in range(rows):
@@ -190,7 +190,7 @@ def block_boxes(places, cells):
 
 
 @njit(cache=True, error_model="numpy")
-def strictly_delaunay(places, edges, cells, boxes, spent, most):
+def strictly_delaunay(places, edges, start, grid, boxes, spent, most):
     """Per edge (m, 2) whether some circle through its ends holds no other point, inside or on it. Returns (m,) bool.
 
     Such an edge is in every (constrained) Delaunay triangulation, so nothing has to keep triangles from crossing it.
@@ -202,24 +202,24 @@ def strictly_delaunay(places, edges, cells, boxes, spent, most):
         if spent[0] > most:
             break
         a, b = edges[m, 0], edges[m, 1]
-        if not _crowded(places, a, b, cells, spent):
+        if not _crowded(places, a, b, start, grid, spent):
             continue  # the circle over the edge as diameter is empty
-        c = apex(places, a, b, cells, boxes, None, unsure, spent)
-        d = apex(places, b, a, cells, boxes, None, unsure, spent)
+        c = apex(places, a, b, start, grid, boxes, None, unsure, spent)
+        d = apex(places, b, a, start, grid, boxes, None, unsure, spent)
         if c >= 0 and d >= 0:
             side = incircle(
                 places[a, 0], places[a, 1], places[b, 0], places[b, 1], places[c, 0], places[c, 1],
                 places[d, 0], places[d, 1],
             )  # fmt: skip
             strict[m] = side < 0
-        strict[m] &= not _between(places, a, b, cells, spent)
+        strict[m] &= not _between(places, a, b, start, grid, spent)
     return strict
 
 
 @njit(cache=True, error_model="numpy")
-def _crowded(places, a, b, cells, spent):
+def _crowded(places, a, b, start, grid, spent):
     """Whether a third point may lie in the closed circle over a b as diameter (rounding counts as inside)."""
-    start, x0, y0, per_metre, columns, rows = cells
+    x0, y0, per_metre, columns, rows = grid
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     mx, my = (ax + bx) / 2, (ay + by) / 2
     radius = np.hypot(bx - ax, by - ay) / 2 * (1 + 1e-9) + 1e-15 * (abs(mx) + abs(my))
@@ -236,9 +236,9 @@ def _crowded(places, a, b, cells, spent):
 
 
 @njit(cache=True, error_model="numpy")
-def _between(places, a, b, cells, spent):
+def _between(places, a, b, start, grid, spent):
     """Whether a point lies on the segment between its ends."""
-    start, x0, y0, per_metre, columns, rows = cells
+    x0, y0, per_metre, columns, rows = grid
     ax, ay, bx, by = places[a, 0], places[a, 1], places[b, 0], places[b, 1]
     left, right = min(ax, bx), max(ax, bx)
     low, high = min(ay, by), max(ay, by)

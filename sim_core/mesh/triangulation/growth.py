@@ -47,18 +47,18 @@ def grow_points(points: np.ndarray, seeds: np.ndarray | None) -> Growth:
     order, cells = point_cells(points)
     places = points[order]
     order, places, cells, rank = _without_equals(order, places, cells, seeds is not None)
-    boxes = block_boxes(places, cells)
+    boxes = block_boxes(places, cells.start, cells.grid.columns, cells.grid.rows)
     spent, most = np.zeros(1, np.int64), PATIENCE * (len(places) + 64)
     walls = None
     if seeds is None:
         edges = _nearest_pair(places, cells, boxes)
     else:
         edges = rank[np.asarray(seeds, dtype=np.int64)]
-        weak = ~strictly_delaunay(places, edges, cells, boxes, spent, most)
+        weak = ~strictly_delaunay(places, edges, *cells, boxes, spent, most)
         if weak.any() and spent[0] <= most:
             walls = wall_cells(places, edges[weak], cells, spent, most)
             spent += 0 if walls else most + 1
-    count, faces, status, where = _grow(places, edges, seeds is not None, cells, boxes, walls, spent, most)
+    count, faces, status, where = _grow(places, edges, seeds is not None, *cells, boxes, walls, spent, most)
     if status == TOO_LONG:
         return _handed_over(places, order, None if seeds is None else edges, int(spent[0]))
     found = order[faces[:count]]
@@ -104,13 +104,13 @@ def _nearest_pair(places: np.ndarray, cells: Cells, boxes: np.ndarray) -> np.nda
     square[0] = np.inf
     near = np.flatnonzero(square <= square.min() * (1 + 1e-12)).astype(np.int32)
     edges = np.column_stack([np.zeros_like(near), near])
-    strict = strictly_delaunay(places, edges, cells, boxes, np.zeros(1, np.int64), np.iinfo(np.int64).max)
+    strict = strictly_delaunay(places, edges, *cells, boxes, np.zeros(1, np.int64), np.iinfo(np.int64).max)
     nearest = int(near[strict.argmax()])
     return np.array([[0, nearest], [nearest, 0]], dtype=np.int32)
 
 
 @njit(cache=True, error_model="numpy")
-def _grow(places, seeds, closed, cells, boxes, walls, spent, most):
+def _grow(places, seeds, closed, start, grid, boxes, walls, spent, most):
     n = places.shape[0]
     limit = 2 * n + 8
     faces = np.zeros((limit, 3), np.int32)
@@ -129,7 +129,7 @@ def _grow(places, seeds, closed, cells, boxes, walls, spent, most):
         a, b = origin[top], target[top]
         if not _close(head, target, later, a, b):
             continue
-        c = apex(places, a, b, cells, boxes, walls, unsure, spent)
+        c = apex(places, a, b, start, grid, boxes, walls, unsure, spent)
         if spent[0] > most:
             return count, faces, TOO_LONG, a
         if c < 0:

@@ -30,15 +30,15 @@ def wall_cells(
 ) -> Walls | None:
     """Sort walls (w, 2) into the grid of the points they join; None where they would fill more than `most` places."""
     ends = np.unique(np.sort(ends, axis=1), axis=0).astype(np.int32)
-    first, items = _fill(places, ends, cells, most)
+    first, items = _fill(places, ends, cells.grid, most)
     if first[-1] > most:
         return None
     return Walls(ends, first, items, np.full(RECENT, -1, np.int32), spent)
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(places, ends, cells, most):
-    _, x0, y0, per_metre, columns, rows = cells
+def _fill(places, ends, grid, most):
+    x0, y0, per_metre, columns, rows = grid
     first = np.zeros(columns * rows + 1, np.int64)
     total = 0
     spans = np.zeros((ends.shape[0], 4), np.int32)
@@ -68,7 +68,7 @@ def _fill(places, ends, cells, most):
 
 
 @njit(cache=True, error_model="numpy")
-def hidden(places, a, b, c, cells, walls):
+def hidden(places, a, b, c, grid, walls):
     """Whether a wall keeps c from being joined to a or to b; those that hid the last points are tried first."""
     recent = walls.recent
     for k in range(recent.size):
@@ -78,9 +78,9 @@ def hidden(places, a, b, c, cells, walls):
         p, q = walls.ends[w, 0], walls.ends[w, 1]
         if crosses(places, a, c, p, q) or crosses(places, b, c, p, q):
             return True
-    w = _wall_between(places, a, c, cells, walls)
+    w = _wall_between(places, a, c, grid, walls)
     if w < 0:
-        w = _wall_between(places, b, c, cells, walls)
+        w = _wall_between(places, b, c, grid, walls)
     if w < 0:
         return False
     for k in range(recent.size - 1, 0, -1):
@@ -90,9 +90,9 @@ def hidden(places, a, b, c, cells, walls):
 
 
 @njit(cache=True, error_model="numpy")
-def _wall_between(places, a, c, cells, walls):
+def _wall_between(places, a, c, grid, walls):
     """A wall that the segment a c meets, or -1: those in the cells that it passes, row by row, and next to them."""
-    _, x0, y0, per_metre, columns, rows = cells
+    x0, y0, per_metre, columns, rows = grid
     ax, ay, cx, cy = places[a, 0], places[a, 1], places[c, 0], places[c, 1]
     if ay > cy:
         ax, ay, cx, cy = cx, cy, ax, ay

@@ -5,14 +5,15 @@ from __future__ import annotations
 import argparse
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from sim_core.errors import WrongArgument
 from sim_core.validation.arguments import ending, whole
+from sim_core.weave.chart.cards import write_cards, write_pegs
 from sim_core.weave.chart.paper import PAPERS
-
-if TYPE_CHECKING:
-    from sim_core.weave.files.sources import Source
+from sim_core.weave.chart.repeats import repeated
+from sim_core.weave.chart.sheets import write_draft
+from sim_core.weave.chart.values import View, Window
+from sim_core.weave.files.sources import Source
 
 __all__ = ["add_drawing", "check_drawing", "draw"]
 
@@ -87,8 +88,6 @@ def draw(args: argparse.Namespace, source: Source) -> list[Path]:
     written: list[Path] = []
     if not (args.draft or args.cards or args.pegs):
         return written
-    from sim_core.weave.chart import View, Window, repeated, write_cards, write_draft, write_pegs
-
     if args.draft:
         view = View(args.view == "colour", args.floats, args.plan, args.first)
         drawn = repeated(source, *args.times) if args.times else source

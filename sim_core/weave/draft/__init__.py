@@ -11,7 +11,6 @@ from sim_core.weave.draft.draft import Channels, Draft, plain, satin, twill
 from sim_core.weave.draft.factors import Factors
 from sim_core.weave.draft.generators import (
     basket,
-    broken_twill,
     damask,
     diamond,
     herringbone,
@@ -36,7 +35,6 @@ __all__ = [
     "Harness",
     "basket",
     "brocade",
-    "broken_twill",
     "damask",
     "diamond",
     "draft_of_words",

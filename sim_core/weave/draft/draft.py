@@ -1,4 +1,4 @@
-"""Drafts: one repeat of a weave, its smallest repeat, face, floats and interlacings, and the three basic weaves.
+"""Drafts: one repeat of a weave, its smallest repeat, face and interlacings, and the three basic weaves.
 
 A draft is more than a 0/1 matrix: `Channels` holds what leno, compound weaves, tapestry and brocade need besides.
 """
@@ -132,13 +132,6 @@ class Draft:
         rest = self.lift.size - ones
         return "warp" if ones > rest else "weft" if ones < rest else "same"
 
-    def float_lengths(self) -> dict[str, list[int]]:
-        """Cyclic float lengths on the face, in crossings: of the warp ends over picks, of the picks over ends."""
-        return {
-            "warp": sorted(run for end in self.lift.T for run in _runs(end)),
-            "weft": sorted(run for pick in ~self.lift for run in _runs(pick)),
-        }
-
     def interlacings(self) -> tuple[np.ndarray, np.ndarray]:
         """How often each end (ends,) and each pick (picks,) changes side within the repeat, cyclically."""
         ends = (self.lift != np.roll(self.lift, -1, axis=0)).sum(axis=0)
@@ -204,23 +197,6 @@ def check_size(name: str, *counts: int) -> None:
     """Raises WeaveError where a draft would have more than MOST ends or picks."""
     if max(counts) > MOST:
         raise WeaveError(f"draft {name}: {max(counts):,} yarns – give at most {MOST:,} ends and picks")
-
-
-def _runs(cycle: np.ndarray) -> list[int]:
-    """Lengths of the runs of True in a cyclic sequence."""
-    if cycle.all():
-        return [cycle.size]
-    if not cycle.any():
-        return []
-    start = int(np.flatnonzero(~cycle)[0])
-    runs, length = [], 0
-    for value in np.roll(cycle, -start):
-        if value:
-            length += 1
-        elif length:
-            runs.append(length)
-            length = 0
-    return [*runs, length] if length else runs
 
 
 def plain() -> Draft:

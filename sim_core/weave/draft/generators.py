@@ -7,7 +7,6 @@ from sim_core.weave.draft.draft import Draft, check_size, plain, satin, twill
 
 __all__ = [
     "basket",
-    "broken_twill",
     "damask",
     "diamond",
     "herringbone",
@@ -45,15 +44,6 @@ def diamond(up: int, down: int, width: int) -> Draft:
     pointed = herringbone(up, down, width)
     picks = np.concatenate([np.arange(width), width - np.arange(width)]) % pointed.picks
     return Draft(f"diamond {up}/{down} {width}", pointed.lift[picks])
-
-
-def broken_twill(up: int, down: int) -> Draft:
-    """A twill whose second half of the ends runs the other way, the lift inverted at the break where it can be."""
-    base = twill(up, down).lift
-    size = base.shape[1]
-    half = size // 2
-    order = np.concatenate([np.arange(half), np.arange(size - 1, half - 1, -1)])
-    return Draft(f"broken twill {up}/{down}", base[:, order])
 
 
 def satin_of_six() -> Draft:

@@ -7,10 +7,4 @@ from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
 from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke, joined
 from sim_core.mesh.sheets.strokes.svg import svg_strokes
 
-__all__ = [
-    "Drawn",
-    "Stroke",
-    "dxf_strokes",
-    "joined",
-    "svg_strokes",
-]
+__all__ = ["Drawn", "Stroke", "dxf_strokes", "joined", "svg_strokes"]

@@ -10,13 +10,4 @@ from sim_core.weave.files.wif.reader import parse_wif, read_wif
 from sim_core.weave.files.wif.sections import decoded
 from sim_core.weave.files.wif.writer import wif_text, write_wif
 
-__all__ = [
-    "PRIVATE",
-    "Wif",
-    "decoded",
-    "parse_wif",
-    "read_wif",
-    "wif_of",
-    "wif_text",
-    "write_wif",
-]
+__all__ = ["PRIVATE", "Wif", "decoded", "parse_wif", "read_wif", "wif_of", "wif_text", "write_wif"]

@@ -10,12 +10,15 @@ from sim_core.weave.yarns.particles.closest_pairs import curve_gaps, curve_overl
 from sim_core.weave.yarns.particles.common_waves import CommonWaves, gathered
 from sim_core.weave.yarns.particles.forces import STATIC, contact_forces, side_forces, yarn_forces
 from sim_core.weave.yarns.particles.preconditioner import advance, factored
+from sim_core.weave.yarns.particles.scale import System, Units
 
 __all__ = [
     "STATIC",
     "CommonWaves",
     "NotAtRest",
     "ParticleCell",
+    "System",
+    "Units",
     "advance",
     "contact_forces",
     "curve_gaps",

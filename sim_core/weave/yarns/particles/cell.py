@@ -108,27 +108,26 @@ def relax_particles(
     check_jam(weave)
     lift = np.ascontiguousarray(weave.draft.lift)
     first = start or relax(weave, tolerance=1e-4)
-    scale = Scale.of(weave, per)
+    scale = Scale.of(weave, per, friction)
     turns = turns_of(lift) if lift.size > MANY else None
     figure = is_figure(lift)
     one = slice(None) if turns is None else slice(1)
     shifts = (np.zeros(0, np.int64), 0, 0) if turns is None else turns.particles(per)
     lift = lift[one]
-    numbers = scale.numbers(friction)
     watch = np.zeros(2) if watch is None else watch
 
     def start_again() -> Yarns:
-        return _begun(first, lift, one, scale, per, numbers, shifts, watch)
+        return _begun(first, lift, one, scale, shifts, watch)
 
     yarns = start_again()
-    done = _pinned(yarns, scale, tolerance, min(most, BEGIN) if figure else most)
+    done = _pinned(yarns, tolerance, min(most, BEGIN) if figure else most)
     if figure and not _rests(done, tolerance):
         done = rest_of_figure(
-            yarns, scale, done, tolerance=tolerance, overlap=PROMISED, most=min(most, FIGURE_STEPS)
+            yarns, done, tolerance=tolerance, overlap=PROMISED, most=min(most, FIGURE_STEPS)
         )
         if not _rests(done, tolerance) and done.steps < most:  # long floats may rest by pins alone
             yarns, before = start_again(), done.steps
-            done = _pinned(yarns, scale, tolerance, most - before)
+            done = _pinned(yarns, tolerance, most - before)
             done = replace(done, steps=before + done.steps)
     wu, wz, fu, fz = yarns.places
     if not _rests(done, tolerance):
@@ -136,7 +135,8 @@ def relax_particles(
             f"weave {weave.name}: the yarns do not come to rest (residual {done.residual:.1e}, "
             f"overlap {done.overlap:.1e} D, after {done.steps} steps) – lower the sett, or allow a larger residual"
         )
-    crimp1, crimp2, energy = crimp_of(wu, wz, numbers[0]), crimp_of(fu, fz, numbers[1]), done.energy
+    units, energy = scale.units, done.energy
+    crimp1, crimp2 = crimp_of(wu, wz, units.warp.piece), crimp_of(fu, fz, units.weft.piece)
     sides = [place * scale.length for place in (wu, wz, fu, fz)]
     force = yarns.pressing * scale.force
     if turns is not None:
@@ -154,10 +154,10 @@ def relax_particles(
 
 
 def _begun(
-    first: YarnGeometry, lift: np.ndarray, one: slice, scale: Scale, per: int, numbers: tuple[float, ...],
-    shifts: tuple, watch: np.ndarray,
-) -> Yarns:  # fmt: skip
+    first: YarnGeometry, lift: np.ndarray, one: slice, scale: Scale, shifts: tuple, watch: np.ndarray
+) -> Yarns:
     """Yarns along the beams of stage A, pressing as they do, where they were woven."""
+    per, reach = scale.per, (scale.units.warp.reach, scale.units.weft.reach)
     wz, fz = (
         resampled(first.warp_height.T[one], per) / scale.length,
         resampled(first.weft_height[one], per) / scale.length,
@@ -165,14 +165,14 @@ def _begun(
     wu, fu = np.zeros_like(wz), np.zeros_like(fz)
     pressing = first.force[one] / scale.force
     hardest = max(float(pressing.max()), 1e-12)
-    offsets = np.zeros((*lift.shape, 2 * (sum(scale.reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
-    for middle in (scale.reach[0], -1 - scale.reach[1]):  # the crossing itself carries what the beams say
+    offsets = np.zeros((*lift.shape, 2 * (sum(reach) + 1))), np.zeros_like(wu), np.zeros_like(fu)
+    for middle in (reach[0], -1 - reach[1]):  # the crossing itself carries what the beams say
         offsets[0][:, :, middle] = pressing / (2 * SOFT * hardest)
     places = wu, wz, fu, fz
     ways = np.zeros((len(wu), 2)), np.zeros((len(fu), 2))
     motion = np.zeros((2, *wu.shape)), np.zeros((2, *fu.shape)), *ways
     forces = tuple(np.zeros_like(place) for place in places)
-    return Yarns(places, forces, lift, pressing, offsets, motion, shifts, per, numbers, hardest, watch)
+    return Yarns(places, forces, lift, pressing, offsets, motion, shifts, per, scale.units, hardest, watch)
 
 
 def is_figure(lift: np.ndarray) -> bool:
@@ -184,10 +184,10 @@ def _rests(done: Outcome, tolerance: float) -> bool:
     return done.residual <= tolerance and done.overlap <= PROMISED
 
 
-def _pinned(yarns: Yarns, scale: Scale, tolerance: float, most: int) -> Outcome:
+def _pinned(yarns: Yarns, tolerance: float, most: int) -> Outcome:
     """Rounds of rest and pins, of contact that is stiffened where the yarns still overlap."""
     deep, steps, pins, stiff = 0.0, 0, np.zeros((0, 6)), SOFT * yarns.hardest
-    l1, l2, wide_x, wide_y = *yarns.numbers[:2], *yarns.numbers[6:8]
+    warp, weft = yarns.units.warp, yarns.units.weft
     done = Outcome(np.inf, np.inf, 0.0, 0, stiff)
     for rough in (*ROUGH, *(1.0,) * ROUNDS):
         turn = min(most - steps, LOOK if deep > OVERLAP else max(LOOK, steps // 3))
@@ -196,8 +196,8 @@ def _pinned(yarns: Yarns, scale: Scale, tolerance: float, most: int) -> Outcome:
         )
         steps, stiff = steps + done.steps, done.stiff
         asked: list = [
-            *yarns.places, yarns.lift, yarns.per, l1, l2, wide_x, wide_y, *scale.reach, pins,
-            max(PINNED, done.overlap), yarns.shifts[0],
+            *yarns.places, yarns.lift, yarns.per, warp.piece, weft.piece, warp.wide, weft.wide, warp.reach, weft.reach,
+            pins, max(PINNED, done.overlap), yarns.shifts[0],
         ]  # fmt: skip
         between, new = curve_overlap(*asked)
         deep = done.overlap

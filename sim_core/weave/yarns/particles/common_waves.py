@@ -16,6 +16,7 @@ import numpy as np
 from scipy.fft import irfft, irfft2, rfft, rfft2
 
 from sim_core.weave.yarns.beams import beam_stiffness
+from sim_core.weave.yarns.particles.scale import Units
 from sim_core.weave.yarns.splines import resampled
 
 __all__ = ["CommonWaves", "gathered"]
@@ -32,15 +33,14 @@ class CommonWaves:
     per: int
 
     @classmethod
-    def of(
-        cls, crossings: tuple[int, int], per: int, numbers: tuple[float, ...], contact: float
-    ) -> CommonWaves:
-        """crossings: (picks, ends).  numbers: of Scale.  contact: stiffness of the contact, in the same units."""
+    def of(cls, crossings: tuple[int, int], per: int, units: Units, contact: float) -> CommonWaves:
+        """crossings: (picks, ends).  contact: stiffness of the contact, in `units`."""
         picks, ends = crossings
-        l1, l2, e1, e2, t1, t2 = numbers[:6]
-        warp = beam_stiffness(picks, l1 * per, e1, t1)[:, None]
-        weft = beam_stiffness(ends, l2 * per, e2, t2)[None, : ends // 2 + 1]
-        return cls(warp + weft + FLOOR * contact, per)
+        warp, weft = (
+            beam_stiffness(count, system.piece * per, system.bend, system.pull)
+            for count, system in ((picks, units.warp), (ends, units.weft))
+        )
+        return cls(warp[:, None] + weft[None, : ends // 2 + 1] + FLOOR * contact, per)
 
     def move(
         self, warp: np.ndarray, weft: np.ndarray, warp_force: np.ndarray, weft_force: np.ndarray

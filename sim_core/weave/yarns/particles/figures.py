@@ -7,7 +7,6 @@ other than their particles do, the particles of that crossing keep farther by as
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -16,7 +15,6 @@ from sim_core.weave.yarns.particles.closest_pairs import curve_gaps
 from sim_core.weave.yarns.particles.common_waves import CommonWaves
 from sim_core.weave.yarns.particles.forces import side_forces
 from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
-from sim_core.weave.yarns.particles.scale import Scale
 
 __all__ = ["rest_of_figure"]
 
@@ -32,20 +30,18 @@ SLID = 0.03  # of D, away from where they stuck
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 
-def rest_of_figure(
-    yarns: Yarns, scale: Scale, begun: Outcome, *, tolerance: float, overlap: float, most: int
-) -> Outcome:
+def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: float, most: int) -> Outcome:
     """Bring yarns that the plain way did not bring to rest to it, or to `most` steps; begun: how that way ended.
 
     overlap: of curves [D] that is allowed, and of the gap of two that press.
     """
     picks, ends = yarns.lift.shape
     stiff = SOFT * yarns.hardest
-    yarns = _reaching(yarns, scale)
+    yarns = _reaching(yarns)
     for array in yarns.offsets:  # presses as before
         array *= begun.stiff / stiff
     apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
-    waves = CommonWaves.of((picks, ends), yarns.per, yarns.numbers, stiff)
+    waves = CommonWaves.of((picks, ends), yarns.per, yarns.units, stiff)
     calm, stuck = np.ones_like(gaps), None
     steps, turn, done = begun.steps, 0, begun
     while steps < most:
@@ -76,20 +72,20 @@ def rest_of_figure(
     return Outcome(done.residual, deepest, done.energy, steps, stiff)
 
 
-def _reaching(yarns: Yarns, scale: Scale) -> Yarns:
+def _reaching(yarns: Yarns) -> Yarns:
     """The same yarns, but particles as far beyond a crossing as they slide here may touch, too."""
-    old = scale.reach
-    most = yarns.per * min(yarns.lift.shape) - 1
-    new = [
-        min(reach + ceil(SLIDE / piece), yarns.per - 1, most)
-        for reach, piece in zip(old, scale.piece, strict=True)
-    ]
+    warp, weft = yarns.units.warp, yarns.units.weft
+    most = min(yarns.per * min(yarns.lift.shape), yarns.per) - 1
+    old, new = (
+        [warp.reach, weft.reach],
+        [min(system.reach + ceil(SLIDE / system.piece), most) for system in (warp, weft)],
+    )
     held = np.zeros((*yarns.lift.shape, 2 * (sum(new) + 1)))
     for first, second, start in ((0, 0, 0), (2 * old[0] + 1, 2 * new[0] + 1, 1)):
         width, wider = 2 * old[start] + 1, new[start] - old[start]
         held[:, :, second + wider : second + wider + width] = yarns.offsets[0][:, :, first : first + width]
-    numbers = (*yarns.numbers[:8], float(new[0]), float(new[1]), *yarns.numbers[10:])
-    return replace(yarns, numbers=numbers, offsets=(held, *yarns.offsets[1:]))
+    units = yarns.units._replace(warp=warp._replace(reach=new[0]), weft=weft._replace(reach=new[1]))
+    return yarns._replace(units=units, offsets=(held, *yarns.offsets[1:]))
 
 
 def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
@@ -104,10 +100,10 @@ def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
 
 def _measure(gaps: np.ndarray, yarns: Yarns) -> None:
     """Fill gaps (picks, ends, 2) [D] of the curves at every crossing, round the warp and round the weft."""
-    l1, l2, _, _, _, _, wide1, wide2, reach1, reach2 = yarns.numbers[:10]
     wu, wz, fu, fz = yarns.places
-    one, two = int(reach1), int(reach2)
-    curve_gaps(wu, wz, fu, fz, yarns.lift, yarns.per, l1, l2, wide1, wide2, one, two, gaps)
+    warp, weft = yarns.units.warp, yarns.units.weft
+    curve_gaps(wu, wz, fu, fz, yarns.lift, yarns.per, warp.piece, weft.piece, warp.wide, weft.wide, warp.reach,
+               weft.reach, gaps)  # fmt: skip
 
 
 def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
@@ -119,17 +115,13 @@ def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
 
 def _of_neighbours(yarns: Yarns) -> float:
     """Deepest overlap of neighbours of one system, or widest gap across which they press [D]."""
-    *_, p1, p2, wide1, high1, wide2, high2, _, _ = yarns.numbers
     found = 0.0
     wu, wz, fu, fz = yarns.places
-    for u, z, spacing, wide, high, held in (
-        (wu, wz, p1, wide1, high1, yarns.offsets[1]),
-        (fu, fz, p2, wide2, high2, yarns.offsets[2]),
-    ):
-        if wide > 0:
+    _, ends, picks = yarns.offsets
+    for u, z, system, held in ((wu, wz, yarns.units.warp, ends), (fu, fz, yarns.units.weft, picks)):
+        if system.side > 0:
             spare = np.zeros_like(u)
-            deep = side_forces(
-                u, z, spacing, wide, high, 1.0, spare, spare, held, False, False, spare, spare, 0
-            )
+            deep = side_forces(u, z, system.spacing, system.side, system.high, 1.0, spare, spare, held, False, False,
+                               spare, spare, 0)  # fmt: skip
             found = max(found, deep[1])
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,8 +11,9 @@ from numba import njit
 from sim_core.weave.yarns.particles.closest_pairs import pin_forces
 from sim_core.weave.yarns.particles.forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.yarns.particles.preconditioner import advance, factored, power
+from sim_core.weave.yarns.particles.scale import Units
 
-__all__ = ["Outcome", "Yarns", "settle"]
+__all__ = ["Outcome", "Yarns"]
 
 DEEP, HELPED = 0.02, 0.5  # overlap at rest [D], or share of the last one, from which the contact is stiffened
 LONGEST_STEP = 0.7  # x 1 / fastest frequency
@@ -32,11 +34,13 @@ class Outcome:
     stiff: float
 
 
-@dataclass(frozen=True, eq=False)
-class Yarns:
-    """The yarns of one repeat on their way to rest; the arrays are changed in place, as `settle` describes them.
+class Yarns(NamedTuple):
+    """The yarns of one repeat on their way to rest; the arrays are changed in place.
 
-    hardest: largest crossing force at the start, of the beams.
+    places: wu, wz, fu, fz as of contact_forces, and the forces on them.  offsets: of contacts at crossings, of ends, of
+    picks.  motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
+    shifts: (ends,) turns as of contact_forces, and those of the next end and pick in side_forces, or empty.
+    hardest: largest crossing force at the start, of the beams.  watch: (2,) steps and residual.
     """
 
     places: tuple[np.ndarray, ...]
@@ -47,7 +51,7 @@ class Yarns:
     motion: tuple[np.ndarray, ...]
     shifts: tuple[np.ndarray, int, int]
     per: int
-    numbers: tuple[float, ...]
+    units: Units
     hardest: float
     watch: np.ndarray
 
@@ -68,41 +72,32 @@ class Yarns:
         pins: (n, 6) as of curve_overlap.  apart, stuck: (picks, ends, 2) as of contact_forces.
         renew: set contacts out first.
         """
-        return Outcome(
-            *settle(
-                self.places, self.forces, self.lift, self.pressing, self.offsets, self.motion,
-                np.zeros((0, 6)) if pins is None else pins, np.zeros((0, 0, 2)) if apart is None else apart,
-                np.zeros((0, 0, 2)) if stuck is None else stuck,
-                self.shifts, self.per, self.numbers, stiff, tolerance, overlap, most, renew, self.watch,
-            )
-        )  # fmt: skip
+        pins = np.zeros((0, 6)) if pins is None else pins
+        apart, stuck = (np.zeros((0, 0, 2)) if places is None else places for places in (apart, stuck))
+        return Outcome(*_settle(self, pins, apart, stuck, stiff, tolerance, overlap, most, renew))
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def settle(
-    places, forces, lift, pressing, offsets, motion, pins, apart, stuck, turns, per, numbers, stiff, tolerance, overlap,
-    most, overlapping, watch,
-):  # fmt: skip
-    """Nesterov's method. numbers: l1, l2, EI1, EI2, T1, T2, wide_x, wide_y, reach1, reach2, p1, p2, side1,
-    high1, side2, high2, friction, slip.  places: wu, wz, fu, fz.  offsets: of contacts at crossings, of ends, of picks.
-    forces: written.  apart, stuck: as of contact_forces.
-    motion: speeds of both systems, and their ways as of advance; it goes on from one round to the next.
-    turns: (ends,) as of contact_forces, and those of the next end and pick in side_forces, or empty.
-    overlapping: contacts are to be set out at once.  watch: (2,) steps and residual, written.
-    Returns (residual, overlap, energy, steps, stiffness)."""
-    wu, wz, fu, fz = places
-    held, held1, held2 = offsets
-    speed1, speed2, way1, way2 = motion
-    l1, l2, e1, e2, t1, t2, wide_x, wide_y, r1, r2, p1, p2, s1, h1, s2, h2, friction, slip = numbers
-    reach1, reach2 = int(r1), int(r2)
-    gwu, gwz, gfu, gfz = forces
+def _settle(yarns, pins, apart, stuck, stiff, tolerance, overlap, most, overlapping):
+    """Nesterov's method on `Yarns`. Returns (residual, overlap, energy, steps, stiffness).
+
+    apart, stuck: as of contact_forces.  overlapping: contacts are to be set out at once.
+    """
+    lift, pressing, per, watch = yarns.lift, yarns.pressing, yarns.per, yarns.watch
+    wu, wz, fu, fz = yarns.places
+    held, held1, held2 = yarns.offsets
+    speed1, speed2, way1, way2 = yarns.motion
+    warp, weft, friction, slip = yarns.units
+    l1, e1, t1, wide_x, reach1, p1, s1, h1 = warp
+    l2, e2, t2, wide_y, reach2, p2, s2, h2 = weft
+    gwu, gwz, gfu, gfz = yarns.forces
     (vwu, vwz), (vfu, vfz) = speed1, speed2
     hwu, hwz, hfu, hfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     mwu, mwz, mfu, mfz = np.zeros_like(wu), np.zeros_like(wz), np.zeros_like(fu), np.zeros_like(fz)
     near = np.zeros((*lift.shape, 2 * (reach1 + reach2 + 1)), np.uint8)
     made1, made2 = np.zeros((2, *wu.shape, 5)), np.zeros((2, *fu.shape, 5))
     bend1, bend2, pull1, pull2 = e1 / l1**3, e2 / l2**3, t1 / l1, t2 / l2
-    at, side1, side2 = turns
+    at, side1, side2 = yarns.shifts
     residual, deepest, before, energy, steps = np.inf, np.inf, np.inf, 0.0, 0
     longest, best, since = LONGEST_STEP, np.inf, 0
     for step in range(most):

@@ -4,53 +4,76 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from sim_core.weave.model import Weave
+from sim_core.weave.yarn import Yarn
 
-__all__ = ["Scale", "crimp_of"]
+__all__ = ["Scale", "System", "Units", "crimp_of"]
 
 SLIP = 0.01  # of D, elastic slip of a crossing that sticks
 
 
+class System(NamedTuple):
+    """Warp or weft in units of D and EI/D^2.
+
+    piece: between neighbouring particles, along the yarn.  bend, pull: stiffness and tension.  wide: half width of the
+    norm of contact round the yarn, across it.  reach: particles on both sides of a crossing that can touch the other
+    system.  spacing: between neighbouring yarns; side, high: width and height of their sections where they touch each
+    other, side 0 where they cannot.
+    """
+
+    piece: float
+    bend: float
+    pull: float
+    wide: float
+    reach: int
+    spacing: float
+    side: float
+    high: float
+
+
+class Units(NamedTuple):
+    """Both systems, Coulomb's mu between them, and the elastic slip [D] of a crossing that sticks."""
+
+    warp: System
+    weft: System
+    friction: float
+    slip: float = SLIP
+
+
 @dataclass(frozen=True)
 class Scale:
-    """The repeat in units of D and EI/D^2."""
+    """A weave in the units of stage B. length: [m] of D.  force: [N] of EI/D^2.  per: particles a crossing and yarn."""
 
-    weave: Weave
     length: float
     force: float
-    stiffness: float
-    spacing: tuple[float, float]  # ends, picks
-    piece: tuple[float, float]
-    wide: tuple[float, float]  # contact norm along the weft, along the warp
-    reach: tuple[int, int]
+    per: int
+    units: Units
 
     @classmethod
-    def of(cls, weave: Weave, per: int) -> Scale:
+    def of(cls, weave: Weave, per: int, friction: float) -> Scale:
         warp, weft = weave.warp, weave.weft
         length = (warp.height + weft.height) / 2
         stiffness = sqrt(warp.stiffness * weft.stiffness)
-        p1, p2 = weave.end_spacing / length, weave.pick_spacing / length
-        wide = (warp.width + weft.height) / 2 / length, (weft.width + warp.height) / 2 / length
-        piece = p2 / per, p1 / per
         half = per * min(weave.draft.picks, weave.draft.ends) - 1
-        reach = tuple(min(ceil(w / p), per - 1, half) for w, p in ((wide[1], piece[0]), (wide[0], piece[1])))
-        return cls(weave, length, stiffness / length**2, stiffness, (p1, p2), piece, wide, reach)  # type: ignore[arg-type]
+        widths = (warp.width + weft.height) / 2 / length, (weft.width + warp.height) / 2 / length
+        spacings = weave.end_spacing / length, weave.pick_spacing / length
 
-    def numbers(self, friction: float) -> tuple[float, ...]:
-        warp, weft = self.weave.warp, self.weave.weft
-        sides = []
-        for yarn, room in ((warp, self.spacing[0]), (weft, self.spacing[1])):
-            wide = yarn.width / self.length
+        def system(yarn: Yarn, own: int) -> System:
+            other = 1 - own
+            piece, room, wide = spacings[other] / per, spacings[own], yarn.width / length
+            reach = min(ceil(widths[other] / piece), per - 1, half)
             # a section is never wider than its room: packed fibres give way sideways
-            sides += [min(wide, room) if room < 1.7 * wide else 0.0, yarn.height / self.length]
-        return (
-            *self.piece, warp.stiffness / self.stiffness, weft.stiffness / self.stiffness, warp.tension / self.force,
-            weft.tension / self.force, *self.wide, float(self.reach[0]), float(self.reach[1]), *self.spacing, *sides,
-            friction, SLIP,
-        )  # fmt: skip
+            side = min(wide, room) if room < 1.7 * wide else 0.0
+            bend, pull = yarn.stiffness / stiffness, yarn.tension / (stiffness / length**2)
+            return System(piece, bend, pull, widths[own], reach, room, side, yarn.height / length)
+
+        return cls(
+            length, stiffness / length**2, per, Units(system(warp, 0), system(weft, 1), float(friction))
+        )
 
 
 def crimp_of(u: np.ndarray, z: np.ndarray, piece: float) -> np.ndarray:
