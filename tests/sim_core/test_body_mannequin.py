@@ -187,12 +187,3 @@ def test_what_cannot_be_read_or_posed_says_so_in_one_line(woman: Mannequin, tmp_
         with pytest.raises(SimCoreError, match=word) as caught:
             woman.posed(Pose.arms(arm, elbow))
         assert "\n" not in str(caught.value)
-
-
-def test_the_smallest_turn_is_a_rotation() -> None:
-    rng = np.random.default_rng(3)
-    for _ in range(20):
-        a, b = rng.normal(size=(2, 3))
-        turn = turn_between(a, b)
-        assert np.allclose(turn @ turn.T, np.eye(3))
-        assert np.allclose(turn @ a / np.linalg.norm(a), b / np.linalg.norm(b))
