@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
-from sim_core.cloth.step.phases import schedule
+from sim_core.cloth.step.frame import schedule
 from sim_core.garment.halves import Half, half_sheet
 from sim_core.garment.laying import Laying, laid
 from sim_core.garment.pattern import Pattern

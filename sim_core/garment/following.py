@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.run.drape_run import FRAME
+from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.halves import APART
 from sim_core.garment.model import Garment

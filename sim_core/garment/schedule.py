@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim_core.cloth import MovingGrid, Phase
-from sim_core.cloth.run.drape_run import FRAME
+from sim_core.cloth.step import FRAME
 
 __all__ = ["Pose", "Schedule"]
 

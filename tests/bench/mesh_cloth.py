@@ -8,8 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from sim_core.cloth import drape
-from sim_core.cloth.run import Phase
+from sim_core.cloth import Phase, drape
 from sim_core.cloth.scenes import GF_CM
 from sim_core.cloth.sheet import Sheet
 from sim_core.mesh import panel_mesh
