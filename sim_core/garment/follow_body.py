@@ -14,8 +14,8 @@ from sim_core.cloth.sheet import evened
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
-from sim_core.garment.recipes.halves import APART
-from sim_core.garment.recipes.schedule import UNTANGLE
+from sim_core.garment.dressing.sewn_sheet import APART
+from sim_core.garment.outfit.outfit import UNTANGLE
 
 __all__ = ["follow", "garment_sheet"]
 
@@ -31,16 +31,16 @@ def garment_sheet(garment: Garment) -> Sheet:
 
     Raises SimCoreError where the garment does not say what it is made of.
     """
-    single = _material(garment, garment.material)
-    panels = garment.cut.get("panels") or garment.cut.get("panel") or []
-    doubled = [bool(panel.get("doubled")) for panel in panels] or [False]
-    apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)] or [0]
-    own = garment.panel % len(doubled)  # the right half's panels follow the left's
+    told = garment.material.get("kinds")
+    if not isinstance(told, dict) or not told:
+        raise SimCoreError(f"garment {garment.name}: its material is not told – bake it again")
+    materials = [_material(garment, kind) for kind in told.values()]
+    panels = garment.cut.get("panels") or [{"name": "cloth"}]
+    of_panel = [list(told).index(garment.material["panels"][panel["name"]]) for panel in panels]
+    apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)]
+    own = garment.panel % len(panels)  # the right half's panels follow the left's
     corner = garment.rest_corners() + APART * np.array(apart)[own][:, None, None] * np.array([1.0, 0.0])
-    materials, kinds = [single], np.zeros(len(own), np.int32)
-    if any(doubled):
-        materials = [single, _material(garment, garment.material.get("doubled"))]
-        kinds = np.array(doubled, np.int32)[own]
+    kinds = np.array(of_panel, np.int32)[own]
     sheet = Sheet.of_corners(corner, garment.faces, materials, kinds)
     if garment.settled is None or not garment.settled.even:
         return sheet

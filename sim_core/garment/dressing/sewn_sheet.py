@@ -1,4 +1,6 @@
-"""One half of a mirrored garment as a sheet: its middle lies in x = 0, rings of images continue it there.
+"""Panels as one sheet: open or closed, whole or as the half of a mirror image.
+
+Of a half the middle lies in x = 0, and rings of images continue it there.
 
 The images take the places their masters have, so that membrane and bending across the middle are those of the whole
 garment, at half the price, and both halves come out equal to the bit.
@@ -11,22 +13,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth import Holds, Material, Sheet
-from sim_core.cloth.sheet.mass_lumping import evened
-from sim_core.garment.pattern.cloth import Cloth
+from sim_core.cloth import Material, Sheet
+from sim_core.cloth.sheet import evened
+from sim_core.garment.pattern import Cloth
 
-__all__ = ["Half", "half_sheet", "whole_holds"]
+__all__ = ["APART", "SewnSheet", "sewn_sheet"]
 
 RINGS = 3  # of images: what bends at the middle is a face, its neighbours, and at a border theirs
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
 
 
 @dataclass(frozen=True)
-class Half:
-    """A sheet of one half with images.
+class SewnSheet:
+    """A sheet of panels, of one half with images.
 
-    number: (P,) sheet vertex of each pattern vertex; middle: (M,) sheet vertices on x = 0; slaves: (K, 2) image and
-    master; real: how many vertices are no images.
+    number: (P,) sheet vertex of each pattern vertex; middle: (M,) sheet vertices held on x = 0; slaves:
+    (K, 2) image and master; real: how many vertices are no images. A whole garment has neither middle nor images.
     """
 
     sheet: Sheet
@@ -45,18 +47,12 @@ class Half:
         return np.concatenate([out, out[self.slaves[:, 1]] * [-1.0, 1.0, 1.0]])
 
 
-def half_sheet(
-    cloth: Cloth,
-    number: np.ndarray,
-    materials: Sequence[Material],
-    kind: np.ndarray,
-    apart: np.ndarray,
-    *,
-    even: bool = False,
-) -> Half:
-    """The half as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it.
+def sewn_sheet(
+    cloth: Cloth, number: np.ndarray, materials: Sequence[Material], kind: np.ndarray, apart: np.ndarray
+) -> SewnSheet:
+    """The cloth as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it.
 
-    even: with its mass shared out so that time steps are longer (`cloth.evening`).
+    Its mass is shared out so that time steps are longer (`cloth.sheet.evened`).
     """
     faces = number[cloth.faces]
     corner = cloth.vertices[cloth.faces] + APART * apart[:, None, None] * np.array([1.0, 0.0])
@@ -74,19 +70,7 @@ def half_sheet(
     corners = np.concatenate([corner, (corner[ring] * [-1.0, 1.0])[:, [0, 2, 1]]])
     kinds = np.r_[kind, kind[ring]]
     sheet = Sheet.of_corners(corners, whole, materials, kinds)
-    if even:
-        density = np.array([material.density for material in materials])
-        sheet = evened(sheet, density[kinds], own=len(on))
+    density = np.array([material.density for material in materials])
+    sheet = evened(sheet, density[kinds], own=len(on))
     slaves = np.column_stack([image[masters], masters]).astype(np.int32)
-    return Half(sheet, number, middle, slaves, len(on))
-
-
-def whole_holds(holds: Holds, half: Half, cloth: Cloth) -> Holds:
-    """The holds of one half and its mirror image, of the draped vertices of both: bounds and the limit of lengths."""
-    weld = cloth.mirrored().closed
-    count, own = int(weld.max()) + 1, len(cloth.vertices)
-    low, high = np.full(count, -np.inf), np.full(count, np.inf)
-    if len(holds.low):
-        low[weld[:own]], high[weld[:own]] = holds.low[half.number], holds.high[half.number]
-        low[weld[own:]], high[weld[own:]] = -holds.high[half.number], -holds.low[half.number]
-    return Holds.of(count, low=low, high=high, limit=holds.limit)
+    return SewnSheet(sheet, number, middle, slaves, len(on))

@@ -1,0 +1,94 @@
+"""Whether cloth can go where an outfit wants it: refused before anything runs, naming layer, key and remedy."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from sim_core.errors import SimCoreError
+from sim_core.garment.dressing.course import courses
+from sim_core.garment.outfit import Layer, Outfit
+from sim_core.garment.pattern import Cloth
+from sim_core.garment.placement import Flat
+
+__all__ = ["check_fits"]
+
+COARSE = 0.04  # [m] mesh step that openings are measured at
+ROOM = 0.01  # [m] more than the girth of what passes an opening
+
+
+def check_fits(outfit: Outfit) -> None:
+    """Raises SimCoreError where a pose is beyond a joint's limit, layers cannot be dressed one over the other, or an
+    opening is narrower than the limb that must pass it."""
+    begins = []
+    for number, layer in enumerate(outfit.layers, 1):
+        key = f"outfit {outfit.name}: layer {number} ({layer.name})"
+        _, moves = courses(layer, outfit.pose)
+        if outfit.wearer is not None:
+            for pose in moves.poses:
+                pose.check()
+        if number > 1 and not moves.still:
+            if any(begin is None or begin != moves.poses[0] for begin in begins):
+                raise SimCoreError(
+                    f"{key}: it is dressed while the wearer moves, over a layer that was not dressed from the same "
+                    "pose – begin both from one pose, or place it along_path or wrapped"
+                )
+        begins.append(None if moves.still else moves.poses[0])
+        if isinstance(layer.place, Flat) and outfit.wearer is not None:
+            _check_openings(key, layer, outfit.wearer.posed(moves.poses[0]))
+
+
+def _check_openings(key: str, layer: Layer, body: np.ndarray) -> None:
+    """Cuffs must let pass what is beyond them of the arm, a closed neck the neck."""
+    pattern = layer.pattern
+    cut = pattern.cloth(max(COARSE, layer.edge))
+    cloth = cut.mirrored() if pattern.mirror else cut
+    reach = float(np.abs(body[:, 0]).max())
+    for loop in _openings(cloth):
+        points = cloth.vertices[loop]
+        length = float(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum())
+        x, y = points[:, 0], points[:, 1]
+        across = float(np.ptp(x))
+        if across < 0.35 * float(np.ptp(y)) and np.abs(x).min() > 0.15:  # it lies across an arm
+            at = float(np.abs(x).min())
+            if at < reach:
+                beyond = body[np.sign(x.mean()) * body[:, 0] >= at]
+                _check_girth(key, "sleeve", length, _hull_girth(beyond[:, [1, 2]]))
+        elif abs(float(x.mean())) < 0.02 and across < 0.5 and float(np.abs(y).max()) < 0.5:
+            neck = body[body[:, 1] > body[:, 1].max() - 0.05]
+            _check_girth(key, "neck hole", length, _hull_girth(neck[:, [0, 2]]))
+
+
+def _check_girth(key: str, what: str, opening: float, girth: float) -> None:
+    if opening < girth + ROOM:
+        raise SimCoreError(
+            f"{key}: its {what} is {100 * opening:.1f} cm round, what must pass it {100 * girth:.1f} cm – make it "
+            f"at least {100 * (girth + ROOM):.1f} cm"
+        )
+
+
+def _hull_girth(points: np.ndarray) -> float:
+    if len(points) < 3:
+        return 0.0
+    ring = points[ConvexHull(points).vertices]
+    return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())
+
+
+def _openings(cloth: Cloth) -> list[np.ndarray]:
+    """Border loops of the closed cloth, as pattern vertices in order."""
+    faces = cloth.closed[cloth.faces]
+    ahead = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64)
+    own = cloth.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    count = int(cloth.closed.max()) + 1
+    free = ~np.isin(ahead[:, 0] * count + ahead[:, 1], ahead[:, 1] * count + ahead[:, 0])
+    following = {int(a): (int(b), int(vertex)) for (a, b), vertex in zip(ahead[free], own[free, 0], strict=True)}
+    loops = []
+    while following:
+        first, (at, vertex) = next(iter(following.items()))
+        del following[first]
+        loop = [vertex]
+        while at != first and at in following:
+            at, vertex = following.pop(at)
+            loop.append(vertex)
+        loops.append(np.array(loop))
+    return loops
