@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from sim_core.body import Beneath, Pose
-from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
+from sim_core.cloth import Contact, Drape, Holds, Material, MovingGrid, Phase, drape
 from sim_core.cloth.step.phases import schedule
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
@@ -32,15 +32,11 @@ SETTLING = replace(DRESSING, clearance=0.003, sample_clearance=0.0015, separatio
 
 
 class FigureLike(Protocol):
-    """What a robe is dressed on: closed mesh and distance field of any pose of its arms, mirrored in x = 0."""
+    """What a robe is dressed on: closed mesh and moving field of any poses, mirrored in x = 0."""
 
     @property
     def name(self) -> str: ...
-    @property
-    def origin(self) -> tuple[float, float, float]: ...
-    @property
-    def cell(self) -> float: ...
-    def field(self, pose: Pose) -> np.ndarray: ...
+    def moving(self, poses: Sequence[Pose], *, half: bool = False) -> MovingGrid: ...
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]: ...
     def beneath(self, pose: Pose) -> Beneath: ...
 
@@ -83,7 +79,8 @@ def dress(
     apart = np.array([number if panel.along else 0 for number, panel in enumerate(pattern.panels)])[
         cloth.panel
     ]
-    body = timing.body(figure.origin, figure.cell, figure.field, figure.name)
+    # Sleeves slide over arms that come down, as if a hand smoothed them: the surface does not carry them along.
+    body = replace(figure.moving(timing.poses(), half=True), surface=None)
     start = laid(pattern, cloth, _laying(figure))
     stages = _Stages(cloth, timing, progress, on_frame)
 

@@ -33,7 +33,7 @@ from sim_core.weave import Weave, parameters_of, solve
 
 __all__ = ["HELD", "PiboSettings", "field_under", "laid_along", "pibo_on_figure", "solids_under"]
 
-HELD = Pose(58.0, 78.0)  # forearms forward, so that a scarf stays on them
+HELD = Pose.arms(58.0, 78.0)  # forearms forward, so that a scarf stays on them
 
 FALLING = (
     Phase(0.12, (0.0, 0.0), 400.0, 1.0, "letting go"),
@@ -135,7 +135,7 @@ def pibo_on_figure(
     if progress:
         progress(1.0, "done")
     robe = beneath.digest() if beneath else None
-    parts = [ENGINE_VERSION, pattern.to_dict(), weave.to_dict(), step, seed, asdict(s), asdict(pose), robe]
+    parts = [ENGINE_VERSION, pattern.to_dict(), weave.to_dict(), step, seed, asdict(s), pose.table(), robe]
     parts += [repr(phases), figure.name, figure.vertices.sum(), len(figure.faces)]
     return garment.noted(
         recipe="pibo_on_figure",
@@ -143,7 +143,7 @@ def pibo_on_figure(
         inputs=hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16],
         seed=seed,
         edge=step,
-        pose=asdict(pose),
+        pose=pose.table(),
         settings=asdict(s),
         simulated=worn.frames / 25,
         substeps=worn.substeps,
@@ -246,7 +246,7 @@ def _beneath(solids: dict[str, Solid], field: DistanceField, s: PiboSettings) ->
 
 def solids_under(figure: Mannequin, pose: Pose, beneath: Garment | None) -> dict[str, Solid]:
     """Closed meshes under the scarf: the posed body and, its openings capped, the robe."""
-    solids = {"body": (figure.posed(pose.arm, pose.elbow), figure.faces)}
+    solids = {"body": (figure.posed(pose), figure.faces)}
     if beneath is not None:
         solids["robe"] = capped(beneath.positions, beneath.faces)
     return solids
@@ -270,7 +270,7 @@ def laid_along(
     figure: Mannequin, pose: Pose, field: DistanceField, length: float, s: PiboSettings
 ) -> tuple[np.ndarray, np.ndarray, Accordion]:
     """The path of the left half, the forearm and the section along the path, from the figure's landmarks."""
-    marks = figure.landmarks(pose.arm, pose.elbow)
+    marks = figure.landmarks(pose)
     elbow, wrist, hip, waist = (marks[name] for name in ("elbow_l", "wrist_l", "hip", "waist"))
     arm = elbow + 0.5 * (wrist - elbow)
     gap = 0.5 * (waist + elbow)

@@ -77,12 +77,12 @@ def robe_on_figure(
     clock.lap("check")
     if progress:
         progress(1.0, "done")
-    parts = [ENGINE_VERSION, pattern.to_dict(), weave.to_dict(), step, asdict(schedule), figure.name]
+    parts = [ENGINE_VERSION, pattern.to_dict(), weave.to_dict(), step, _told(schedule), figure.name]
     return garment.noted(
         recipe="robe_on_figure",
         versions=versions(),
         inputs=hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16],
-        schedule=asdict(schedule),
+        schedule=_told(schedule),
         figure=figure.name,
         simulated=sum(run.frames for run in worn.runs) / 25,
         substeps=sum(run.substeps for run in worn.runs),
@@ -90,6 +90,11 @@ def robe_on_figure(
         seconds=clock.laps,
         errors=errors,
     )
+
+
+def _told(schedule: Schedule) -> dict[str, Any]:
+    """The schedule as a table of plain values."""
+    return asdict(schedule) | {"pose": schedule.pose.table()}
 
 
 def robe_errors(garment: Garment, figure_vertices: np.ndarray, figure_faces: np.ndarray) -> dict[str, Any]:

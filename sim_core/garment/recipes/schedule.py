@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from sim_core.body.pose import Pose
-from sim_core.cloth import MovingGrid, Phase
+from sim_core.cloth import Phase
 from sim_core.cloth.run.drape_run import FRAME
 
 __all__ = ["Schedule"]
@@ -27,7 +24,7 @@ class Schedule:
     frames_per_key: film frames from one key pose to the next.
     """
 
-    pose: Pose = Pose(45.0, 12.0)
+    pose: Pose = Pose.arms(45.0, 12.0)
     sew: float = 0.88
     hold: float = 0.16
     hang: float = 0.72
@@ -48,14 +45,11 @@ class Schedule:
         """The pose of a key; the arms start and stop gently."""
         t = key / (self.keys() - 1)
         eased = 0.35 * t + 0.65 * t * t * (3 - 2 * t)
-        return Pose(self.pose.arm * eased, self.pose.elbow * eased)
+        return Pose().towards(self.pose, eased)
 
-    def body(
-        self, origin: tuple[float, float, float], cell: float, values: Callable[[Pose], np.ndarray], name: str
-    ) -> MovingGrid:
-        """The moving figure, its distance fields made when they are needed."""
-        identity = f"{name} {self.pose} {self.keys()}"
-        return MovingGrid(origin, cell, self.keys(), lambda k: values(self.pose_of(k)), identity)
+    def poses(self) -> list[Pose]:
+        """The poses of all keys."""
+        return [self.pose_of(k) for k in range(self.keys())]
 
     def sewing(self) -> tuple[Phase, ...]:
         """Seams drawn together in the laid position, and held until they are still."""
