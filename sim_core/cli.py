@@ -12,9 +12,9 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
-ELSEWHERE = {"mannequin": "sim_core.body.cli"}  # commands that share another room
-BENCHES = ("weave", "drafts", "mesh", "cloth", "field")
+ROOMS = ("weave", "mesh", "cloth", "garment", "figure")
+ELSEWHERE = {"figure": "sim_core.body.cli"}  # commands that share another room
+BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure")
 
 DESCRIPTION = """\
 The simulation core, one stage at a time: files in, files out.
@@ -23,7 +23,7 @@ The simulation core, one stage at a time: files in, files out.
   mesh     a panel outline (JSON) becomes a triangle mesh
   cloth    a mesh falls onto a collider under gravity
   garment  a pattern and a weave become a draped garment and its GLB models
-  mannequin  free body data become the figure that garments are dressed on
+  figure   who wears a garment: poses drawn, and new figures from free body data
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed

@@ -107,7 +107,7 @@ def run(args: argparse.Namespace) -> int:
 def _pose(args: argparse.Namespace) -> Pose:
     from sim_core.body.pose import Pose
 
-    return Pose(args.arm, args.elbow)
+    return Pose.arms(args.arm, args.elbow)
 
 
 def _figure(args: argparse.Namespace) -> Figure | None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import Mannequin
+from sim_core.body import Mannequin, Pose
 from sim_core.cloth import Capsule
 from sim_core.cloth.contact import DistanceField, field_of, hull_mesh, solid_mesh, united
 from sim_core.errors import SimCoreError
@@ -27,7 +27,7 @@ def ball(radius: float = 0.1, at: tuple[float, float, float] = (0.0, 0.0, 0.0)):
 @pytest.fixture(scope="module")
 def posed() -> tuple[np.ndarray, np.ndarray]:
     woman = Mannequin.load(FILE)
-    return woman.posed(58.0, 78.0), woman.faces
+    return woman.posed(Pose.arms(58.0, 78.0)), woman.faces
 
 
 @pytest.fixture(scope="module")

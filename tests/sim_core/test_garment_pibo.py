@@ -142,7 +142,7 @@ def test_a_coarse_scarf_stays_on_the_forearms(woman: Mannequin) -> None:
     assert facts["area_strain_p95"] < 0.03
     assert facts["asymmetry_m"] < 1e-9
     assert garment.positions[:, 1].min() > 0.2  # it has not fallen
-    over = woman.landmarks(58.0, 78.0)
+    over = woman.landmarks(HELD)
     arm = 0.5 * (over["elbow_l"] + over["wrist_l"])
     near = np.linalg.norm(garment.positions - arm, axis=1)
     assert (garment.positions[near < 0.12][:, 1] > arm[1] + 0.02).any()
@@ -159,5 +159,5 @@ def test_the_baked_scarf_is_clear_of_body_and_robe(woman: Mannequin) -> None:
     if not folder.is_dir():
         pytest.skip("not baked here: run hall build --exhibit pibo-figure")
     garment = Garment.load(folder / "garment.npz")
-    inside = metrics.penetration(garment.positions, garment.faces, woman.posed(58.0, 78.0), woman.faces)
+    inside = metrics.penetration(garment.positions, garment.faces, woman.posed(HELD), woman.faces)
     assert inside.total == 0

@@ -19,7 +19,7 @@ from sim_core.weave import Weave, solve, surface_maps
 
 ASSETS = Path(__file__).parents[2] / "assets"
 SHORT = Schedule(
-    Pose(10.0, 2.0), sew=0.4, hold=0.08, hang=0.12, lower=0.2, settle=0.08, release=0.08, rest=0.08
+    Pose.arms(10.0, 2.0), sew=0.4, hold=0.08, hang=0.12, lower=0.2, settle=0.08, release=0.08, rest=0.08
 )
 
 
@@ -115,8 +115,8 @@ def test_coat_survives_file_detail_and_model(
     edges = np.sort(coarse.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert np.unique(edges, axis=0, return_counts=True)[1].max() == 2
     assert coarse.provenance["detail"]["hausdorff"]["max_m"] < 0.06
-    shown = shown_figure(*figure.mesh(Pose(45.0, 12.0)), coat.positions, coat.faces, triangles=900)
-    everything = shown_figure(*figure.mesh(Pose(45.0, 12.0)), np.zeros((3, 3)), np.array([[0, 1, 2]]))
+    shown = shown_figure(*figure.mesh(Pose.arms(45.0, 12.0)), coat.positions, coat.faces, triangles=900)
+    everything = shown_figure(*figure.mesh(Pose.arms(45.0, 12.0)), np.zeros((3, 3)), np.array([[0, 1, 2]]))
     assert 0 < len(shown.faces) < 0.5 * len(everything.faces)
     maps = surface_maps(ling, solve(ling), pixels=64)
     size = write_glb(tmp_path / "coat.glb", coarse, maps, precision="hall", figure=shown)

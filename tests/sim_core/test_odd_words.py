@@ -49,7 +49,12 @@ WRONG = {
         *(["--recipe", "robe_on_figure", "--elbow", word] for word in ("-1", "111", "inf")),
         ["--recipe", "robe_on_figure"],
     ],
-    "mannequin": [["--picture", "figure.jpeg"], ["--picture", "figure"]],
+    "figure": [
+        *(["--picture", word] for word in ("figure.jpeg", "figure")),
+        ["figure.obj", "--json"],
+        ["--picture", "figure.png", "--pose", "asleep"],
+        ["--pose", "held"],
+    ],
 }
 CASES = [(room, words) for room, cases in WRONG.items() for words in cases]
 
@@ -64,7 +69,7 @@ def test_wrong_arguments_end_with_2_and_leave_nothing(
         "mesh": ["none.json"],
         "cloth": ["hanging"],
         "garment": [PATTERN, "--weave", WEAVE, "--out", "out"],
-        "mannequin": ["figure.npz"],
+        "figure": ["woman"],
     }[room]
     try:
         status = cli.main([room, *first, *words])
@@ -195,7 +200,7 @@ def test_a_figure_that_is_none_is_told_with_its_file(tmp_path: Path, capsys) -> 
     ("name", "change", "word"),
     [
         ("faces", lambda a: a[1:], "open or ill-wound at 3 edges"),
-        ("weights", lambda a: np.eye(7)[np.zeros(len(a), int)], "no hull"),
+        ("weights", lambda a: np.eye(21)[np.zeros(len(a), int)], "no hull"),
     ],
 )
 def test_a_figure_no_field_fits_is_told_before_the_drape(

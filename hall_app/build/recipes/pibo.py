@@ -64,7 +64,7 @@ class PiboOnFigure:
             self._in.weave,
             Mannequin.load(self._in.mannequin),
             beneath=robe,
-            pose=Pose(table.arm, table.elbow),
+            pose=Pose.arms(table.arm, table.elbow),
             edge=table.edge,
             seed=table.seed,
             progress=progress,
@@ -112,6 +112,6 @@ class PiboOnFigure:
         from sim_core.garment.recipes.pibo import PiboSettings, field_under, solids_under
 
         assert self._in.mannequin is not None
-        pose = Pose(self._in.table.arm, self._in.table.elbow)
+        pose = Pose.arms(self._in.table.arm, self._in.table.elbow)
         solids = solids_under(Mannequin.load(self._in.mannequin), pose, self._robe_at("hall"))
         return field_under(solids, PiboSettings(), whole=True).solid()

@@ -30,7 +30,7 @@ class RobeOnFigure:
 
         if inputs.mannequin is None:
             raise SimCoreError("recipe robe_on_figure: names no mannequin – add garment.mannequin")
-        self._in, self._schedule = inputs, Schedule(Pose(inputs.table.arm, inputs.table.elbow))
+        self._in, self._schedule = inputs, Schedule(Pose.arms(inputs.table.arm, inputs.table.elbow))
 
     def prepare(self, progress: Progress, checkpoint: Path) -> None:
         return None

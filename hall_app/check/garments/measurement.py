@@ -143,9 +143,10 @@ def _solids(root: Path, table: GarmentRecipe, garment: Garment) -> list[Solid]:
     """What the cloth hangs on: the posed figure, or the stand."""
     if table.mannequin is not None:
         from sim_core.body.mannequin import Mannequin
+        from sim_core.body.pose import Pose
 
         figure = Mannequin.load(root / table.mannequin)
-        return [(figure.posed(table.arm, table.elbow), figure.faces)]
+        return [(figure.posed(Pose.arms(table.arm, table.elbow)), figure.faces)]
     from sim_core.garment import Stand
 
     return [Stand(**garment.provenance["stand"]).mesh(48)]

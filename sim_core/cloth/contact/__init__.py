@@ -15,7 +15,7 @@ from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfS
 from sim_core.cloth.contact.untangling import crossings_of, faces_at_edges, no_crossings, untangle
 
 if TYPE_CHECKING:
-    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_mesh, united
+    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_faces, hull_mesh, united
     from sim_core.cloth.contact.moving_grid import MovingGrid, moving_mesh
 
 __all__ = [
@@ -40,6 +40,7 @@ __all__ = [
     "field_of",
     "finder_of",
     "hash_points",
+    "hull_faces",
     "hull_mesh",
     "moving_mesh",
     "no_crossings",
@@ -55,6 +56,7 @@ _LATE = {
     "DistanceField": "distance_field",
     "MovingGrid": "moving_grid",
     "field_of": "distance_field",
+    "hull_faces": "distance_field",
     "hull_mesh": "distance_field",
     "moving_mesh": "moving_grid",
     "united": "distance_field",

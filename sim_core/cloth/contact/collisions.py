@@ -49,7 +49,7 @@ def _meet(packed, fields, x, v, i, clearance, dt, friction, cap):
     if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
         carry = (0.0, 0.0, 0.0)
         if len(packed.ways) > 0:
-            carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
+            carry = carried(packed, d, x[i, 0], x[i, 1], x[i, 2])
         _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, carry, dt, friction, cap)
     return d - clearance
 

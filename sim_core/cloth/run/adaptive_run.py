@@ -129,7 +129,7 @@ class Run:
     def identity(self) -> tuple[object, ...]:
         """What, beside sheet and start, decides the bits of the result."""
         body = self.engine.moving
-        moving = body and (body.name, body.origin, body.cell, body.count)
+        moving = body and body.identity()
         contact, holds = self._given
         settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
         settings += () if self.air is None else (AIR_VERSION,)
