@@ -52,6 +52,11 @@ class Figure:
         left, right = (self._hand(joint) for joint in ("wrist_l", "wrist_r"))
         return left, right
 
+    def trunk(self) -> np.ndarray:
+        """Vertices (T,) that are not of the arms: what a skirt goes round."""
+        arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
+        return np.flatnonzero(self.mannequin.weights[:, arms].sum(1) < 0.5)
+
     def beneath(self, pose: Pose, *, half: bool = False) -> Beneath:
         """The posed figure as what lies beneath cloth."""
         vertices, faces = self.mesh(pose)

@@ -15,12 +15,11 @@ SLACK = 1e-6  # [m]
 
 def mirrored(outfit: Outfit, number: int, moves: Moves) -> bool:
     """Whether pattern, wearer, poses, ties and all layers beneath are mirror images of themselves."""
-    if outfit.wearer is None or not all(pose.symmetric(1e-6) for pose in moves.poses):
+    if outfit.wearer is None or not all(pose.symmetric for pose in moves.poses):
         return False
-    figure = outfit.wearer.vertices
-    half = np.sort(np.round(figure[figure[:, 0] > SLACK] * 1e5), axis=0)
-    other = np.sort(np.round(figure[figure[:, 0] < -SLACK] * [-1e5, 1e5, 1e5]), axis=0)
-    if half.shape != other.shape or np.abs(half - other).max(initial=0.0) > 1:
+    points = np.unique(np.round(outfit.wearer.vertices * 1e5).astype(np.int64), axis=0)
+    images = np.unique(points * [-1, 1, 1], axis=0)
+    if points.shape != images.shape or np.abs(points - images).max() > 1:
         return False
     return all(_alike(layer) for layer in outfit.layers[: number + 1])
 
