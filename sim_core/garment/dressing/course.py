@@ -122,6 +122,8 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
             state.pins = tuple(pin for pin in state.pins if step.spots and pin not in step.spots)
         else:
             joining = _joining(layer.pattern.ties, step)
+            if step.do == "close" and not joining:  # a pattern without ties has nothing to close
+                continue
             if set(joining) - set(state.ties):
                 cut()
                 state.ties, state.drawn = (*state.ties, *(t for t in joining if t not in state.ties)), False
