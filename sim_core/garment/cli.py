@@ -26,7 +26,7 @@ An outfit file:
 
   name = "beizi"
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
-  pose = "display"                    # `simcore figure --poses` lists them; or { name = "held", neck = [10, 0, 0] }
+  pose = "display"                    # `simcore figure --poses` lists them; or { name, joints, shift }
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -60,7 +60,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--glb", type=Path, metavar="FILE.glb", help="where its model goes")
     parser.add_argument("--picture", type=Path, metavar="FILE.png", help="where its picture goes")
     parser.add_argument(
-        "--edge", type=number(0.002, 0.2, " m"), help="mesh step of all layers in metres (default: the outfit's)"
+        "--edge",
+        type=number(0.002, 0.2, " m"),
+        help="mesh step of all layers in metres (default: the outfit's)",
     )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
@@ -72,9 +74,7 @@ def run(args: argparse.Namespace) -> int:
     outfit = load_outfit(args.outfit, args.content)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
-    garments = dress(
-        outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args)
-    )
+    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args))
     files: dict[str, Path] = {}
     if args.out is not None:
         for garment in garments[:-1]:

@@ -81,7 +81,9 @@ def _openings(cloth: Cloth) -> list[np.ndarray]:
     own = cloth.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     count = int(cloth.closed.max()) + 1
     free = ~np.isin(ahead[:, 0] * count + ahead[:, 1], ahead[:, 1] * count + ahead[:, 0])
-    following = {int(a): (int(b), int(vertex)) for (a, b), vertex in zip(ahead[free], own[free, 0], strict=True)}
+    following = {
+        int(a): (int(b), int(vertex)) for (a, b), vertex in zip(ahead[free], own[free, 0], strict=True)
+    }
     loops = []
     while following:
         first, (at, vertex) = next(iter(following.items()))

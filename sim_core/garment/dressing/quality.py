@@ -18,7 +18,7 @@ __all__ = ["measured", "seam_gap"]
 
 
 def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
-    """What is inside what lies beneath, strain, crossings of itself and of the wrong order, seams, how halves differ."""
+    """Inside of what lies beneath, strain, crossings of itself and of the wrong order, seams, how halves differ."""
     assert garment.settled is not None
     found = [
         metrics.penetration(garment.positions, garment.faces, *solid)
@@ -62,5 +62,7 @@ def seam_gap(garment: Garment, edge: float) -> float:
         panels = pattern.panel(seam.a.panel), pattern.panel((seam.b or seam.a).panel)
         first = [cloth.along(seam.a, panels[0], side) for side in sides]
         second = first[::-1] if seam.b is None else [cloth.along(seam.b, panels[1], side) for side in sides]
-        gaps += [float(np.linalg.norm(worn[a] - worn[b], axis=1).max()) for a, b in zip(first, second, strict=True)]
+        gaps += [
+            float(np.linalg.norm(worn[a] - worn[b], axis=1).max()) for a, b in zip(first, second, strict=True)
+        ]
     return max(gaps)

@@ -1,4 +1,4 @@
-"""`Outfit`: what is to be dressed on whom, layer by layer from the skin outwards, read and checked before anything runs."""
+"""`Outfit`: what is dressed on whom, layer by layer from the skin outwards."""
 
 from __future__ import annotations
 
