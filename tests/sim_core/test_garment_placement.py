@@ -74,7 +74,16 @@ def of(folder: Path, pattern: str, place: str, on: str, steps: str = STEPS) -> t
 
 
 WEARER = 'wearer = "mannequins/woman.npz"\npose = "display"'
-WELDED = '[[layer.step]]\ndo = "pin"\nat = ["top"]\n[[layer.step]]\ndo = "sew"\nseconds = 0.08\n[[layer.step]]\ndo = "weld"\n'
+WELDED = """
+[[layer.step]]
+do = "pin"
+at = ["top"]
+[[layer.step]]
+do = "sew"
+seconds = 0.08
+[[layer.step]]
+do = "weld"
+"""
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +115,7 @@ def test_a_tube_skirt_goes_round_the_hips_and_hangs(tmp_path: Path, woman: Manne
     assert len(skirt.settled.last.pins) > 20  # and stays held when it is carried on
 
 
-@pytest.mark.parametrize(("text", "turns"), [(SKIRT, 1.0), (LAPPED, 1.3)])
+@pytest.mark.parametrize(("text", "turns"), [(SKIRT, 1.0), (LAPPED, 1.5)])
 def test_wrapped_cloth_is_not_strained_and_keeps_its_layers_apart(
     tmp_path: Path, woman: Mannequin, text: str, turns: float
 ) -> None:
@@ -119,13 +128,15 @@ def test_wrapped_cloth_is_not_strained_and_keeps_its_layers_apart(
     x = Wrapped().start(pattern, cloth, ground, np.random.default_rng(0))
     strain = metrics.area_strain(cloth.vertices, x, cloth.faces)
     assert np.abs(strain).max() < 0.03
-    assert metrics.intersections(x, cloth.faces) == 0
+    welded = np.zeros((cloth.closed.max() + 1, 3))
+    welded[cloth.closed] = x
+    assert metrics.intersections(welded, cloth.closed[cloth.faces]) == 0
     assert metrics.penetration(x, cloth.faces, vertices, faces).total == 0
     middle = vertices[figure.trunk()].mean(0)
     ahead = np.unwrap(
         np.arctan2(x[:, 0], x[:, 2] - middle[2])[np.argsort(cloth.vertices[:, 0], kind="stable")]
     )
-    assert np.ptp(ahead) / (2 * np.pi) == pytest.approx(turns, abs=0.15)
+    assert np.ptp(ahead) / (2 * np.pi) == pytest.approx(turns, abs=0.1)
 
 
 def test_a_skirt_narrower_than_the_hips_is_refused(tmp_path: Path) -> None:

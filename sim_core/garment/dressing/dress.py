@@ -200,7 +200,8 @@ class _Dressing:
                 if sheet is not None:
                     x, v = x[sheet.number], v[sheet.number]
                     gap = self._gap(x)
-                sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart)
+                even = self.layer.program.even
+                sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart, even=even)
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
             places = Places(self.layer, self.cut, self.cloth, sheet)
@@ -344,7 +345,8 @@ class _Dressing:
             whole = Holds.of(count, low=low, high=high, limit=holds.limit)
         else:
             whole = holds
-        return Settled(self._contact(course), last, whole, self.wearing.beneath(len(self.moves.poses) - 1))
+        beneath = self.wearing.beneath(len(self.moves.poses) - 1)
+        return Settled(self._contact(course), last, whole, beneath, self.layer.program.even)
 
     def _is_beneath(self) -> bool:
         """Whether another layer will be dressed over this one."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -102,7 +103,7 @@ class _Reader:
         program = default_program(way)
         if table.step:
             steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
-            program = Program(steps, program.contact, program.start, program.sag, program.fold, program.limit)
+            program = replace(program, steps=steps)
         _check_order(self, key, program.steps, pattern)
         edge = pattern.edge if table.edge is None else table.edge
         return Layer(table.name or pattern.name, pattern, weave, place, program, edge, weaves, table.seed)
@@ -223,7 +224,7 @@ def default_program(way: str) -> Program:
     steps = tuple(reader.step(f"{way}.{k}", step, None) for k, step in enumerate(table.step, 1))
     contact = Contact(**table.contact.model_dump(), untangle=UNTANGLE)
     start = pose_named(table.start) if table.start else None
-    return Program(steps, contact, start, table.sag, table.fold, table.limit)
+    return Program(steps, contact, start, table.sag, table.fold, table.limit, table.even)
 
 
 def _first(error: ValidationError, table: type[BaseModel]) -> str:

@@ -73,6 +73,7 @@ class ProgramTable(Table):
     sag: Share
     fold: Length
     limit: tuple[Share, Share]
+    even: bool = True
     contact: ContactTable
     start: str = "t"
     step: list[StepTable] = Field(min_length=1, max_length=200)
