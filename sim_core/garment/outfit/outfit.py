@@ -28,8 +28,8 @@ class Program:
     """How a layer is dressed: steps, how it touches from the first on, and how far its cloth is simplified.
 
     start: the wearer's pose at first; sag: strain under the cloth's own weight it is softened to; fold: bending length
-    in mesh edges it is stiffened to; limit: shares by which an edge may be shorter, and longer, before it is held; even: whether
-    mass is shared out for longer time steps.
+    in mesh edges it is stiffened to; limit: shares by which an edge may be shorter, and longer, before it is held;
+    even: whether mass is shared out for longer time steps.
     """
 
     steps: tuple[Step, ...]
