@@ -140,7 +140,6 @@ class _Dressing:
         errors = measured(garment, self.layer) | {
             "rest_p99_m": runs[-1].rest_p99,
             "rest_max_m": runs[-1].rest_max,
-            "mass_kg": (2.0 if self.half else 1.0) * float(sheet.sheet.mass[: sheet.real].sum()),
         }
         if gap is not None:
             errors["seam_gap_sewn_m"] = gap
