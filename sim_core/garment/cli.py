@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sim_core.errors import SimCoreError, WrongArgument
 from sim_core.validation.arguments import number
 
 if TYPE_CHECKING:
@@ -71,6 +72,7 @@ def run(args: argparse.Namespace) -> int:
     """Dresses and writes; returns the exit status."""
     from sim_core.garment import dress, load_outfit
 
+    _check_targets(args)
     outfit = load_outfit(args.outfit, args.content)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
@@ -90,12 +92,27 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def _check_targets(args: argparse.Namespace) -> None:
+    """Raises WrongArgument for a file of another kind, and makes the folders, before any work is done."""
+    for name, suffix in (("out", ".npz"), ("glb", ".glb"), ("picture", ".png")):
+        path = getattr(args, name)
+        if path is None:
+            continue
+        if path.suffix != suffix:
+            raise WrongArgument(f"--{name}: {path} – name a file that ends in {suffix}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise SimCoreError(
+                f"--{name}: {path}: {error.strerror} – name a folder that can be written"
+            ) from error
+
+
 def _checkpoint(args: argparse.Namespace) -> Path | None:
     """Beside what is written first, so that an interrupted run is found again."""
     target = args.out or args.glb or args.picture
     if target is None:
         return None
-    target.parent.mkdir(parents=True, exist_ok=True)
     return target.with_name(f"{target.stem}.part")
 
 

@@ -9,8 +9,18 @@ import pytest
 
 from sim_core import metrics
 from sim_core.body import Pose
-from sim_core.garment import Frame, Garment, Outfit, Pattern, detail, dress, follow, load_outfit, write_glb
-from sim_core.garment.glb import Clothed
+from sim_core.garment import (
+    Clothed,
+    Frame,
+    Garment,
+    Outfit,
+    Pattern,
+    detail,
+    dress,
+    follow,
+    load_outfit,
+    write_glb,
+)
 from sim_core.garment.levels import shown_figure
 from sim_core.garment.outfit import Program, Step
 from sim_core.garment.placement import Flat, Ground

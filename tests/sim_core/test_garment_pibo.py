@@ -16,8 +16,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment import Frame, Garment, dress, load_outfit
 from sim_core.garment.dressing import capped
 from sim_core.garment.outfit import Step, default_program
-from sim_core.garment.placement import AlongPath, Ground
-from sim_core.garment.placement.along_path import Accordion, arranged_path, swept
+from sim_core.garment.placement import Accordion, AlongPath, Ground, arranged_path, swept
 from sim_core.metrics import winding
 
 ASSETS = Path(__file__).parents[2] / "assets"

@@ -175,7 +175,8 @@ def test_a_band_lies_along_a_path_over_the_arms(tmp_path: Path, woman: Mannequin
         '{ near = ["nape"], by = [0.0, -0.02, -0.06] }, { near = ["shoulder_l"], by = [-0.04, 0.06, -0.03] }, '
         '{ near = ["shoulder_l"], by = [-0.03, 0.03, 0.09] }, { near = ["shoulder_l"], by = [-0.04, -0.15, 0.15] }'
     )
-    place = f'way = "along_path"\nalong = ["clavicle_l", "shoulder_l"]\nbegin = 0.05\nend = 0.055\nwaves = 1.0\nknot = [{knots}]'
+    place = 'way = "along_path"\nalong = ["clavicle_l", "shoulder_l"]\n'
+    place += f"begin = 0.05\nend = 0.055\nwaves = 1.0\nknot = [{knots}]"
     (band,) = of(tmp_path, BAND, place, WEARER)
     assert clear(band)
     assert not band.provenance["whole"]

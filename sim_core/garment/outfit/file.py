@@ -11,9 +11,8 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from sim_core.body.mannequin import Mannequin
-from sim_core.body.pose import T_POSE, Pose, pose_named
-from sim_core.body.stand import Stand
+from sim_core.body import Figure, Mannequin, Pose, Stand, pose_named
+from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
@@ -27,6 +26,7 @@ from sim_core.weave import Weave
 
 __all__ = ["default_program", "load_outfit"]
 
+LOOK = 0.02  # [m] cell of the field by which a figure is tried
 WAYS: dict[str, type[Placement]] = {
     "flat": Flat,
     "over_bar": OverBar,
@@ -63,7 +63,7 @@ class _Reader:
             raise self._wrong(
                 "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
             )
-        wearer = None if read.wearer is None else Mannequin.load(self._file("wearer", read.wearer))
+        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer))
         stand = None if read.stand is None else self._of("stand", lambda: Stand(**read.stand.model_dump()))  # type: ignore[union-attr]
         if stand is not None and read.pose is not None:
             raise self._wrong("pose", "a stand has none – leave it out")
@@ -78,6 +78,15 @@ class _Reader:
                 )
         name = read.name or self._path.stem
         return Outfit(name, tuple(layers), wearer, stand, pose, dict(read.title))
+
+    def _wearer(self, file: Path) -> Mannequin:
+        """A figure that cloth can lie on: closed, with hands."""
+        wearer = Mannequin.load(file)
+        try:
+            Figure(wearer, cell=LOOK).field(T_POSE)
+        except SimCoreError as error:
+            raise FileProblem(f"{file}: {error}") from error
+        return wearer
 
     def layer(self, key: str, table: LayerTable, on_stand: bool) -> Layer:
         pattern = self._pattern(key, table)
