@@ -200,6 +200,23 @@ def test_what_the_body_cannot_pass_is_refused(tmp_path: Path, case: str) -> None
         check_fits(outfit)
 
 
+def test_a_tie_shorter_than_the_girth_it_goes_round_is_refused(tmp_path: Path) -> None:
+    """A gown whose fronts are tied right round to the back would have to be narrower than the hips."""
+    text = (
+        (ASSETS / "patterns/gown.toml")
+        .read_text("utf-8")
+        .replace('at = ["lap", "upper"]', 'at = ["waist", "upper"]')
+    )
+    (tmp_path / "tight.toml").write_text(text.replace("waist = 240 ", "waist = 190 "), "utf-8")
+    outfit = load_outfit(
+        written(tmp_path, GOWN.replace("patterns/gown.toml", str(tmp_path / "tight.toml"))), ASSETS
+    )
+    with pytest.raises(
+        SimCoreError, match="tie 'inner_high' and the cloth .* the girth they go round .* longer"
+    ):
+        check_fits(outfit)
+
+
 def test_a_layer_dressed_on_the_way_needs_one_beneath_that_came_the_same_way(tmp_path: Path) -> None:
     text = ROBE + (
         '[[layer]]\nname = "over"\npattern = "patterns/beizi.toml"\nweave = "weaves/ling.toml"\n'
