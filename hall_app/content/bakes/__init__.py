@@ -13,6 +13,7 @@ from hall_app.content.bakes.store import (
     baked_here,
     data_bake,
     key_now,
+    layer_files,
     read_record,
 )
 
@@ -29,6 +30,7 @@ __all__ = [
     "baked_here",
     "data_bake",
     "key_now",
+    "layer_files",
     "models_of",
     "publish",
     "read_record",

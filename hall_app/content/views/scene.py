@@ -164,7 +164,7 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
 
 
 def _has_close(exhibit: Exhibit, baked: Path | None) -> bool:
-    if exhibit.file.garment is not None:
+    if exhibit.file.outfit is not None:
         return media_file(exhibit, BAKED + "close.glb", baked).is_file()
     return exhibit.model_path("close") is not None
 
