@@ -29,7 +29,7 @@ Picture = NDArray[np.uint8]
 
 @dataclass(frozen=True)
 class Part:
-    """Triangles of one look: faces (F, 3) int32, sRGB colour 0..1; alpha: share of the light that it stops, seen head-on;
+    """Triangles of one look: faces (F, 3) int32, sRGB colour 0..1; alpha: share of the light it stops, seen head-on;
     gloss, sheen: 0..1, as `sim_core.picture.Surface` has them."""
 
     faces: NDArray[np.int32]

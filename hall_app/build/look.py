@@ -147,7 +147,7 @@ class Wardrobe:
 
 
 def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:
-    """The solid that a coarser mesh is moved out of: the wearer in the levels worn beneath. None: as the garment knows."""
+    """The solid that a coarser mesh is moved out of: the wearer in these levels. None: as the garment knows."""
     from sim_core.garment.dressing import capped
 
     if not beneath or garment.settled is None:

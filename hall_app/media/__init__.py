@@ -1,7 +1,7 @@
 """The hall's own music, drawings and the ready-made mirror: made by programs, so that nobody's rights are touched.
 
-strings, music: plucked strings, and two pieces for them; drawings: weaves; cutting_plan, cutting_sheet: patterns; foreign:
-the mirror; encode: sound to files; make: all of it.
+strings, music: plucked strings, and two pieces for them; drawings: weaves; cutting_plan, cutting_sheet: flat
+patterns; foreign: the mirror; encode: sound to files; make: all of it.
 """
 
 from hall_app.media.cutting_plan import Plan, cutting_plan

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import string
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -24,10 +24,12 @@ Points = NDArray[np.float64]
 
 INK, FAINT, ACCENT = "#201c1a", "#a3988a", "#9e2b25"
 PAPER, CLOTH = (0.965, 0.945, 0.902), (0.94, 0.9, 0.82)  # sRGB
+THIN = 1e-3  # [m] of cloth beyond the shoulder that makes it a fold
 LONG = 2.5  # times as long as wide: such a panel lies along the sheet
 SHAPE = 1.35  # width of the sheet over its height, about
 LETTERS = 46  # a line of words is the sheet's longer side over this
-GAP = 3.4  # lines between panels, room for their measures
+GAP = 5.0  # lines between panels: seams' letters, measures and names stand there
+COLUMNS = 12  # entries of the legend from which it stands in two
 KINDS = {"joined": ("平缝", "joined flat"), "sewn": ("缝合", "sewn"), "middle": ("中缝", "middle")}
 
 
@@ -43,16 +45,17 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Words:
-    """A line of words in Chinese and English (equal: a figure or a name) at (x, y) [mm], its size [mm].
+    """A line of words at (x, y) [mm], its size [mm]; latin: what a machine without Chinese letters shows instead,
+    "" nothing.
 
-    anchor: which part of it is there, start, middle or end; upright: whether it runs up the sheet.
+    anchor: which part of it is there, start or middle; upright: whether it runs up the sheet.
     """
 
     x: float
     y: float
-    zh: str
-    en: str
+    text: str
     size: float
+    latin: str | None = None
     anchor: str = "middle"
     colour: str = INK
     upright: bool = False
@@ -77,31 +80,33 @@ def cutting_plan(patterns: Sequence[Pattern], title: tuple[str, str]) -> Plan:
     line = _line(laid)
     places, (width, height) = _shelves([np.ptp(one.outline, axis=0) for one in laid], GAP * line)
     strokes: list[Stroke] = []
-    words = [Words(0.0, -1.4 * line, *title, 1.7 * line, "start")]
+    words = [Words(0.0, -3.2 * line, " ".join(title), 1.7 * line, title[1], "start")]
     for one, place in zip(laid, places, strict=True):
         one.shift = place - one.outline.min(0)
         strokes += one.strokes(line)
         words += one.words(line)
-    below, names = height + 1.5 * line, _names()
+    below, names = height + 4.0 * line, _names()
     for pattern in patterns:
         own = {one.panel.name: one for one in laid if one.pattern is pattern}
-        legend = [_heading(pattern)]
+        heading, legend = _heading(pattern), []
         for seam in pattern.seams:
             name = next(names)
-            words += [
-                mark for path in (seam.a, seam.b) if path for mark in own[path.panel].mark(path, name, line)
-            ]
+            words += [own[path.panel].mark(path, name, line) for path in (seam.a, seam.b) if path]
             legend.append(_seam_words(name, seam, own))
-        for tie in pattern.ties:
-            for spot in (tie.a, tie.b):
-                stroke, mark = own[spot.panel].spot(spot, tie.name, line)
-                strokes.append(stroke)
-                words.append(mark)
-            legend.append(_tie_words(tie))
-        for number, (zh, en) in enumerate(legend):
-            words.append(Words(0.0, below, zh, en, (1.2 if number == 0 else 0.9) * line, "start"))
-            below += 1.35 * line
-        below += 0.6 * line
+        for (panel, place), ties in _tied(pattern).items():
+            stroke, mark = own[panel].spot(place, ", ".join(ties), line)
+            strokes.append(stroke)
+            words.append(mark)
+        legend += [_tie_words(tie) for tie in pattern.ties]
+        words.append(Words(0.0, below, heading[0], 1.1 * line, "", "start"))
+        words.append(Words(0.0, below + 1.5 * line, heading[1], 1.1 * line, anchor="start"))
+        below += 1.7 * line
+        columns = 2 if len(legend) >= COLUMNS else 1
+        rows = -(-len(legend) // columns)
+        for number, (text, latin) in enumerate(legend):
+            x, y = width / columns * (number // rows), below + 1.5 * line * (1 + number % rows)
+            words.append(Words(x, y, text, 0.9 * line, latin, "start"))
+        below += 1.5 * line * (rows + 2)
     return _framed(strokes, words, (width, below), title, line)
 
 
@@ -142,7 +147,8 @@ class _Laid:
         """Outline, shoulder fold, grain and measures."""
         ring = self.outline + self.shift
         yield Stroke(ring, "outline", _tint(self.panel.dye or self.pattern.dye or CLOTH))
-        if self.panel.along is None and self.pattern.panels:
+        ahead, behind = self.panel.outline()[:, 1].max(), -self.panel.outline()[:, 1].min()
+        if self.panel.along is None and self.pattern.panels and min(ahead, behind) > THIN:
             for a, b in _crossings(self.panel.outline(), 1, 0.0):
                 yield Stroke(self.on_sheet(np.array([[a, 0.0], [b, 0.0]])), "fold")
         along = 0 if self.turned else 1
@@ -162,7 +168,7 @@ class _Laid:
         for axis in (0, 1):
             ends = np.array([low, low])
             ends[1, axis] = high[axis]
-            ends[:, 1 - axis] -= 0.8 * line
+            ends[:, 1 - axis] -= 1.4 * line
             yield Stroke(ends, "measure")
             for end in ends:
                 tick = np.array([end, end])
@@ -174,14 +180,14 @@ class _Laid:
         ring = self.outline + self.shift
         low, high = ring.min(0), ring.max(0)
         middle, size = (low + high) / 2, high - low
-        double = ("，双层", ", double") if self.panel.doubled else ("", "")
         name = self.panel.name
-        yield Words(middle[0], high[1] + 1.1 * line, name + double[0], name + double[1], line)
+        double = (f"{name}，双层 double", f"{name}, double") if self.panel.doubled else (name, None)
+        yield Words(middle[0], high[1] + 2.1 * line, double[0], line, double[1])
         across, down = (f"{value:.0f}" for value in size)
-        yield Words(middle[0], low[1] - 1.1 * line, across, across, 0.9 * line, "middle", ACCENT)
-        yield Words(low[0] - 1.1 * line, middle[1], down, down, 0.9 * line, "middle", ACCENT, True)
+        yield Words(middle[0], low[1] - 1.7 * line, across, 0.9 * line, colour=ACCENT)
+        yield Words(low[0] - 1.7 * line, middle[1], down, 0.9 * line, colour=ACCENT, upright=True)
 
-    def mark(self, path: Path, name: str, line: float) -> Iterator[Words]:
+    def mark(self, path: Path, name: str, line: float) -> Words:
         """A seam's letter beside the middle of its path."""
         from sim_core.garment.pattern.panels import arc_length, at_length
 
@@ -194,16 +200,15 @@ class _Laid:
         if _holds(self.outline + self.shift, here + 0.3 * line * side):
             side = -side  # outside, so that narrow panels stay legible
         x, y = here + 0.55 * line * side
-        yield Words(float(x), float(y) + 0.3 * line, name, name, 0.8 * line, "middle", ACCENT)
+        return Words(float(x), float(y) + 0.3 * line, name, 0.8 * line, colour=ACCENT)
 
-    def spot(self, spot: Spot, name: str, line: float) -> tuple[Stroke, Words]:
-        """The place of a tie's end, and its name there."""
-        (here,) = self.on_sheet(np.array([spot.place]))
+    def spot(self, place: tuple[float, float], names: str, line: float) -> tuple[Stroke, Words]:
+        """A place [m] where ties are fastened, and their names beside it."""
+        (here,) = self.on_sheet(np.array([place]))
         turn = np.linspace(0, 2 * np.pi, 17)
         ring = here + 0.25 * line * np.column_stack([np.cos(turn), np.sin(turn)])
-        side = f" ({spot.side[0].upper()})" if spot.side else ""
         return Stroke(ring, "tie"), Words(
-            here[0] + 0.4 * line, here[1] + 0.2 * line, name + side, name + side, 0.6 * line, "start"
+            here[0] + 0.4 * line, here[1] - 0.3 * line, names, 0.6 * line, anchor="start"
         )
 
 
@@ -234,40 +239,44 @@ def _framed(
     strokes: list[Stroke], words: list[Words], size: tuple[float, float], title: tuple[str, str], line: float
 ) -> Plan:
     """The drawing moved so that all of it lies on the sheet, with a margin."""
-    corner = np.array([3.0 * line, 4.0 * line])
+    corner = np.array([4.4 * line, 6.2 * line])
     moved = [Stroke(stroke.points + corner, stroke.kind, stroke.fill) for stroke in strokes]
-    shifted = [
-        Words(
-            float(w.x + corner[0]), float(w.y + corner[1]), w.zh, w.en, w.size, w.anchor, w.colour, w.upright
-        )
-        for w in words
-    ]
+    shifted = [replace(w, x=float(w.x + corner[0]), y=float(w.y + corner[1])) for w in words]
     width, height = np.array(size) + corner + 2.0 * line
     return Plan((float(width), float(height)), tuple(moved), tuple(shifted), title)
 
 
 def _heading(pattern: Pattern) -> tuple[str, str]:
+    """What a pattern's part of the legend is called, Chinese and English."""
     zh, en = (pattern.title.get(language, pattern.name) for language in ("zh", "en"))
-    if not pattern.mirror:
-        return f"{zh}，毫米", f"{en}, millimetres"
-    return f"{zh}，毫米；一半，翻转再裁一次", f"{en}, millimetres; one half, cut a second time turned over"
+    half = (
+        ("，一半，翻转再裁一次", "; one half, cut a second time turned over") if pattern.mirror else ("", "")
+    )
+    return f"{zh}，毫米{half[0]}", f"{en}, millimetres{half[1]}"
 
 
 def _seam_words(name: str, seam: Seam, own: dict[str, _Laid]) -> tuple[str, str]:
     """A seam by its letter: kind, panels, length [mm]."""
     zh, en = KINDS[seam.kind]
-    panels = dict.fromkeys(path.panel for path in (seam.a, seam.b) if path)
-    length = 1000 * seam.a.length(own[seam.a.panel].panel)
-    return (
-        f"{name} {zh}：{'—'.join(panels)}，{length:.0f}",
-        f"{name} {en}: {' to '.join(panels)}, {length:.0f}",
-    )
+    panels = " + ".join(dict.fromkeys(path.panel for path in (seam.a, seam.b) if path))
+    rest = f"{panels}, {1000 * seam.a.length(own[seam.a.panel].panel):.0f}"
+    return f"{name} {zh} {en}: {rest}", f"{name} {en}: {rest}"
 
 
 def _tie_words(tie: Tie) -> tuple[str, str]:
     """A tie by its name: what it draws together, length [mm]."""
-    first, second, length = _spot_words(tie.a), _spot_words(tie.b), f"{1000 * tie.length:.0f}"
-    return f"系带 {tie.name}：{first}—{second}，{length}", f"tie {tie.name}: {first} to {second}, {length}"
+    rest = f"tie {tie.name}: {_spot_words(tie.a)} + {_spot_words(tie.b)}, {1000 * tie.length:.0f}"
+    return f"系带 {rest}", rest
+
+
+def _tied(pattern: Pattern) -> dict[tuple[str, tuple[float, float]], list[str]]:
+    """Panel and place [m] -> names of the ties fastened there, of a mirrored pattern with their side, L or R."""
+    found: dict[tuple[str, tuple[float, float]], list[str]] = {}
+    for tie in pattern.ties:
+        for spot in (tie.a, tie.b):
+            side = f" ({spot.side[0].upper()})" if spot.side else ""
+            found.setdefault((spot.panel, spot.place), []).append(tie.name + side)
+    return found
 
 
 def _spot_words(spot: Spot) -> str:

@@ -47,15 +47,14 @@ def _path(stroke: Stroke, pen: float) -> str:
 
 def _text(words: Words) -> str:
     turned = f' transform="rotate(-90 {words.x:.1f} {words.y:.1f})"' if words.upright else ""
-    said = words.en if words.zh == words.en else f"{words.zh} · {words.en}"
     return (
         f'<text x="{words.x:.1f}" y="{words.y:.1f}" font-size="{words.size:.1f}" text-anchor="{words.anchor}" '
-        f'fill="{words.colour}"{turned}>{escape(said)}</text>'
+        f'fill="{words.colour}"{turned}>{escape(words.text)}</text>'
     )
 
 
 def plan_picture(plan: Plan) -> Image.Image:
-    """The drawing as a picture, its words in English: no font of the machine is asked for."""
+    """The drawing as a picture, its words without Chinese letters: no font of the machine is asked for."""
     scale = LONGEST / max(plan.size)
     sheet = Sheet((round(plan.size[0] * scale), round(plan.size[1] * scale)))
     pen = LONGEST / THICK
@@ -66,12 +65,19 @@ def plan_picture(plan: Plan) -> Image.Image:
             sheet.pen.polygon([(OVER * x, OVER * y) for x, y in points], fill=stroke.fill)
         for line in _dashes(points) if stroke.kind == "fold" else [points]:
             sheet.line(line, COLOURS[stroke.kind], pen * THIN[stroke.kind])
-    anchors = {"start": "ls", "middle": "ms", "end": "rs"}
+    anchors = {"start": "ls", "middle": "ms"}
     for words in plan.words:
         # Pillow turns no words: an upright figure stands beside its line.
         anchor = "rm" if words.upright else anchors[words.anchor]
         size = max(8, round(words.size * scale))
-        sheet.words(words.x * scale, words.y * scale, words.en, size=size, anchor=anchor, fill=words.colour)
+        sheet.words(
+            words.x * scale,
+            words.y * scale,
+            words.text if words.latin is None else words.latin,
+            size=size,
+            anchor=anchor,
+            fill=words.colour,
+        )
     return sheet.finished()
 
 

@@ -13,8 +13,8 @@ ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
 
 @dataclass(frozen=True)
 class Worn:
-    """What a garment is: its name, the way it was placed, whether seams of it were sewn and joined while it was dressed,
-    whether it was dressed as one half against its mirror image, and whether others are worn over it."""
+    """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
+    whether one half was dressed against its mirror image, and whether others are worn over it."""
 
     name: str
     way: str

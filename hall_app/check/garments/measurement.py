@@ -78,7 +78,7 @@ def _named(node: str, name: str) -> bool:
 
 
 def cloth_figures(cloth: Cloth, solids: list[Solid], *, half: bool) -> dict[str, float]:
-    """What any cloth is asked: inside solids, strain, self-intersections; of one half and its image, how they differ."""
+    """What any cloth is asked: inside solids, strain, crossings; of one half and its image, how they differ."""
     from scipy.spatial import KDTree
 
     from sim_core import metrics

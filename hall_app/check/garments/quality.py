@@ -81,7 +81,7 @@ def _of(content: Content, exhibit: Exhibit) -> list[Line]:
 
 
 def figure_lines(exhibit: str, show: Show, record: Numbers, again: Measured) -> list[Line]:
-    """Each limit of the layers, the outermost first, against the record's figure, which is believed only where measuring
+    """Each limit of the layers, the outermost first, against the record's figure; that is believed only where measuring
     again agrees."""
     told, lines = _told(record), []
     for limit in [limit for worn in again.worn[::-1] for limit in limits_of(worn, _deviation(worn, show))]:

@@ -22,6 +22,7 @@ TYPES = {
     ".jpeg": "image/jpeg",
     ".png": "image/png",
     ".webp": "image/webp",
+    ".svg": "image/svg+xml",
     ".webm": "video/webm",
     ".mp4": "video/mp4",
     ".ogg": "audio/ogg",
