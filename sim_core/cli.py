@@ -13,7 +13,10 @@ from sim_core.errors import SimCoreError, WrongArgument
 __all__ = ["main"]
 
 ROOMS = ("weave", "mesh", "cloth", "dress", "figure")
-ELSEWHERE = {"dress": "sim_core.garment.cli", "figure": "sim_core.body.cli"}  # commands that share another room
+ELSEWHERE = {
+    "dress": "sim_core.garment.cli",
+    "figure": "sim_core.body.cli",
+}  # commands that share another room
 BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure")
 
 DESCRIPTION = """\

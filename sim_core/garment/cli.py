@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sim_core.errors import SimCoreError, WrongArgument
 from sim_core.validation.arguments import number
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ An outfit file:
 
   name = "beizi"
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
-  pose = "display"                    # `simcore figure --poses` lists them; or { name = "held", neck = [10, 0, 0] }
+  pose = "display"                    # `simcore figure --poses` lists them; or { name, joints, shift }
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -60,7 +61,9 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--glb", type=Path, metavar="FILE.glb", help="where its model goes")
     parser.add_argument("--picture", type=Path, metavar="FILE.png", help="where its picture goes")
     parser.add_argument(
-        "--edge", type=number(0.002, 0.2, " m"), help="mesh step of all layers in metres (default: the outfit's)"
+        "--edge",
+        type=number(0.002, 0.2, " m"),
+        help="mesh step of all layers in metres (default: the outfit's)",
     )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
@@ -69,12 +72,11 @@ def run(args: argparse.Namespace) -> int:
     """Dresses and writes; returns the exit status."""
     from sim_core.garment import dress, load_outfit
 
+    _check_targets(args)
     outfit = load_outfit(args.outfit, args.content)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
-    garments = dress(
-        outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args)
-    )
+    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args))
     files: dict[str, Path] = {}
     if args.out is not None:
         for garment in garments[:-1]:
@@ -90,12 +92,27 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
+def _check_targets(args: argparse.Namespace) -> None:
+    """Raises WrongArgument for a file of another kind, and makes the folders, before any work is done."""
+    for name, suffix in (("out", ".npz"), ("glb", ".glb"), ("picture", ".png")):
+        path = getattr(args, name)
+        if path is None:
+            continue
+        if path.suffix != suffix:
+            raise WrongArgument(f"--{name}: {path} – name a file that ends in {suffix}")
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise SimCoreError(
+                f"--{name}: {path}: {error.strerror} – name a folder that can be written"
+            ) from error
+
+
 def _checkpoint(args: argparse.Namespace) -> Path | None:
     """Beside what is written first, so that an interrupted run is found again."""
     target = args.out or args.glb or args.picture
     if target is None:
         return None
-    target.parent.mkdir(parents=True, exist_ok=True)
     return target.with_name(f"{target.stem}.part")
 
 

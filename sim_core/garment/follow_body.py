@@ -13,8 +13,8 @@ from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape, moving
 from sim_core.cloth.sheet import evened
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
-from sim_core.garment.garment import Garment
 from sim_core.garment.dressing.sewn_sheet import APART
+from sim_core.garment.garment import Garment
 from sim_core.garment.outfit.outfit import UNTANGLE
 
 __all__ = ["follow", "garment_sheet"]

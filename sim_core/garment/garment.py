@@ -34,8 +34,9 @@ class Garment:
     pattern (P, 2) [m] in pattern axes (x weft, y down the warp), each panel in its own; pattern_faces (F, 3) int32;
     weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
     panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
-    meshed from (`Pattern.to_dict`); weave, weaves (of panels that have their own) and material as plain dictionaries; provenance: inputs, seed, versions,
-    seconds per stage, measured errors; settled: what it came to rest in, for whoever carries it on.
+    meshed from (`Pattern.to_dict`); weave, weaves (of panels that have their own) and material as plain dictionaries;
+    provenance: inputs, seed, versions, seconds per stage, measured errors; settled: what it came to rest in,
+    for whoever carries it on.
     """
 
     name: str

@@ -22,12 +22,19 @@ def _heads() -> np.ndarray:
 
 
 def _somewhere() -> st.SearchStrategy[Pose]:
-    def within(joint: str) -> st.SearchStrategy[tuple[float, ...]]:
-        return st.tuples(*(st.floats(low, high) for low, high in LIMITS[joint]))
-
-    vectors = st.fixed_dictionaries({}, optional={joint: within(joint) for joint in JOINTS})
+    """Up to six joints turned within their limits, to the ends too, and a root up to 5 m away."""
+    share = st.floats(0.0, 1.0)
+    turned = st.dictionaries(st.sampled_from(JOINTS), st.tuples(share, share, share), max_size=6)
     shifts = st.tuples(*[st.floats(-5.0, 5.0)] * 3)
-    return st.builds(Pose.from_rotvecs, vectors, shifts)
+    return st.builds(lambda shares, shift: Pose.from_rotvecs(_within(shares), shift), turned, shifts)
+
+
+def _within(shares: dict[str, tuple[float, float, float]]) -> dict[str, list[float]]:
+    """Rotation vectors [degrees] that lie so far between the limits of each axis."""
+    return {
+        joint: [low + t * (high - low) for t, (low, high) in zip(ts, LIMITS[joint], strict=True)]
+        for joint, ts in shares.items()
+    }
 
 
 def _angle(a: np.ndarray, b: np.ndarray) -> float:
@@ -109,7 +116,7 @@ def test_a_table_of_a_file_gives_a_named_pose_changed_joint_by_joint() -> None:
             {"joints": {"hip_l": [0, 0]}},
             r"pose: joints: hip_l: .* three finite numbers \(x, y, z\) in degrees",
         ),
-        ({"joints": {"hip_l": "far"}}, r"pose: joints: hip_l: 'far' – expected three finite numbers"),
+        ({"joints": {"hip_l": "far"}}, r"pose: joints: hip_l: 'far' – .*expected three finite numbers"),
         (
             {"name": "held", "joints": {"elbow_l": [0, 60, 0]}},
             r"pose: joints: elbow_l turned 60\.0 degrees about y – give -145 to 2",

@@ -23,8 +23,9 @@ FARTHEST = 5e-6  # [m] that an edge is shortened or lengthened by in a substep: 
 class Holds(NamedTuple):
     """The arrays the compiled loops read; all may be empty. V vertices.
 
-    pairs (K, 2) int32 are drawn together from their spans (K,) [m] to their ends (K,) [m]; same (V,) int32 gives both ends of a pair one
-    number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it mirrors in x = 0.
+    pairs (K, 2) int32 are drawn together from their spans (K,) [m] to their ends (K,) [m]; same (V,) int32 gives both
+    ends of a pair one number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it
+    mirrors in x = 0.
     limit: the shares of its length at rest by which an edge may be shorter, and longer, before it is held; 1: any.
     """
 

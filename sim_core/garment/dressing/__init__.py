@@ -4,7 +4,7 @@ from sim_core.garment.dressing.capped import capped
 from sim_core.garment.dressing.course import courses
 from sim_core.garment.dressing.dress import Frame, dress
 from sim_core.garment.dressing.fitting import check_fits
-from sim_core.garment.dressing.materials import simplified
+from sim_core.garment.dressing.materials import materials_of, simplified
 from sim_core.garment.dressing.order import layer_order, overlap
 from sim_core.garment.dressing.quality import seam_gap
 from sim_core.garment.dressing.sewn_sheet import APART, SewnSheet, sewn_sheet
@@ -18,6 +18,7 @@ __all__ = [
     "courses",
     "dress",
     "layer_order",
+    "materials_of",
     "overlap",
     "seam_gap",
     "sewn_sheet",

@@ -1,4 +1,4 @@
-"""From dressing steps to runs of the cloth engine: a new run begins where seams are welded, ties join, touch changes."""
+"""From dressing steps to runs of the cloth engine; one begins where seams are welded, ties join or touch changes."""
 
 from __future__ import annotations
 
@@ -167,5 +167,3 @@ def _shares(poses: Sequence[Pose]) -> tuple[float, ...]:
 
 def _apart(a: Pose, b: Pose) -> float:
     return float(abs(a.quaternions() - b.quaternions()).sum())
-
-

@@ -15,7 +15,7 @@ import numpy as np
 from sim_core.body.pose import Pose
 from sim_core.cloth import Drape, Holds, Phase, drape
 from sim_core.cloth.run.drape_run import ENGINE_VERSION
-from sim_core.garment.dressing.course import Course, Moves, courses
+from sim_core.garment.dressing.course import Course, courses
 from sim_core.garment.dressing.fitting import check_fits
 from sim_core.garment.dressing.materials import Materials, materials_of
 from sim_core.garment.dressing.places import Places
@@ -70,7 +70,10 @@ def dress(
         def told(share: float, label: str, number: int = number, layer: Layer = layer) -> None:
             assert progress is not None
             low, high = weights[number : number + 2] / weights[-1]
-            progress(float(low + share * (high - low)), f"{layer.name}, {label}" if len(outfit.layers) > 1 else label)
+            progress(
+                float(low + share * (high - low)),
+                f"{layer.name}, {label}" if len(outfit.layers) > 1 else label,
+            )
 
         dressing = _Dressing(outfit, number, tuple(trails), told if progress else None, on_frame, checkpoint)
         garment, trail = dressing.result()
@@ -137,7 +140,6 @@ class _Dressing:
         errors = measured(garment, self.layer) | {
             "rest_p99_m": runs[-1].rest_p99,
             "rest_max_m": runs[-1].rest_max,
-            "mass_kg": (2.0 if self.half else 1.0) * float(sheet.sheet.mass[: sheet.real].sum()),
         }
         if gap is not None:
             errors["seam_gap_sewn_m"] = gap
@@ -182,9 +184,7 @@ class _Dressing:
         own = layer.place.start(layer.pattern, self.cut, ground, rng)
         return np.concatenate([own, own * [-1.0, 1.0, 1.0]]) if self.cloth is not self.cut else own
 
-    def _run(
-        self, materials: Materials, start: np.ndarray
-    ) -> tuple[SewnSheet, list[Drape], float | None]:
+    def _run(self, materials: Materials, start: np.ndarray) -> tuple[SewnSheet, list[Drape], float | None]:
         """All runs of the engine: the last sheet, what each came to, the gap of the seams before they were welded."""
         panels = self.layer.pattern.panels
         apart = np.array([k if panel.along else 0 for k, panel in enumerate(panels)] or [0])
@@ -199,7 +199,8 @@ class _Dressing:
                 if sheet is not None:
                     x, v = x[sheet.number], v[sheet.number]
                     gap = self._gap(x)
-                sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart)
+                even = self.layer.program.even
+                sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart, even=even)
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
             places = Places(self.layer, self.cut, self.cloth, sheet)
@@ -314,7 +315,9 @@ class _Dressing:
                 "kinds": {
                     name: asdict(kind) for name, kind in zip(materials.names, materials.kinds, strict=True)
                 },
-                "panels": {name: materials.names[k] for name, k in zip(names, materials.of_panel, strict=True)},
+                "panels": {
+                    name: materials.names[k] for name, k in zip(names, materials.of_panel, strict=True)
+                },
                 "choices": materials.choices,
                 "provenance": materials.provenance,
             },
@@ -341,7 +344,8 @@ class _Dressing:
             whole = Holds.of(count, low=low, high=high, limit=holds.limit)
         else:
             whole = holds
-        return Settled(self._contact(course), last, whole, self.wearing.beneath(len(self.moves.poses) - 1))
+        beneath = self.wearing.beneath(len(self.moves.poses) - 1)
+        return Settled(self._contact(course), last, whole, beneath, self.layer.program.even)
 
     def _is_beneath(self) -> bool:
         """Whether another layer will be dressed over this one."""

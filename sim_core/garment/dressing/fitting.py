@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import ConvexHull
 
+from sim_core.body import Figure
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import courses
+from sim_core.garment.dressing.places import nearest
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.pattern import Cloth
 from sim_core.garment.placement import Flat
@@ -14,12 +18,13 @@ from sim_core.garment.placement import Flat
 __all__ = ["check_fits"]
 
 COARSE = 0.04  # [m] mesh step that openings are measured at
+BESIDE = 0.02  # [m] above and below a tie that its girth is taken from
 ROOM = 0.01  # [m] more than the girth of what passes an opening
 
 
 def check_fits(outfit: Outfit) -> None:
-    """Raises SimCoreError where a pose is beyond a joint's limit, layers cannot be dressed one over the other, or an
-    opening is narrower than the limb that must pass it."""
+    """Raises SimCoreError where a pose is beyond a joint's limit, layers cannot be dressed one over the other, an
+    opening is narrower than the limb that must pass it, or a tie is shorter than the girth it goes round."""
     begins = []
     for number, layer in enumerate(outfit.layers, 1):
         key = f"outfit {outfit.name}: layer {number} ({layer.name})"
@@ -35,7 +40,44 @@ def check_fits(outfit: Outfit) -> None:
                 )
         begins.append(None if moves.still else moves.poses[0])
         if isinstance(layer.place, Flat) and outfit.wearer is not None:
-            _check_openings(key, layer, outfit.wearer.posed(moves.poses[0]))
+            figure = Figure(outfit.wearer)
+            body, _ = figure.mesh(moves.poses[0])
+            _check_openings(key, layer, body)
+            _check_ties(key, layer, body, figure.trunk())
+
+
+def _check_ties(key: str, layer: Layer, body: np.ndarray, trunk: np.ndarray) -> None:
+    """With every tie closed the cloth and the tie must reach round the trunk at the tie's height."""
+    pattern, place = layer.pattern, layer.place
+    if not pattern.ties or not isinstance(place, Flat):
+        return
+    cut = pattern.cloth(max(COARSE, layer.edge))
+    cloth = cut.mirrored() if pattern.mirror else cut
+    ways = _ways(cloth)
+    top = float(body[np.abs(body[:, 0]) > 0.1, 1].max())  # the shoulders
+    for tie in pattern.ties:
+        ends = [nearest(cloth, cut, spot) for spot in (tie.a, tie.b)]
+        if any(len(end) != 1 for end in ends):
+            continue  # of both sides at once: it goes round nothing
+        (a,), (b,) = ends
+        cloth_way = float(dijkstra(ways, directed=False, indices=int(cloth.closed[a]))[cloth.closed[b]])
+        height = top - float(np.mean([tie.a.place[1], tie.b.place[1]]))
+        near = body[trunk][np.abs(body[trunk, 1] - height) < BESIDE]
+        girth, reach = _hull_girth(near[:, [0, 2]]), cloth_way + tie.length
+        if np.isfinite(cloth_way) and reach < girth:
+            raise SimCoreError(
+                f"{key}: tie {tie.name!r} and the cloth between its ends are {100 * reach:.1f} cm, the girth they go "
+                f"round {100 * girth:.1f} cm – make it {100 * (girth - reach):.1f} cm longer, or move its ends"
+            )
+
+
+def _ways(cloth: Cloth) -> csr_array:
+    """Lengths [m] of the edges between the vertices of the closed cloth."""
+    pairs = cloth.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    length = np.linalg.norm(cloth.vertices[pairs[:, 0]] - cloth.vertices[pairs[:, 1]], axis=1)
+    ends, first = np.unique(np.sort(cloth.closed[pairs], axis=1), axis=0, return_index=True)
+    count = int(cloth.closed.max()) + 1
+    return csr_array((length[first], (ends[:, 0], ends[:, 1])), (count, count))
 
 
 def _check_openings(key: str, layer: Layer, body: np.ndarray) -> None:
@@ -81,7 +123,9 @@ def _openings(cloth: Cloth) -> list[np.ndarray]:
     own = cloth.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     count = int(cloth.closed.max()) + 1
     free = ~np.isin(ahead[:, 0] * count + ahead[:, 1], ahead[:, 1] * count + ahead[:, 0])
-    following = {int(a): (int(b), int(vertex)) for (a, b), vertex in zip(ahead[free], own[free, 0], strict=True)}
+    following = {
+        int(a): (int(b), int(vertex)) for (a, b), vertex in zip(ahead[free], own[free, 0], strict=True)
+    }
     loops = []
     while following:
         first, (at, vertex) = next(iter(following.items()))

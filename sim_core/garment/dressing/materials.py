@@ -88,7 +88,8 @@ def simplified(
         stiffness_damping=2e-5,
     )
     choices = {
-        "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: {program.sag:.2%} strain by its weight",
+        "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: "
+        f"{program.sag:.2%} strain by its weight",
         "bend": f"lower bounds, warp {free[0]:.2e} and weft {free[1]:.2e} N m (fibres free), at least {resolved:.2e} "
         f"for a {edge * 1e3:.0f} mm mesh",
         "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",

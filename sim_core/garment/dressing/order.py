@@ -28,7 +28,12 @@ def layer_order(garment: Garment, over: str = "left") -> int:
 def overlap(garment: Garment, over: str = "left") -> tuple[int, int]:
     """Vertices of the outer front that lie under the inner one, and those that lie over it."""
     pattern = Pattern.from_dict(garment.cut) if garment.cut.get("panels") else None
-    if pattern is None or garment.settled is None or not garment.settled.beneath.surfaces or not pattern.mirror:
+    if (
+        pattern is None
+        or garment.settled is None
+        or not garment.settled.beneath.surfaces
+        or not pattern.mirror
+    ):
         return 0, 0
     other = "right" if over == "left" else "left"
     outer, inner = (_front(garment, pattern, f" {side}") for side in (over, other))

@@ -12,7 +12,7 @@ from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Spot
 
-__all__ = ["Places"]
+__all__ = ["Places", "nearest"]
 
 
 @dataclass(frozen=True)
@@ -64,13 +64,19 @@ class Places:
     def _nearest(self, spot: Spot | str) -> list[int]:
         """The vertex of the sheet nearest to a place, of both sides where none is named."""
         assert isinstance(spot, Spot)
-        names = [spot.panel]
-        if self.cloth is not self.cut:
-            names = [spot.panel + side for side in SIDES if not spot.side or side.strip() == spot.side]
-        found = []
-        for name in names:
-            own = np.flatnonzero(self.cloth.panel_of == self.cloth.names.index(name))
-            x = -spot.place[0] if name.endswith(SIDES[1]) and name != spot.panel else spot.place[0]
-            away = np.hypot(*(self.cloth.vertices[own] - [x, spot.place[1]]).T)
-            found.append(int(self.sheet.number[own[np.argmin(away)]]))
-        return found
+        return [int(self.sheet.number[k]) for k in nearest(self.cloth, self.cut, spot)]
+
+
+def nearest(cloth: Cloth, cut: Cloth, spot: Spot) -> list[int]:
+    """The pattern vertex nearest to a place, one of each side where none is named; cut: the half the cloth was made
+    from, or the cloth itself."""
+    names = [spot.panel]
+    if cloth is not cut:
+        names = [spot.panel + side for side in SIDES if not spot.side or side.strip() == spot.side]
+    found = []
+    for name in names:
+        own = np.flatnonzero(cloth.panel_of == cloth.names.index(name))
+        x = -spot.place[0] if name.endswith(SIDES[1]) and name != spot.panel else spot.place[0]
+        away = np.hypot(*(cloth.vertices[own] - [x, spot.place[1]]).T)
+        found.append(int(own[np.argmin(away)]))
+    return found

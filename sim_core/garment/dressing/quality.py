@@ -14,11 +14,11 @@ from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Pattern
 from sim_core.garment.placement import Flat
 
-__all__ = ["measured", "seam_gap"]
+__all__ = ["mass", "measured", "seam_gap"]
 
 
 def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
-    """What is inside what lies beneath, strain, crossings of itself and of the wrong order, seams, how halves differ."""
+    """Inside of what lies beneath, strain, crossings of itself and of the wrong order, seams, how halves differ."""
     assert garment.settled is not None
     found = [
         metrics.penetration(garment.positions, garment.faces, *solid)
@@ -35,6 +35,7 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
         "self_intersections": metrics.intersections(garment.positions, garment.faces),
         "layer_order": layer_order(garment, layer.place.over if isinstance(layer.place, Flat) else "left"),
     }
+    errors["mass_kg"] = mass(garment)
     if layer.pattern.seams:
         errors["seam_gap_m"] = seam_gap(garment, layer.edge)
     if layer.pattern.mirror:
@@ -43,6 +44,16 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
         away = np.linalg.norm(worn[half:] - worn[:half] * [-1.0, 1.0, 1.0], axis=1)
         errors["asymmetry_m"] = float(away.max())
     return errors
+
+
+def mass(garment: Garment) -> float:
+    """Of the cut cloth [kg]: area of its panels times what their material weighs."""
+    kinds, panels = garment.material["kinds"], garment.material["panels"]
+    names = [panel["name"] for panel in garment.cut.get("panels") or [{"name": "cloth"}]]
+    density = np.array([float(kinds[panels[name]]["density"]) for name in names])
+    a, b = (garment.rest_corners()[:, k] - garment.rest_corners()[:, 0] for k in (1, 2))
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return float(area @ density[garment.panel % len(names)])
 
 
 def _solids(beneath: Beneath) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -62,5 +73,7 @@ def seam_gap(garment: Garment, edge: float) -> float:
         panels = pattern.panel(seam.a.panel), pattern.panel((seam.b or seam.a).panel)
         first = [cloth.along(seam.a, panels[0], side) for side in sides]
         second = first[::-1] if seam.b is None else [cloth.along(seam.b, panels[1], side) for side in sides]
-        gaps += [float(np.linalg.norm(worn[a] - worn[b], axis=1).max()) for a, b in zip(first, second, strict=True)]
+        gaps += [
+            float(np.linalg.norm(worn[a] - worn[b], axis=1).max()) for a, b in zip(first, second, strict=True)
+        ]
     return max(gaps)

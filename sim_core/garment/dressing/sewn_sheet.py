@@ -48,11 +48,17 @@ class SewnSheet:
 
 
 def sewn_sheet(
-    cloth: Cloth, number: np.ndarray, materials: Sequence[Material], kind: np.ndarray, apart: np.ndarray
+    cloth: Cloth,
+    number: np.ndarray,
+    materials: Sequence[Material],
+    kind: np.ndarray,
+    apart: np.ndarray,
+    *,
+    even: bool = True,
 ) -> SewnSheet:
     """The cloth as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it.
 
-    Its mass is shared out so that time steps are longer (`cloth.sheet.evened`).
+    even: with its mass shared out so that time steps are longer (`cloth.sheet.evened`).
     """
     faces = number[cloth.faces]
     corner = cloth.vertices[cloth.faces] + APART * apart[:, None, None] * np.array([1.0, 0.0])
@@ -70,7 +76,8 @@ def sewn_sheet(
     corners = np.concatenate([corner, (corner[ring] * [-1.0, 1.0])[:, [0, 2, 1]]])
     kinds = np.r_[kind, kind[ring]]
     sheet = Sheet.of_corners(corners, whole, materials, kinds)
-    density = np.array([material.density for material in materials])
-    sheet = evened(sheet, density[kinds], own=len(on))
+    if even:
+        density = np.array([material.density for material in materials])
+        sheet = evened(sheet, density[kinds], own=len(on))
     slaves = np.column_stack([image[masters], masters]).astype(np.int32)
     return SewnSheet(sheet, number, middle, slaves, len(on))

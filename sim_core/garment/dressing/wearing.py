@@ -121,5 +121,3 @@ class Wearing:
         reach = cell * float(np.ceil(max(high[0], -low[0]) / cell))
         first = -2 * cell if half else -reach
         return (first, float(low[1]), float(low[2])), (reach, float(high[1]), float(high[2]))
-
-

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -10,15 +11,14 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from sim_core.body.mannequin import Mannequin
-from sim_core.body.pose import T_POSE, Pose, pose_named
-from sim_core.body.stand import Stand
+from sim_core.body import Figure, Mannequin, Pose, Stand, pose_named
+from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
 from sim_core.garment.outfit.steps import Step, Touch
 from sim_core.garment.outfit.tables import LayerTable, OutfitTable, Place, PoseTable, ProgramTable, StepTable
-from sim_core.garment.pattern import Pattern, Spot
+from sim_core.garment.pattern import Pattern
 from sim_core.garment.pattern.tables import CutProblem, read_spot
 from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Wrapped
 from sim_core.validation.files import read_toml, shown
@@ -26,6 +26,7 @@ from sim_core.weave import Weave
 
 __all__ = ["default_program", "load_outfit"]
 
+LOOK = 0.02  # [m] cell of the field by which a figure is tried
 WAYS: dict[str, type[Placement]] = {
     "flat": Flat,
     "over_bar": OverBar,
@@ -59,8 +60,10 @@ class _Reader:
 
     def outfit(self, read: OutfitTable) -> Outfit:
         if (read.wearer is None) == (read.stand is None):
-            raise self._wrong("wearer", "give either wearer = \"mannequins/….npz\" or a [stand] table, one of both")
-        wearer = None if read.wearer is None else Mannequin.load(self._file("wearer", read.wearer))
+            raise self._wrong(
+                "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
+            )
+        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer))
         stand = None if read.stand is None else self._of("stand", lambda: Stand(**read.stand.model_dump()))  # type: ignore[union-attr]
         if stand is not None and read.pose is not None:
             raise self._wrong("pose", "a stand has none – leave it out")
@@ -70,14 +73,27 @@ class _Reader:
             raise self._wrong("layer.2", "a stand bears one layer – give a wearer")
         for k, layer in enumerate(layers):
             if any(layer.name == other.name for other in layers[:k]):
-                raise self._wrong(f"layer.{k + 1}.name", f"{layer.name!r} is there twice – name each layer once")
+                raise self._wrong(
+                    f"layer.{k + 1}.name", f"{layer.name!r} is there twice – name each layer once"
+                )
         name = read.name or self._path.stem
         return Outfit(name, tuple(layers), wearer, stand, pose, dict(read.title))
+
+    def _wearer(self, file: Path) -> Mannequin:
+        """A figure that cloth can lie on: closed, with hands."""
+        wearer = Mannequin.load(file)
+        try:
+            Figure(wearer, cell=LOOK).field(T_POSE)
+        except SimCoreError as error:
+            raise FileProblem(f"{file}: {error}") from error
+        return wearer
 
     def layer(self, key: str, table: LayerTable, on_stand: bool) -> Layer:
         pattern = self._pattern(key, table)
         weave = Weave.load(self._file(f"{key}.weave", table.weave))
-        weaves = {name: Weave.load(self._file(f"{key}.weaves.{name}", file)) for name, file in table.weaves.items()}
+        weaves = {
+            name: Weave.load(self._file(f"{key}.weaves.{name}", file)) for name, file in table.weaves.items()
+        }
         for name in weaves:
             self._of(f"{key}.weaves", lambda name=name: pattern.panel(name))
         way = table.place.way if table.place else ("over_bar" if on_stand else "flat")
@@ -86,13 +102,17 @@ class _Reader:
             raise self._wrong(f"{key}.place.way", f"{way!r} – choose {ways}")
         place = self.placement(key, table.place) if table.place else WAYS[way]()  # type: ignore[call-arg]
         if way == "flat" and not pattern.panels:
-            raise self._wrong(f"{key}.pattern", f"{table.pattern} is one panel – flat dressing needs [[panel]] tables")
+            raise self._wrong(
+                f"{key}.pattern", f"{table.pattern} is one panel – flat dressing needs [[panel]] tables"
+            )
         if way == "along_path" and not pattern.mirror:
-            raise self._wrong(f"{key}.pattern", f"{table.pattern} is no half – along_path needs mirror = true")
+            raise self._wrong(
+                f"{key}.pattern", f"{table.pattern} is no half – along_path needs mirror = true"
+            )
         program = default_program(way)
         if table.step:
             steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
-            program = Program(steps, program.contact, program.start, program.sag, program.fold, program.limit)
+            program = replace(program, steps=steps)
         _check_order(self, key, program.steps, pattern)
         edge = pattern.edge if table.edge is None else table.edge
         return Layer(table.name or pattern.name, pattern, weave, place, program, edge, weaves, table.seed)
@@ -115,7 +135,11 @@ class _Reader:
     def pose(self, key: str, told: PoseTable | None) -> Pose:
         if told is None:
             return pose_named("display")
-        return self._of(key, lambda: read_pose(told))
+        where = f"{self._path}: {key}"
+        try:
+            return pose_named(told, where) if isinstance(told, str) else Pose.of(told, where)
+        except SimCoreError as error:
+            raise FileProblem(str(error)) from error
 
     def step(self, key: str, table: StepTable, pattern: Pattern | None) -> Step:
         spots: list[Any] = []
@@ -125,7 +149,9 @@ class _Reader:
                 continue
             panels = {panel.name: panel for panel in pattern.panels}
             try:
-                spots.append(read_spot(f"{key}.at.{k}", spot, pattern.measures, panels, mirrored=pattern.mirror))
+                spots.append(
+                    read_spot(f"{key}.at.{k}", spot, pattern.measures, panels, mirrored=pattern.mirror)
+                )
             except CutProblem as error:
                 raise FileProblem(f"{self._path}: {error}") from error
         if table.do == "pin" and not spots:
@@ -168,28 +194,6 @@ class _Reader:
             raise FileProblem(f"{self._path}: {key}: {error}") from error
 
 
-def read_pose(told: PoseTable) -> Pose:
-    """A pose by name, or a table of joints [degrees] that may begin from one: { name = "held", neck = [10, 0, 0] }.
-
-    Raises SimCoreError for no such pose or joint and beyond a joint's limits.
-    """
-    if isinstance(told, str):
-        return pose_named(told)
-    name = told.get("name", "t")
-    if not isinstance(name, str):
-        raise SimCoreError(f"pose: name {shown(name)} – give the name of a pose in quotes")
-    joints: dict[str, Sequence[float]] = {}
-    for joint, vector in told.items():
-        if joint == "name":
-            continue
-        if isinstance(vector, str):
-            raise SimCoreError(f"pose: {joint} {shown(vector)} – give three angles in degrees")
-        joints[joint] = vector
-    pose = pose_named(name).and_also(Pose.from_table(joints))
-    pose.check()
-    return pose
-
-
 def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:
     """Steps that cannot follow each other: refused before anything runs."""
     welded, pinned = False, False
@@ -229,7 +233,7 @@ def default_program(way: str) -> Program:
     steps = tuple(reader.step(f"{way}.{k}", step, None) for k, step in enumerate(table.step, 1))
     contact = Contact(**table.contact.model_dump(), untangle=UNTANGLE)
     start = pose_named(table.start) if table.start else None
-    return Program(steps, contact, start, table.sag, table.fold, table.limit)
+    return Program(steps, contact, start, table.sag, table.fold, table.limit, table.even)
 
 
 def _first(error: ValidationError, table: type[BaseModel]) -> str:

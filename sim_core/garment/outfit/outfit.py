@@ -1,4 +1,4 @@
-"""`Outfit`: what is to be dressed on whom, layer by layer from the skin outwards, read and checked before anything runs."""
+"""`Outfit`: what is dressed on whom, layer by layer from the skin outwards."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ class Program:
     """How a layer is dressed: steps, how it touches from the first on, and how far its cloth is simplified.
 
     start: the wearer's pose at first; sag: strain under the cloth's own weight it is softened to; fold: bending length
-    in mesh edges it is stiffened to; limit: shares by which an edge may be shorter, and longer, before it is held.
+    in mesh edges it is stiffened to; limit: shares by which an edge may be shorter, and longer, before it is held;
+    even: whether mass is shared out for longer time steps.
     """
 
     steps: tuple[Step, ...]
@@ -37,6 +38,7 @@ class Program:
     sag: float = 0.0013
     fold: float = 1.3
     limit: tuple[float, float] = (0.04, 0.04)
+    even: bool = True
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -23,7 +23,9 @@ class Table(BaseModel):
 
 
 class TouchTable(Table):
-    clearance: Number | None = Field(None, ge=0, le=0.1, description="[m] vertices keep from what lies beneath")
+    clearance: Number | None = Field(
+        None, ge=0, le=0.1, description="[m] vertices keep from what lies beneath"
+    )
     sample_clearance: Number | None = Field(None, ge=0, le=0.1, description="[m] the same of midpoints")
     self_friction: Number | None = Field(None, ge=0, le=5, description="of cloth on cloth")
     separation: Number | None = Field(None, ge=0, le=1, description="share of parting speed near layers lose")
@@ -36,7 +38,7 @@ class SpotTable(Table):
     at: tuple[Measure, Measure] = Field(description="place in the panel's coordinates [mm], or expressions")
 
 
-PoseTable = str | dict[str, Vector | str]
+PoseTable = str | dict[str, Any]
 
 
 class StepTable(Table):
@@ -47,7 +49,9 @@ class StepTable(Table):
     friction: Number | None = Field(None, ge=0, le=5, description="on what lies beneath; else the weave's")
     speed: Number | None = Field(None, gt=0, description="[m/s] that no vertex passes")
     still: Number | None = Field(None, gt=0, description="[m] a frame (p99) at which the step ends early")
-    at: list[Literal["nape", "top"] | SpotTable] = Field([], description="what is pinned: nape, top or places")
+    at: list[Literal["nape", "top"] | SpotTable] = Field(
+        [], description="what is pinned: nape, top or places"
+    )
     ties: list[str] = Field([], description="which ties are closed; none named: all")
     pose: PoseTable | None = Field(None, description="pose to go to; else the outfit's")
     touch: TouchTable = Field(TouchTable.model_construct(), description="how it touches from here on")
@@ -69,6 +73,7 @@ class ProgramTable(Table):
     sag: Share
     fold: Length
     limit: tuple[Share, Share]
+    even: bool = True
     contact: ContactTable
     start: str = "t"
     step: list[StepTable] = Field(min_length=1, max_length=200)
@@ -76,7 +81,9 @@ class ProgramTable(Table):
 
 class FlatTable(Table):
     way: Literal["flat"]
-    over: Literal["left", "right"] = Field("left", description="front that lies outside where fronts overlap (右衽: left)")
+    over: Literal["left", "right"] = Field(
+        "left", description="the outer front where fronts overlap (右衽: left)"
+    )
     lift: Length = Field(0.012, description="[m] by which it is held off the other")
     front: Length = Field(0.17, description="[m] of the front sheet before the middle")
     back: Length = Field(0.15, description="[m] of the back sheet behind it")
@@ -99,8 +106,14 @@ class KnotTable(Table):
 class AlongPathTable(Table):
     way: Literal["along_path"]
     knot: list[KnotTable] = Field(min_length=3, max_length=50)
-    along: tuple[str, str] | None = Field(None, description="landmarks whose direction it lies along at the top")
-    stations: list[tuple[Number, Length]] = Field([], description="[m] from the path's highest point, [m] of width")
+    along: tuple[str, str] | None = Field(
+        None, description="landmarks whose direction it lies along at the top"
+    )
+    stations: list[tuple[Number, Length]] = Field(
+        [], description="[m] from the path's highest point, [m] of width"
+    )
+    begin: Length = Field(0.22, description="[m] width at the strip's middle")
+    end: Length = Field(0.24, description="[m] width at its end")
     waves: Number = Field(5.0, gt=0, le=100, description="folds across the width")
 
 
@@ -108,7 +121,9 @@ class WrappedTable(Table):
     way: Literal["wrapped"]
     mark: str = Field("waist", description="landmark of the wearer at whose height the top lies")
     rise: Number = Field(0.0, ge=-1, le=1, description="[m] of the top above it")
-    begin: Number = Field(180.0, description="[deg] about +y where the first edge lies; 0 the front, 90 the left")
+    begin: Number = Field(
+        180.0, description="[deg] about +y where the first edge lies; 0 the front, 90 the left"
+    )
     gap: Length = Field(0.006, description="[m] between layers of the wrap")
 
 
@@ -133,7 +148,9 @@ class LayerTable(Table):
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
     seed: int = Field(0, ge=0, le=2**32 - 1, description="of the folds' irregularity")
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
-    step: list[StepTable] = Field([], max_length=200, description="dressing steps; else those of its way of placing")
+    step: list[StepTable] = Field(
+        [], max_length=200, description="dressing steps; else those of its way of placing"
+    )
 
 
 class StandTable(Table):
@@ -147,5 +164,5 @@ class OutfitTable(Table):
     title: Words = {}
     wearer: str | None = Field(None, description="figure file, e.g. mannequins/woman.npz")
     stand: StandTable | None = None
-    pose: PoseTable | None = Field(None, description="name of a pose, or { joint = [x, y, z] degrees }")
+    pose: PoseTable | None = Field(None, description="name of a pose, or { name, joints, shift }")
     layer: list[LayerTable] = Field(min_length=1, max_length=20)

@@ -46,9 +46,7 @@ class Cloth:
         none = np.zeros(0, np.int32)
         faces = mesh.faces.astype(np.int32)
         panel, owner = np.zeros(len(faces), np.int32), np.zeros(len(alone), np.int32)
-        return Cloth(
-            (name,), mesh.vertices, faces, panel, owner, alone, alone, none.reshape(0, 2), none, {}
-        )
+        return Cloth((name,), mesh.vertices, faces, panel, owner, alone, alone, none.reshape(0, 2), none, {})
 
     def along(self, path: Path, panel: Panel, side: str = "") -> np.ndarray:
         """Numbers of the pattern vertices on a path, in its direction; side: of a whole cloth, one of SIDES."""

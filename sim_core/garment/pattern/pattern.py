@@ -53,7 +53,7 @@ class Pattern:
 
     @staticmethod
     def load(path: Path, measures: Mapping[str, float | str] | None = None) -> Pattern:
-        """Reads a pattern file, some of its measures [mm] replaced; raises FileProblem naming file, key, value, remedy."""
+        """Reads a pattern file, some measures [mm] replaced; raises FileProblem naming file, key, value and remedy."""
         path = Path(path)
         values = read_toml(
             path, "a pattern file (TOML); it needs name, edge, and size, outline or [[panel]] tables"
@@ -142,7 +142,9 @@ class Pattern:
         """The pattern in another colour '#rrggbb', and single panels in theirs; raises SimCoreError for no panel."""
         for name in dyes:
             self.panel(name)
-        panels = tuple(replace(p, dye=read_dye(dyes[p.name]) if p.name in dyes else p.dye) for p in self.panels)
+        panels = tuple(
+            replace(p, dye=read_dye(dyes[p.name]) if p.name in dyes else p.dye) for p in self.panels
+        )
         return replace(self, dye=read_dye(dye) if dye else self.dye, panels=panels)
 
     def mesh(self, edge: float | None = None) -> PanelMesh:
@@ -165,11 +167,15 @@ def _restored(data: dict[str, Any]) -> Pattern:
         tuple(Panel.from_dict(panel) for panel in data["panels"]),
         tuple(seams),
         data["mirror"],
-        tuple(
-            Tie(t["name"], *(Spot(e["panel"], (e["place"][0], e["place"][1]), e["side"]) for e in (t["a"], t["b"])), t["length"])
-            for t in data.get("ties", ())
-        ),
+        tuple(_tie(told) for told in data.get("ties", ())),
     )
+
+
+def _tie(told: dict[str, Any]) -> Tie:
+    a, b = (
+        Spot(end["panel"], (end["place"][0], end["place"][1]), end["side"]) for end in (told["a"], told["b"])
+    )
+    return Tie(told["name"], a, b, told["length"])
 
 
 class _PatternFile(BaseModel):
@@ -214,9 +220,7 @@ def _made(path: Path, read: _PatternFile) -> Pattern:
     if not read.panel:
         return Pattern(read.name, read.points(), read.edge, dict(read.title), dye)
     try:
-        panels, seams, ties = read_cut(
-            read.measures, read.panel, read.seam, read.tie, mirrored=read.mirror
-        )
+        panels, seams, ties = read_cut(read.measures, read.panel, read.seam, read.tie, mirrored=read.mirror)
         known = read_measures(read.measures)
     except CutProblem as error:
         raise FileProblem(f"{path}: {error}") from error

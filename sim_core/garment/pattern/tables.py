@@ -13,7 +13,17 @@ from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie, check_extent
 from sim_core.mesh.outline import clean_contours
 
-__all__ = ["CutProblem", "PanelTable", "SeamTable", "SpotTable", "TieTable", "read_cut", "read_dye", "read_measures", "read_spot"]
+__all__ = [
+    "CutProblem",
+    "PanelTable",
+    "SeamTable",
+    "SpotTable",
+    "TieTable",
+    "read_cut",
+    "read_dye",
+    "read_measures",
+    "read_spot",
+]
 
 Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
 Measure = Number | str
@@ -137,7 +147,9 @@ def _ties(
         )
         length = _told(f"{key}.length", lambda table=table: measured(table.length, known)) / 1000
         if not 0 < length <= 5:
-            raise CutProblem(f"{key}.length", f"{1000 * length:.0f} mm – a tie is above 0 and at most 5000 mm long")
+            raise CutProblem(
+                f"{key}.length", f"{1000 * length:.0f} mm – a tie is above 0 and at most 5000 mm long"
+            )
         ties[table.name] = Tie(table.name, a, b, length)
     return tuple(ties.values())
 

@@ -1,6 +1,6 @@
 """How cloth lies before it is dressed: flat before and behind, wrapped round, over a bar, along a path, folded."""
 
-from sim_core.garment.placement.along_path import AlongPath, Knot
+from sim_core.garment.placement.along_path import Accordion, AlongPath, Knot, arranged_path, swept
 from sim_core.garment.placement.flat import Flat
 from sim_core.garment.placement.folded import Folded
 from sim_core.garment.placement.ground import WORN, Ground
@@ -9,4 +9,17 @@ from sim_core.garment.placement.wrapped import Wrapped
 
 Placement = Flat | OverBar | AlongPath | Wrapped | Folded
 
-__all__ = ["WORN", "AlongPath", "Flat", "Folded", "Ground", "Knot", "OverBar", "Placement", "Wrapped"]
+__all__ = [
+    "WORN",
+    "Accordion",
+    "AlongPath",
+    "Flat",
+    "Folded",
+    "Ground",
+    "Knot",
+    "OverBar",
+    "Placement",
+    "Wrapped",
+    "arranged_path",
+    "swept",
+]

@@ -58,7 +58,9 @@ class AlongPath:
         Raises SimCoreError where a landmark is not known or the strip is too short.
         """
         length = float(np.ptp(cloth.vertices[:, 0]))
-        points = np.array([np.mean([ground.mark(name) for name in k.near], axis=0) + k.by for k in self.knots])
+        points = np.array(
+            [np.mean([ground.mark(name) for name in k.near], axis=0) + k.by for k in self.knots]
+        )
         room = np.array([knot.room for knot in self.knots])
         path = arranged_path(points, ground.distance, room, length)
         top = float(np.argmax(path[:, 1])) * STEP

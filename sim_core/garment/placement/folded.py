@@ -33,7 +33,9 @@ class Folded:
         radius = stand.bar_radius + ground.clearance + 0.001
         longest = max(self.front, length - self.front)
         if not 0.0 < self.front < length:
-            raise SimCoreError(f"pattern {pattern.name}: {length:.2f} m long – front {self.front} m leaves nothing behind")
+            raise SimCoreError(
+                f"pattern {pattern.name}: {length:.2f} m long – front {self.front} m leaves none"
+            )
         if longest > stand.height - 0.05:
             raise SimCoreError(
                 f"pattern {pattern.name}: an end of {longest:.2f} m touches the floor – raise the stand's bar"

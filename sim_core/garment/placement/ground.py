@@ -54,7 +54,9 @@ class Ground:
     def distance(self) -> DistanceField:
         """min(wearer, garments - WORN) [m] far around them."""
         points = self.points()
-        box = points.min(0) - 0.15, points.max(0) + 0.10
+        low, high = points.min(0) - [0.10, 0.05, 0.15], points.max(0) + [0.10, 0.06, 0.08]
+        low[0] = CELL * np.floor(low[0] / CELL)  # mirror images meet in nodes
+        box = low, high
         found = field_of(self.vertices, self.faces, cell=CELL, band=REACH, box=box)
         for mesh in self.worn:
             found = united(found, field_of(*mesh, cell=CELL, band=REACH, box=box), thicker=WORN)

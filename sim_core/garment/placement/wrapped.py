@@ -71,7 +71,9 @@ def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     points = np.concatenate(parts)
     points = points[(points[:, 1] >= low) & (points[:, 1] <= high + 0.01)]
     if len(points) < 3:
-        raise SimCoreError(f"place: nothing of the wearer between {low:.2f} and {high:.2f} m – choose another mark")
+        raise SimCoreError(
+            f"place: nothing of the wearer between {low:.2f} and {high:.2f} m – choose another mark"
+        )
     flat = points[:, [0, 2]]
     hull = flat[ConvexHull(flat).vertices]
     ahead = np.arctan2(hull[:, 0], hull[:, 1])
