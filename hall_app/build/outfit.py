@@ -175,12 +175,19 @@ def _record(
     return {
         "key": key,
         "digest": garments[-1].digest(),
-        "layers": [{"name": garment.name, "digest": garment.digest()} for garment in garments],
+        "layers": [_layer(garment) for garment in garments],
         "errors": errors,
         "seconds": seconds,
         "stages": stages,
         "hall_budget_m": levels[-1].provenance["detail"].get("budget_m"),
         "versions": garments[-1].provenance["versions"],
+    }
+
+
+def _layer(garment: Garment) -> dict[str, Any]:
+    """Which garment it is, and how it was dressed."""
+    return {"name": garment.name, "digest": garment.digest()} | {
+        fact: garment.provenance[fact] for fact in ("way", "whole")
     }
 
 

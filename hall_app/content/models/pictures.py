@@ -82,5 +82,8 @@ def _drawing_fault(data: bytes) -> tuple[str, str] | None:
             return "it holds a program, which the hall does not run", "remove scripts and on… attributes"
         links = [value for name, value in element.attrib.items() if name.rpartition("}")[2] == "href"]
         if any(not link.startswith(("#", "data:image/")) for link in links):
-            return "it asks for another file, which a picture cannot", "put what it shows into the file itself"
+            return (
+                "it asks for another file, which a picture cannot",
+                "put what it shows into the file itself",
+            )
     return None
