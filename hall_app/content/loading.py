@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
+from hall_app.content.bakes.inputs import outfit_problems
 from hall_app.content.files import (
     LEAVES,
     TEXTS,
@@ -22,7 +23,6 @@ from hall_app.content.floor.footprints import body_footprint
 from hall_app.content.floor.placement import place_faults, plan_problems, start_problems
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import GlbError, read_glb
-from hall_app.content.outfits import outfit_problems
 from hall_app.content.problems import ContentError, Problem
 from hall_app.content.schema.complaints import schema_problems, toml_problem
 from hall_app.content.schema.exhibit import ExhibitFile

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import bake_key
 from hall_app.content.bakes.store import NEEDED, RECORD, bake_fault
 from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, walk_files
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.outfits import outfit_files, outfit_problems
 from hall_app.content.problems import Problem
 
 FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 
+from hall_app.content.bakes.inputs import outfit_files
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.outfits import outfit_files
 
 __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key"]
 
