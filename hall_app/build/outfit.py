@@ -92,6 +92,7 @@ def _dress(
     film: bool,
 ) -> tuple[tuple[Garment, ...], dict[str, float]]:
     """Dress, and film it meanwhile; `models` writes what is to be written while the last pictures are drawn."""
+    look = wardrobe.film()  # draws the weaves' maps, too, which takes no time of the dressing
     clock, seconds = time.perf_counter(), {}
 
     def lap(name: str) -> None:
@@ -99,7 +100,7 @@ def _dress(
         now = time.perf_counter()
         seconds[name], clock = round(now - clock, 2), now
 
-    with filming(wardrobe.film(), work / "film") if film else nullcontext() as taken:
+    with filming(look, work / "film") if film else nullcontext() as taken:
         garments = _dressed(
             wardrobe.outfit, work / "dress", taken, lambda share, label: progress(0.6 * share, label)
         )

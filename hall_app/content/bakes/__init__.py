@@ -1,6 +1,6 @@
 """Baked garments as they lie in folders.
 
-inputs: what an outfit names; key: of the inputs; record: digests of the files; store: where a bake lies; models: what an
+inputs: what an outfit names; key: of inputs; record: digests of the files; store: where a bake lies; models: what an
 exhibit is drawn with.
 """
 
