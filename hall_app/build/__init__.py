@@ -11,11 +11,14 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
     from hall_app.build.outfit import bake_outfit, budget
+    from hall_app.build.trails import TrailLostError, Trails
 
-__all__ = ["SOUND_RATE", "bake_outfit", "budget", "encode_film", "film_possible"]
+__all__ = ["SOUND_RATE", "TrailLostError", "Trails", "bake_outfit", "budget", "encode_film", "film_possible"]
 
 _HOME = {
     "SOUND_RATE": "encoding",
+    "TrailLostError": "trails",
+    "Trails": "trails",
     "bake_outfit": "outfit",
     "budget": "outfit",
     "encode_film": "encoding",

@@ -13,13 +13,14 @@ import pytest
 from coarse_bake import LAYERED, build, coarse, last_line
 from content_house import edit
 
-from hall_app.build import SOUND_RATE, budget, encode_film, film_possible
+from hall_app.build import SOUND_RATE, TrailLostError, Trails, budget, encode_film, film_possible
 from hall_app.check import check
 from hall_app.check.garments import measured_again
 from hall_app.content import load
 from hall_app.content.bakes import bake_folder, bake_key, layer_files, read_record
 from hall_app.content.models import open_glb, read_glb
-from sim_core.garment import Garment
+from sim_core.body import Pose
+from sim_core.garment import Frame, Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -188,6 +189,26 @@ def test_pattern_sheets_are_drawn_for_all_or_for_one(folder):
         assert done.returncode == 0, done.stderr
         assert {path.parts[-3] for path in folder.glob("exhibits/*/media/pattern.svg")} == drawn
     assert not list(folder.glob("exhibits/*/baked"))
+
+
+def test_what_is_worn_beneath_is_filmed_as_it_was_in_that_pose(tmp_path):
+    half, down = Pose.arms(20.0), Pose.arms(45.0)
+    told = [(0, Pose()), (0, Pose()), (0, half), (0, down), (0, down), (1, Pose()), (1, half)]
+    frames = [Frame(layer, np.full((2, 3), k, np.float32), pose) for k, (layer, pose) in enumerate(told)]
+    trails = Trails(tmp_path)
+    for frame in frames:
+        trails.hear(frame)
+
+    def shown(trails: Trails, layer: int, pose: Pose) -> list[float]:
+        return [float(positions[0, 0]) for positions in trails.beneath(layer, pose)]
+
+    assert shown(trails, 1, Pose()) == [1.0], "of frames in one pose the last: it has been sewn by then"
+    assert shown(trails, 1, Pose.arms(22.0)) == [2.0]
+    assert shown(trails, 2, down) == [6.0, 4.0], "the outermost first"
+    assert trails.beneath(0, down) == []
+    assert shown(Trails(tmp_path), 2, half) == [6.0, 2.0], "an interrupted bake finds them again"
+    with pytest.raises(TrailLostError, match="layer 3"):
+        Trails(tmp_path).beneath(3, half)
 
 
 def test_budget_is_a_pixel_at_the_nearest_view():

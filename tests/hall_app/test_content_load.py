@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from content_house import EXHIBIT, add_exhibit, dressed, edit, make_house
+from content_house import EXHIBIT, add_exhibit, dressed, edit, make_house, write_outfit
 
 from hall_app.content import ContentError, content_folder, load
+from hall_app.content.bakes import bake_key, key_now
 
 
 @pytest.fixture
@@ -204,6 +205,33 @@ def test_zero_byte_input(house: Path, name: str):
         "exhibits/chest/exhibit.toml: outfit" if "outfits" in name else "outfits/scarf.toml: layer.1.pattern"
     )
     assert only_line(house) == f"{key}: {name} is empty (0 bytes) – replace it by the whole file"
+
+
+def test_a_bake_depends_on_the_outfit_all_it_names_and_how_it_is_shown(house: Path):
+    dressed(house)
+    toml = house / "exhibits/chest/exhibit.toml"
+
+    def key() -> str:
+        content = load(house)
+        (exhibit,) = content.exhibits
+        return bake_key(content, exhibit)
+
+    keys = [key()]
+    edit(toml, "Chest", "Dress")
+    assert key() == keys[0], "what is written of it is no matter of its bake"
+    write_outfit(house, more='weaves = { cloth = "weaves/juan.toml" }')
+    (house / "weaves/juan.toml").write_text("one", "utf-8")
+    keys.append(key())
+    for name in ("weaves/juan.toml", "weaves/gauze.toml", "patterns/pibo.toml", "outfits/scarf.toml"):
+        path = house / name
+        path.write_text(path.read_text("utf-8") + "\n# changed\n", "utf-8")
+        keys.append(key())
+    edit(toml, "[body]", "[show]\nnearest = 3.0\n[body]")
+    keys.append(key())
+    assert len(set(keys)) == len(keys)
+    last = load(house)
+    (house / "weaves/juan.toml").unlink()
+    assert key_now(last, last.exhibits[0]) is None, "of what went away there is none"
 
 
 def test_name_of_an_exhibit(house: Path):
