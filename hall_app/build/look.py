@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -58,8 +58,9 @@ class Wardrobe:
             cloth = layer.pattern.cloth(layer.edge)
             cloth = cloth.mirrored() if layer.pattern.mirror else cloth
             weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
-            first = np.unique(weld, return_index=True)[1]
-            parts = self._parts(number, first[weld][cloth.faces].astype(np.int32), cloth.panel, cloth.names)
+            _, first, index = np.unique(weld, return_index=True, return_inverse=True)
+            faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
+            parts = self._parts(number, faces, cloth.panel, cloth.names)
             pieces.append(Piece(np.zeros((len(cloth.vertices), 3)), parts))
         return self._look(pieces)
 
@@ -76,19 +77,19 @@ class Wardrobe:
 
         budget [m]: how far (p99) the outermost may deviate in the hall.
         """
-        from sim_core.garment import choose_detail, write_glb
+        from sim_core.garment import choose_detail
 
-        self._write(garments, folder / "close.glb", "close", write_glb)
+        self._write(garments, folder / "close.glb", "close")
         levels = [choose_detail(garment, HALL_BENEATH) for garment in garments[:-1]]
         levels.append(choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels)))
-        self._write(levels, folder / "hall.glb", "hall", write_glb)
+        self._write(levels, folder / "hall.glb", "hall")
         return tuple(levels)
 
-    def _write(self, garments: Sequence[Garment], path: Path, precision: Any, write: Any) -> None:
-        from sim_core.garment import Clothed
+    def _write(self, garments: Sequence[Garment], path: Path, precision: Literal["close", "hall"]) -> None:
+        from sim_core.garment import Clothed, write_glb
 
         layers = [Clothed(garment, *maps) for garment, maps in zip(garments, self.maps, strict=True)]
-        write(path, layers, precision=precision, figure=self._figure(layers, precision))
+        write_glb(path, layers, precision=precision, figure=self._figure(layers, precision))
 
     def _figure(self, layers: Sequence[Clothed], precision: str) -> Any:
         """The wearer as far as no dense cloth hides it."""
