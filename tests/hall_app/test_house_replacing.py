@@ -119,7 +119,7 @@ def test_a_garment_keeps_its_last_model_until_the_new_one_is_baked(tmp_path: Pat
         (target / "bake.json").write_text(json.dumps({"key": key}), "utf-8")
         return target
 
-    toml = folder / "exhibits/scarf/exhibit.toml"
+    toml = folder / "outfits/scarf.toml"
     first = bake(load(folder))
     house = House(load(folder), data)
 
@@ -129,7 +129,7 @@ def test_a_garment_keeps_its_last_model_until_the_new_one_is_baked(tmp_path: Pat
 
     async def story() -> None:
         assert shown() == first
-        edit(toml, "[garment]", "[garment]\nseed = 7")
+        edit(toml, "seed = 1", "seed = 7")
         await house.replace(load(folder))
         assert shown() == first, "until the new one is there"
         second = bake(load(folder))

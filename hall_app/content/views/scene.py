@@ -22,6 +22,7 @@ TYPES = {
     ".jpeg": "image/jpeg",
     ".png": "image/png",
     ".webp": "image/webp",
+    ".svg": "image/svg+xml",
     ".webm": "video/webm",
     ".mp4": "video/mp4",
     ".ogg": "audio/ogg",
@@ -164,7 +165,7 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
 
 
 def _has_close(exhibit: Exhibit, baked: Path | None) -> bool:
-    if exhibit.file.garment is not None:
+    if exhibit.file.outfit is not None:
         return media_file(exhibit, BAKED + "close.glb", baked).is_file()
     return exhibit.model_path("close") is not None
 
