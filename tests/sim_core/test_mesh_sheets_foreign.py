@@ -238,6 +238,31 @@ def test_a_size_that_is_a_guess_is_told(tmp_path, head, millimetres, guessed):
     assert any("CSS pixel" in note for note in found.notes) == guessed
 
 
+@pytest.mark.parametrize(
+    ("size", "millimetres"),
+    [
+        ('width="800mm" height="300mm"', (200.0, 300.0)),  # as it fits, in the middle
+        ('width="800mm" height="300mm" preserveAspectRatio="none"', (400.0, 300.0)),
+        ('width="800mm" height="300mm" preserveAspectRatio="xMinYMin slice"', (400.0, 600.0)),
+        ('width="400mm" height="299mm"', (200.0, 300.0)),  # rounded
+        ('width="400mm" height="100%"', (200.0, 300.0)),
+        ('style="width: 40cm; height: 30cm"', (200.0, 300.0)),
+    ],
+)
+def test_a_drawing_has_the_size_at_which_a_browser_shows_it(tmp_path, size, millimetres):
+    sheet = svg(
+        tmp_path, f'{HEAD} {size} viewBox="0 0 400 300"><path id="front" d="M0 0h200v300h-200z"/></svg>'
+    )
+    assert sizes(sheet) == {"front": millimetres}
+    assert not sheet.notes
+
+
+def test_an_ampersand_that_is_no_entity_is_one(tmp_path):
+    """FreeSewing 4.10 (bruce) writes texts into attributes as they are."""
+    text = '<path id="note" class="hidden" data-text="1 & 2 &#160;&amp;" d="M1 1"/>'
+    assert sizes(svg(tmp_path, f"{SIZED}{text}{FRONT}</svg>")) == {"front": (200.0, 300.0)}
+
+
 def test_a_largest_piece_of_a_hand_or_a_hall_is_asked_about(tmp_path):
     small = SIZED + '<path d="M0 0h9v9h-9z"/></svg>'
     large = small.replace("900mm", "900m").replace("600mm", "600m")
@@ -296,6 +321,47 @@ def test_an_open_line_around_a_piece_is_its_cutting_line_on_the_fold(tmp_path):
     pocket = '<path d="M50 60V450H600V60"/>'  # too far away to be an allowance
     (piece,) = svg(tmp_path, SIZED + seam + pocket + "</svg>").pieces
     assert piece.sew is None
+
+
+def lines_of(*runs) -> str:
+    """A line of its own for each step of a run of points."""
+    return "".join(
+        f'<line x1="{a[0]}" y1="{a[1]}" x2="{b[0]}" y2="{b[1]}"/>'
+        for run in runs
+        for a, b in zip(run[:-1], run[1:], strict=True)
+    )
+
+
+RIM = [(0, 0), (150, 0), (300, 0), (300, 200), (150, 200), (0, 200), (0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("inner", "count"),
+    [
+        ([[(150, 0), (150, 200)]], 1),
+        ([[(150, 0), (170, 90), (150, 200)], [(0, 0), (60, 60)]], 2),
+        ([[(150, 0), (150, 100), (150, 200)], [(0, 200), (150, 100), (300, 200)]], 4),
+    ],
+    ids=["from side to side", "bent, and one that hangs", "a star of lines"],
+)
+def test_an_outline_in_steps_keeps_lines_that_end_at_its_corners(tmp_path, inner, count):
+    sheet = svg(tmp_path, f"{SIZED}<g id='front'>{lines_of(RIM, *inner)}</g></svg>")
+    assert sizes(sheet) == {"front": (300.0, 200.0)}
+    (piece,) = sheet.pieces
+    assert len(piece.outline) == 6
+    assert len(piece.lines) == count
+    assert not piece.holes
+    assert "three and more lines meet" in sheet.remarks[0]
+    panel_mesh(piece.outline, edge=0.02, constraints=piece.lines)
+
+
+def test_pieces_in_steps_may_touch_at_a_corner_or_lie_on_each_other(tmp_path):
+    other = [(300 + x, 200 + y) for x, y in RIM]
+    touching = svg(tmp_path, f"{SIZED}{lines_of(RIM, other)}</svg>")
+    assert sorted(sizes(touching).values()) == [(300.0, 200.0)] * 2
+    across = [(0, 0), (400, 100), (150, 200), (0, 0)]  # leaves the first where neither has a corner
+    with pytest.raises(FileProblem, match="no closed line"):
+        svg(tmp_path, f"{SIZED}{lines_of(RIM, across)}</svg>")
 
 
 def test_a_line_drawn_twice_is_one_and_an_inner_line_ends_at_a_hole(tmp_path, capsys):
