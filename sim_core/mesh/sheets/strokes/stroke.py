@@ -137,8 +137,8 @@ def _outlined(net: list[Chain], near: float) -> list[Chain]:
         return net
     whole = shapely.union_all(faces)
     rims = [shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(shapely.get_parts(whole))]
-    halves = shapely.points(middles)
-    on_rim = shapely.dwithin(shapely.boundary(whole), halves, near)
+    halves = np.asarray(shapely.points(middles))
+    on_rim = np.asarray(shapely.dwithin(shapely.boundary(whole), halves, near))
     numbers = [number for number, _, _ in net]
     outer = [(_nearest(halves, on_rim, numbers, rim), rim, True) for rim in rims]
     return outer + [chain for chain, out in zip(net, on_rim, strict=True) if not out]
