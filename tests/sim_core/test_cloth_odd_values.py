@@ -143,7 +143,7 @@ DRAPE = {
 }
 DRAPE |= {"holds": Holds.of(COUNT), "air": Air(), "down": (0, -1, 0), "substeps": 20, "integrator": "auto"}
 DRAPE |= {"pace": Pace(), "velocities": 0 * FLAT, "progress": None, "on_frame": None, "checkpoint": None}
-DRAPE |= {"checkpoint_seconds": 1.0, "certify": False}
+DRAPE |= {"certify": False}
 LIVE = {
     k: DRAPE[k]
     for k in ("sheet", "positions", "collider", "contact", "pins", "air", "integrator", "substeps")
@@ -229,7 +229,6 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         Sheet.of_corners,
         {"corner": REST[FACES], "faces": FACES, "materials": [GF_CM], "kind": np.zeros(len(FACES), int)},
     ),
-    "Sheet.pinned": (SHEET.pinned, {"pins": [0]}),
     "Solid": (BALL.distance, {"points": FLAT}),
     "Union": (lambda **given: run(collider=Union(**given)), {"parts": (BALL, HalfSpace())}),
     "choose": (choose, CHOOSE),

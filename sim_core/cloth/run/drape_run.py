@@ -13,20 +13,18 @@ import numpy as np
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.run.adaptive_run import Run, checked_state
+from sim_core.cloth.run.adaptive_run import Run, Setup, checked_state
 from sim_core.cloth.run.certificate import Certificate
 from sim_core.cloth.run.checkpoint import RunState, checkpoint_file, load_checkpoint, run_key, save_checkpoint
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.phases import FRAME, Contact, Moment, Phase, schedule
+from sim_core.cloth.step.frame import Contact, Frame, Phase
 from sim_core.cloth.step.precision import Pace
 from sim_core.errors import FileProblem, SimCoreError
-from sim_core.validation import called, finite, triple
+from sim_core.validation import optional_callable, vector3
 
 if TYPE_CHECKING:
     from sim_core.cloth.run.certifier import Mesh
-
-__all__ = ["ENGINE_VERSION", "FRAME", "Contact", "Drape", "OnFrame", "Phase", "Progress", "drape"]
 
 ENGINE_VERSION = (
     4  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
@@ -77,7 +75,6 @@ def drape(
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
     checkpoint: str | Path | None = None,
-    checkpoint_seconds: float | None = None,
     keep: bool = False,
     only_own: bool = False,
     certify: bool | Mesh = False,
@@ -103,35 +100,35 @@ def drape(
     """
     start = time.perf_counter()
     x, v = checked_state(sheet, positions, velocities)
-    if not any(triple("down", down, "of the way down")):
+    if not any(vector3("down", down, "of the way down")):
         raise SimCoreError("down: (0, 0, 0) has no direction – for no gravity give Phase(…, gravity=(0, 0))")
     for name, function in (("progress", progress), ("on_frame", on_frame)):
-        called(name, function)
-    pause = CHECKPOINT_SECONDS
-    if checkpoint_seconds is not None:
-        pause = finite("checkpoint_seconds", checkpoint_seconds, least=0)
+        optional_callable(name, function)
     file = None if checkpoint is None else checkpoint_file(checkpoint)
-    run = Run(
-        sheet,
-        phases,
-        collider,
-        contact,
-        pins,
-        holds,
+    setup = Setup(
+        sheet=sheet,
+        phases=phases,
+        collider=collider,
+        contact=contact,
+        pins=pins,
+        holds=holds,
         air=air,
         down=down,
         substeps=substeps,
         integrator=integrator,
         pace=pace,
     )
+    run = Run(setup)
     if certify is not False:
         run.certify(x, certify)
     begun = run.begun(x, v)
-    x = begun.positions
-    key = run_key(
-        (ENGINE_VERSION, sheet.rest, sheet.faces, sheet.material, x, v, *run.identity(), on_frame is None)
-        + (sheet.mass, sheet.corner, sheet.stencil.own, sheet.stencil.coupling, sheet.stencil.bend)
-    )
+    begin = {
+        "engine": ENGINE_VERSION,
+        "positions": begun.positions,
+        "velocities": v,
+        "film": on_frame is not None,
+    }
+    key = run_key(begin | run.identity())
     found = load_checkpoint(file, key) if file else None
     if file and only_own and not found and file.exists():
         raise FileProblem(
@@ -139,7 +136,7 @@ def drape(
             "name another file, or remove it"
         )
     state = found or begun
-    _run_frames(run, state, _Hooks(progress, on_frame, file, key, pause))
+    _run_frames(run, state, _Hooks(progress, on_frame, file, key))
     if file and keep:
         save_checkpoint(file, key, state)
     elif file:
@@ -155,7 +152,6 @@ class _Hooks:
     on_frame: OnFrame | None
     checkpoint: Path | None
     key: str
-    pause: float
 
     def heard(self, state: RunState) -> None:
         """Hands the last frame on; kept for the film if the run may be interrupted."""
@@ -172,17 +168,18 @@ def _run_frames(run: Run, state: RunState, hooks: _Hooks) -> None:
     if hooks.on_frame:
         for index, frame in enumerate(state.film):
             hooks.on_frame(index, frame)
-    saved, moments = time.perf_counter(), schedule(run.phases)
+    saved, frames = time.perf_counter(), run.frames
     try:
-        while state.frame < len(moments):
-            now = moments[state.frame]
+        while state.frame < len(frames):
+            number = frames[state.frame].phase
+            phase = run.setup.phases[number]
             if hooks.progress:
-                hooks.progress(state.frame / len(moments), now.phase.label)
-            run.frame(state, now)
-            if now.phase.rest is not None and state.trace[-1][0] < now.phase.rest:
-                state.frame = _end_of(moments, state.frame, now.phase)
+                hooks.progress(state.frame / len(frames), phase.label)
+            run.frame(state)
+            if phase.rest is not None and state.trace[-1][0] < phase.rest:
+                state.frame = _end_of(frames, state.frame, number)
             hooks.heard(state)
-            if hooks.checkpoint and time.perf_counter() - saved > hooks.pause:
+            if hooks.checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
                 save_checkpoint(hooks.checkpoint, hooks.key, state)
                 saved = time.perf_counter()
     except BaseException:
@@ -196,24 +193,24 @@ def _result(run: Run, state: RunState, seconds: float) -> Drape:
     found = looked and looked.certificate(state.tally, len(state.trace), state.positions)
     p99, most = state.trace[-1] if state.trace else (0.0, 0.0)
     return Drape(
-        state.positions,
-        state.velocities,
-        len(state.trace),
-        state.substeps,
-        state.rollbacks,
-        seconds,
-        p99,
-        most,
-        tuple(state.trace),
-        state.fallbacks,
-        state.stretch,
-        tuple(state.seconds),
-        found,
-        state.smoothed,
+        positions=state.positions,
+        velocities=state.velocities,
+        frames=len(state.trace),
+        substeps=state.substeps,
+        rollbacks=state.rollbacks,
+        seconds=seconds,
+        rest_p99=p99,
+        rest_max=most,
+        trace=tuple(state.trace),
+        fallbacks=state.fallbacks,
+        worst_stretch=state.stretch,
+        frame_seconds=tuple(state.seconds),
+        certificate=found,
+        smoothed=state.smoothed,
     )
 
 
-def _end_of(moments: list[Moment], frame: int, phase: Phase) -> int:
-    while frame < len(moments) and moments[frame].phase is phase:
-        frame += 1
-    return frame
+def _end_of(frames: list[Frame], index: int, phase: int) -> int:
+    while index < len(frames) and frames[index].phase == phase:
+        index += 1
+    return index

@@ -11,7 +11,7 @@ import numpy as np
 
 from sim_core.body import Beneath, Pose
 from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
-from sim_core.cloth.step.phases import schedule
+from sim_core.cloth.step.frame import schedule
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.flat import Laying, laid
