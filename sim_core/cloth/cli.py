@@ -249,14 +249,14 @@ def _pace(settings: dict[str, Any]) -> Pace:
 
 
 def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Path | None) -> Drape:
+    from sim_core.cloth.run.checkpoint import Checkpoint
+
     return made.drape(
         substeps=settings["substeps"],
         integrator=settings["integrator"],
         pace=_pace(settings),
         on_frame=heard.frame,
-        checkpoint=resume,
-        keep=resume is not None,
-        only_own=True,
+        checkpoint=resume and Checkpoint(resume, keep=True, only_own=True),
         certify=settings["certify"],
     )
 

@@ -14,6 +14,7 @@ from sim_core.cloth import (
     Air,
     Box,
     Capsule,
+    Checkpoint,
     Contact,
     Cylinder,
     GridSdf,
@@ -188,6 +189,10 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Capsule": (
         lambda **given: run(collider=Capsule(**given)),
         {"start": (0, 0, 0), "end": (1, 0, 0), "radius": 0.1},
+    ),
+    "Checkpoint": (
+        lambda **given: run(checkpoint=Checkpoint(**given)),
+        {"path": "run.npz", "keep": False, "only_own": False},
     ),
     "Contact": (lambda **given: run(contact=Contact(**given)), CONTACT),
     "Cylinder": (

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
+from sim_core.cloth import Checkpoint, HalfSpace, Material, Phase, Sheet, drape
 from sim_core.cloth.run import drape_run
 from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge, scene
 from sim_core.errors import SimCoreError
@@ -145,7 +145,7 @@ def test_a_state_is_not_gone_on_from_with_another_second_material(tmp_path: Path
         sheet = Sheet.of_corners(rest[faces], faces, materials, kind)
         return drape(sheet, x, [Phase(0.2)], pins=(0,), **more).positions
 
-    run(50.0, checkpoint=file, keep=True)
+    run(50.0, checkpoint=Checkpoint(file, keep=True))
     assert run(500.0, checkpoint=file).tobytes() == run(500.0).tobytes()
 
 

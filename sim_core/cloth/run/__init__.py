@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sim_core.cloth.run.adaptive_run import Run, Setup
 from sim_core.cloth.run.certificate import Certificate
-from sim_core.cloth.run.checkpoint import RunState, load_checkpoint, save_checkpoint
+from sim_core.cloth.run.checkpoint import Checkpoint, RunState, load_checkpoint, save_checkpoint
 from sim_core.cloth.run.drape_run import ENGINE_VERSION, Drape, drape
 from sim_core.cloth.run.live import Live
 from sim_core.cloth.run.smoothing import Smoother, smoothed
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Certificate",
+    "Checkpoint",
     "Drape",
     "ENGINE_VERSION",
     "Live",

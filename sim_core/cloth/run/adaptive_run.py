@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from sim_core.cloth.step.kernels.diagnostics import ways
 from sim_core.cloth.step.precision import Pace
 from sim_core.cloth.step.stability import first_mode, passing_step, stable_with
 from sim_core.errors import SimCoreError
-from sim_core.validation import coordinates, instance_of, integer, one_of, vertex_indices
+from sim_core.validation import coordinates, instance_of, integer, one_of, vector3, vertex_indices
 
 if TYPE_CHECKING:
     from sim_core.cloth.run.certified_run import Certified
@@ -47,7 +47,7 @@ _KINDS = {  # of what a run may be given, and the remedy
 
 @dataclass(frozen=True)
 class Setup:
-    """What a run is of, see `drape`, whose arguments these are. Raises SimCoreError for what is none."""
+    """What a run is of; `drape` tells what each is. Raises SimCoreError for what is none."""
 
     sheet: Sheet
     phases: Sequence[Phase]
@@ -60,8 +60,13 @@ class Setup:
     substeps: int | None = None
     integrator: str = "auto"
     pace: Pace | None = None
+    certify: bool | Mesh = False
 
     def __post_init__(self) -> None:
+        if not any(vector3("down", self.down, "of the way down")):
+            raise SimCoreError(
+                "down: (0, 0, 0) has no direction – for no gravity give Phase(…, gravity=(0, 0))"
+            )
         for name, (kind, remedy) in _KINDS.items():
             if getattr(self, name) is not None:
                 instance_of(name, getattr(self, name), kind, remedy)
@@ -77,6 +82,26 @@ class Setup:
             )
         for phase in self.phases:
             vertex_indices("phase.pins", phase.pins, count)
+
+
+class Options(TypedDict, total=False):
+    """Of a `Setup` what a live cloth takes, too."""
+
+    collider: Solid | MovingGrid | None
+    contact: Contact | None
+    pins: Sequence[int]
+    air: Air | None
+    substeps: int | None
+    integrator: str
+    pace: Pace | None
+    certify: bool | Mesh
+
+
+class DrapeOptions(Options, total=False):
+    """Of a `Setup` all but the sheet and its phases."""
+
+    holds: Holds | None
+    down: Sequence[float]
 
 
 class Run:
@@ -105,21 +130,24 @@ class Run:
         none = State(np.zeros((0, 3)), np.zeros((0, 3)))
         self._left = none, none  # what the last frame left, as given out and in band order
 
-    def certify(self, start: np.ndarray, solid: bool | Mesh) -> None:
-        """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider, or True."""
+    def _certify(self, start: np.ndarray) -> None:
+        """From now on every frame is certified; start (V, 3) [m]."""
         from sim_core.cloth.run.certified_run import (
             Certified,  # what only the certifier needs takes half a second
         )
 
         if self.setup.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
-        self.certified = Certified(self.engine, start, None if solid is True else solid)  # type: ignore[arg-type]
+        solid = self.setup.certify
+        self.certified = Certified(self.engine, start, None if isinstance(solid, bool) else solid)
 
     def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
         """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
 
         Not where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
         """
+        if self.setup.certify is not False:
+            self._certify(x)
         engine, holds = self.engine, self.engine.holds
         held = engine.limited or len(holds.pairs) or len(holds.low) or len(holds.slaves)
         if held or engine.moving or len(engine.packed.kind) or self.certified is not None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from sim_core.cloth.run.certificate import Tally
 from sim_core.errors import FileProblem
-from sim_core.validation import excerpt
+from sim_core.validation import excerpt, instance_of
 from sim_core.validation.files import read_npz
 
 _ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
@@ -51,6 +51,23 @@ class RunState:
     mode: np.ndarray = field(default_factory=lambda: np.zeros((3, 0)))  # stiffest motion seen so far (3, V)
     tally: Tally = field(default_factory=Tally)  # of the certifier
     smoothed: float = 0.0  # [m] over which a hopeless start was smoothed
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A file that keeps the state of a run, rewritten every few seconds.
+
+    keep: leave it behind, finished, for a caller who has more to do. only_own: refuse a state that the run cannot go on
+    from, where it would else be written over; a file that is no state at all is always refused.
+    """
+
+    path: str | Path
+    keep: bool = False
+    only_own: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("keep", "only_own"):
+            instance_of(f"checkpoint.{name}", getattr(self, name), bool, "True or False is meant")
 
 
 def run_key(parts: Mapping[str, object]) -> str:

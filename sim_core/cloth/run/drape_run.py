@@ -6,25 +6,24 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
 
-from sim_core.cloth.contact.constraints import Holds
-from sim_core.cloth.contact.moving_grid import MovingGrid
-from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.run.adaptive_run import Run, Setup, checked_state
+from sim_core.cloth.run.adaptive_run import DrapeOptions, Run, Setup, checked_state
 from sim_core.cloth.run.certificate import Certificate
-from sim_core.cloth.run.checkpoint import RunState, checkpoint_file, load_checkpoint, run_key, save_checkpoint
+from sim_core.cloth.run.checkpoint import (
+    Checkpoint,
+    RunState,
+    checkpoint_file,
+    load_checkpoint,
+    run_key,
+    save_checkpoint,
+)
 from sim_core.cloth.sheet.sheet import Sheet
-from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.frame import Contact, Frame, Phase
-from sim_core.cloth.step.precision import Pace
-from sim_core.errors import FileProblem, SimCoreError
-from sim_core.validation import optional_callable, vector3
-
-if TYPE_CHECKING:
-    from sim_core.cloth.run.certifier import Mesh
+from sim_core.cloth.step.frame import Frame, Phase
+from sim_core.errors import FileProblem
+from sim_core.validation import optional_callable
 
 ENGINE_VERSION = (
     4  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
@@ -62,65 +61,42 @@ def drape(
     positions: np.ndarray,
     phases: Sequence[Phase],
     *,
-    collider: Solid | MovingGrid | None = None,
-    contact: Contact | None = None,
-    pins: Sequence[int] = (),
-    holds: Holds | None = None,
-    air: Air | None = None,
-    down: Sequence[float] = (0.0, -1.0, 0.0),
-    substeps: int | None = None,
-    integrator: str = "auto",
-    pace: Pace | None = None,
     velocities: np.ndarray | None = None,
     progress: Progress | None = None,
     on_frame: OnFrame | None = None,
-    checkpoint: str | Path | None = None,
-    keep: bool = False,
-    only_own: bool = False,
-    certify: bool | Mesh = False,
+    checkpoint: str | Path | Checkpoint | None = None,
+    **options: Unpack[DrapeOptions],
 ) -> Drape:
-    """Simulates `sheet` from positions (V, 3) [m] through `phases`; frames last 1/25 s.
+    """Simulates `sheet` from positions, velocities (V, 3) [m, m/s] through `phases`; frames last 1/25 s.
 
+    on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
+    checkpoint: a file that is rewritten every few seconds, or a `Checkpoint`; a run resumed from it on the same machine
+    gives the same bits.
+
+    options, all of which may be left out:
+    collider: a Solid, or a MovingGrid whose keys the phases name; contact: how the cloth touches it and itself.
+    pins: vertices held throughout; holds: sewing pairs, bounds, images, limits of lengths.
+    air: what blows, and brakes; None costs nothing.
+    down: the way in which a phase's gravity is counted.
     substeps: a fixed number per frame instead of the adaptive one (for convergence studies; no watchdog).
     integrator: "explicit", "implicit" (backward Euler, substeps steps a frame or 8), or "auto": explicit, with the
     implicit scheme for frames that would blow up.
-    down: the way in which a phase's gravity is counted.
     pace: precision of the loop and share of the stable step that is taken (None: double, 0.7).
-    air: what blows, and brakes; None costs nothing.
-    positions that are no sheet, points thrown about, are smoothed into one before the first frame, unless a solid or
-    holds are there (`smoothing.py`; `Drape.smoothed` tells).
-    on_frame(index, positions (V, 3) float32) hears every frame; after a resume the earlier ones are replayed.
-    checkpoint: a file that is rewritten every few seconds; a run resumed from it on the same machine gives the same
-    bits. keep: leave it behind, finished, for a caller who has more to do. only_own: refuse a state that this run
-    cannot go on from, where it would else be written over; a file that is no state at all is always refused.
     certify: look, every frame, whether anything passed through the cloth, by continuous collision detection (needs
     ipctk), and do the frame again where it did; or the mesh, vertices (S, 3) [m] and faces, of a still collider to
     be looked at as well. The start must be free of intersections.
+
+    positions that are no sheet, points thrown about, are smoothed into one before the first frame, unless a solid or
+    holds are there (`smoothing.py`; `Drape.smoothed` tells).
     Raises SimCoreError on bad input or when the step had to be halved 8 times in one frame.
     """
     start = time.perf_counter()
     x, v = checked_state(sheet, positions, velocities)
-    if not any(vector3("down", down, "of the way down")):
-        raise SimCoreError("down: (0, 0, 0) has no direction – for no gravity give Phase(…, gravity=(0, 0))")
     for name, function in (("progress", progress), ("on_frame", on_frame)):
         optional_callable(name, function)
-    file = None if checkpoint is None else checkpoint_file(checkpoint)
-    setup = Setup(
-        sheet=sheet,
-        phases=phases,
-        collider=collider,
-        contact=contact,
-        pins=pins,
-        holds=holds,
-        air=air,
-        down=down,
-        substeps=substeps,
-        integrator=integrator,
-        pace=pace,
-    )
-    run = Run(setup)
-    if certify is not False:
-        run.certify(x, certify)
+    place = checkpoint if isinstance(checkpoint, Checkpoint) or checkpoint is None else Checkpoint(checkpoint)
+    file = place and checkpoint_file(place.path)
+    run = Run(Setup(sheet, phases, **options))
     begun = run.begun(x, v)
     begin = {
         "engine": ENGINE_VERSION,
@@ -130,14 +106,14 @@ def drape(
     }
     key = run_key(begin | run.identity())
     found = load_checkpoint(file, key) if file else None
-    if file and only_own and not found and file.exists():
+    if file and place and place.only_own and not found and file.exists():
         raise FileProblem(
             f"{file}: no state of this run (other settings, an older engine, or damaged) – "
             "name another file, or remove it"
         )
     state = found or begun
     _run_frames(run, state, _Hooks(progress, on_frame, file, key))
-    if file and keep:
+    if file and place and place.keep:
         save_checkpoint(file, key, state)
     elif file:
         file.unlink(missing_ok=True)

@@ -3,31 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
 
-from sim_core.cloth.contact.moving_grid import MovingGrid
-from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.run.adaptive_run import Run, Setup, checked_state
+from sim_core.cloth.run.adaptive_run import Options, Run, Setup, checked_state
 from sim_core.cloth.run.certificate import Certificate
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.frame import FRAME, Contact, Phase
-from sim_core.cloth.step.precision import Pace
+from sim_core.cloth.step.frame import FRAME, Phase
 from sim_core.errors import SimCoreError
 from sim_core.validation import excerpt, finite, instance_of, points, vector3, vertex_indices
-
-if TYPE_CHECKING:
-    from sim_core.cloth.run.certifier import Mesh
 
 
 class Live:
     """The state of a running cloth; `step` moves it on by one frame of 1/25 s.
 
-    sheet, positions (V, 3) [m], substeps and certify as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the
-    material's), which may be set anew between two frames. The same calls give the same bits on one
-    machine. Raises SimCoreError on bad input.
+    sheet, positions (V, 3) [m] and options as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the material's),
+    which may be set anew between two frames. The same calls give the same bits on one machine. Raises SimCoreError on
+    bad input.
     """
 
     def __init__(
@@ -35,36 +29,17 @@ class Live:
         sheet: Sheet,
         positions: np.ndarray,
         *,
-        collider: Solid | MovingGrid | None = None,
-        contact: Contact | None = None,
-        pins: Sequence[int] = (),
-        air: Air | None = None,
         gravity: Sequence[float] = (0.0, -9.81, 0.0),
         damping: float | None = None,
-        integrator: str = "auto",
-        substeps: int | None = None,
-        pace: Pace | None = None,
-        certify: bool | Mesh = False,
+        **options: Unpack[Options],
     ) -> None:
         x, v = checked_state(sheet, positions, None)
         self._gravity = np.array(vector3("gravity", gravity, "in m/s2"))
         self.damping = sheet.material.mass_damping if damping is None else finite("damping", damping, least=0)
-        setup = Setup(
-            sheet=sheet,
-            phases=[Phase(FRAME)],
-            collider=collider,
-            contact=contact,
-            pins=pins,
-            air=air,
-            substeps=substeps,
-            integrator=integrator,
-            pace=pace,
-        )
+        setup = Setup(sheet, [Phase(FRAME)], **options)
         self._run = Run(setup)
-        if certify is not False:
-            self._run.certify(x, certify)
         self._state = self._run.begun(x, v)
-        self.pins, self.air, self.body = setup.pins, air, 0.0
+        self.pins, self.air, self.body = tuple(setup.pins), setup.air, 0.0
 
     @property
     def positions(self) -> np.ndarray:
