@@ -171,10 +171,11 @@ def run(args: argparse.Namespace) -> int:
         size=args.size,
         wind=args.wind,
         pins=args.pins,
-        gusts=args.gusts,
-        layers=1e-3 * args.layers,
-        seed=args.seed,
     )
+    if args.gusts:
+        made = made.gusty(args.gusts, args.seed)
+    if args.layers:
+        made = made.layered(1e-3 * args.layers)
     total = round(made.phases[0].seconds * 25)
     heard = _Heard(made, total, told=not args.json and sys.stderr.isatty())
     settings |= {"precision": args.precision, "courant": args.courant or made.courant}

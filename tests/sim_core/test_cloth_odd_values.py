@@ -125,7 +125,7 @@ SCENE = {
     "wind": (4, 0, 1),
     "pins": None,
 }
-SCENE |= {"gusts": 0.1, "seed": 1, "cloth": GF_CM, "layers": 0.0}
+SCENE |= {"cloth": GF_CM}
 HOLDS = {
     "count": COUNT,
     "pairs": [[0, 1]],
@@ -229,6 +229,8 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Pace": (lambda **given: run(pace=Pace(**given)), {"precision": "single", "courant": 0.7}),
     "Phase": (lambda **given: run(phases=[Phase(**given)]), PHASE),
     "Scene": (scene("hanging", vertices=40, frames=1).lasting, {"frames": 1}),
+    "Scene.gusty": (scene("flag", vertices=40, frames=1).gusty, {"gusts": 0.1, "seed": 1}),
+    "Scene.layered": (scene("hanging", vertices=40, frames=1).layered, {"layers": 0.003}),
     "Sheet": (Sheet.of, {"rest": REST, "faces": FACES, "material": GF_CM}),
     "Sheet.of_corners": (
         Sheet.of_corners,

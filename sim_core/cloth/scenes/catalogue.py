@@ -57,6 +57,21 @@ class Scene:
         body = None if self.phases[0].body is None else (0.0, float(frames))  # a key for each frame
         return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME, body=body),))
 
+    def gusty(self, gusts: float, seed: int = 0) -> Scene:
+        """The same scene in gusts, their share of the wind, rms, seeded.
+
+        Raises WrongArgument where no wind blows.
+        """
+        gusts = finite("gusts", gusts, least=0)
+        if self.air is None:
+            raise WrongArgument(f"gusts – only the flag stands in the wind, not {self.name}")
+        return replace(self, air=replace(self.air, gusts=gusts, seed=seed))
+
+    def layered(self, layers: float) -> Scene:
+        """The same scene with layers of the cloth kept so far apart [m]; 0: they do not feel each other."""
+        layers = finite("layers [m]", layers, least=0, most=WIDEST)
+        return replace(self, contact=replace(self.contact or Contact(), thickness=layers))
+
     def drape(self, **settings: Any) -> Drape:
         """Simulates the scene; settings: those of `cloth.drape`."""
         return drape(
@@ -107,23 +122,17 @@ def scene(
     size: Sequence[float] | None = None,
     wind: Sequence[float] | None = None,
     pins: str | None = None,
-    gusts: float = 0.0,
-    seed: int = 0,
     cloth: Material | None = None,
-    layers: float = 0.0,
 ) -> Scene:
     """A scene of `scenes.toml`: its case (from 1), changed by what is given.
 
-    size: width and height [m]; wind [m/s] (flag); gusts: share of the wind, rms, seeded; pins: one of PINS (hanging);
-    cloth: another material; layers [m]: the distance that layers of the cloth keep (0: they do not feel each other).
+    size: width and height [m]; wind [m/s] (flag); pins: one of PINS (hanging); cloth: another material.
     Raises WrongArgument for what the scene does not have.
     """
     values = case_values(name, case)
     data = _data()[name]
-    gusts = finite("gusts", gusts, least=0)
-    if (wind is not None or gusts) and name != "flag":
-        word = "gusts" if wind is None else "wind"
-        raise WrongArgument(f"{word} – only the flag stands in the wind, not {name}")
+    if wind is not None and name != "flag":
+        raise WrongArgument(f"wind – only the flag stands in the wind, not {name}")
     if pins is not None and name != "hanging":
         raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
     values |= {k: v for k, v in (("size", size), ("wind", wind), ("pins", pins)) if v is not None}
@@ -132,11 +141,7 @@ def scene(
     most = {"least": 1, "why": "1 or more, of 1/25 s", "most": MOST_FRAMES}
     values["frames"] = data["frames"] if frames is None else integer("frames", frames, **most)
     made = _MAKERS[name](values, width, height, count, cloth)
-    if made.air is not None:
-        made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
-    if finite("layers [m]", layers, least=0, most=WIDEST):
-        made = replace(made, contact=replace(made.contact or Contact(), thickness=layers))
     return made.lasting(values["frames"])
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sim_core.body import Beneath, Pose
 from sim_core.cloth import Checkpoint, Contact, Drape, Holds, Material, Phase, drape
-from sim_core.cloth.step.frame import schedule
+from sim_core.cloth.step import schedule
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.flat import Laying, laid
@@ -169,7 +169,7 @@ def _frames(phases: tuple[Phase, ...]) -> int:
 
 def _poses(dressing: Schedule, phases: tuple[Phase, ...]) -> list[Pose]:
     """The figure's pose at the end of every frame."""
-    return [dressing.pose_of(moment.body[1]) for moment in schedule(phases)]
+    return [dressing.pose_of(frame.body[1]) for frame in schedule(phases)]
 
 
 def _laying(figure: FigureLike) -> Laying:
