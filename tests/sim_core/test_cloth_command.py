@@ -198,8 +198,8 @@ def test_code_is_compiled_with_a_scene_of_the_same_loop(name: str) -> None:
 def test_seeds_gusts_and_winds_change_the_flag() -> None:
     from sim_core.cloth import drape
 
-    def end(**more) -> np.ndarray:
-        made = scene("flag", vertices=100, frames=6, **more)
+    def end(gusts: float = 0.0, seed: int = 0, **more) -> np.ndarray:
+        made = scene("flag", vertices=100, frames=6, **more).gusty(gusts, seed)
         return drape(made.sheet, made.positions, made.phases, pins=made.pins, air=made.air).positions
 
     still, gusty = end(), end(gusts=0.5, seed=1)
@@ -253,7 +253,6 @@ def test_a_cloth_goes_with_the_limb_it_lies_on(case: int, frames: int, way: tupl
 def test_what_a_scene_does_not_have_is_named() -> None:
     for name, more, word in (
         ("hanging", {"wind": (1, 0, 0)}, "wind"),
-        ("limb", {"gusts": 0.2}, "gusts"),
         ("flag", {"pins": "edge"}, "pins"),
         ("flag", {"case": 11}, "case 11"),
         ("curtain", {}, "curtain"),
@@ -262,6 +261,8 @@ def test_what_a_scene_does_not_have_is_named() -> None:
     ):
         with pytest.raises(WrongArgument, match=word):
             scene(name, **more)
+    with pytest.raises(WrongArgument, match="gusts"):
+        scene("limb", vertices=100, frames=1).gusty(0.2)
 
 
 @pytest.mark.parametrize(("scene", "frames"), [("hanging", 2), ("hanging", 8), ("teapot", 12)])

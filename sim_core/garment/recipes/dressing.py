@@ -10,8 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from sim_core.body import Beneath, Pose
-from sim_core.cloth import Contact, Drape, Holds, Material, Phase, drape
-from sim_core.cloth.step.phases import schedule
+from sim_core.cloth import Checkpoint, Contact, Drape, Holds, Material, Phase, drape
+from sim_core.cloth.step import schedule
 from sim_core.garment.pattern.cloth import Cloth
 from sim_core.garment.pattern.pattern import Pattern
 from sim_core.garment.placement.flat import Laying, laid
@@ -97,8 +97,7 @@ def dress(
         collider=body,
         contact=DRESSING,
         holds=holds,
-        checkpoint=checkpoint,
-        keep=True,
+        checkpoint=checkpoint and Checkpoint(checkpoint, keep=True),
         **stages.hooks(open_, 0, timing.sewing()),
     )
     gap = seam_gap(cloth, open_, sewn.positions)
@@ -120,8 +119,7 @@ def dress(
                 collider=body,
                 contact=contact,
                 holds=robe_holds(pattern, cloth, shut, stitch, x),
-                checkpoint=file,
-                keep=True,
+                checkpoint=file and Checkpoint(file, keep=True),
                 **stages.hooks(shut, sum(run.frames for run in runs), phases),
             )
         )
@@ -171,7 +169,7 @@ def _frames(phases: tuple[Phase, ...]) -> int:
 
 def _poses(dressing: Schedule, phases: tuple[Phase, ...]) -> list[Pose]:
     """The figure's pose at the end of every frame."""
-    return [dressing.pose_of(moment.body[1]) for moment in schedule(phases)]
+    return [dressing.pose_of(frame.body[1]) for frame in schedule(phases)]
 
 
 def _laying(figure: FigureLike) -> Laying:

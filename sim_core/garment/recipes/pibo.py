@@ -15,7 +15,7 @@ from sim_core import metrics
 from sim_core.body import Beneath, Surface
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
-from sim_core.cloth import Contact, Drape, Holds, Phase, drape
+from sim_core.cloth import Checkpoint, Contact, Drape, Holds, Phase, drape
 from sim_core.cloth.contact.distance_field import DistanceField, field_of, united
 from sim_core.cloth.run.drape_run import ENGINE_VERSION
 from sim_core.errors import SimCoreError
@@ -182,12 +182,11 @@ class _Hooks:
                 first + index, np.concatenate([left, left * np.array([-1.0, 1.0, 1.0], left.dtype)])
             )
 
-        path = self.checkpoint
+        path, last = self.checkpoint, run == len(self.phases) - 1
         return {
             "progress": told if self.progress else None,
             "on_frame": heard if self.on_frame else None,
-            "checkpoint": path.with_name(f"{path.name}.{run}") if path else None,
-            "keep": run < len(self.phases) - 1 and path is not None,
+            "checkpoint": path and Checkpoint(path.with_name(f"{path.name}.{run}"), keep=not last),
         }
 
     def finished(self) -> None:

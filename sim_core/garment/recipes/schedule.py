@@ -9,7 +9,7 @@ import numpy as np
 
 from sim_core.body.pose import Pose
 from sim_core.cloth import MovingGrid, Phase
-from sim_core.cloth.run.drape_run import FRAME
+from sim_core.cloth.step import FRAME
 
 __all__ = ["Schedule"]
 
