@@ -172,6 +172,7 @@ def test_home_looks_level(page):
     assert displayed(page)[1] == pytest.approx(before["eye"], abs=1e-3)
 
 
+@pytest.mark.nightly
 def test_less_motion_turns_and_levels_at_once(hall, chromium):
     context = chromium.new_context(viewport=VIEW, reduced_motion="reduce")
     page = context.new_page()
@@ -189,14 +190,14 @@ def test_less_motion_turns_and_levels_at_once(hall, chromium):
     context.close()
 
 
-@pytest.mark.parametrize("chord", ["Control+q", "Alt+e", "Meta+q", "Control+Home"])
+@pytest.mark.parametrize("chord", by_day(["Control+q"], ["Control+q", "Alt+e", "Meta+q", "Control+Home"]))
 def test_chords_are_the_browsers(page, chord):
     before = still(page)
     page.evaluate(CHORD, chord.split("+"))
     assert still(page) == before
 
 
-@pytest.mark.parametrize("where", ["field", "dialog"])
+@pytest.mark.parametrize("where", by_day(["dialog"], ["field", "dialog"]))
 def test_typing_and_windows_keep_their_keys(page, where):
     before = still(page)
     if where == "field":
@@ -259,7 +260,7 @@ def caption_names(page, title: str) -> None:
     )
 
 
-@pytest.mark.parametrize("way", ["dot by key", "dot by mouse", "list"])
+@pytest.mark.parametrize("way", by_day(["dot by key"], ["dot by key", "dot by mouse", "list"]))
 def test_enter_after_a_jump_opens_what_the_caption_names(page, way):
     if not page.locator("[data-testid=minimap-plan]").is_visible():
         page.click("[data-testid=minimap-toggle]")

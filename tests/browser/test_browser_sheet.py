@@ -3,6 +3,7 @@
 import pytest
 from bench.browser import CHOOSE, PATIENCE, displayed
 from bench.readable import CROWDED, TARGETS
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -136,6 +137,7 @@ def test_sheet_leaves_the_exhibit_in_sight(page):
     assert page.evaluate(REACHED, "[data-testid=panel-close]")
 
 
+@pytest.mark.nightly
 def test_nothing_overlaps(page):
     wrong = []
     for lang in ("zh", "en"):
@@ -211,6 +213,7 @@ def test_sheet_by_thumb(page):
     assert page.locator("dialog[open]").count() == 0  # nor did the tap reach what came to lie under it
 
 
+@pytest.mark.nightly
 def test_folding_keeps_the_exhibit_turned(page):
     opened(page)
     page.focus(FOLD)
@@ -232,7 +235,7 @@ def test_folding_keeps_the_exhibit_turned(page):
     assert bearing() == pytest.approx(turned, abs=1e-3)
 
 
-@pytest.mark.parametrize("window", ["list", "settings", "help", "hall-survey"])
+@pytest.mark.parametrize("window", by_day(["hall-survey"], ["list", "settings", "help", "hall-survey"]))
 def test_windows_fit(page, window):
     """The hall's questionnaire is among them: everybody can reach it."""
     closed(page)
@@ -263,6 +266,7 @@ def test_windows_fit(page, window):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_enlarged_picture_is_large(page):
     opened(page)
     page.tap("[data-testid=tab-pictures]")

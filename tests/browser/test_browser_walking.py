@@ -49,7 +49,7 @@ def test_convex_corner_is_rounded(visit):
     assert track.shown[-1, 1] < 0.9  # round the corner, not stuck before it
 
 
-@pytest.mark.parametrize("aside", [0.0, 0.12], ids=["head-on", "aside"])
+@pytest.mark.parametrize("aside", by_day([0.0], [0.0, 0.12]), ids=["head-on", "aside"])
 def test_round_stand(visit, aside):
     place(visit, -5.0 + aside, 2.5, 0.0)
     track = walk(visit, hold=3.0)
@@ -71,16 +71,19 @@ def test_key_to_camera(visit):
 
 @pytest.mark.parametrize(
     ("key", "direction"),
-    [
-        ("KeyW", (0, -1)),
-        ("ArrowUp", (0, -1)),
-        ("KeyS", (0, 1)),
-        ("ArrowDown", (0, 1)),
-        ("KeyA", (-1, 0)),
-        ("ArrowLeft", (-1, 0)),
-        ("KeyD", (1, 0)),
-        ("ArrowRight", (1, 0)),
-    ],
+    by_day(
+        [("KeyS", (0, 1)), ("ArrowRight", (1, 0))],
+        [
+            ("KeyW", (0, -1)),
+            ("ArrowUp", (0, -1)),
+            ("KeyS", (0, 1)),
+            ("ArrowDown", (0, 1)),
+            ("KeyA", (-1, 0)),
+            ("ArrowLeft", (-1, 0)),
+            ("KeyD", (1, 0)),
+            ("ArrowRight", (1, 0)),
+        ],
+    ),
 )
 def test_eight_keys(visit, key, direction):
     place(visit, 0.0, 3.0, 0.0)

@@ -221,6 +221,7 @@ def test_each_scale_survives_pairwise_and_polychoric(capsys):
 # ---- over HTTP and in the report ---------------------------------------------------------------------------------
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_reverse_over_http_is_that_of_the_command(hall, capsys):
     scores = np.column_stack([likert_sample(40, 1), likert_sample(40, 2)[:, :2]])

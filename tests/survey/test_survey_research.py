@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pyreadstat
 import pytest
+from full_matrix import by_day
 from openpyxl import load_workbook
 from survey_samples import ASSETS, likert_sample, submission
 
@@ -67,7 +68,7 @@ READERS = {
 }
 
 
-@pytest.mark.parametrize("kind", READERS)
+@pytest.mark.parametrize("kind", by_day(["csv", "xlsx"], READERS))
 def test_each_format_comes_with_its_type_its_name_and_every_answer(hall, researcher, kind):
     fill(hall, twelve(12))
     reply = hall.client.get(f"{BASE}/garment/export/{kind}", headers=researcher)
@@ -141,7 +142,7 @@ UNFIT = {
 }
 
 
-@pytest.mark.parametrize("case", UNFIT)
+@pytest.mark.parametrize("case", by_day(["one answer"], UNFIT))
 def test_answers_that_cannot_be_analysed_are_422_with_the_reason(hall, researcher, case):
     table, code, reason = UNFIT[case]
     fill(hall, table())
@@ -154,6 +155,7 @@ def test_answers_that_cannot_be_analysed_are_422_with_the_reason(hall, researche
     assert told["remedy"]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_an_item_that_nobody_saw_and_an_item_that_is_none_are_named(hall, researcher):
     garment = hall.garment
