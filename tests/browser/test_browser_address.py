@@ -172,12 +172,15 @@ def test_loading_again_comes_back_to_spot_heading_and_eye(plain_hall, page):
     after = pose(page)
     for name in ("x", "z", "yaw", "pitch", "eye"):
         assert after[name] == pytest.approx(before[name], abs=0.02), name
+
+    def walked() -> float:
+        return math.hypot(pose(page)["x"] - before["x"], pose(page)["z"] - before["z"])
+
     page.keyboard.down("KeyW")  # and the server stands there as well
-    page.wait_for_timeout(400)
+    soon(page, lambda: walked() > 0.05)
     page.keyboard.up("KeyW")
-    page.wait_for_timeout(400)
-    walked = math.hypot(pose(page)["x"] - before["x"], pose(page)["z"] - before["z"])
-    assert 0.05 < walked < 2.0
+    page.wait_for_function("() => hall.ahead() === 0", timeout=PATIENCE)  # its last word has come
+    assert 0.05 < walked() < 2.0
 
 
 @pytest.mark.nightly

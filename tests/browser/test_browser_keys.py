@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from bench.browser import displayed, enter
+from bench.browser import displayed, enter, soon
 from bench.track import place
 from full_matrix import by_day
 from plain_hall import EXHIBIT, write_plain_hall
@@ -148,7 +148,14 @@ def test_turning_while_walking_walks_round(page):
     before = still(page)
     page.keyboard.down("w")
     page.keyboard.down("q")
-    page.wait_for_timeout(1200)
+    page.wait_for_function(
+        """({ x, z, yaw }) => {
+          const at = hall.pose();
+          return at.yaw > yaw + 0.8 && at.z < z - 0.3 && at.x < x - 0.1;
+        }""",
+        arg=before,
+        timeout=30_000,
+    )
     page.keyboard.up("q")
     page.keyboard.up("w")
     after = still(page)
@@ -232,8 +239,7 @@ def test_in_the_close_up_the_arrows_turn_the_exhibit(page):
     page.keyboard.press("Shift+ArrowLeft")
     page.keyboard.press("ArrowLeft")
     page.keyboard.press("q")
-    page.wait_for_timeout(500)
-    assert math.dist(displayed(page), seen) > 0.05
+    soon(page, lambda: math.dist(displayed(page), seen) > 0.05)
     page.keyboard.press("Escape")
     page.wait_for_function("() => !hall.opened()")
     after = still(page)

@@ -1,7 +1,7 @@
 """Small windows: phones upright and lying down, and a desk at 200 % zoom. Exhibit and text share what there is."""
 
 import pytest
-from bench.browser import CHOOSE, PATIENCE, displayed
+from bench.browser import CHOOSE, PATIENCE, displayed, soon
 from bench.readable import CROWDED, TARGETS
 from full_matrix import by_day
 
@@ -166,9 +166,12 @@ def test_text_can_be_read_to_its_end(page):
     for _ in range(60):
         page.mouse.wheel(0, 400)
         page.wait_for_timeout(20)
-    page.wait_for_timeout(300)
-    box = last.bounding_box()
-    assert box["y"] + box["height"] <= body["y"] + body["height"] + 1
+
+    def end() -> float:
+        box = last.bounding_box()
+        return box["y"] + box["height"]
+
+    soon(page, lambda: end() <= body["y"] + body["height"] + 1)
     assert page.evaluate(REACHED, "[data-testid=exhibit-text] > :last-child")
 
 
