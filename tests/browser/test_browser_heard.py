@@ -80,6 +80,7 @@ def test_hall(page):
     assert heard(page, "hall") == []
 
 
+@pytest.mark.nightly
 def test_near_an_exhibit(page):
     closed(page)
     stand_before(page, EXHIBIT)
@@ -99,6 +100,7 @@ def test_windows(page, window):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_plan_folded_and_open(page):
     closed(page)
     wrong = []

@@ -80,6 +80,7 @@ def test_hall_and_windows(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_plan(page):
     go_in(page)
     toggle = page.locator("[data-testid=minimap-toggle]")
@@ -91,6 +92,7 @@ def test_plan(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_panel(page):
     go_in(page)
     page.click("[data-testid=list]")

@@ -215,6 +215,7 @@ def test_cloth_is_shaded_towards_the_visitor(page):
     assert all(all(mesh) for mesh in found)
 
 
+@pytest.mark.nightly
 def test_text_in_both_languages(page):
     opened(page)
     page.click("[data-testid=tab-intro]")

@@ -15,7 +15,6 @@ from typing import Any
 import pytest
 from build_processes import with_scarf
 from content_house import edit, make_house
-from full_matrix import by_day
 from stored_room import store_room
 
 from hall_app.content import load
@@ -201,7 +200,8 @@ def test_what_fails_beside_takes_nothing_else_with_it(lit, monkeypatch):
     alone(story())
 
 
-@pytest.mark.parametrize("times", by_day([2], [1, 2]))
+@pytest.mark.nightly
+@pytest.mark.parametrize("times", [1, 2])
 def test_a_grid_that_failed_is_begun_again_once_and_then_told(lit, monkeypatch, times: int):
     folder, house = lit
     fail = broken_once(lambda: None, times)

@@ -373,6 +373,7 @@ def test_edits_show_without_restart_and_bad_ones_do_not(own_hall):
     assert problems() == []
 
 
+@pytest.mark.nightly
 def test_a_moved_exhibit_stands_in_the_way_at_once(own_hall):
     socket, _ = visitor(own_hall)
     with socket:

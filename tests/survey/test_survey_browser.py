@@ -202,6 +202,7 @@ def test_a_reload_and_another_language_keep_what_was_chosen(visit, site):
     assert page.locator("input:checked").count() == 0
 
 
+@pytest.mark.nightly
 def test_a_lost_receipt_is_retried_under_the_same_id(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)

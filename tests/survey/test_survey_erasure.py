@@ -264,6 +264,7 @@ def test_what_an_earlier_release_erased_goes_with_the_upgrade(tmp_path):
         assert store.count("garment", 1) == 6  # five of the first release, and the one whose rows went
 
 
+@pytest.mark.nightly
 def test_a_backup_holds_nothing_that_was_withdrawn_before(service, tmp_path):
     gone, kept = a_body(1), a_body(2)
     posted(service, gone)

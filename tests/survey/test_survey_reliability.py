@@ -389,6 +389,7 @@ def test_columns_of_text_are_named_and_our_own_export_s_are_not(tmp_path, capsys
     assert note["items"] == ["who"]
 
 
+@pytest.mark.nightly
 def test_points_tell_the_scale_of_a_foreign_table(foreign, capsys):
     found = told_by(capsys, foreign, "--reverse", "a1", "--points", 7)
     messages = {note["code"]: note["message"] for note in found["warnings"]}

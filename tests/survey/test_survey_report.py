@@ -137,6 +137,7 @@ def test_both_languages_have_the_same_words():
         assert set(re.findall(r"{(\w+)}", text)) == set(re.findall(r"{(\w+)}", texts["en"][key])), key
 
 
+@pytest.mark.nightly
 def test_a_platform_report_draws_both_roles_and_escapes_what_visitors_wrote():
     table = platform(USER, 60, 1)
     report = build(table, analyse(table.scores, table.items), [Part(platform(ADMIN, 30, 2), ADMIN)])
