@@ -25,7 +25,7 @@ EDGE = 0.06  # [m] as coarse as the tests bake
 
 
 def mesh() -> None:
-    """Panels of both qualities, with a hole, a line and a field of sizes."""
+    """Panels of both qualities: bare, with a hole and a line, and with lines that cross at a narrow angle."""
     from sim_core.mesh import panel_mesh
 
     outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
@@ -33,6 +33,8 @@ def mesh() -> None:
     for quality in ("fair", "best"):
         panel_mesh(outline, edge=0.2, quality=quality)
         panel_mesh(outline, edge=0.2, holes=[hole], constraints=[np.array(line)], quality=quality)
+    narrow = [np.array([[0.2, 0.2], [0.8, 0.24]]), np.array([[0.2, 0.24], [0.8, 0.2]])]
+    panel_mesh(outline, edge=0.1, constraints=narrow, quality="best")
 
 
 def weave() -> None:

@@ -1,7 +1,7 @@
 """Small windows: phones upright and lying down, and a desk at 200 % zoom. Exhibit and text share what there is."""
 
 import pytest
-from bench.browser import CHOOSE, PATIENCE, displayed, soon
+from bench.browser import CHOOSE, PATIENCE, at_rest, displayed, soon
 from bench.readable import CROWDED, TARGETS
 from full_matrix import by_day
 
@@ -110,7 +110,7 @@ def sound(page, what: str) -> list[str]:
 
 def exhibit_is_framed(page) -> None:
     """The exhibit stands whole in what is free: below the bar, above or beside the sheet."""
-    page.wait_for_timeout(600)
+    at_rest(page)
     left, top, right, bottom = page.evaluate(DRAWN)
     view, panel = page.viewport_size, page.locator(PANEL).bounding_box()
     tools = page.locator(".tools").bounding_box()
@@ -190,10 +190,10 @@ def test_sheet_by_keyboard(page):
     page.keyboard.press("Space")
     assert page.get_attribute(FOLD, "aria-expanded") == "true"
     assert page.locator(f"#{controlled}").is_visible()
-    page.wait_for_timeout(600)  # the exhibit has taken its place
+    seen = at_rest(page)  # the exhibit has taken its place
     page.focus("[data-testid=sheet-intro]")
     page.evaluate("() => { document.querySelector('.panel-body').scrollTop = 0; }")
-    before, seen = page.evaluate("() => document.querySelector('.panel-body').scrollTop"), displayed(page)
+    before = page.evaluate("() => document.querySelector('.panel-body').scrollTop")
     for _ in range(6):
         page.keyboard.press("ArrowDown")
     # It is read, not turned; how soon depends on how long a frame takes.
