@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from full_matrix import by_day
 
 from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
 from sim_core.cloth.scenes import equilateral_sheet
@@ -42,7 +43,7 @@ def test_pins_go_where_they_are_led_and_are_let_go() -> None:
     assert x[pins[1:], 1].max() < start[pins[1:], 1].min() - 0.005
 
 
-@pytest.mark.parametrize("seed", [0, 3])
+@pytest.mark.parametrize("seed", by_day([0], [0, 3]))
 def test_pins_thrown_about_within_a_frame_do_not_break_layers(seed: int) -> None:
     """Neighbouring pins are torn apart by several edges: the frame is done again, and the cloth slows down after."""
     rest, faces = equilateral_sheet(1.0, 1.0, 0.05)

@@ -102,6 +102,7 @@ def test_it_settles_on_the_figure_as_the_arms_came_down() -> None:
     assert still[-1].rest == timing.at_rest
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_coat_survives_file_detail_and_model(
     coat: Garment, ling: Weave, figure: Figure, tmp_path: Path

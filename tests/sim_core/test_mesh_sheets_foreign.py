@@ -377,6 +377,7 @@ def test_a_line_drawn_twice_is_one_and_an_inner_line_ends_at_a_hole(tmp_path, ca
     assert "1 inner lines are cut off" in told.err
 
 
+@pytest.mark.nightly
 def test_an_outline_of_a_hundred_thousand_teeth_and_a_line_in_it(tmp_path):
     """Growing it by half a millimetre, to see what lies in it, took minutes."""
     teeth = "".join(f"L{10 + k * 0.004:.3f} {10 + (k % 2) * 0.5}" for k in range(100_000))
