@@ -13,6 +13,7 @@ ROOMS = ("sim_core", "survey", "hall_app")
 ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}
 HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib"}
 DOZEN = 12
+FEW = 8
 
 
 def modules(room: str) -> list[Path]:
@@ -87,6 +88,18 @@ def test_heavy_packages_are_imported_where_needed(room):
 def test_modules_stay_short(room):
     for path in modules(room):
         assert len(path.read_text("utf-8").splitlines()) <= 400, path.relative_to(ROOT)
+
+
+def test_functions_of_cloth_take_few_arguments():
+    """Compiled loops too: what belongs together is a record, and has names."""
+    long = []
+    for path in sorted((ROOT / "sim_core/cloth").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.Lambda):
+                given = [arg.arg for arg in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
+                if len(set(given) - {"self"}) > FEW:
+                    long.append(f"{path.relative_to(ROOT)}:{node.lineno}: {len(given)}")
+    assert not long, "\n".join(long)
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ def told(*words: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, env=env)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_a_test_that_depends_on_the_machine_is_named_with_machine_and_round(tmp_path):
     (tmp_path / "test_odd.py").write_text(ODD)

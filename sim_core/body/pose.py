@@ -12,7 +12,7 @@ import numpy as np
 from sim_core.body.joints import JOINTS, OTHER_SIDE, product
 from sim_core.body.limits import check_limits
 from sim_core.errors import SimCoreError
-from sim_core.validation import finite, of_kind, told, triple
+from sim_core.validation import excerpt, finite, instance_of, vector3
 
 __all__ = ["POSES", "T_POSE", "Pose", "pose_named"]
 
@@ -44,12 +44,12 @@ class Pose:
         name gives; shift: the way (3,) [m] of the root. `{ name = "display", joints = { elbow_l = [0, -30, 0] } }`.
         where: file and key of the table, for errors. Raises SimCoreError naming key, value, limit and remedy.
         """
-        table = of_kind(where, table, Mapping, 'give a table, e.g. { name = "display" }')
+        table = instance_of(where, table, Mapping, 'give a table, e.g. { name = "display" }')
         if unknown := [key for key in table if key not in KEYS]:
-            raise SimCoreError(f"{where}: no key {told(unknown[0])} – there are {', '.join(KEYS)}")
+            raise SimCoreError(f"{where}: no key {excerpt(unknown[0])} – there are {', '.join(KEYS)}")
         base = pose_named(table["name"], f"{where}: name") if "name" in table else T_POSE
         remedy = "give a table of joint = [x, y, z] in degrees"
-        joints = of_kind(f"{where}: joints", table.get("joints", {}), Mapping, remedy)
+        joints = instance_of(f"{where}: joints", table.get("joints", {}), Mapping, remedy)
         turns = _turns(joints, f"{where}: joints")
         shift = _shift(table.get("shift", (0.0, 0.0, 0.0)), f"{where}: shift")
         pose = _posed(dict(base.turns) | turns, shift)
@@ -160,17 +160,17 @@ def _posed(turns: Mapping[str, Quaternion], shift: Sequence[float]) -> Pose:
 
 
 def _shift(value: object, name: str) -> Vector:
-    shift = triple(name, value, "in metres")
+    shift = vector3(name, value, "in metres")
     if max(abs(c) for c in shift) > _FARTHEST:
-        raise SimCoreError(f"{name}: {told(value)} – at most {_FARTHEST:g} m each way")
+        raise SimCoreError(f"{name}: {excerpt(value)} – at most {_FARTHEST:g} m each way")
     return shift
 
 
 def _turns(vectors: Mapping[str, Sequence[float]], where: str) -> dict[str, Quaternion]:
     """Quaternions by joint of rotation vectors (3,) [degrees]."""
     if unknown := [joint for joint in vectors if joint not in JOINTS]:
-        raise SimCoreError(f"{where}: no joint {told(unknown[0])} – there are {', '.join(JOINTS)}")
-    return {joint: _turn(triple(f"{where}: {joint}", v, "in degrees")) for joint, v in vectors.items()}
+        raise SimCoreError(f"{where}: no joint {excerpt(unknown[0])} – there are {', '.join(JOINTS)}")
+    return {joint: _turn(vector3(f"{where}: {joint}", v, "in degrees")) for joint, v in vectors.items()}
 
 
 def _turn(degrees: Sequence[float]) -> Quaternion:
@@ -267,5 +267,5 @@ POSES: dict[str, tuple[Pose, str]] = {
 def pose_named(name: str, where: str = "pose") -> Pose:
     """The pose of that name; raises SimCoreError with the names there are."""
     if not isinstance(name, str) or name not in POSES:
-        raise SimCoreError(f"{where}: none called {told(name)} – there are {', '.join(POSES)}")
+        raise SimCoreError(f"{where}: none called {excerpt(name)} – there are {', '.join(POSES)}")
     return POSES[name][0]

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from sim_core.cloth.contact import Box, Capsule, Cylinder, GridSdf, HalfSpace, Holds, Solid, Union
-from sim_core.cloth.run import Certificate, Drape, Live, drape
+from sim_core.cloth.run import Certificate, Checkpoint, Drape, Live, drape
 from sim_core.cloth.sheet import Material, Sheet
 from sim_core.cloth.step import Air, Contact, Pace, Phase
 
@@ -22,6 +22,7 @@ __all__ = [
     "Box",
     "Capsule",
     "Certificate",
+    "Checkpoint",
     "Choice",
     "Contact",
     "Cylinder",

@@ -171,10 +171,11 @@ def run(args: argparse.Namespace) -> int:
         size=args.size,
         wind=args.wind,
         pins=args.pins,
-        gusts=args.gusts,
-        layers=1e-3 * args.layers,
-        seed=args.seed,
     )
+    if args.gusts:
+        made = made.gusty(args.gusts, args.seed)
+    if args.layers:
+        made = made.layered(1e-3 * args.layers)
     total = round(made.phases[0].seconds * 25)
     heard = _Heard(made, total, told=not args.json and sys.stderr.isatty())
     settings |= {"precision": args.precision, "courant": args.courant or made.courant}
@@ -249,14 +250,14 @@ def _pace(settings: dict[str, Any]) -> Pace:
 
 
 def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Path | None) -> Drape:
+    from sim_core.cloth.run.checkpoint import Checkpoint
+
     return made.drape(
         substeps=settings["substeps"],
         integrator=settings["integrator"],
         pace=_pace(settings),
         on_frame=heard.frame,
-        checkpoint=resume,
-        keep=resume is not None,
-        only_own=True,
+        checkpoint=resume and Checkpoint(resume, keep=True, only_own=True),
         certify=settings["certify"],
     )
 

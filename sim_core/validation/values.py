@@ -21,7 +21,7 @@ MOST = 2**31 - 1  # of anything that is counted
 Kind = TypeVar("Kind")
 
 
-def told(value: object, most: int = 60) -> str:
+def excerpt(value: object, most: int = 60) -> str:
     """The value in one line, cut where it is longer than a line bears."""
     try:
         text = str(value) if isinstance(value, numbers.Real) else repr(value)
@@ -31,14 +31,14 @@ def told(value: object, most: int = 60) -> str:
     return text if len(text) <= most else text[:most] + "…"
 
 
-def of_kind(name: str, value: object, kind: type[Kind], remedy: str) -> Kind:
+def instance_of(name: str, value: object, kind: type[Kind], remedy: str) -> Kind:
     """The value, if it is of that kind."""
     if not isinstance(value, kind):
         raise SimCoreError(f"{name}: a {type(value).__name__} – {remedy}")
     return value
 
 
-def called(name: str, value: object) -> None:
+def optional_callable(name: str, value: object) -> None:
     """Something to be called, or None."""
     if value is not None and not callable(value):
         raise SimCoreError(f"{name}: a {type(value).__name__} – give a function, or None")
@@ -47,7 +47,7 @@ def called(name: str, value: object) -> None:
 def one_of(name: str, value: object, known: tuple[str, ...]) -> None:
     """One of the words that are known."""
     if not isinstance(value, str) or value not in known:
-        raise SimCoreError(f"{name}: {told(value)} – there are {', '.join(known)}")
+        raise SimCoreError(f"{name}: {excerpt(value)} – there are {', '.join(known)}")
 
 
 def finite(
@@ -70,43 +70,43 @@ def finite(
         bounds += [f"at most {high:g}"] if most is not None or real > high else []
         bounds += [f"at least {-GREATEST:g}"] if real < low and least is None else []
         raise SimCoreError(
-            f"{name}: {told(value)} – must be a finite number{', ' * bool(bounds)}{', '.join(bounds)}"
+            f"{name}: {excerpt(value)} – must be a finite number{', ' * bool(bounds)}{', '.join(bounds)}"
         )
     return real
 
 
-def whole(name: str, value: object, least: int, why: str, most: int = MOST) -> int:
+def integer(name: str, value: object, least: int, why: str, most: int = MOST) -> int:
     """A whole number from `least` to `most`, which `why` tells about."""
     number = int(value) if isinstance(value, numbers.Integral) and not isinstance(value, bool) else least - 1
     if not least <= number <= most:
-        raise SimCoreError(f"{name}: {told(value)} – {why}")
+        raise SimCoreError(f"{name}: {excerpt(value)} – {why}")
     return number
 
 
-def numeric(name: str, value: object, what: str) -> np.ndarray:
+def numeric_array(name: str, value: object, what: str) -> np.ndarray:
     """The value as an array of real numbers, not copied where it is one; `what` is meant."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):  # ragged lists
         array = np.array(None)
     if array.dtype.kind not in "iuf":
-        raise SimCoreError(f"{name}: {told(value)} – no array of numbers; {what}")
+        raise SimCoreError(f"{name}: {excerpt(value)} – no array of numbers; {what}")
     return array
 
 
-def row(
+def vector(
     name: str, value: object, what: str, count: int, *, least: float = -FURTHEST, most: float = FURTHEST
 ) -> tuple[float, ...]:
     """So many finite numbers, none beyond its bounds; `what` is meant."""
-    array = numeric(name, value, what)
+    array = numeric_array(name, value, what)
     if array.shape != (count,) or not ((array >= least) & (array <= most)).all():
-        raise SimCoreError(f"{name}: {told(value)} – {what}")
+        raise SimCoreError(f"{name}: {excerpt(value)} – {what}")
     return tuple(float(one) for one in array)
 
 
-def triple(name: str, value: object, unit: str) -> tuple[float, float, float]:
+def vector3(name: str, value: object, unit: str) -> tuple[float, float, float]:
     """Three finite numbers of at most a million."""
-    x, y, z = row(name, value, f"expected three finite numbers (x, y, z) {unit}", 3)
+    x, y, z = vector(name, value, f"expected three finite numbers (x, y, z) {unit}", 3)
     return x, y, z
 
 
@@ -115,7 +115,9 @@ def coordinates(name: str, value: object, shape: tuple[int, ...] | None = None) 
 
     shape: what it must have, told with `needs`. The first vertex that is wrong is named.
     """
-    array = np.array(numeric(name, value, "one row of coordinates [m] for each vertex"), float, order="C")
+    array = np.array(
+        numeric_array(name, value, "one row of coordinates [m] for each vertex"), float, order="C"
+    )
     if shape is not None and array.shape != shape:
         raise SimCoreError(f"{name}: shape {array.shape} – the sheet needs {shape}")
     if not array.size:
@@ -132,7 +134,7 @@ def coordinates(name: str, value: object, shape: tuple[int, ...] | None = None) 
 
 def points(name: str, value: object) -> np.ndarray:
     """Points (N, 3) float64 [m], N of 0 or more, all finite and within reach."""
-    array = np.ascontiguousarray(numeric(name, value, "points (N, 3) are meant"), float)
+    array = np.ascontiguousarray(numeric_array(name, value, "points (N, 3) are meant"), float)
     if array.ndim != 2 or array.shape[1] != 3:
         raise SimCoreError(f"{name}: shape {array.shape} – points (N, 3) are meant")
     return coordinates(name, array) if len(array) else array
@@ -148,39 +150,39 @@ def triangles(name: str, value: object, count: int | None = None) -> np.ndarray:
     if faces.ndim != 2 or faces.shape[1:] != (3,) or not kind or not len(faces):
         raise SimCoreError(f"{name}: shape {faces.shape}, {faces.dtype} – expected (F, 3) integers, F > 0")
     if count is not None:
-        within(name, faces, count)
+        index_range(name, faces, count)
     return faces
 
 
-def within(name: str, index: np.ndarray, count: int) -> None:
+def index_range(name: str, index: np.ndarray, count: int) -> None:
     """Whole numbers of vertices that there are."""
     if index.size and (index.min() < 0 or index.max() >= count):
         wrong = index.max() if index.max() >= count else index.min()
         raise SimCoreError(f"{name}: index {wrong} – there are vertices 0 to {count - 1}")
 
 
-def vertex_numbers(name: str, value: object, count: int = MOST) -> tuple[int, ...]:
+def vertex_indices(name: str, value: object, count: int = MOST) -> tuple[int, ...]:
     """Vertices by their numbers, 0 to count - 1."""
     try:
         found = tuple(value)  # type: ignore[arg-type]
     except TypeError:
         raise SimCoreError(
-            f"{name}: {told(value)} – give a sequence of vertices, such as [0, 9]; none: ()"
+            f"{name}: {excerpt(value)} – give a sequence of vertices, such as [0, 9]; none: ()"
         ) from None
     for one in found:
         if not isinstance(one, numbers.Integral) or isinstance(one, bool):
-            raise SimCoreError(f"{name}: {told(one)} – vertices are named by whole numbers")
+            raise SimCoreError(f"{name}: {excerpt(one)} – vertices are named by whole numbers")
         if not 0 <= int(one) < count:
-            raise SimCoreError(f"{name}: index {told(one)} – there are vertices 0 to {count - 1}")
+            raise SimCoreError(f"{name}: index {excerpt(one)} – there are vertices 0 to {count - 1}")
     return tuple(int(one) for one in found)
 
 
 def vertex_pairs(name: str, value: object, count: int) -> np.ndarray:
     """Pairs of vertices (K, 2) int32, K of 0 or more."""
-    array = numeric(name, value, "pairs of vertices (K, 2)")
+    array = numeric_array(name, value, "pairs of vertices (K, 2)")
     if array.size == 0:
         return np.zeros((0, 2), np.int32)
     if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != 2:
         raise SimCoreError(f"{name}: shape {array.shape}, {array.dtype} – expected whole numbers (K, 2)")
-    within(name, array, count)
+    index_range(name, array, count)
     return np.ascontiguousarray(array, np.int32)

@@ -81,6 +81,27 @@ def displayed(page) -> list[float]:
     return page.evaluate("() => hall.displayed()")
 
 
+# Where the picture is seen from, once twelve frames in a row have not changed it.
+AT_REST = """
+async () => {
+  const frames = (n) => new Promise((done) => {
+    const next = () => (n-- ? requestAnimationFrame(next) : done());
+    next();
+  });
+  for (let before = null; ; before = hall.displayed().join()) {
+    await frames(12);
+    if (before === hall.displayed().join()) return hall.displayed();
+  }
+}
+"""
+
+
+def at_rest(page) -> list[float]:
+    """Where the picture is seen from [m] once its camera has come to rest, however long a frame takes."""
+    page.wait_for_timeout(300)  # it sets out
+    return page.evaluate(AT_REST)
+
+
 def soon(page, holds: Callable[[], object], patience: float = 30.0) -> None:
     """Wait until `holds()` is true: what a page does late, on a machine that has much else to do, it still does."""
     end = time.monotonic() + patience

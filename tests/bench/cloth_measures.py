@@ -172,7 +172,7 @@ def layers(cases: Sequence[int], frames: int, vertices: int | None, tell: Told) 
     for case in cases:
         for apart in (0.0, LAYERS):
             tell(f"case {case}, {'with' if apart else 'without'}")
-            made = scene("teapot", case, frames=frames, vertices=vertices, layers=apart)
+            made = scene("teapot", case, frames=frames, vertices=vertices).layered(apart)
             spent = [time.process_time()]
             end = made.drape(on_frame=lambda *_, spent=spent: spent.append(time.process_time()))
             crossed = intersections(end.positions, made.sheet.faces)

@@ -123,6 +123,8 @@ def walk(page, *, hold: float, keys: tuple[str, ...] = ("KeyW",), settle: float 
     for key in keys:
         page.keyboard.down(key)
     page.wait_for_timeout(1000 * hold)
+    # A busy machine may not have drawn the walk yet.
+    page.wait_for_function("() => window.__track.length >= 10", timeout=PATIENCE)
     track = page.evaluate("() => window.__track.slice()")
     for key in keys:
         page.keyboard.up(key)

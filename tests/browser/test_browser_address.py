@@ -114,6 +114,7 @@ def test_leaving_a_direct_link_leads_beside_the_exhibit(plain_hall, page):
     assert named(page) == (None, "en")
 
 
+@pytest.mark.nightly
 def test_back_closes_a_direct_link_too(plain_hall, page):
     enter(page, f"{plain_hall.url}/?exhibit=box&lang=en")
     is_open(page)
@@ -122,6 +123,7 @@ def test_back_closes_a_direct_link_too(plain_hall, page):
     stands_before_the_box(page)
 
 
+@pytest.mark.nightly
 def test_back_leaves_a_window_over_the_exhibit_as_well(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     open_by_list(page)
@@ -133,6 +135,7 @@ def test_back_leaves_a_window_over_the_exhibit_as_well(plain_hall, page):
     assert page.locator("dialog[open]").count() == 0
 
 
+@pytest.mark.nightly
 def test_a_link_to_nothing_says_so(plain_hall, page):
     enter(page, f"{plain_hall.url}/?exhibit=nowhere&lang=zh")
     page.locator("[data-testid=toast]", has_text="没有找到").wait_for()
@@ -169,12 +172,15 @@ def test_loading_again_comes_back_to_spot_heading_and_eye(plain_hall, page):
     after = pose(page)
     for name in ("x", "z", "yaw", "pitch", "eye"):
         assert after[name] == pytest.approx(before[name], abs=0.02), name
+
+    def walked() -> float:
+        return math.hypot(pose(page)["x"] - before["x"], pose(page)["z"] - before["z"])
+
     page.keyboard.down("KeyW")  # and the server stands there as well
-    page.wait_for_timeout(400)
+    soon(page, lambda: walked() > 0.05)
     page.keyboard.up("KeyW")
-    page.wait_for_timeout(400)
-    walked = math.hypot(pose(page)["x"] - before["x"], pose(page)["z"] - before["z"])
-    assert 0.05 < walked < 2.0
+    page.wait_for_function("() => hall.ahead() === 0", timeout=PATIENCE)  # its last word has come
+    assert 0.05 < walked() < 2.0
 
 
 @pytest.mark.nightly
@@ -219,6 +225,7 @@ def test_a_fresh_visit_begins_at_the_entrance(plain_hall, page):
     assert (pose(page)["x"], pose(page)["z"]) == pytest.approx(ENTRANCE, abs=0.05)
 
 
+@pytest.mark.nightly
 def test_the_language_stays_in_the_address(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=zh")
     page.click("[data-testid=lang-en]")
@@ -234,6 +241,7 @@ def test_the_language_stays_in_the_address(plain_hall, page):
     assert page.locator("html").get_attribute("lang")[:2] == "zh"
 
 
+@pytest.mark.nightly
 def test_esc_leaves_an_exhibit_whose_text_does_not_come(page, plain_hall):
     enter(page, f"{plain_hall.url}/?lang=en")
     page.route("**/api/exhibits/**", lambda route: None)  # never answered
@@ -299,6 +307,7 @@ def test_of_two_edits_the_later_one_stays_though_the_earlier_arrives_after_it(pa
         assert "Later box" in page.evaluate(named_in_list)
 
 
+@pytest.mark.nightly
 def test_language_chosen_on_the_door_stays_in_the_address(page, plain_hall):
     page.goto(f"{plain_hall.url}/?lang=zh")
     page.click("[data-testid=lang-en]")

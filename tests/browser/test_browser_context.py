@@ -8,7 +8,7 @@ from bench.browser import PATIENCE, enter, pose
 from bench.track import place
 from PIL import Image
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.nightly, pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 480, "height": 540}
 NOTE = "[data-testid=curtain-note]"
@@ -93,7 +93,6 @@ def test_in_the_hall(shipped_hall, page):
     page.wait_for_function("(drawn) => hall.framesDrawn() > drawn", arg=drawn)
 
 
-@pytest.mark.nightly
 @pytest.mark.parametrize("exhibit", ["pibo-figure", "mirror"])
 def test_in_a_close_up(shipped_hall, page, exhibit):
     """Studio, environment map, cloth shaded by sight: all as before, twice over."""
@@ -111,7 +110,6 @@ def test_in_a_close_up(shipped_hall, page, exhibit):
     page.locator("[data-testid=panel]").wait_for(state="hidden")
 
 
-@pytest.mark.nightly
 def test_before_entering(shipped_hall, page):
     page.add_init_script("localStorage.setItem('hall.quality', 'high')")
     page.goto(f"{shipped_hall.url}/?lang=zh")
@@ -127,7 +125,6 @@ def test_before_entering(shipped_hall, page):
     same(before, picture(page))
 
 
-@pytest.mark.nightly
 def test_lost_while_the_hall_still_loads(plain_hall, page):
     """Lost before the first picture: once given back, the hall opens within its patience, not after two minutes."""
     page.goto(f"{plain_hall.url}/?lang=en")
@@ -139,7 +136,6 @@ def test_lost_while_the_hall_still_loads(plain_hall, page):
     page.locator(NOTE).wait_for(state="hidden", timeout=PATIENCE)
 
 
-@pytest.mark.nightly
 def test_given_up_it_offers_to_load_again_at_the_same_spot(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     place(page, 1.0, -3.0, 0.7)
@@ -155,7 +151,6 @@ def test_given_up_it_offers_to_load_again_at_the_same_spot(plain_hall, page):
     assert (at["x"], at["z"], at["yaw"]) == pytest.approx((1.0, -3.0, 0.7), abs=0.05)
 
 
-@pytest.mark.nightly
 def test_given_back_late_it_is_drawn_all_the_same(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     before = settled(page)

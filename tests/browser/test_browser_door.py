@@ -4,6 +4,7 @@ import pytest
 from bench.browser import enter
 from bench.door import BITS, ROUND_TRIP, longest_stand, slow_visit
 from bench.wire import wire
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -64,10 +65,12 @@ def test_reloading_brings_nothing_large_again(plain_hall, chromium):
         page.close()
 
 
-@pytest.mark.parametrize("size", [(1280, 720), (390, 844)], ids=["desk", "phone"])
-def test_language_needs_no_line(plain_hall, chromium, size):
+@pytest.mark.parametrize(
+    ("width", "height"), by_day([(390, 844)], [(1280, 720), (390, 844)]), ids=["desk", "phone"]
+)
+def test_language_needs_no_line(plain_hall, chromium, width, height):
     """Before anything else has come, and with nothing more coming."""
-    page = chromium.new_page(viewport={"width": size[0], "height": size[1]})
+    page = chromium.new_page(viewport={"width": width, "height": height})
     for large in ("**/viser.js", "**/scene/packs/**", "**/static/**", "**/api/**"):
         page.route(large, lambda route: None)  # asked for, never answered
     page.goto(f"{plain_hall.url}/?lang=zh", wait_until="commit")
@@ -92,6 +95,7 @@ def test_language_needs_no_line(plain_hall, chromium, size):
     page.close()
 
 
+@pytest.mark.nightly
 def test_overlay_takes_the_door_over(plain_hall, chromium):
     """One screen, one switch, and whoever stood on a button stands there still."""
     page = chromium.new_page(viewport={"width": 480, "height": 270})
@@ -143,16 +147,19 @@ def refused(page) -> None:
 
 @pytest.mark.parametrize(
     "lost",
-    [
-        "**/viser.js",
-        "**/zstd.wasm",
-        "**/scene/packs/**",
-        "**/hall.packed.js",
-        "**/hall.ahead.js",
-        "**/api/scene",
-    ],
+    by_day(
+        ["**/viser.js"],
+        [
+            "**/viser.js",
+            "**/zstd.wasm",
+            "**/scene/packs/**",
+            "**/hall.packed.js",
+            "**/hall.ahead.js",
+            "**/api/scene",
+        ],
+    ),
 )
-@pytest.mark.parametrize("how", ["404", "offline"])
+@pytest.mark.parametrize("how", by_day(["offline"], ["404", "offline"]))
 def test_what_does_not_come_is_said(plain_hall, chromium, lost, how):
     page = chromium.new_page(viewport={"width": 480, "height": 600})
     page.route(lost, lambda route: route.fulfill(status=404) if how == "404" else route.abort())

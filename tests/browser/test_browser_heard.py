@@ -80,6 +80,7 @@ def test_hall(page):
     assert heard(page, "hall") == []
 
 
+@pytest.mark.nightly
 def test_near_an_exhibit(page):
     closed(page)
     stand_before(page, EXHIBIT)
@@ -87,7 +88,7 @@ def test_near_an_exhibit(page):
     assert heard(page, "near") == []
 
 
-@pytest.mark.parametrize("window", ["list", "help", "settings", "hall-survey"])
+@pytest.mark.parametrize("window", by_day(["list"], ["list", "help", "settings", "hall-survey"]))
 def test_windows(page, window):
     closed(page)
     page.click(f"[data-testid={window}]")
@@ -99,6 +100,7 @@ def test_windows(page, window):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_plan_folded_and_open(page):
     closed(page)
     wrong = []
@@ -108,13 +110,14 @@ def test_plan_folded_and_open(page):
     assert wrong == []
 
 
-@pytest.mark.parametrize("tab", TABS)
+@pytest.mark.parametrize("tab", by_day(["intro"], TABS))
 def test_panel(page, tab):
     opened(page)
     page.click(f"[data-testid=tab-{tab}]")
     assert heard(page, tab) == []
 
 
+@pytest.mark.nightly
 def test_enlarged_picture(page):
     opened(page)
     page.click("[data-testid=tab-pictures]")
@@ -137,6 +140,7 @@ def test_folded_panel(page):
         assert not page.locator("[data-testid=panel-fold]").is_visible()
 
 
+@pytest.mark.nightly
 def test_picture_away(page):
     closed(page)
     page.evaluate("""() => { const gl = window.__viserMutable.scene.__r3f.root.getState().gl.getContext();

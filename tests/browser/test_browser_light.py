@@ -13,7 +13,7 @@ from PIL import Image
 from plain_hall import write_plain_hall
 from running_hall import running_hall
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.nightly, pytest.mark.browser, pytest.mark.slow]
 
 PROGRAM = (sys.executable, str(Path(__file__).parents[1] / "lit_hall.py"))
 VIEW = {"width": 480, "height": 270}

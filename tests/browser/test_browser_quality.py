@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 from bench.browser import enter, soon
-from full_matrix import by_day
 
 pytestmark = pytest.mark.browser
 
@@ -82,6 +81,7 @@ def test_a_hidden_tab_does_not_count(verdicts):
     assert "low" not in {level for _, level in verdicts("medium", runs)}
 
 
+@pytest.mark.nightly
 def test_what_proved_too_much_is_left_alone_longer_each_time(verdicts):
     """Medium runs at 17 ms, high at 60 ms: within ten minutes at most five tries."""
     levels = verdicts("medium", [({"low": 10, "medium": 17, "high": 60}, 600)])
@@ -93,10 +93,9 @@ def test_a_remembered_level_is_tried_before_the_next(verdicts):
     assert all(s > 60 for s, _ in changes(verdicts("medium", [(16.7, 70)], cautious=True)))
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("ratio", "wanted"), by_day([(1, (0.66, 1, 1))], [(1, (0.66, 1, 1)), (2, (1, 1.5, 2)), (3, (1, 1.5, 2))])
-)
+@pytest.mark.parametrize(("ratio", "wanted"), [(1, (0.66, 1, 1)), (2, (1, 1.5, 2)), (3, (1, 1.5, 2))])
 def test_resolution_follows_the_choice(plain_hall, chromium, ratio, wanted):
     context = chromium.new_context(viewport={"width": 360, "height": 640}, device_scale_factor=ratio)
     page = context.new_page()

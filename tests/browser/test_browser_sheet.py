@@ -1,8 +1,9 @@
 """Small windows: phones upright and lying down, and a desk at 200 % zoom. Exhibit and text share what there is."""
 
 import pytest
-from bench.browser import CHOOSE, PATIENCE, displayed
+from bench.browser import CHOOSE, PATIENCE, at_rest, displayed, soon
 from bench.readable import CROWDED, TARGETS
+from full_matrix import by_day
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -109,7 +110,7 @@ def sound(page, what: str) -> list[str]:
 
 def exhibit_is_framed(page) -> None:
     """The exhibit stands whole in what is free: below the bar, above or beside the sheet."""
-    page.wait_for_timeout(600)
+    at_rest(page)
     left, top, right, bottom = page.evaluate(DRAWN)
     view, panel = page.viewport_size, page.locator(PANEL).bounding_box()
     tools = page.locator(".tools").bounding_box()
@@ -136,6 +137,7 @@ def test_sheet_leaves_the_exhibit_in_sight(page):
     assert page.evaluate(REACHED, "[data-testid=panel-close]")
 
 
+@pytest.mark.nightly
 def test_nothing_overlaps(page):
     wrong = []
     for lang in ("zh", "en"):
@@ -164,9 +166,12 @@ def test_text_can_be_read_to_its_end(page):
     for _ in range(60):
         page.mouse.wheel(0, 400)
         page.wait_for_timeout(20)
-    page.wait_for_timeout(300)
-    box = last.bounding_box()
-    assert box["y"] + box["height"] <= body["y"] + body["height"] + 1
+
+    def end() -> float:
+        box = last.bounding_box()
+        return box["y"] + box["height"]
+
+    soon(page, lambda: end() <= body["y"] + body["height"] + 1)
     assert page.evaluate(REACHED, "[data-testid=exhibit-text] > :last-child")
 
 
@@ -185,10 +190,10 @@ def test_sheet_by_keyboard(page):
     page.keyboard.press("Space")
     assert page.get_attribute(FOLD, "aria-expanded") == "true"
     assert page.locator(f"#{controlled}").is_visible()
-    page.wait_for_timeout(600)  # the exhibit has taken its place
+    seen = at_rest(page)  # the exhibit has taken its place
     page.focus("[data-testid=sheet-intro]")
     page.evaluate("() => { document.querySelector('.panel-body').scrollTop = 0; }")
-    before, seen = page.evaluate("() => document.querySelector('.panel-body').scrollTop"), displayed(page)
+    before = page.evaluate("() => document.querySelector('.panel-body').scrollTop")
     for _ in range(6):
         page.keyboard.press("ArrowDown")
     # It is read, not turned; how soon depends on how long a frame takes.
@@ -211,6 +216,7 @@ def test_sheet_by_thumb(page):
     assert page.locator("dialog[open]").count() == 0  # nor did the tap reach what came to lie under it
 
 
+@pytest.mark.nightly
 def test_folding_keeps_the_exhibit_turned(page):
     opened(page)
     page.focus(FOLD)
@@ -232,7 +238,7 @@ def test_folding_keeps_the_exhibit_turned(page):
     assert bearing() == pytest.approx(turned, abs=1e-3)
 
 
-@pytest.mark.parametrize("window", ["list", "settings", "help", "hall-survey"])
+@pytest.mark.parametrize("window", by_day(["hall-survey"], ["list", "settings", "help", "hall-survey"]))
 def test_windows_fit(page, window):
     """The hall's questionnaire is among them: everybody can reach it."""
     closed(page)
@@ -263,6 +269,7 @@ def test_windows_fit(page, window):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_enlarged_picture_is_large(page):
     opened(page)
     page.tap("[data-testid=tab-pictures]")

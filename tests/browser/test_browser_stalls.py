@@ -9,12 +9,11 @@ from bench.browser import enter
 from bench.track import RECORD, place, watch
 from bench.wire import wire
 from corridor_hall import write_corridor_hall
-from full_matrix import by_day
 from running_hall import running_hall
 
 from hall_app.walk import ARREARS
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.nightly, pytest.mark.browser, pytest.mark.slow]
 
 VIEW = {"width": 480, "height": 270}
 SPEED = 1.6  # [m/s]
@@ -60,7 +59,7 @@ SLOWEST = """
 """
 
 
-@pytest.fixture(scope="module", params=by_day(["predict"], ["predict", "server"]))
+@pytest.fixture(scope="module", params=["predict", "server"])
 def corridor(request, chromium, tmp_path_factory):
     """A page in a hall of its own, which may be stopped; the page and the hall's process."""
     work = tmp_path_factory.mktemp("corridor")
@@ -89,7 +88,7 @@ def thrown_back(way: np.ndarray) -> float:
     return float((np.maximum.accumulate(way) - way).max())
 
 
-@pytest.mark.parametrize("stall", by_day([4.0], [1.5, 2.5, 4.0, 5.0]))
+@pytest.mark.parametrize("stall", [1.5, 2.5, 4.0, 5.0])
 def test_the_view_neither_goes_back_nor_leaps(corridor, stall):
     page, process = corridor
     place(page, 0.0, 22.0, 0.0)
@@ -185,7 +184,7 @@ def test_a_cut_line_comes_back_to_where_one_stands(corridor, chromium):
     assert apart <= 0.01  # viser began anew; the picture is the visitor's again
 
 
-@pytest.mark.parametrize("round_trip", by_day([], [0.3, 0.6]))
+@pytest.mark.parametrize("round_trip", [0.3, 0.6])
 def test_ordinary_latency_walks_at_full_speed_in_silence(corridor, chromium, round_trip):
     page, _ = corridor
     if page.evaluate("() => hall.mode()") == "server":

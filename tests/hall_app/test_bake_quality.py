@@ -327,6 +327,11 @@ def test_the_shipped_garments_keep_their_limits_measured_again(shipped: Path, ca
     assert "all limits kept" in text
     for name in ("robe_hall_hausdorff_p99", "robe_self_intersections", "hall_hausdorff_max"):
         assert name in text
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_a_record_that_says_other_than_its_files_is_told_from_the_command(shipped: Path, capsys):
     record = json.loads((baked(shipped, "pibo-figure") / "bake.json").read_text("utf-8"))
     record["errors"] |= {"robe_inside_vertices": 900, "robe_self_intersections": 6000}
     reseal(baked(shipped, "pibo-figure"), errors=record["errors"])

@@ -162,6 +162,7 @@ def test_the_room_and_the_garments_of_the_content_as_it_is_are_kept(tmp_path: Pa
     assert len(list(data.glob("room-*"))) == NEWEST + 1
 
 
+@pytest.mark.nightly
 def test_a_data_folder_that_is_edited_on_and_on_does_not_grow(tmp_path: Path):
     folder = with_scarf(tmp_path / "content")
     toml = folder / "outfits/scarf.toml"

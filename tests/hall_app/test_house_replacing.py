@@ -180,6 +180,7 @@ def test_a_model_that_is_being_copied_leaves_the_last_whole_one(tmp_path: Path, 
     assert "fine.glb" in " ".join(map(str, (*load(folder).problems, *after.unreadable)))
 
 
+@pytest.mark.nightly
 def test_what_fails_beside_takes_nothing_else_with_it(lit, monkeypatch):
     folder, house = lit
     monkeypatch.setattr("hall_app.house.house.shown_room", broken_once(shown_room))
@@ -199,6 +200,7 @@ def test_what_fails_beside_takes_nothing_else_with_it(lit, monkeypatch):
     alone(story())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("times", [1, 2])
 def test_a_grid_that_failed_is_begun_again_once_and_then_told(lit, monkeypatch, times: int):
     folder, house = lit

@@ -46,6 +46,7 @@ def text(hall: RunningHall, words: str) -> bool:
     return words in asked(hall, "exhibits/box")["text"]["en"]
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_edits_show_while_the_rooms_light_is_baked(tmp_path: Path):
     with running_hall(write_plain_hall(tmp_path / "content"), tmp_path, light=True) as hall:
@@ -101,6 +102,7 @@ def test_the_doors_open_while_a_garment_is_baked_and_a_superseded_bake_ends(tmp_
     assert not list((data / "bake-work").iterdir())
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_a_bake_that_fails_is_told_and_not_tried_again(tmp_path: Path):
     content = with_scarf(tmp_path / "content")

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from build_processes import builds_of, processes, with_scarf
-from full_matrix import by_day
 from plain_hall import write_plain_hall
 from running_hall import free_port
 
@@ -83,7 +82,8 @@ def test_ctrl_c_at_every_stage_of_opening(tmp_path: Path, word: str):
         ends(hall, signal.SIGINT)
 
 
-@pytest.mark.parametrize("sign", by_day([signal.SIGTERM], [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]))
+@pytest.mark.nightly
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_garment_under_way_is_given_up_with_all_its_helpers(tmp_path: Path, sign: signal.Signals):
     from hall_app.build import film_possible
 

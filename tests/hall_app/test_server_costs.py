@@ -20,6 +20,7 @@ import event_loop
 import pytest
 import zstandard
 from content_house import edit, make_house
+from full_matrix import by_day
 from PIL import Image
 from test_catalogue import Outline
 from test_server_door import PICTURE_BYTES, message_of, noise, whole
@@ -109,7 +110,7 @@ SLOW_ONES = {
 }
 
 
-@pytest.mark.parametrize("path", SLOW_ONES)
+@pytest.mark.parametrize("path", by_day(["/"], SLOW_ONES))
 def test_an_answer_is_made_once_however_many_ask(hall, monkeypatch, path: str):
     folder, house = hall
     made = Counted(getattr(application, SLOW_ONES[path]))

@@ -14,6 +14,7 @@ from pathlib import Path
 import event_loop
 import msgspec
 import pytest
+from full_matrix import by_day
 from plain_hall import write_plain_hall
 from running_hall import running_hall
 from starlette.websockets import WebSocketDisconnect
@@ -131,7 +132,7 @@ async def flooded(socket, messages: list) -> ConnectionClosed:
     return ended.value
 
 
-@pytest.mark.parametrize("kind", FLOODS)
+@pytest.mark.parametrize("kind", by_day(["in", "unreadable"], FLOODS))
 def test_a_flood_of_any_kind_is_shown_out_with_a_reason(plain_hall, kind):
     async def run() -> None:
         async with door(plain_hall) as other:
@@ -225,6 +226,7 @@ def test_what_is_open_is_not_sent_again(plain_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_silent_sockets_are_few_and_a_class_gets_in_beside_them(own_hall):
     """400 that never say hello from one address; 100 visitors from another come in, and from the same one later."""
 
@@ -316,6 +318,7 @@ def test_forwarded_addresses_count_from_the_named_proxy_alone(small_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_this_machine_is_no_proxy_unless_named(own_hall):
     async def run() -> None:
         assert not await opened(own_hall, "127.0.0.1", "203.0.113.1")
@@ -458,6 +461,7 @@ def test_a_view_without_a_visit_ends(hasty_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_a_socket_that_is_closed_is_told_why(tmp_path):
     impatient = altered("from hall_app.web.sockets import walk", "walk._HELLO_WITHIN = 5.0")
 
@@ -479,6 +483,7 @@ def test_a_socket_that_is_closed_is_told_why(tmp_path):
         event_loop.run(run(hall))
 
 
+@pytest.mark.nightly
 def test_who_waits_and_loads_the_page_again_keeps_his_place(full_hall):
     key = asked(full_hall, "/")[1]["Set-Cookie"].partition(";")[0]
 
@@ -645,6 +650,7 @@ def test_the_page_brings_the_key_of_both_sockets(plain_hall):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_who_loads_the_page_again_in_a_full_hall_keeps_his_place(small_hall):
     key = asked(small_hall, "/")[1]["Set-Cookie"].partition(";")[0]
 

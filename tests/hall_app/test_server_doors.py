@@ -282,6 +282,7 @@ def test_only_a_visitors_messages_reach_viser():
     assert message_kind(b"\xc1 no msgpack") is None
 
 
+@pytest.mark.nightly
 def test_an_unreadable_model_keeps_the_last_good_one(own_hall):
     model = own_hall.content / "exhibits" / "box" / "box.glb"
     good = model.read_bytes()
@@ -300,6 +301,7 @@ def test_an_unreadable_model_keeps_the_last_good_one(own_hall):
     until(lambda: not problems())
 
 
+@pytest.mark.nightly
 def test_an_odd_file_keeps_no_other_edit_from_showing(own_hall):
     """A second exhibit is spoiled in every way; the first one's edits go on, and the fault is named."""
     home = own_hall.content / "exhibits"
@@ -371,6 +373,7 @@ def test_edits_show_without_restart_and_bad_ones_do_not(own_hall):
     assert problems() == []
 
 
+@pytest.mark.nightly
 def test_a_moved_exhibit_stands_in_the_way_at_once(own_hall):
     socket, _ = visitor(own_hall)
     with socket:
@@ -403,6 +406,7 @@ def test_no_hall_or_no_plan_is_said_by_name(tmp_path, missing):
     assert len(done.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.nightly
 def test_a_faulty_exhibit_is_left_out_and_named(tmp_path):
     content = write_plain_hall(tmp_path / "content")
     (content / "exhibits" / "box" / "box.png").unlink()

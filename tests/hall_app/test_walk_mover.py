@@ -131,6 +131,7 @@ def test_no_corner_makes_the_visitor_tremble(angle, aim):
     assert room(places, floor).min() >= BODY.skin - 1e-5
 
 
+@pytest.mark.nightly
 def test_nowhere_does_a_held_key_tremble():
     """Wherever a held key leads on a crowded floor: after ten seconds it goes on, or rests to the micrometre."""
     floor = dense_floor(np.random.default_rng(5))

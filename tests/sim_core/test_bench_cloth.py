@@ -104,7 +104,7 @@ def test_order_is_that_of_the_steps_from_mesh_to_mesh(bench) -> None:
 
 @pytest.mark.nightly
 def test_layers_keep_the_teapots_cloth_apart() -> None:
-    before, after = (scene("teapot", vertices=300, layers=gap).contact for gap in (0.0, 0.003))
+    before, after = (scene("teapot", vertices=300).layered(gap).contact for gap in (0.0, 0.003))
     assert before is not None
     assert after == replace(before, thickness=0.003)
     assert before.thickness == 0.0

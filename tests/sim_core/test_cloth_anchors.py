@@ -236,6 +236,7 @@ def test_capstan_holds_exp_mu_theta() -> None:
     assert slipped(1.03 * limit) > 0.003
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_drape_coefficient_grows_with_the_bending_length() -> None:
     found = []

@@ -89,6 +89,7 @@ MESHES = {
     "contact.thickness .m.: nan": lambda: Contact(thickness=math.nan),
     "contact.every: 0": lambda: Contact(every=0),
     "contact.every: nan": lambda: Contact(every=math.nan),  # type: ignore[arg-type]
+    "contact.untangle: nan": lambda: Contact(untangle=math.nan),  # type: ignore[arg-type]
     "contact.skin": lambda: Contact(thickness=0.002, skin=0.0),
     "contact.untangle: -1": lambda: Contact(untangle=-1),
     "union: a int": lambda: Union((3,)),  # type: ignore[arg-type]
@@ -149,7 +150,6 @@ RUNS = {
     "no stable step": {"sheet": Sheet.of(REST, FACES, Material(1e-300, 50.0))},
     "certify: 'yes'": {"certify": "yes"},
     "on_frame: a int": {"on_frame": 3},
-    "checkpoint_seconds: 'often'": {"checkpoint_seconds": "often"},
     "checkpoint: 3 – give the path": {"checkpoint": 3},
     "this is no state of a run": {"checkpoint": __file__},
     "this is a folder": {"checkpoint": str(Path(__file__).parent)},

@@ -45,11 +45,11 @@ def crumpled(sheet: Sheet) -> np.ndarray:
 
 
 def banded_forces(engine: Engine, x: np.ndarray) -> np.ndarray:
-    b, room, own = engine.bands, engine.room, engine.inward(x)
-    band_strains(b.edge_runs, b.length2, *own, room.strain)
-    band_tensions(b.tension_runs, b.own, *b.coupling, room.strain, room.tension)
-    band_pulls(b.vertex_runs, room.tension, *own, *room.force)
-    band_bends(b.bend_runs, b.bend, 1.0, *own, *room.force)
+    b, room, at = engine.bands, engine.room, tuple(engine.inward(x))
+    band_strains(b.edge_runs, b.length2, at, room.strain)
+    band_tensions(b.tension_runs, b.own, b.coupling, room.strain, room.tension)
+    band_pulls(b.vertex_runs, room.tension, at, tuple(room.force))
+    band_bends(b.bend_runs, b.bend, 1.0, at, tuple(room.force))
     return engine.outward(room.force)
 
 
@@ -100,10 +100,9 @@ def test_air_on_the_faces_adds_up(make) -> None:
         size = np.linalg.norm(area)
         speed = (wind - v[f].mean(0)) @ area / size
         expected[f] += 12 * press / 2 * size * abs(speed) * speed * area / size / 3
-    out, room = np.zeros((3, len(x))), engine.room
-    band_air(
-        engine.bands.face_runs, *engine.inward(x), *engine.inward(v), 0.0, *wind, press, *out, *room.face
-    )
+    out, aside = np.zeros((3, len(x))), tuple(engine.room.face)
+    at, speed = tuple(engine.inward(x)), tuple(engine.inward(v))
+    band_air(engine.bands.face_runs, at, speed, 0.0, tuple(wind), press, tuple(out), aside)
     assert np.abs(engine.outward(out) - expected).max() < 1e-12 * np.abs(expected).max()
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
 from sim_core.cloth.scenes import equilateral_sheet, hang_edge
-from sim_core.cloth.step import Conditions, Engine, Factored, Load
+from sim_core.cloth.step import Engine, Factored, Frame, State, Stride
 from sim_core.errors import SimCoreError
 
 CLOTH = Material(0.05, 80.0, 0.2, 1e-4, stretch_warp=300.0, shear=11.0, stiffness_damping=1e-3)
@@ -18,25 +18,23 @@ def small() -> tuple[Engine, np.ndarray]:
     return engine, engine.inward(flat + np.random.default_rng(2).normal(0, 0.003, flat.shape))
 
 
-def load() -> Load:
-    none = np.zeros(0, np.int64), np.zeros((0, 3))
-    return Load(np.array([0.0, -9.81, 0.0]), 0.5, 1e-3, np.array([1.0, 0, 0]), 0.1, *none)
+BLOWN, WIND = Frame(np.array([0.0, -9.81, 0.0]), damping=0.5, friction=0.0, press=0.1), np.array([1.0, 0, 0])
 
 
 def test_a_converged_step_is_where_the_gradient_vanishes() -> None:
     engine, x = small()
-    v, h, inverse = np.zeros_like(x), 0.005, engine.inverse_mass((0, 3))
+    start, h, inverse = State(x, np.zeros_like(x)), 0.005, engine.inverse_mass((0, 3))
     solver = engine.implicit
-    now = solver.step(x, v, inverse, h, load(), 30)
-    force = engine.sheet.mass * load().acceleration[:, None] + solver._air(x, v, load())
-    gradient = solver._gradient(now, x, x, solver._strains(x), force, h, load())
+    now = solver.step(BLOWN, WIND, start, inverse, h, 30)
+    problem = solver.problem(BLOWN, WIND, start, h)
+    gradient = solver.gradient(problem, now)
     assert np.abs(gradient[:, inverse > 0]).max() < 1e-8
     for vertex in (5, 9):  # the gradient is that of the energy
-        at = solver._gradient(x, x, x, solver._strains(x), force, h, load())[:, vertex].copy()
+        at = solver.gradient(problem, x)[:, vertex].copy()
         for axis in range(3):
             step = np.zeros_like(x)
             step[axis, vertex] = 1e-7
-            ends = [solver._energy(x + s * step, x, x, solver._strains(x), force, h, load()) for s in (1, -1)]
+            ends = [solver.energy(problem, x + s * step) for s in (1, -1)]
             assert at[axis] == pytest.approx((ends[0] - ends[1]) / 2e-7, rel=1e-4, abs=1e-6)
 
 
@@ -101,14 +99,14 @@ def test_pulls_and_gravity_move_a_free_sheet_as_newton_says() -> None:
     engine, x = small()
     rest = engine.inward(np.column_stack([engine.sheet.rest, np.zeros(len(x[0]))])[np.argsort(engine.order)])
     v, mass = np.zeros_like(rest), engine.sheet.mass.sum()
-    pull = (np.array([3]), np.array([[0.0, 0.02, 0.0]]))
-    under = Conditions(np.array([0.0, -9.81, 0.0]), 0.0, 0.0, 1e3, pulls=pull)
+    pull = {"pulled": np.array([3]), "pulls": np.array([[0.0, 0.02, 0.0]])}
+    frame = Frame(np.array([0.0, -9.81, 0.0]), damping=0.0, friction=0.0, **pull)
     for scheme in ("explicit", "implicit"):
-        a, b = rest.copy(), v.copy()
+        state = State(rest.copy(), v.copy())
         if scheme == "explicit":
-            engine.advance(under, (), a, b, 0.0, 4000)
+            engine.advance(frame, state, Stride(4000, 0.0))
         else:
-            engine.advance_implicit(under, (), a, b, 8)
+            engine.advance_implicit(frame, state, 8)
         expected = (0.02 - 9.81 * mass) * 0.04
-        speed = (engine.sheet.mass * b[1]).sum()
+        speed = (engine.sheet.mass * state.v[1]).sum()
         assert speed == pytest.approx(expected, rel=0.01)

@@ -1,15 +1,26 @@
 """One contact at a time: what an impulse between layers takes away, and which gradients of a grid push."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from sim_core.cloth import GridSdf
-from sim_core.cloth.contact import LEVER, Shell, collide_samples, collide_vertices, repel
+from sim_core.cloth import Contact, GridSdf
+from sim_core.cloth.contact import LEVER, Mesh, Push, Shell, collide_samples, collide_vertices, repel
 
 THICKNESS = 0.004  # [m]
-SPRING = 1e-9  # so weak that damping and friction are seen alone
+LAYERS = Contact(thickness=THICKNESS, spring=1e-9)  # so weak that damping and friction are seen alone
 FACE = np.array([[-0.02, 0.0, -0.01], [0.02, 0.0, -0.01], [0.0, 0.0, 0.02]])  # about the origin
 BAR = np.array([[0.0, 0.0, -0.01], [0.0, 0.0, 0.01]])
+
+
+def shell_of(friction: float) -> Shell:
+    return replace(LAYERS, self_friction=friction).shell()
+
+
+def mesh_of(inverse: np.ndarray, faces: np.ndarray, edges: np.ndarray) -> Mesh:
+    same = np.arange(len(inverse), dtype=np.int32)
+    return Mesh(inverse, np.zeros((len(inverse), 2)), edges, faces, np.ones(len(edges)), same)
 
 
 def met(gap: float, velocity: tuple[float, float, float], friction: float, kind: str) -> np.ndarray:
@@ -26,8 +37,8 @@ def met(gap: float, velocity: tuple[float, float, float], friction: float, kind:
         upper, below = [0.5, 0.5, 0, 0], [0, 0, 0.5, 0.5]
     v = np.asarray(upper)[:, None].astype(bool) * np.array(velocity)
     v = np.ascontiguousarray(v, float)
-    shell = Shell(THICKNESS, 0.001, SPRING, friction, 1, 0.05)
-    repel(x, v, np.ones(4), faces, edges, points, crossings, (len(points), len(crossings)), shell, 1e-3)
+    pairs, counts = (points, crossings), (len(points), len(crossings))
+    repel(x, v, mesh_of(np.ones(4), faces, edges), pairs, counts, shell_of(friction), 1e-3)
     weights = np.array(below)
     return np.asarray(upper) @ v - weights @ v
 
@@ -61,9 +72,9 @@ def test_what_is_pushed_near_its_pin_is_not_thrown(arm: float) -> None:
     x = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02 * arm, 2e-4, -0.01], [0.02 * arm, 2e-4, 0.01]])
     v = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
     free, edges, crossing = np.array([0.0, 1.0, 0.0, 0.0]), np.array([[0, 1], [2, 3]], np.int32), [[0, 1]]
-    shell, none = Shell(THICKNESS, 0.001, SPRING, 0.0, 1, 0.05), np.zeros((0, 3), np.int32)
+    mesh = mesh_of(free, np.zeros((0, 3), np.int32), edges)
     pairs = np.zeros((0, 2), np.int32), np.array(crossing, np.int32)
-    repel(x, v, free, none, edges, *pairs, (0, 1), shell, 1e-3)
+    repel(x, v, mesh, pairs, (0, 1), shell_of(0.0), 1e-3)
     assert v[1] == pytest.approx([0.0, -min(1 / arm, LEVER), 0.0], abs=1e-4)
 
 
@@ -76,9 +87,10 @@ def test_a_grid_pushes_only_where_its_gradient_is_clear(slope: float, pushed: bo
     start = np.array([[0.021, 0.012, 0.013], [0.021, 0.014, 0.013], [0.021, 0.012, 0.016]])
     near = np.repeat(np.arange(3, dtype=np.int32)[:, None], 3, axis=1)
     x, v = start.copy(), np.zeros((3, 3))
-    collide_vertices(packed, np.ones(3), x, v, near, 0.003, 1e-3, 0.0, 1.0)
+    push = Push(clearance=0.003, cap=1.0, friction=0.0, dt=1e-3)
+    collide_vertices(packed, np.ones(3), x, v, near, push)
     depth = 0.003 - slope * 0.001
     assert x[:, 0] - start[:, 0] == pytest.approx(depth if pushed else 0.0, abs=1e-9)
     x = start.copy()
-    collide_samples(packed, np.ones(3), x, v, np.array([[0, 1, 2]], np.int32), 0.003, 1.0)
+    collide_samples(packed, np.ones(3), x, v, np.array([[0, 1, 2]], np.int32), push)
     assert (x[:, 0].mean() - start[:, 0].mean()) == pytest.approx(depth if pushed else 0.0, abs=1e-9)

@@ -42,18 +42,17 @@ def accelerations(sheet, lanes, x):
     """M^-1 f of membrane and bending by lanes: (3, V) for x (3, V)."""
     real = lanes.bands.own.dtype
     inverse, b = sheet.stencil.inverse_mass.astype(real), lanes.bands
-    c, here = b.coupling, x.astype(real)
+    here = x.astype(real)
     strain, tension = (np.zeros(lanes.edges + len(sheet.mass), real) for _ in range(2))
     out, aside = np.zeros_like(here), np.zeros_like(here)
-    lane_strains(b.edge_runs, b.length2, *here, strain)
-    lane_tensions(b.tension_runs, b.own, *c, strain, tension)
-    lane_leap(b.vertex_runs, tension, inverse, *here, np.zeros(3), 0.0, 1.0, 0.0, *out, *aside)
+    at, speed, there = tuple(here), tuple(out), tuple(aside)
+    lane_strains(b.edge_runs, b.length2, at, strain)
+    lane_tensions(b.tension_runs, b.own, b.coupling, strain, tension)
+    lane_leap(b.vertex_runs, tension, inverse, at, np.zeros(3), (0.0, 1.0, 0.0), speed, there)
     if len(lanes.further_runs):
-        lane_further(lanes.further_runs, tension, inverse, *here, 1.0, *out)
-    lane_bends(b.bend_runs, b.bend, inverse, 1.0, *here, *out)
-    lane_odd_bends(
-        lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, inverse, 1.0, *here, *out
-    )
+        lane_further(lanes.further_runs, tension, inverse, at, 1.0, speed)
+    lane_bends(b.bend_runs, b.bend, inverse, 1.0, at, speed)
+    lane_odd_bends(lanes.odd, inverse, 1.0, at, speed)
     return out
 
 

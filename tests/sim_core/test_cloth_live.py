@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from full_matrix import by_day
 
 from sim_core.cloth import Air, Contact, HalfSpace, Live, Material, Phase, Sheet, drape
 from sim_core.cloth.scenes import equilateral_sheet
 from sim_core.cloth.sheet import mended
-from sim_core.cloth.step import MOST_PINNED, Engine
+from sim_core.cloth.step import MOST_PINNED, Engine, State
 from sim_core.errors import SimCoreError
 
 CLOTH = Material(0.05, 50.0, 0.3, 5e-5)
@@ -42,7 +43,7 @@ def test_pins_go_where_they_are_led_and_are_let_go() -> None:
     assert x[pins[1:], 1].max() < start[pins[1:], 1].min() - 0.005
 
 
-@pytest.mark.parametrize("seed", [0, 3])
+@pytest.mark.parametrize("seed", by_day([0], [0, 3]))
 def test_pins_thrown_about_within_a_frame_do_not_break_layers(seed: int) -> None:
     """Neighbouring pins are torn apart by several edges: the frame is done again, and the cloth slows down after."""
     rest, faces = equilateral_sheet(1.0, 1.0, 0.05)
@@ -54,11 +55,15 @@ def test_pins_thrown_about_within_a_frame_do_not_break_layers(seed: int) -> None
         np.random.default_rng(seed),
     )
     live.step(targets=start[pins] + 0.05 * thrown.standard_normal((len(pins), 3)))
-    stored = live._run.engine.stored
-    energy = [stored(live._run.engine.inward(live.positions), live._run.engine.inward(live.velocities))]
+    engine = live._run.engine
+
+    def stored() -> float:
+        return engine.stored(State(engine.inward(live.positions), engine.inward(live.velocities)))
+
+    energy = [stored()]
     for _ in range(10):
-        x = live.step()
-        energy.append(stored(live._run.engine.inward(x), live._run.engine.inward(live.velocities)))
+        live.step()
+        energy.append(stored())
     fall = sheet.mass.sum() * 9.81 * 0.5  # [J] that gravity may still give
     assert max(energy[1:]) < energy[0] + fall
     assert np.linalg.norm(live.velocities, axis=1).max() < 15.0  # [m/s]; tight threads sound on

@@ -8,19 +8,20 @@ from numba.core.runtime.nrt import rtsys
 
 from sim_core.cloth import Capsule, Contact, Material, Sheet
 from sim_core.cloth.scenes import equilateral_sheet
-from sim_core.cloth.step import Conditions, Engine
+from sim_core.cloth.step import Engine, Frame, State, Stride
 
 CONTACT = Contact(0.003, 0.001, thickness=0.004, skin=0.002, untangle=5)
+FALLING = Frame(gravity=np.array([0.0, -9.81, 0.0]), damping=4.0, friction=0.3, speed_limit=2.0)
 
 
-def crumpled() -> tuple[Engine, np.ndarray, np.ndarray]:
+def crumpled() -> tuple[Engine, State]:
     """A sheet in narrow folds over a bar, falling: its pairs change all the time."""
     rest, faces = equilateral_sheet(0.3, 0.3, 0.015)
     sheet = Sheet.of(rest, faces, Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0))
     engine = Engine(sheet, collider=Capsule((-1.0, 0, 0), (1.0, 0, 0), 0.02), contact=CONTACT)
     u, w = rest[:, 0] / 0.3, rest[:, 1] / 0.3
     x = np.column_stack([0.09 * u, 0.03 + 0.02 * np.sin(40 * u), 0.2 * (w - 0.5)])
-    return engine, engine.inward(x), np.zeros((3, len(x)))
+    return engine, State(engine.inward(x), np.zeros((3, len(x))))
 
 
 def allocated() -> int:
@@ -39,35 +40,33 @@ def counted():
 
 def test_the_compiled_loop_allocates_nothing_once_the_lists_are_long_enough(counted) -> None:
     """Handing arrays over costs a block each; four times the steps, dozens of searches among them, cost no more."""
-    engine, x, v = crumpled()
-    under = Conditions(gravity=np.array([0.0, -9.81, 0.0]), damping=4.0, friction=0.3, speed_limit=2.0)
-    engine.advance(under, (), x, v, 0.0, 400)
+    engine, state = crumpled()
+    engine.advance(FALLING, state, Stride(400, 0.0))
     lists, cost = engine.pairs, []
     for steps in (400, 1600):
-        begin, before = x.copy(), allocated()
-        engine.advance(under, (), x, v, 1e-4, steps)
+        begin, before = state.copy(), allocated()
+        engine.advance(FALLING, state, Stride(steps, 1e-4))
         cost.append(allocated() - before)
-    assert np.linalg.norm(x - begin, axis=0).max() > 5 * CONTACT.skin
+    assert np.linalg.norm(state.x - begin.x, axis=0).max() > 5 * CONTACT.skin
     assert cost[1] - cost[0] < 5
     assert all(a is b for a, b in zip(engine.pairs, lists, strict=True))
 
 
 def test_full_lists_grow_and_keep_the_result() -> None:
-    under = Conditions(gravity=np.array([0.0, -9.81, 0.0]), damping=4.0, friction=0.3, speed_limit=2.0)
     ends = []
     for short in (False, True):
-        engine, x, v = crumpled()
+        engine, state = crumpled()
         if short:
             engine.pairs = np.zeros((4, 2), np.int32), np.zeros((4, 2), np.int32)
-        engine.advance(under, (), x, v, 0.0, 400)
-        ends.append(x)
+        engine.advance(FALLING, state, Stride(400, 0.0))
+        ends.append(state.x)
         assert min(len(pairs) for pairs in engine.pairs) > 4
     assert ends[0].tobytes() == ends[1].tobytes()
 
 
 @pytest.mark.parametrize("broken", [np.nan, np.inf, 1e300])
 def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) -> None:
-    from sim_core.cloth.contact import edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
+    from sim_core.cloth.contact import Mesh, edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
 
     rest, faces = equilateral_sheet(0.1, 0.1, 0.02)
     faces = faces.astype(np.int32)
@@ -75,5 +74,6 @@ def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) 
     x = np.column_stack([rest, np.zeros(len(rest))])
     x[3] = broken
     finder, same = finder_of(len(x), len(edges), len(faces)), np.arange(len(x), dtype=np.int32)
-    assert vertex_face_pairs(x, rest, faces, same, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
-    assert edge_edge_pairs(x, rest, faces, edges, same, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
+    mesh = Mesh(np.ones(len(x)), rest, edges, faces, np.ones(len(edges)), same)
+    assert vertex_face_pairs(x, mesh, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
+    assert edge_edge_pairs(x, mesh, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0

@@ -14,6 +14,7 @@ from sim_core.cloth import (
     Air,
     Box,
     Capsule,
+    Checkpoint,
     Contact,
     Cylinder,
     GridSdf,
@@ -124,7 +125,7 @@ SCENE = {
     "wind": (4, 0, 1),
     "pins": None,
 }
-SCENE |= {"gusts": 0.1, "seed": 1, "cloth": GF_CM, "layers": 0.0}
+SCENE |= {"cloth": GF_CM}
 HOLDS = {
     "count": COUNT,
     "pairs": [[0, 1]],
@@ -143,7 +144,7 @@ DRAPE = {
 }
 DRAPE |= {"holds": Holds.of(COUNT), "air": Air(), "down": (0, -1, 0), "substeps": 20, "integrator": "auto"}
 DRAPE |= {"pace": Pace(), "velocities": 0 * FLAT, "progress": None, "on_frame": None, "checkpoint": None}
-DRAPE |= {"checkpoint_seconds": 1.0, "certify": False}
+DRAPE |= {"certify": False}
 LIVE = {
     k: DRAPE[k]
     for k in ("sheet", "positions", "collider", "contact", "pins", "air", "integrator", "substeps")
@@ -189,6 +190,10 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
         lambda **given: run(collider=Capsule(**given)),
         {"start": (0, 0, 0), "end": (1, 0, 0), "radius": 0.1},
     ),
+    "Checkpoint": (
+        lambda **given: run(checkpoint=Checkpoint(**given)),
+        {"path": "run.npz", "keep": False, "only_own": False},
+    ),
     "Contact": (lambda **given: run(contact=Contact(**given)), CONTACT),
     "Cylinder": (
         lambda **given: run(collider=Cylinder(**given)),
@@ -224,12 +229,13 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Pace": (lambda **given: run(pace=Pace(**given)), {"precision": "single", "courant": 0.7}),
     "Phase": (lambda **given: run(phases=[Phase(**given)]), PHASE),
     "Scene": (scene("hanging", vertices=40, frames=1).lasting, {"frames": 1}),
+    "Scene.gusty": (scene("flag", vertices=40, frames=1).gusty, {"gusts": 0.1, "seed": 1}),
+    "Scene.layered": (scene("hanging", vertices=40, frames=1).layered, {"layers": 0.003}),
     "Sheet": (Sheet.of, {"rest": REST, "faces": FACES, "material": GF_CM}),
     "Sheet.of_corners": (
         Sheet.of_corners,
         {"corner": REST[FACES], "faces": FACES, "materials": [GF_CM], "kind": np.zeros(len(FACES), int)},
     ),
-    "Sheet.pinned": (SHEET.pinned, {"pins": [0]}),
     "Solid": (BALL.distance, {"points": FLAT}),
     "Union": (lambda **given: run(collider=Union(**given)), {"parts": (BALL, HalfSpace())}),
     "choose": (choose, CHOOSE),

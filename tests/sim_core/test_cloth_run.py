@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim_core.cloth import HalfSpace, Material, Phase, Sheet, drape
+from sim_core.cloth import Checkpoint, HalfSpace, Material, Phase, Sheet, drape
+from sim_core.cloth.run import drape_run
 from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge, scene
 from sim_core.errors import SimCoreError
 
@@ -89,7 +90,10 @@ class _Stopped(Exception):
     pass
 
 
-def test_resumed_run_gives_the_bits_of_an_uninterrupted_one(tmp_path: Path) -> None:
+def test_resumed_run_gives_the_bits_of_an_uninterrupted_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(drape_run, "CHECKPOINT_SECONDS", 0.0)  # after every frame
     scene = bar(0.04, seconds=0.4)
     file = tmp_path / "run.npz"
 
@@ -101,8 +105,7 @@ def test_resumed_run_gives_the_bits_of_an_uninterrupted_one(tmp_path: Path) -> N
                 raise _Stopped
 
         kinds = {"collider": scene.collider, "contact": scene.contact, "on_frame": on_frame}
-        where = {"checkpoint": checkpoint, "checkpoint_seconds": 0.0}
-        return drape(scene.sheet, scene.positions, scene.phases, **kinds, **where)
+        return drape(scene.sheet, scene.positions, scene.phases, **kinds, checkpoint=checkpoint)
 
     whole: list[np.ndarray] = []
     expected = run(whole)
@@ -142,7 +145,7 @@ def test_a_state_is_not_gone_on_from_with_another_second_material(tmp_path: Path
         sheet = Sheet.of_corners(rest[faces], faces, materials, kind)
         return drape(sheet, x, [Phase(0.2)], pins=(0,), **more).positions
 
-    run(50.0, checkpoint=file, keep=True)
+    run(50.0, checkpoint=Checkpoint(file, keep=True))
     assert run(500.0, checkpoint=file).tobytes() == run(500.0).tobytes()
 
 

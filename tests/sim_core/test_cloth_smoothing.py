@@ -2,13 +2,14 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
 from sim_core.cloth import Contact, Drape, HalfSpace, Holds, Live, Material, Phase, Sheet, drape
-from sim_core.cloth.run import Run, RunState, Smoother, load_checkpoint, save_checkpoint, smoothed
+from sim_core.cloth.run import Run, RunState, Setup, Smoother, load_checkpoint, save_checkpoint, smoothed
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet, hang_edge
 from sim_core.metrics import intersections
 
@@ -104,10 +105,9 @@ def test_folded_squares_and_sheets_that_are_all_pins_are_left_alone() -> None:
 def test_solids_holds_and_the_certifier_leave_a_start_as_it_is() -> None:
     made = hang_edge(0.1)
     x, count = thrown(made.positions, made.pins, 0.3), len(made.positions)
-    none = {"air": None, "down": np.array([0.0, -1.0, 0.0]), "substeps": None, "integrator": "auto"}
 
-    def begun(collider=None, contact=None, holds=None) -> RunState:
-        run = Run(made.sheet, [Phase(0.04)], collider, contact, made.pins, holds, **none)
+    def begun(**kinds: Any) -> RunState:
+        run = Run(Setup(made.sheet, [Phase(0.04)], pins=made.pins, **kinds))
         return run.begun(x, np.zeros_like(x))
 
     assert begun().smoothed > 0
@@ -170,7 +170,7 @@ def test_a_run_from_a_hopeless_start_is_gone_on_with_to_the_bit(tmp_path: Path) 
 
     whole = run(on_frame=lambda *_: None)
     with pytest.raises(KeyboardInterrupt):
-        run(on_frame=stopped, checkpoint=file, checkpoint_seconds=0.0)
+        run(on_frame=stopped, checkpoint=file)
     end = run(on_frame=lambda *_: None, checkpoint=file)
     assert end.positions.tobytes() == whole.positions.tobytes()
     assert end.smoothed == whole.smoothed > 0

@@ -5,14 +5,39 @@ import pytest
 
 from sim_core import metrics
 from sim_core.cloth import Contact, Material, Phase, Sheet, drape
-from sim_core.cloth.contact import Holds, crossings_of, faces_at_edges, finder_of, no_crossings, untangle
+from sim_core.cloth.contact import (
+    Holds,
+    Memory,
+    Mesh,
+    Untangling,
+    crossings_of,
+    faces_at_edges,
+    finder_of,
+    no_crossings,
+    untangle,
+)
 from sim_core.cloth.scenes import equilateral_sheet
 
 CLOTH = Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0)
+ENOUGH = Untangling(step=3e-4, rounds=40)
 
 
 def edges_of(faces: np.ndarray) -> np.ndarray:
     return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
+
+
+def mesh_of(faces: np.ndarray, inverse: np.ndarray) -> Mesh:
+    """The faces of a cloth whose vertices have these 1/m (V,)."""
+    edges, faces = edges_of(faces), faces.astype(np.int32)
+    same = np.arange(len(inverse), dtype=np.int32)
+    return Mesh(inverse, np.zeros((len(inverse), 2)), edges, faces, np.zeros(len(edges)), same)
+
+
+def untangled(x: np.ndarray, v: np.ndarray, mesh: Mesh, how: Untangling) -> tuple[int, int]:
+    """Crossings before and after."""
+    memory = Memory(finder_of(len(x), len(mesh.edges), len(mesh.faces)), no_crossings())
+    third = faces_at_edges(mesh.edges, mesh.faces)
+    return untangle(x, v, mesh, third, Holds.of(len(x)), memory, how)[:2]
 
 
 def two_layers(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -27,18 +52,17 @@ def two_layers(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 def test_crossings_are_those_of_the_metrics_on_a_crumpled_sheet() -> None:
     rest, faces = equilateral_sheet(0.2, 0.2, 0.02)
-    x, edges = np.random.default_rng(2).normal(0, 0.03, (len(rest), 3)), edges_of(faces)
-    faces, same = faces.astype(np.int32), np.arange(len(rest), dtype=np.int32)
-    finder = finder_of(len(x), len(edges), len(faces))
-    pairs, place, count = crossings_of(x, edges, faces, same, finder, *no_crossings())
+    x, mesh = np.random.default_rng(2).normal(0, 0.03, (len(rest), 3)), mesh_of(faces, np.ones(len(rest)))
+    finder = finder_of(len(x), len(mesh.edges), len(faces))
+    (pairs, place), count = crossings_of(x, mesh, finder, no_crossings())
     assert count == metrics.intersections(x, faces) > 64
-    ends, corners = x[edges[pairs[:count, 0]]], x[faces[pairs[:count, 1]]]
+    ends, corners = x[mesh.edges[pairs[:count, 0]]], x[mesh.faces[pairs[:count, 1]]]
     t, weights = place[:count, :1], place[:count, 1:]
     there = (1 - t) * ends[:, 0] + t * ends[:, 1]
     assert there == pytest.approx((weights[:, :, None] * corners).sum(1), abs=1e-9)
     assert weights.min() >= 0.0
-    sewn = np.zeros(len(rest), np.int32)
-    assert crossings_of(x, edges, faces, sewn, finder, *no_crossings())[2] == 0
+    sewn = mesh._replace(same=np.zeros(len(rest), np.int32))
+    assert crossings_of(x, sewn, finder, no_crossings())[1] == 0
 
 
 def test_every_edge_knows_its_faces() -> None:
@@ -55,12 +79,9 @@ def test_every_edge_knows_its_faces() -> None:
 
 
 def test_a_corner_that_dips_through_is_drawn_back() -> None:
-    both, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
-    edges, holds, start = edges_of(faces), Holds.of(len(x)), x.copy()
-    v = np.tile([0.0, 1.0, 0.0], (len(x), 1))
-    finder, inverse = finder_of(len(x), len(edges), len(faces)), np.ones(len(x))
-    args = (inverse, edges, faces, faces_at_edges(edges, faces), holds, finder, no_crossings())
-    before, after, _ = untangle(x, v, *args, step=3e-4, rounds=40)
+    _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
+    start, v = x.copy(), np.tile([0.0, 1.0, 0.0], (len(x), 1))
+    before, after = untangled(x, v, mesh_of(faces, np.ones(len(x))), ENOUGH)
     assert before == metrics.intersections(start, faces) > 0
     assert after == metrics.intersections(x, faces) == 0
     moved = np.linalg.norm(x - start, axis=1)
@@ -74,19 +95,8 @@ def test_a_corner_that_dips_through_is_drawn_back() -> None:
 @pytest.mark.parametrize("partly", [False, True])
 def test_what_cannot_be_undone_is_left_as_it_is_unless_some_of_it_may_be(partly: bool) -> None:
     _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
-    edges, start = edges_of(faces), x.copy()
-    finder = finder_of(len(x), len(edges), len(faces))
-    args = (
-        np.ones(len(x)),
-        edges,
-        faces,
-        faces_at_edges(edges, faces),
-        Holds.of(len(x)),
-        finder,
-        no_crossings(),
-    )
-    # Steps that are too few to come out.
-    before, after, _ = untangle(x, np.zeros_like(x), *args, step=3e-4, rounds=6, partly=partly)
+    start, too_few = x.copy(), Untangling(step=3e-4, rounds=6, partly=partly)
+    before, after = untangled(x, np.zeros_like(x), mesh_of(faces, np.ones(len(x))), too_few)
     assert 0 < after <= before
     assert after == metrics.intersections(x, faces)
     assert (after < before) == partly == bool((x != start).any())
@@ -94,11 +104,9 @@ def test_what_cannot_be_undone_is_left_as_it_is_unless_some_of_it_may_be(partly:
 
 def test_what_is_held_is_not_moved() -> None:
     _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))
-    edges, start, half = edges_of(faces), x.copy(), len(x) // 2
-    finder = finder_of(len(x), len(edges), len(faces))
-    inverse = np.r_[np.zeros(half), np.ones(half)]
-    args = (inverse, edges, faces, faces_at_edges(edges, faces), Holds.of(len(x)), finder, no_crossings())
-    assert untangle(x, np.zeros_like(x), *args, step=3e-4, rounds=40)[1] == 0
+    start, half = x.copy(), len(x) // 2
+    mesh = mesh_of(faces, np.r_[np.zeros(half), np.ones(half)])
+    assert untangled(x, np.zeros_like(x), mesh, ENOUGH)[1] == 0
     assert (x[:half] == start[:half]).all()
 
 
@@ -121,11 +129,8 @@ def test_a_tangle_comes_free_though_another_does_not() -> None:
     second = np.clip(1 - np.linalg.norm(rest - rest.max(0) * 0.2, axis=1) / 0.04, 0, 1)
     x[len(rest) :, 1] -= 0.005 * second
     near = np.tile(second > 0, 2) | np.r_[np.linalg.norm(rest - rest.max(0) * 0.2, axis=1) < 0.06, second > 0]
-    inverse = np.where(near, 0.0, 1.0)
-    edges, start = edges_of(faces), x.copy()
-    finder = finder_of(len(x), len(edges), len(faces))
-    lists = faces_at_edges(edges, faces), Holds.of(len(x)), finder, no_crossings()
-    before, after, _ = untangle(x, np.zeros_like(x), inverse, edges, faces, *lists, step=3e-4, rounds=40)
+    start = x.copy()
+    before, after = untangled(x, np.zeros_like(x), mesh_of(faces, np.where(near, 0.0, 1.0)), ENOUGH)
     assert before == metrics.intersections(start, faces)
     assert 0 < after == metrics.intersections(x, faces) < before
     moved = np.linalg.norm(x - start, axis=1) > 0

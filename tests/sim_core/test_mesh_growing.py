@@ -101,6 +101,7 @@ def test_growing_shapes_are_meshed_exactly(shape, kind):
     assert mesh.report.outline_deviation <= 0.045 * edge
 
 
+@pytest.mark.nightly
 def test_a_star_of_ten_thousand_points_is_meshed():
     outline, _, edge = SHAPES["star"](10_000)
     mesh = panel_mesh(outline, edge=edge, quality="best")

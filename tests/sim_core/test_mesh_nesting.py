@@ -81,6 +81,7 @@ def test_contours_that_nearly_touch_are_close_from_any_side(place, gap, degrees)
     assert close_contours(turned, NEAR).tolist() == ([0, 2] if gap <= NEAR else [])
 
 
+@pytest.mark.nightly
 def test_thousands_of_holes_that_interleave_are_told_apart():
     holes = chevrons(8000)
     cleaned, given = cleaned_contours(SQUARE, holes, edge=0.1)

@@ -4,10 +4,11 @@
 """
 
 import pytest
+from full_matrix import by_day
 from mesh_polygons import report_faults
 
 
-@pytest.mark.parametrize("block", range(6))
+@pytest.mark.parametrize("block", by_day([0], range(6)))
 def test_random_panels_are_sound_and_exactly_delaunay(block):
     assert {seed: f for seed in range(50 * block, 50 * block + 50) if (f := report_faults(seed))} == {}
 

@@ -238,6 +238,31 @@ def test_a_size_that_is_a_guess_is_told(tmp_path, head, millimetres, guessed):
     assert any("CSS pixel" in note for note in found.notes) == guessed
 
 
+@pytest.mark.parametrize(
+    ("size", "millimetres"),
+    [
+        ('width="800mm" height="300mm"', (200.0, 300.0)),  # as it fits, in the middle
+        ('width="800mm" height="300mm" preserveAspectRatio="none"', (400.0, 300.0)),
+        ('width="800mm" height="300mm" preserveAspectRatio="xMinYMin slice"', (400.0, 600.0)),
+        ('width="400mm" height="299mm"', (200.0, 300.0)),  # rounded
+        ('width="400mm" height="100%"', (200.0, 300.0)),
+        ('style="width: 40cm; height: 30cm"', (200.0, 300.0)),
+    ],
+)
+def test_a_drawing_has_the_size_at_which_a_browser_shows_it(tmp_path, size, millimetres):
+    sheet = svg(
+        tmp_path, f'{HEAD} {size} viewBox="0 0 400 300"><path id="front" d="M0 0h200v300h-200z"/></svg>'
+    )
+    assert sizes(sheet) == {"front": millimetres}
+    assert not sheet.notes
+
+
+def test_an_ampersand_that_is_no_entity_is_one(tmp_path):
+    """FreeSewing 4.10 (bruce) writes texts into attributes as they are."""
+    text = '<path id="note" class="hidden" data-text="1 & 2 &#160;&amp;" d="M1 1"/>'
+    assert sizes(svg(tmp_path, f"{SIZED}{text}{FRONT}</svg>")) == {"front": (200.0, 300.0)}
+
+
 def test_a_largest_piece_of_a_hand_or_a_hall_is_asked_about(tmp_path):
     small = SIZED + '<path d="M0 0h9v9h-9z"/></svg>'
     large = small.replace("900mm", "900m").replace("600mm", "600m")
@@ -298,6 +323,47 @@ def test_an_open_line_around_a_piece_is_its_cutting_line_on_the_fold(tmp_path):
     assert piece.sew is None
 
 
+def lines_of(*runs) -> str:
+    """A line of its own for each step of a run of points."""
+    return "".join(
+        f'<line x1="{a[0]}" y1="{a[1]}" x2="{b[0]}" y2="{b[1]}"/>'
+        for run in runs
+        for a, b in zip(run[:-1], run[1:], strict=True)
+    )
+
+
+RIM = [(0, 0), (150, 0), (300, 0), (300, 200), (150, 200), (0, 200), (0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("inner", "count"),
+    [
+        ([[(150, 0), (150, 200)]], 1),
+        ([[(150, 0), (170, 90), (150, 200)], [(0, 0), (60, 60)]], 2),
+        ([[(150, 0), (150, 100), (150, 200)], [(0, 200), (150, 100), (300, 200)]], 4),
+    ],
+    ids=["from side to side", "bent, and one that hangs", "a star of lines"],
+)
+def test_an_outline_in_steps_keeps_lines_that_end_at_its_corners(tmp_path, inner, count):
+    sheet = svg(tmp_path, f"{SIZED}<g id='front'>{lines_of(RIM, *inner)}</g></svg>")
+    assert sizes(sheet) == {"front": (300.0, 200.0)}
+    (piece,) = sheet.pieces
+    assert len(piece.outline) == 6
+    assert len(piece.lines) == count
+    assert not piece.holes
+    assert "three and more lines meet" in sheet.remarks[0]
+    panel_mesh(piece.outline, edge=0.02, constraints=piece.lines)
+
+
+def test_pieces_in_steps_may_touch_at_a_corner_or_lie_on_each_other(tmp_path):
+    other = [(300 + x, 200 + y) for x, y in RIM]
+    touching = svg(tmp_path, f"{SIZED}{lines_of(RIM, other)}</svg>")
+    assert sorted(sizes(touching).values()) == [(300.0, 200.0)] * 2
+    across = [(0, 0), (400, 100), (150, 200), (0, 0)]  # leaves the first where neither has a corner
+    with pytest.raises(FileProblem, match="no closed line"):
+        svg(tmp_path, f"{SIZED}{lines_of(RIM, across)}</svg>")
+
+
 def test_a_line_drawn_twice_is_one_and_an_inner_line_ends_at_a_hole(tmp_path, capsys):
     rim = FRONT.replace("front", "rim")
     hole, line = '<path d="M80 100h40v40h-40z"/>', '<path d="M20 120h180"/>'
@@ -311,6 +377,7 @@ def test_a_line_drawn_twice_is_one_and_an_inner_line_ends_at_a_hole(tmp_path, ca
     assert "1 inner lines are cut off" in told.err
 
 
+@pytest.mark.nightly
 def test_an_outline_of_a_hundred_thousand_teeth_and_a_line_in_it(tmp_path):
     """Growing it by half a millimetre, to see what lies in it, took minutes."""
     teeth = "".join(f"L{10 + k * 0.004:.3f} {10 + (k % 2) * 0.5}" for k in range(100_000))
@@ -405,6 +472,32 @@ def test_absolute_control_points_of_old_files_are_the_same_curves(tmp_path):
         return made.outline("front")
 
     np.testing.assert_allclose(panels([0.5, -0.2], "relative"), panels([15, 44], "absolute"), atol=1e-12)
+
+
+@pytest.mark.parametrize("radius", [66.0, 66.3, 66.394, 66.5, 67.0, 70.0])
+def test_a_seam_that_is_written_is_one_that_can_be_read(tmp_path, capsys, radius):
+    """A waistband on an arc of 135 degrees (GarmentCode's flared skirt): 2 % ease in arcs are 2.1 % in cubics."""
+
+    def arc(start, end, radius, right):
+        return {"endpoints": [start, end], "curvature": {"type": "circle", "params": [radius, 0, right]}}
+
+    def panel(vertices, edges):
+        return {"translation": [0, 0, 0], "rotation": [0, 0, 0], "vertices": vertices, "edges": edges}
+
+    plain = [{"endpoints": ends} for ends in ([1, 2], [2, 3], [3, 0])]
+    skirt = panel([[-0.5, 0], [32.567, 0], [70, -15.5], [-38, -15.5]], [arc(0, 1, 17.896, 1), *plain])
+    band = panel([[0, 0], [40.664, 0], [40.664, 30], [0, 30]], [arc(0, 1, radius, 1), *plain])
+    stitch = [{"panel": "skirt", "edge": 0}, {"panel": "band", "edge": 0}]
+    written = {
+        "pattern": {"panels": {"skirt": skirt, "band": band}, "stitches": [stitch]},
+        "properties": {"curvature_coords": "relative", "units_in_meter": 100},
+    }
+    source, pattern, back = (tmp_path / name for name in ("skirt.json", "skirt.toml", "back.json"))
+    source.write_text(json.dumps(written))
+    assert cli.main(["mesh", str(source), "--pattern", str(pattern)]) == 0
+    gathered = "gathered" in capsys.readouterr().err
+    assert cli.main(["mesh", str(pattern), "--pattern", str(back)]) == 0
+    assert len(json.loads(back.read_text())["pattern"]["stitches"]) == (0 if gathered else 1)
 
 
 @pytest.mark.parametrize("path", sorted(PATTERNS.glob("*.toml")), ids=lambda path: path.stem)

@@ -213,6 +213,7 @@ REPLACED = {
     "line 1: 'saved by hand' says nothing": "saved by hand\n" + BASE,
     "[WARP] Color: said twice": BASE.replace("Color=1\n", "Color=2\nColor=1\n"),
     "[WEFT] Threads: missing – there are lines for 2": BASE.replace("Threads=2\n", ""),
+    "[WARP] Threads: empty – there are lines for 4": BASE.replace("Threads=4", "Threads="),
     "[WARP] Threads: 3, but there are lines for 4": BASE.replace("Threads=4", "Threads=3"),
     "[THREADING] 5: on no shaft": BASE.replace("Threads=4", "Threads=5"),
     "[WEAVING] Treadles: 1, but [TREADLING] uses 2": BASE.replace("Treadles=2", "Treadles=1"),

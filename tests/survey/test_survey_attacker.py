@@ -221,7 +221,7 @@ def test_of_no_first_window_four_known_scores_pin_another(n):
         assert all(len(points) > 1 for points in worlds.values())
 
 
-@pytest.mark.parametrize("gone", [1, 2])
+@pytest.mark.parametrize("gone", by_day([1], [1, 2]))
 @pytest.mark.parametrize("total", by_day([30], [20, 30, 40]))
 def test_of_no_second_window_four_known_scores_pin_what_was_taken_back(total, gone):
     """All worlds again: of ten that were shown with that sum some are gone, ten came, and four of these are his."""
@@ -294,6 +294,7 @@ EVENTS = st.lists(
 )
 
 
+@pytest.mark.nightly
 @given(EVENTS, st.sampled_from([1, 3, 5]))
 @settings(max_examples=300, deadline=None)
 def test_in_no_small_world_a_score_is_left_with_one_value(events, usual):

@@ -101,6 +101,7 @@ def test_a_visitor_answers_and_receives_the_code(visit, site):
 ODD_KEYS = ("constructor", "length", "item", "hidden", "inert", "elements", "submit", "reset")
 
 
+@pytest.mark.nightly
 def test_items_may_be_called_as_the_page_s_own_properties_are(visit, site):
     def text(words):
         return f'{{ zh = "{words}", en = "{words}" }}'
@@ -134,6 +135,7 @@ def test_items_may_be_called_as_the_page_s_own_properties_are(visit, site):
     assert dict(answer.scores) == dict.fromkeys(ODD_KEYS, 2)
 
 
+@pytest.mark.nightly
 def test_going_back_to_a_sent_form_finds_it_empty(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     form = page.url
@@ -149,6 +151,7 @@ def test_going_back_to_a_sent_form_finds_it_empty(visit, site):
     assert len(stored(site)) == 1
 
 
+@pytest.mark.nightly
 def test_an_answer_fixed_for_evaluation_is_told_to_stay(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
@@ -199,6 +202,7 @@ def test_a_reload_and_another_language_keep_what_was_chosen(visit, site):
     assert page.locator("input:checked").count() == 0
 
 
+@pytest.mark.nightly
 def test_a_lost_receipt_is_retried_under_the_same_id(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
@@ -223,6 +227,7 @@ def test_a_lost_receipt_is_retried_under_the_same_id(visit, site):
     assert [answer.id for answer in stored(site)] == tries[:1]
 
 
+@pytest.mark.nightly
 def test_an_answer_on_its_way_survives_closing_the_page(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
@@ -237,6 +242,7 @@ def test_an_answer_on_its_way_survives_closing_the_page(visit, site):
     assert len(stored(site)) == 1
 
 
+@pytest.mark.nightly
 def test_editing_after_a_lost_receipt_does_not_make_a_second_answer(visit, site):
     page = visit("/questionnaires/garment?lang=en")
     answer_all(page)
@@ -256,6 +262,7 @@ def test_editing_after_a_lost_receipt_does_not_make_a_second_answer(visit, site)
     assert {score for _, score in answer.scores} == {4}
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "told", by_day([False], [True, False]), ids=["the other tab hears of it", "it was asleep"]
 )
@@ -292,6 +299,7 @@ def test_a_draft_that_another_tab_has_sent_is_not_kept_again(visit, site, told):
     assert sorted(min(score for _, score in answer.scores if score) for answer in stored(site)) == [2, 4]
 
 
+@pytest.mark.nightly
 def test_two_tabs_that_send_the_same_draft_at_once_make_one_answer(visit, site):
     first = visit("/questionnaires/garment?lang=en")
     answer_all(first)
@@ -310,6 +318,7 @@ def test_two_tabs_that_send_the_same_draft_at_once_make_one_answer(visit, site):
     assert len(stored(site)) == 1
 
 
+@pytest.mark.nightly
 def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     page = visit("/hall")
     frame = page.frame_locator("iframe")
@@ -329,6 +338,7 @@ def test_the_hall_hears_of_an_answer_given_in_its_dialog(visit, site):
     assert {score for _, score in answer.scores} == {None}
 
 
+@pytest.mark.nightly
 def test_a_network_that_drops_in_the_middle_costs_nothing(visit, site):
     page = visit("/questionnaires/garment?lang=en", width=390, height=844, has_touch=True)
     items = page.locator(".item").all()
@@ -353,6 +363,7 @@ def test_a_network_that_drops_in_the_middle_costs_nothing(visit, site):
     assert len(tries) >= 2
 
 
+@pytest.mark.nightly
 def test_items_on_motion_stand_beside_the_film_of_the_exhibit(visit):
     page = visit("/questionnaires/garment?lang=en&exhibit=pibo")
     film = page.locator("section:has(#item-dynamic_swing) video")
@@ -363,6 +374,7 @@ def test_items_on_motion_stand_beside_the_film_of_the_exhibit(visit):
     assert visit("/questionnaires/garment?lang=en&exhibit=mirror").locator("video").count() == 0
 
 
+@pytest.mark.nightly
 def test_a_preview_keeps_and_sends_nothing(visit, site):
     page = visit("/questionnaires/garment?lang=en&preview")
     answer_all(page)
@@ -410,16 +422,21 @@ BROKEN = """([selector, pattern]) => [...document.querySelectorAll(selector)].fi
 SPILT = """() => [...document.querySelectorAll("button")].filter((one) => one.checkVisibility())
     .filter((one) => one.scrollWidth > one.clientWidth).map((one) => one.textContent)"""
 
+TAKEN_BACK = (204, {"zh": "已撤回", "en": "are deleted."})
+
 
 @pytest.mark.parametrize(
     ("status", "told"),
-    [
-        (204, {"zh": "已撤回", "en": "are deleted."}),
-        (202, {"zh": "残留数据将很快清除", "en": "the last traces of them"}),
-        (404, {"zh": "没有找到", "en": "not known"}),
-        (409, {"zh": "不能再撤回", "en": "can no longer be withdrawn"}),
-        (503, {"zh": "稍后再试", "en": "try again later"}),
-    ],
+    by_day(
+        [TAKEN_BACK],
+        [
+            TAKEN_BACK,
+            (202, {"zh": "残留数据将很快清除", "en": "the last traces of them"}),
+            (404, {"zh": "没有找到", "en": "not known"}),
+            (409, {"zh": "不能再撤回", "en": "can no longer be withdrawn"}),
+            (503, {"zh": "稍后再试", "en": "try again later"}),
+        ],
+    ),
 )
 @pytest.mark.parametrize("language", by_day(["zh"], ["zh", "en"]))
 def test_every_reply_to_a_withdrawal_is_told_and_its_button_stands_on_one_line(visit, status, told, language):

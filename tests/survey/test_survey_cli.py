@@ -359,6 +359,7 @@ def test_a_table_as_excel_writes_it_anywhere_is_read(tmp_path, encoding, separat
     np.testing.assert_array_equal(table.scores, [[1, 2], [3, 4.5], [np.nan, 5]])
 
 
+@pytest.mark.nightly
 def test_a_reader_who_has_enough_ends_the_command_quietly():
     command = f"{sys.executable} -m survey.cli analyse --demo likert-20 --bootstrap 0 --json | head -c 5"
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, cwd=ASSETS.parent)

@@ -239,6 +239,7 @@ def test_a_token_for_a_questionnaire_that_there_is_not_is_not_made(tmp_path, cap
     assert not (tmp_path / "data").exists()
 
 
+@pytest.mark.nightly
 def test_the_day_of_the_last_use_is_kept_and_costs_one_write_a_day(hall, place, capsys):
     token = made(capsys, *place)
     assert "never used" in listed(capsys, place)[0]
@@ -346,6 +347,7 @@ def test_what_a_command_did_is_in_the_audit(database, place, capsys, tmp_path):
     ]
 
 
+@pytest.mark.nightly
 def test_the_audit_tells_of_what_was_handed_out_and_of_nothing_else(hall, place, capsys, tmp_path):
     for _ in range(5):
         assert hall.client.post(hall.url, json=submission(GARMENT)).status_code == 201

@@ -139,6 +139,7 @@ def test_a_withdrawn_answer_is_in_no_byte_of_any_file_while_others_read_and_writ
     assert not {body["id"] for body in gone} & set(kept)
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_no_copy_stays_where_the_database_moved_rows_about(tmp_path):
     # As their neighbours go, SQLite pulls rows together on fewer pages and leaves a copy of some where they were, here
@@ -183,6 +184,7 @@ def test_while_somebody_reads_it_says_that_something_stays_and_sees_to_it(servic
     assert "what was erased is gone from it now" in said
 
 
+@pytest.mark.nightly
 def test_what_a_kill_left_over_goes_with_the_next_start(service):
     body = a_body(1)
     posted(service, body)
@@ -262,6 +264,7 @@ def test_what_an_earlier_release_erased_goes_with_the_upgrade(tmp_path):
         assert store.count("garment", 1) == 6  # five of the first release, and the one whose rows went
 
 
+@pytest.mark.nightly
 def test_a_backup_holds_nothing_that_was_withdrawn_before(service, tmp_path):
     gone, kept = a_body(1), a_body(2)
     posted(service, gone)

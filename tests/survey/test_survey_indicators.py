@@ -168,6 +168,7 @@ def test_with_answers_the_second_step_is_theirs():
     assert "12 final" in report.drawings["way.en.svg"]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("answers", [0, 1])
 def test_where_nobody_has_answered_the_garment_s_report_shows_the_way_all_the_same(tmp_path, capsys, answers):
     with closing(Store(tmp_path / "data")) as store:

@@ -156,6 +156,7 @@ def halted_request(service: Service, path: str, pool: ThreadPoolExecutor):
     return waiting, until(new, "no process was started")
 
 
+@pytest.mark.nightly
 def test_the_service_does_none_of_it_itself(hall, monkeypatch):
     fill(hall.store, 12)
     researcher = {"authorization": f"Bearer {hall.store.tokens.make('researcher')}"}
@@ -232,6 +233,7 @@ def test_a_file_is_nobody_else_s_and_has_no_name():
     run.body.close()
 
 
+@pytest.mark.nightly
 def test_a_slow_reader_holds_neither_the_service_nor_the_database(service, tmp_path):
     with closing(Store(tmp_path / "data")) as store:
         fill(store, 1500, "很" * 2000)

@@ -115,6 +115,7 @@ def test_one_id_with_different_bodies_at_once_has_a_single_winner(hall):
     assert rows_of(hall.data) == {base["id"]: 12}
 
 
+@pytest.mark.nightly
 def test_results_are_read_whole_while_answers_are_taken_back(hall):
     bodies = [submission(GARMENT) for _ in range(60)]
     for body in bodies:
@@ -146,6 +147,7 @@ def test_a_commit_reaches_the_disk_before_it_returns(tmp_path):
     assert settings == SETTINGS
 
 
+@pytest.mark.nightly
 @pytest.mark.slow
 def test_a_kill_under_load_loses_no_acknowledged_answer(tmp_path):
     data = tmp_path / "data"

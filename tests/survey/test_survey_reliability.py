@@ -221,6 +221,7 @@ def test_each_scale_survives_pairwise_and_polychoric(capsys):
 # ---- over HTTP and in the report ---------------------------------------------------------------------------------
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_reverse_over_http_is_that_of_the_command(hall, capsys):
     scores = np.column_stack([likert_sample(40, 1), likert_sample(40, 2)[:, :2]])
@@ -388,6 +389,7 @@ def test_columns_of_text_are_named_and_our_own_export_s_are_not(tmp_path, capsys
     assert note["items"] == ["who"]
 
 
+@pytest.mark.nightly
 def test_points_tell_the_scale_of_a_foreign_table(foreign, capsys):
     found = told_by(capsys, foreign, "--reverse", "a1", "--points", 7)
     messages = {note["code"]: note["message"] for note in found["warnings"]}

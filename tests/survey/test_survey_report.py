@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from full_matrix import by_day
 from survey_samples import ASSETS
 
 import survey.report
@@ -136,6 +137,7 @@ def test_both_languages_have_the_same_words():
         assert set(re.findall(r"{(\w+)}", text)) == set(re.findall(r"{(\w+)}", texts["en"][key])), key
 
 
+@pytest.mark.nightly
 def test_a_platform_report_draws_both_roles_and_escapes_what_visitors_wrote():
     table = platform(USER, 60, 1)
     report = build(table, analyse(table.scores, table.items), [Part(platform(ADMIN, 30, 2), ADMIN)])
@@ -158,7 +160,11 @@ def test_module_and_dimension_means_have_student_s_interval():
 
 
 @pytest.mark.parametrize(
-    "case", ["few rows", "constant", "twin", "gaps", "no bootstrap", "oblimin", "one component"]
+    "case",
+    by_day(
+        ["few rows", "oblimin"],
+        ["few rows", "constant", "twin", "gaps", "no bootstrap", "oblimin", "one component"],
+    ),
 )
 def test_hard_cases_make_a_report_too(case, tmp_path):
     rng = np.random.default_rng(4)
@@ -291,6 +297,7 @@ def test_coefficients_are_printed_as_journals_print_them():
     assert printed == [".944", "−.032", "1.000", "−1.030", ".000", "–", "–"]
 
 
+@pytest.mark.nightly
 def test_many_components_keep_their_table_within_the_page():
     table = platform(USER, 60, 1)
     report = build(table, analyse(table.scores, table.items, settings=Settings(factors=8, bootstrap=40)))

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pyreadstat
 import pytest
+from full_matrix import by_day
 from openpyxl import load_workbook
 from survey_samples import ASSETS, likert_sample, submission
 
@@ -67,7 +68,7 @@ READERS = {
 }
 
 
-@pytest.mark.parametrize("kind", READERS)
+@pytest.mark.parametrize("kind", by_day(["xlsx"], READERS))
 def test_each_format_comes_with_its_type_its_name_and_every_answer(hall, researcher, kind):
     fill(hall, twelve(12))
     reply = hall.client.get(f"{BASE}/garment/export/{kind}", headers=researcher)
@@ -79,6 +80,7 @@ def test_each_format_comes_with_its_type_its_name_and_every_answer(hall, researc
     assert len(read(reply.content)) == 12
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_spss_and_the_r_script_come_over_http_too(hall, researcher, tmp_path):
     fill(hall, twelve(12))
@@ -111,27 +113,30 @@ def test_the_analysis_over_http_is_that_of_the_command(hall, researcher, capsys)
     assert found["bootstrap"]["seed"] == 3
 
 
+CHOICES = {
+    "none": ({}, Settings()),
+    "missing": ({"missing": "pairwise"}, Settings(missing="pairwise")),
+    "correlation": ({"correlation": "polychoric"}, Settings(method="polychoric")),
+    "factors": ({"factors": "parallel", "seed": 5}, Settings(factors="parallel", seed=5)),
+    "rotation": ({"rotation": "none"}, Settings(rotation="none")),
+    "drop": ({"drop": "pleat,silhouette"}, Settings(drop=("pleat", "silhouette"))),
+}
+
+
+@pytest.mark.parametrize("choice", by_day(["drop"], CHOICES))
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
-def test_every_choice_of_the_analysis_reaches_it(hall, researcher):
-    table = twelve(60)
-    fill(hall, table)
+def test_every_choice_of_the_analysis_reaches_it(hall, researcher, choice):
+    query, settings = CHOICES[choice]
+    fill(hall, twelve(60))
     stored = np.array(
         [[score for _, score in row.answer.scores] for row in hall.store.rows(hall.garment)], float
     )
-    for query, settings in (
-        ({}, Settings()),
-        ({"missing": "pairwise"}, Settings(missing="pairwise")),
-        ({"correlation": "polychoric"}, Settings(method="polychoric")),
-        ({"factors": "parallel", "seed": 5}, Settings(factors="parallel", seed=5)),
-        ({"rotation": "none"}, Settings(rotation="none")),
-        ({"drop": "pleat,silhouette"}, Settings(drop=("pleat", "silhouette"))),
-    ):
-        reply = hall.client.get(f"{BASE}/garment/analysis", params=query, headers=researcher)
-        groups = stated_groups(hall.garment)
-        wanted = summary(
-            analyse(stored, hall.garment.item_ids, settings=settings, context=Context(groups=groups))
-        )
-        assert reply.json() == json.loads(json.dumps(wanted)), query
+    reply = hall.client.get(f"{BASE}/garment/analysis", params=query, headers=researcher)
+    groups = stated_groups(hall.garment)
+    wanted = summary(
+        analyse(stored, hall.garment.item_ids, settings=settings, context=Context(groups=groups))
+    )
+    assert reply.json() == json.loads(json.dumps(wanted))
 
 
 UNFIT = {
@@ -141,7 +146,7 @@ UNFIT = {
 }
 
 
-@pytest.mark.parametrize("case", UNFIT)
+@pytest.mark.parametrize("case", by_day(["one answer"], UNFIT))
 def test_answers_that_cannot_be_analysed_are_422_with_the_reason(hall, researcher, case):
     table, code, reason = UNFIT[case]
     fill(hall, table())
@@ -154,6 +159,7 @@ def test_answers_that_cannot_be_analysed_are_422_with_the_reason(hall, researche
     assert told["remedy"]
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_an_item_that_nobody_saw_and_an_item_that_is_none_are_named(hall, researcher):
     garment = hall.garment

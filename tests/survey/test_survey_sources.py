@@ -151,7 +151,9 @@ def test_roles_are_compared_with_what_each_file_says_is_turned(tmp_path, capsys)
     assert means == [[2.0, 2.0]] * 6
 
 
-def test_the_report_calls_roles_languages_and_dimensions_by_their_names(tmp_path, capsys):
+@pytest.fixture
+def reported(tmp_path, capsys):
+    """Makes a report of forty visitors' and forty administrators' answers, compared as asked; its folder."""
     rng, data, out = np.random.default_rng(2), tmp_path / "data", tmp_path / "out"
     with closing(Store(data)) as store:
         for name in ("platform-user", "platform-admin"):
@@ -162,7 +164,16 @@ def test_the_report_calls_roles_languages_and_dimensions_by_their_names(tmp_path
                 store.submit(asked, Answer.of(asked, body))
     command = ["analyse", "--questionnaire", "platform-user", "--data", data, "--content", ASSETS]
     more = ["--bootstrap", 0, "--parallel", 0, "--report", out]
-    told(capsys, *command, *more, "--compare", "role")
+
+    def report(by: str) -> Path:
+        told(capsys, *command, *more, "--compare", by)
+        return out
+
+    return report
+
+
+def test_the_report_calls_roles_and_dimensions_by_their_names(reported):
+    out = reported("role")
     tables = {
         lang: (out / "tables" / f"compare-means.{lang}.csv").read_text("utf-8") for lang in ("zh", "en")
     }
@@ -171,7 +182,10 @@ def test_the_report_calls_roles_languages_and_dimensions_by_their_names(tmp_path
     page = (out / "report.html").read_text("utf-8")
     assert "按角色比较：平台评价（管理员）" in page
     assert "Compared by role: The platform, as an administrator sees it (40 answers)" in page
-    told(capsys, *command, *more, "--compare", "language")
-    page = (out / "report.html").read_text("utf-8")
+
+
+@pytest.mark.nightly
+def test_the_report_calls_languages_by_their_names(reported):
+    page = (reported("language") / "report.html").read_text("utf-8")
     assert "按作答语言比较：英文（20 份回答）与 中文" in page
     assert "Compared by language: English (20 answers) with Chinese (20)" in page

@@ -262,6 +262,7 @@ def test_several_starts_find_the_higher_of_two_maxima():
     assert lower > 0
 
 
+@pytest.mark.nightly
 def test_the_best_end_of_all_starts_is_taken():
     first = []
     for seed in range(3):

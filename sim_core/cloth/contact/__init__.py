@@ -5,14 +5,28 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sim_core.cloth.contact.collisions import collide_samples, collide_vertices
+from sim_core.cloth.contact.collisions import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
-from sim_core.cloth.contact.pairs import edge_edge_pairs, finder_of, hash_points, pairs_of, vertex_face_pairs
+from sim_core.cloth.contact.pairs import (
+    Mesh,
+    edge_edge_pairs,
+    finder_of,
+    hash_points,
+    pairs_of,
+    vertex_face_pairs,
+)
 from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
-from sim_core.cloth.contact.untangling import crossings_of, faces_at_edges, no_crossings, untangle
+from sim_core.cloth.contact.untangling import (
+    Memory,
+    Untangling,
+    crossings_of,
+    faces_at_edges,
+    no_crossings,
+    untangle,
+)
 
 if TYPE_CHECKING:
     from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_faces, hull_mesh, united
@@ -27,12 +41,17 @@ __all__ = [
     "HalfSpace",
     "Holds",
     "LEVER",
+    "Memory",
+    "Mesh",
     "MovingGrid",
+    "Push",
     "Shell",
     "Solid",
     "Union",
+    "Untangling",
     "collide_samples",
     "collide_vertices",
+    "contact_samples",
     "crossings_of",
     "distances",
     "edge_edge_pairs",

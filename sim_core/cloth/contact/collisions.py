@@ -8,6 +8,7 @@ exactly mu g dt.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -20,13 +21,32 @@ SETTLE = 6  # more looks at samples inside, at the end of a frame
 SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
+class Push(NamedTuple):
+    """How samples are brought out of a solid in a step."""
+
+    clearance: float  # [m] that they keep
+    cap: float  # [m] the largest push
+    friction: float  # of vertices; midpoints and centroids have none
+    dt: float  # [s]
+
+
+class Watch(NamedTuple):
+    """Samples (S, 3) int32 and the steps (S,) int32 until which they sleep: as long as they cannot arrive.
+
+    A vertex is stored as (i, i, i), a midpoint as (i, j, i) with weights 1/2, 1/2, a centroid as (i, j, k).
+    """
+
+    samples: np.ndarray
+    wake: np.ndarray
+
+
 @njit(cache=True, error_model="numpy")
-def _resolve(x, v, i, n, depth, speed, carry, dt, friction, cap):
+def _resolve(x, v, i, n, depth, speed, carry, push):
     """Pushes vertex i out along n = (nx, ny, nz), at least as fast as the surface moves, and applies friction.
 
     carry: the surface's velocity, (x, y, z), of which what lies in the surface takes the vertex along.
     """
-    push = min(depth, cap)
+    way, dt = min(depth, push.cap), push.dt
     vn = v[i, 0] * n[0] + v[i, 1] * n[1] + v[i, 2] * n[2]
     cn = carry[0] * n[0] + carry[1] * n[1] + carry[2] * n[2]
     cx, cy, cz = carry[0] - cn * n[0], carry[1] - cn * n[1], carry[2] - cn * n[2]
@@ -34,51 +54,51 @@ def _resolve(x, v, i, n, depth, speed, carry, dt, friction, cap):
     slide = math.sqrt(tx * tx + ty * ty + tz * tz)
     lost = 0.0
     if slide > 0.0:
-        lost = min(1.0, friction * push / (dt * slide))
+        lost = min(1.0, push.friction * way / (dt * slide))
     vn = max(vn, speed)
     for c in range(3):
         t, along = (tx, cx) if c == 0 else ((ty, cy) if c == 1 else (tz, cz))
-        x[i, c] += push * n[c] - lost * t * dt
+        x[i, c] += way * n[c] - lost * t * dt
         v[i, c] = vn * n[c] + (1.0 - lost) * t + along
 
 
 @njit(error_model="numpy", inline="always")  # a call would hand on every array of both, for each vertex
-def _meet(packed, fields, x, v, i, clearance, dt, friction, cap):
+def _meet(packed, fields, x, v, i, push):
     """Resolves vertex i; returns how far outside the clearance it was [m]. fields: those of packed."""
-    d, nx, ny, nz, speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
-    if d < clearance and nx * nx + ny * ny + nz * nz > 0.5:
+    d, (nx, ny, nz), speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
+    if d < push.clearance and nx * nx + ny * ny + nz * nz > 0.5:
         carry = (0.0, 0.0, 0.0)
         if len(packed.ways) > 0:
             carry = carried(packed, d, x[i, 0], x[i, 1], x[i, 2])
-        _resolve(x, v, i, (nx, ny, nz), clearance - d, speed, carry, dt, friction, cap)
-    return d - clearance
+        _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
+    return d - push.clearance
 
 
 @njit(cache=True, error_model="numpy")
-def collide_vertices(packed, inverse_mass, x, v, near, clearance, dt, friction, cap):
+def collide_vertices(packed, inverse_mass, x, v, near, push):
     """Resolves the vertices near[:, 0]; returns the deepest depth seen [m]."""
     deepest, fields = 0.0, fields_of(packed)
     for s in range(len(near)):
         i = near[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        room = _meet(packed, fields, x, v, i, clearance, dt, friction, cap)
+        room = _meet(packed, fields, x, v, i, push)
         deepest = max(deepest, -room)
     return deepest
 
 
 @njit(cache=True, error_model="numpy")
-def collide_due_vertices(packed, inverse_mass, x, v, samples, wake, step, clearance, dt, friction, cap):
-    """As `collide_vertices`, for those whose wake (S,) is due: a vertex sleeps for as long as it cannot arrive."""
-    drift, fields = drift_of(packed), fields_of(packed)
+def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
+    """As `collide_vertices`, for those who are due."""
+    drift, fields, samples, wake = drift_of(packed), fields_of(packed), watch.samples, watch.wake
     for s in range(len(samples)):
         if wake[s] > step:
             continue
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        room = _meet(packed, fields, x, v, i, clearance, dt, friction, cap)
-        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, dt)
+        room = _meet(packed, fields, x, v, i, push)
+        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, push.dt)
 
 
 @njit(cache=True, error_model="numpy")
@@ -101,7 +121,7 @@ def _way_of_corners(fields, x, sample, count):
     gx = gy = gz = 0.0
     for a in range(count):
         u = sample[a]
-        _, nx, ny, nz, _ = signed_distance(fields, x[u, 0], x[u, 1], x[u, 2])
+        _, (nx, ny, nz), _ = signed_distance(fields, x[u, 0], x[u, 1], x[u, 2])
         gx, gy, gz = gx + nx, gy + ny, gz + nz
     size = math.sqrt(gx * gx + gy * gy + gz * gz)
     if size < 0.25:
@@ -110,7 +130,7 @@ def _way_of_corners(fields, x, sample, count):
 
 
 @njit(cache=True, error_model="numpy")
-def _meet_middle(fields, inverse_mass, x, v, sample, clearance, cap):
+def _meet_middle(fields, inverse_mass, x, v, sample, push):
     """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
     i, j, k = sample[0], sample[1], sample[2]
     pair = i == k
@@ -119,14 +139,14 @@ def _meet_middle(fields, inverse_mass, x, v, sample, clearance, cap):
     px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
     py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
     pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
-    d, nx, ny, nz, _ = signed_distance(fields, px, py, pz)
-    if d >= clearance:
-        return d - clearance
+    d, (nx, ny, nz), _ = signed_distance(fields, px, py, pz)
+    if d >= push.clearance:
+        return d - push.clearance
     if nx * nx + ny * ny + nz * nz < 0.5:
         nx, ny, nz = _way_of_corners(fields, x, sample, count)
         if nx * nx + ny * ny + nz * nz < 0.5:
-            return d - clearance
-    push = min(clearance - d, cap) / (w * w * count)
+            return d - push.clearance
+    way = min(push.clearance - d, push.cap) / (w * w * count)
     vn = 0.0
     for a in range(count):
         u = sample[a]
@@ -135,53 +155,50 @@ def _meet_middle(fields, inverse_mass, x, v, sample, clearance, cap):
     for a in range(count):
         u = sample[a]
         if inverse_mass[u] > 0.0:
-            x[u, 0] += w * push * nx
-            x[u, 1] += w * push * ny
-            x[u, 2] += w * push * nz
+            x[u, 0] += w * way * nx
+            x[u, 1] += w * way * ny
+            x[u, 2] += w * way * nz
             v[u, 0] += w * gain * nx
             v[u, 1] += w * gain * ny
             v[u, 2] += w * gain * nz
-    return d - clearance
+    return d - push.clearance
 
 
 @njit(cache=True, error_model="numpy")
-def collide_samples(packed, inverse_mass, x, v, near, clearance, cap):
-    """Keeps midpoints and centroids outside by moving their vertices; no friction here.
-
-    A midpoint is stored as (i, j, i) and means weights 1/2, 1/2; a centroid as (i, j, k).
-    """
+def collide_samples(packed, inverse_mass, x, v, near, push):
+    """Keeps the midpoints and centroids near (S, 3) outside by moving their vertices."""
     fields = fields_of(packed)
     for s in range(len(near)):
-        _meet_middle(fields, inverse_mass, x, v, near[s], clearance, cap)
+        _meet_middle(fields, inverse_mass, x, v, near[s], push)
 
 
 @njit(cache=True, error_model="numpy")
-def settle_samples(packed, inverse_mass, x, v, samples, wake, step, clearance, cap):
+def settle_samples(packed, inverse_mass, x, v, watch, step, push):
     """Goes again over the samples that were found inside in this step, until none is or SETTLE times."""
-    fields = fields_of(packed)
+    fields, samples, wake = fields_of(packed), watch.samples, watch.wake
     for _ in range(SETTLE):
         inside = 0
         for s in range(len(samples)):
             if wake[s] == step + 1:
-                if _meet_middle(fields, inverse_mass, x, v, samples[s], clearance, cap) < 0.0:
+                if _meet_middle(fields, inverse_mass, x, v, samples[s], push) < 0.0:
                     inside += 1
         if inside == 0:
             return
 
 
 @njit(cache=True, error_model="numpy")
-def collide_due_samples(packed, inverse_mass, x, v, samples, wake, step, awake, clearance, dt, cap):
-    """As `collide_samples`, for those whose wake (S,) is due."""
-    drift, fields = drift_of(packed), fields_of(packed)
+def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
+    """As `collide_samples`, for those who are due, or for all where they are `awake`."""
+    drift, fields, samples, wake = drift_of(packed), fields_of(packed), watch.samples, watch.wake
     for s in range(len(samples)):
         if wake[s] > step and not awake:
             continue
-        room = _meet_middle(fields, inverse_mass, x, v, samples[s], clearance, cap)
+        room = _meet_middle(fields, inverse_mass, x, v, samples[s], push)
         fast = 0.0
         for a in range(3):
             u = samples[s, a]
             fast = max(fast, v[u, 0] ** 2 + v[u, 1] ** 2 + v[u, 2] ** 2)
-        wake[s] = step + 1 + _sleep(room, fast, drift, dt)
+        wake[s] = step + 1 + _sleep(room, fast, drift, push.dt)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.errors import SimCoreError
-from sim_core.validation import coordinates, numeric, row, told, vertex_pairs, whole
+from sim_core.validation import coordinates, excerpt, integer, numeric_array, vector, vertex_pairs
 
 FARTHEST = 5e-6  # [m] that an edge is shortened or lengthened by in a substep: quicker, it would go through other cloth
 
@@ -55,9 +55,9 @@ class Holds(NamedTuple):
         ends (K,) [m]: how far apart the pairs stay in the end, 0 for what is sewn (None: all of them).
         Raises SimCoreError for indices out of range, bounds that leave no room and a limit that is no share.
         """
-        count = whole("holds: count", count, 1, "vertices of the sheet, 1 or more")
+        count = integer("holds: count", count, 1, "vertices of the sheet, 1 or more")
         what = "two shares of an edge's length, above 0 and at most 1"
-        shorter, longer = row("holds.limit", limit, what, 2, least=1e-300, most=1.0)
+        shorter, longer = vector("holds.limit", limit, what, 2, least=1e-300, most=1.0)
         none = np.zeros((0, 2), np.int32)
         pairs = none if pairs is None else vertex_pairs("holds.pairs", pairs, count)
         slaves = none if slaves is None else vertex_pairs("holds.slaves", slaves, count)
@@ -96,9 +96,9 @@ def _bound(name: str, value: np.ndarray | None, free: float, count: int) -> np.n
     if value is None:
         return np.full(count, free)
     what = f"expected one bound for each of {count} vertices, not NaN; -inf or inf: none"
-    array = numeric(f"holds.{name}", value, what)
+    array = numeric_array(f"holds.{name}", value, what)
     if array.shape != (count,) or np.isnan(array).any():
-        raise SimCoreError(f"holds.{name}: {told(value)} – {what}")
+        raise SimCoreError(f"holds.{name}: {excerpt(value)} – {what}")
     return np.ascontiguousarray(array, float)
 
 
@@ -170,12 +170,6 @@ def keep_lengths(limit, inverse_mass, edges, length2, strain, x, v):
         a, b = inverse_mass[i] / total, inverse_mass[j] / total
         way = min(max(excess, -FARTHEST), FARTHEST)
         _bring_together(x, v, i, j, (a, b), (nx, ny, nz), way, apart)
-
-
-@njit(cache=True, error_model="numpy")
-def limits(holds):
-    """Whether any length is kept."""
-    return min(holds.limit) < 1.0
 
 
 @njit(cache=True, error_model="numpy")

@@ -118,7 +118,7 @@ def fields_of(packed):
 
 @njit(cache=True, error_model="numpy")
 def signed_distance(fields, x, y, z):
-    """Distance [m], unit gradient and the surface's speed along it [m/s] at a point.
+    """Distance [m], unit gradient (x, y, z) and the surface's speed along it [m/s] at a point.
 
     The gradient is 0 where a grid has none (medial axis). A moving grid is blended between two keys; its surface
     moves by what the distance loses.
@@ -157,7 +157,7 @@ def signed_distance(fields, x, y, z):
                 gx, gy, gz = gx / size, gy / size, gz / size
         if d < best:
             best, bx, by, bz, speed = d, gx, gy, gz, w
-    return best, bx, by, bz, speed
+    return best, (bx, by, bz), speed
 
 
 @njit(cache=True, error_model="numpy")

@@ -11,7 +11,7 @@ from scipy.spatial import ConvexHull, QhullError
 from sim_core.cloth.contact.field_kernels import crossings, interpolate, splat, spread, sweep
 from sim_core.cloth.contact.solids import MOST_NODES, GridSdf
 from sim_core.errors import SimCoreError
-from sim_core.validation import FURTHEST, coordinates, finite, told, triangles, triple
+from sim_core.validation import FURTHEST, coordinates, excerpt, finite, triangles, vector3
 from sim_core.validation import points as checked_points
 
 __all__ = ["DistanceField", "field_of", "hull_faces", "hull_mesh", "united"]
@@ -71,9 +71,9 @@ def field_of(
     parts may overlap.
     Raises SimCoreError on wrong shapes, non-finite input, an open mesh and a grid beyond 200 million nodes.
     """
-    vertices, faces = _checked(vertices, faces, cell, band)
+    vertices, faces = checked_mesh(vertices, faces, cell, band)
     if not isinstance(hulls, list | tuple):
-        raise SimCoreError(f"field: hulls: {told(hulls)} – give a list of point sets (N, 3)")
+        raise SimCoreError(f"field: hulls: {excerpt(hulls)} – give a list of point sets (N, 3)")
     hulls = [checked_points("field: hulls", points) for points in hulls]
     if exact is not None:
         finite("field: exact [m]", exact, least=0, most=FURTHEST)
@@ -89,8 +89,10 @@ def field_of(
 def field_and_faces(
     vertices: np.ndarray, faces: np.ndarray, *, cell: float, band: float, box: Box
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Signed distance (nx, ny, nz) float32 within the band, and the face nearest to each node, int32 (-1 beyond)."""
-    vertices, faces = _checked(vertices, faces, cell, band)
+    """Signed distance (nx, ny, nz) float32 within the band, and the face nearest to each node, int32 (-1 beyond).
+
+    Of what `checked_mesh` gave.
+    """
     origin, shape = _grid(vertices, cell, band, box)
     exact = min(band, EXACT_CELLS * cell)
     return _sampled(vertices, faces, origin, shape, cell, band, exact, False)
@@ -163,9 +165,9 @@ def _grid(
     if box is None:
         low, high = points.min(0) - band, points.max(0) + band
     elif isinstance(box, list | tuple) and len(box) == 2:
-        low, high = (np.array(triple("field: box", corner, "in metres")) for corner in box)
+        low, high = (np.array(vector3("field: box", corner, "in metres")) for corner in box)
     else:
-        raise SimCoreError(f"field: box: {told(box)} – give its lowest and its highest corner")
+        raise SimCoreError(f"field: box: {excerpt(box)} – give its lowest and its highest corner")
     with np.errstate(over="ignore"):
         counts = np.ceil((high - low) / cell - 1e-9) + 1
         many = float(counts.prod())
@@ -176,9 +178,10 @@ def _grid(
     return low, (int(counts[0]), int(counts[1]), int(counts[2]))
 
 
-def _checked(
+def checked_mesh(
     vertices: np.ndarray, faces: np.ndarray, cell: float, band: float
 ) -> tuple[np.ndarray, np.ndarray]:
+    """A closed mesh, vertices (V, 3) and faces (F, 3) int32; raises SimCoreError for what is none."""
     vertices = coordinates("field: vertices", vertices)
     if vertices.ndim != 2 or vertices.shape[1:] != (3,):
         raise SimCoreError(f"field: vertices: shape {vertices.shape} – expected (V, 3)")

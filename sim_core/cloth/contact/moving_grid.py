@@ -12,7 +12,17 @@ import numpy as np
 from sim_core.cloth.contact.packed import FASTEST, GRID, MOVING, Packed
 from sim_core.cloth.contact.solids import GridSdf, Solid, Union, nodes
 from sim_core.errors import SimCoreError
-from sim_core.validation import FURTHEST, called, finite, numeric, of_kind, told, triangles, triple, whole
+from sim_core.validation import (
+    FURTHEST,
+    excerpt,
+    finite,
+    instance_of,
+    integer,
+    numeric_array,
+    optional_callable,
+    triangles,
+    vector3,
+)
 
 _WIDTH = 20
 Made = TypeVar("Made")
@@ -44,26 +54,21 @@ class MovingGrid:
     _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        triple("body.origin", self.origin, "in metres")
+        vector3("body.origin", self.origin, "in metres")
         finite("body.cell [m]", self.cell, above=0, most=FURTHEST)
-        whole("body.count", self.count, 1, "key poses, 1 or more")
+        integer("body.count", self.count, 1, "key poses, 1 or more")
         if self.key is None:
             raise SimCoreError("body.key: None – give a function of a key's number")
-        called("body.key", self.key)
+        optional_callable("body.key", self.key)
         if self.surface is not None:
-            called("body.surface", self.surface)
-        of_kind("body.name", self.name, str, "a text is meant")
+            optional_callable("body.surface", self.surface)
+        instance_of("body.name", self.name, str, "a text is meant")
         if self.beside is not None:
-            of_kind("body.beside", self.beside, Solid, "a solid is meant, e.g. HalfSpace()")
+            instance_of("body.beside", self.beside, Solid, "a solid is meant, e.g. HalfSpace()")
             if GRID in self.beside.packed().kind:
                 raise SimCoreError(
                     "body.beside: a grid – only solids with exact distance stand beside a body"
                 )
-
-    def identity(self) -> tuple[object, ...]:
-        """What tells this body from another, for checkpoints."""
-        own = (self.name, self.origin, self.cell, self.count)
-        return own if self.beside is None else (*own, self.beside)
 
     def packed(self, early: float, late: float) -> tuple[Packed, tuple[float, float]]:
         """The arrays for a frame in which the body goes from `early` to `late` (in keys), and both within its keys.
@@ -139,9 +144,10 @@ def _worn(name: str, value: object, shape: tuple[int, ...]) -> Worn:
     """What surface(k) gave, of a grid of this shape; raises SimCoreError for what is none."""
     remedy = f"give the nearest face of each of {shape} nodes, or -1, and the corners (F, 3, 3) of all faces"
     if not isinstance(value, tuple | list) or len(value) != 2:
-        raise SimCoreError(f"{name}: {told(value)} – {remedy}")
+        raise SimCoreError(f"{name}: {excerpt(value)} – {remedy}")
     nearest, corners = (
-        numeric(f"{name}: {what}", v, remedy) for what, v in zip(("faces", "corners"), value, strict=True)
+        numeric_array(f"{name}: {what}", v, remedy)
+        for what, v in zip(("faces", "corners"), value, strict=True)
     )
     if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not (np.abs(corners) <= FURTHEST).all():
         raise SimCoreError(f"{name}: corners {corners.shape}, or not finite – {remedy}")
@@ -171,9 +177,11 @@ def moving_mesh(
     it (a floor: HalfSpace()). Raises SimCoreError at once where the mesh is open, ill-wound or not finite, or is turned
     inside out in any frame, and says where.
     """
-    from sim_core.cloth.contact.distance_field import checked_cell, field_and_faces, inside_out
+    from sim_core.cloth.contact.distance_field import checked_cell, checked_mesh, field_and_faces, inside_out
 
-    frames = np.array(numeric("moving mesh: positions", positions, "expected (T, V, 3)"), float, order="C")
+    frames = np.array(
+        numeric_array("moving mesh: positions", positions, "expected (T, V, 3)"), float, order="C"
+    )
     if frames.ndim != 3 or frames.shape[2] != 3 or not len(frames):
         raise SimCoreError(f"moving mesh: positions {frames.shape} – expected (T, V, 3), T at least 1")
     wrong = np.flatnonzero(~(np.abs(frames) <= FURTHEST).all((1, 2)))
@@ -181,13 +189,14 @@ def moving_mesh(
         raise SimCoreError(f"moving mesh: frame {wrong[0]} has vertices that are not finite – mend it")
     checked_cell("moving mesh", cell, band)
     faces = np.array(triangles("moving mesh: faces", faces, frames.shape[1]), np.int32, order="C")
+    checked_mesh(frames[0], faces, cell, band)
     # Where both distances are cut off at the band the body does not move; half its thickness is what it may go.
     way = float(np.sqrt((np.diff(frames, axis=0) ** 2).sum(2)).max(initial=0.0))
     band = max(band, min(way, 0.5 * float(np.ptp(frames, axis=1).min())) + 2 * cell)
     if box is None:
         low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
     else:
-        low, high = (np.array(triple("moving mesh: box", corner, "in metres")) for corner in box)
+        low, high = (np.array(vector3("moving mesh: box", corner, "in metres")) for corner in box)
     parts = [faces]
     for hull in hulls:
         parts.append(np.array(triangles("moving mesh: hulls", hull, frames.shape[1]), np.int32, order="C"))

@@ -66,6 +66,17 @@ def triangle_weights(p, a, b, c):
     return 1.0 - v - w, v, w
 
 
+class Mesh(NamedTuple):
+    """What contact has to know of a cloth. V vertices, E edges, F faces."""
+
+    inverse_mass: np.ndarray  # (V,) [1/kg], 0: held
+    rest: np.ndarray  # (V, 2) [m] where vertices lie in the pattern
+    edges: np.ndarray  # (E, 2) int32
+    faces: np.ndarray  # (F, 3) int32
+    length2: np.ndarray  # (E,) [m2] squared length at rest
+    same: np.ndarray  # (V,) int32, one number for vertices that count as one: both ends of what is sewn
+
+
 class Finder(NamedTuple):
     """Working memory of a search, made once a run: V vertices, E edges, F faces, N the most of them."""
 
@@ -83,9 +94,18 @@ class Finder(NamedTuple):
 def finder_of(vertices: int, edges: int, faces: int) -> Finder:
     """Memory for a sheet of so many vertices, edges and faces."""
     most = max(vertices, edges, faces)
-    fields = [np.zeros((n, c)) for n, c in ((faces, 3), (vertices, 3), (faces, 3), (edges, 7), (most, 7))]
     cells = CELLS * most + 65
-    return Finder(*fields, *(np.zeros(n, np.int32) for n in (most, most, cells, cells)))
+    return Finder(
+        face_normal=np.zeros((faces, 3)),
+        vertex_normal=np.zeros((vertices, 3)),
+        centre=np.zeros((faces, 3)),
+        balls=np.zeros((edges, 7)),
+        by_cell=np.zeros((most, 7)),
+        key=np.zeros(most, np.int32),
+        order=np.zeros(most, np.int32),
+        start=np.zeros(cells, np.int32),
+        fill=np.zeros(cells, np.int32),
+    )
 
 
 def pairs_of(vertices: int) -> np.ndarray:
@@ -184,12 +204,13 @@ def _vertex_near_face(x, i, face, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def vertex_face_pairs(x, rest, faces, same, reach, near, finder, pairs):
+def vertex_face_pairs(x, mesh, reach, near, finder, pairs):
     """(vertex, face) pairs nearer than `reach`, without the faces around the vertex, into pairs (K, 2) int32.
 
-    near [m]: pairs closer than this at rest (V, 2) count as one sheet while their normals agree. same (V,):
-    vertices with equal numbers count as one. Returns the list, a longer one where it was full, and how many there are.
+    near [m]: pairs closer than this at rest count as one sheet while their normals agree. Returns the list, a longer
+    one where it was full, and how many there are.
     """
+    rest, faces, same = mesh.rest, mesh.faces, mesh.same
     centre, sorted_x = finder.centre, finder.by_cell
     normals_of(x, faces, finder.face_normal, finder.vertex_normal)
     size2 = 0.0
@@ -262,12 +283,13 @@ def _balls(x, faces, edges, finder):
 
 
 @njit(cache=True, error_model="numpy")
-def edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, pairs):
+def edge_edge_pairs(x, mesh, reach, near, finder, pairs):
     """(edge, edge) pairs nearer than `reach` that share no vertex, into pairs (K, 2) int32.
 
     All else as for vertices and faces.
     """
-    cell = 2.0 * _balls(x, faces, edges, finder) + reach
+    rest, edges, same = mesh.rest, mesh.edges, mesh.same
+    cell = 2.0 * _balls(x, mesh.faces, edges, finder) + reach
     dims, low, cell = hash_points(finder.balls, cell, finder)
     order, start, balls = finder.order, finder.start, finder.by_cell
     for s in range(len(edges)):

@@ -23,12 +23,15 @@ LEVER = 4.0  # times the change of the gap's speed that one vertex may change it
 
 
 class Shell(NamedTuple):
-    """Settings of self-contact; thickness 0 switches it off."""
+    """The distances that a cloth keeps, from solids and from itself, as the compiled loops read them."""
 
-    thickness: float  # [m] distance two layers keep
+    clearance: float  # [m] of vertices from solids
+    sample_clearance: float  # [m] of midpoints and centroids
+    cap: float  # [m] largest push out of a solid in a substep
+    thickness: float  # [m] distance two layers keep; 0: they do not feel each other
     skin: float  # [m] candidates reach this much further
     spring: float  # impulse per depth, in units of mass / dt
-    friction: float
+    self_friction: float
     every: int  # substeps between two impulses
     separation: float  # share of the separating speed that is taken, as far as the spring pushes
 
@@ -60,7 +63,7 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
     slide = math.sqrt(tx * tx + ty * ty + tz * tz)
     lost = 0.0
     if slide > 0.0:
-        lost = min(0.5, shell.friction * gain / slide)
+        lost = min(0.5, shell.self_friction * gain / slide)
     for k in range(4):
         share = weight[k] * inverse_mass[index[k]] / total
         v[index[k], 0] += share * (gain * nx - lost * tx)
@@ -69,9 +72,11 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def repel(x, v, inverse_mass, faces, edges, points, crossings, counts, shell, dt):
-    """Impulses for counts[0] vertex-face pairs `points` and counts[1] edge-edge pairs, in their fixed order."""
+def repel(x, v, mesh, pairs, counts, shell, dt):
+    """Impulses for counts[0] vertex-face pairs and counts[1] edge-edge pairs, each list (K, 2) in its fixed order."""
     reach2 = shell.thickness * shell.thickness
+    (points, crossings), inverse_mass = pairs, mesh.inverse_mass
+    faces, edges = mesh.faces, mesh.edges
     for k in range(counts[0]):
         i, f = points[k]
         a, b, c = faces[f]
@@ -96,17 +101,18 @@ def repel(x, v, inverse_mass, faces, edges, points, crossings, counts, shell, dt
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, rest, faces, edges, length2, same, shell, finder, points, crossings):
-    """Vertex-face and edge-edge candidates within thickness + skin; same (V,): vertices to be sewn share a number.
+def candidate_pairs(x, mesh, shell, finder, pairs):
+    """Vertex-face and edge-edge candidates within thickness + skin.
 
     Both lists (K, 2) are written over; returns them, longer ones where they were full, and how many are in each.
     """
     reach = shell.thickness + shell.skin
+    (points, crossings), edges, length2 = pairs, mesh.edges, mesh.length2
     side = 0.0
     for e in range(len(edges)):
         side += math.sqrt(length2[e])
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
     near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
-    points, first = vertex_face_pairs(x, rest, faces, same, reach, near, finder, points)
-    crossings, second = edge_edge_pairs(x, rest, faces, edges, same, reach, near, finder, crossings)
-    return points, crossings, (first, second)
+    points, first = vertex_face_pairs(x, mesh, reach, near, finder, points)
+    crossings, second = edge_edge_pairs(x, mesh, reach, near, finder, crossings)
+    return (points, crossings), (first, second)

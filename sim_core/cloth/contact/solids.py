@@ -9,7 +9,7 @@ import numpy as np
 from sim_core.cloth.contact.distance import distances
 from sim_core.cloth.contact.packed import BOX, CAPSULE, CYLINDER, GRID, HALFSPACE, NO_GRID, Packed
 from sim_core.errors import SimCoreError
-from sim_core.validation import FURTHEST, finite, numeric, of_kind, told, triple
+from sim_core.validation import FURTHEST, excerpt, finite, instance_of, numeric_array, vector3
 from sim_core.validation import points as checked_points
 
 _WIDTH, _BALL = 20, 16  # the last four: centre and radius of a ball around the solid (-1: endless)
@@ -17,7 +17,7 @@ MOST_NODES = 2e8  # of a grid
 
 
 def _vector(name: str, value: object) -> np.ndarray:
-    return np.array(triple(name, value, "in metres"))
+    return np.array(vector3(name, value, "in metres"))
 
 
 def _positive(name: str, value: object) -> float:
@@ -27,7 +27,7 @@ def _positive(name: str, value: object) -> float:
 def nodes(name: str, value: object) -> np.ndarray:
     """Values (nx, ny, nz) float32 [m] at the nodes of a grid; raises SimCoreError for what is none."""
     what = "expected a finite (nx, ny, nz), at least 2 each way"
-    values = numeric(name, value, what)
+    values = numeric_array(name, value, what)
     if values.ndim != 3 or min(values.shape) < 2 or not (np.abs(values) <= FURTHEST).all():
         raise SimCoreError(f"{name}: shape {values.shape} – {what}")
     return np.ascontiguousarray(values, np.float32)
@@ -124,7 +124,7 @@ class Box(Solid):
         rounding, _ = finite("box.rounding", self.rounding), finite("box.yaw", self.yaw)
         if half.min() <= 0 or not 0 <= rounding <= half.min():
             raise SimCoreError(
-                f"box: size {told(self.size)}, rounding {self.rounding} – sizes above 0, rounding at most half"
+                f"box: size {excerpt(self.size)}, rounding {self.rounding} – sizes above 0, rounding at most half"
             )
         return BOX, np.r_[centre, half, self.rounding, np.cos(self.yaw), np.sin(self.yaw)], NO_GRID
 
@@ -164,7 +164,7 @@ class GridSdf(Solid):
     @staticmethod
     def sample(solid: Solid, low: np.ndarray, high: np.ndarray, cell: float) -> GridSdf:
         """The grid of another solid's distance over the box from `low` to `high` (3,)."""
-        of_kind("solid", solid, Solid, "a solid is meant")
+        instance_of("solid", solid, Solid, "a solid is meant")
         low, high = _vector("low", low), _vector("high", high)
         _positive("cell", cell)
         if (low > high).any() or not _count(high - low, cell) <= MOST_NODES:
@@ -186,7 +186,7 @@ class Union(Solid):
         if not isinstance(self.parts, tuple | list):
             raise SimCoreError(f"union: a {type(self.parts).__name__} – give its parts as a tuple of solids")
         for part in self.parts:
-            of_kind("union", part, Solid, "its parts are solids")
+            instance_of("union", part, Solid, "its parts are solids")
         packs = [part.packed() for part in self.parts]
         if not packs:
             raise SimCoreError("union: no parts – name at least one solid")

@@ -15,6 +15,7 @@ that the line's length changes by -sum(R) . dQ, and is shortened fastest by movi
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -22,7 +23,7 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
-from sim_core.cloth.contact.pairs import Finder, hash_points
+from sim_core.cloth.contact.pairs import Finder, Mesh, hash_points
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
 NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met on the way
@@ -30,6 +31,21 @@ PATIENCE = 8  # steps without fewer crossings after which it is left to the next
 
 
 Lists = tuple[np.ndarray, np.ndarray]
+
+
+class Memory(NamedTuple):
+    """Working memory of a search for crossings."""
+
+    finder: Finder
+    lists: Lists
+
+
+class Untangling(NamedTuple):
+    """How far it may go: in rounds of so many steps [m], and whether fewer crossings are taken, too."""
+
+    step: float
+    rounds: int
+    partly: bool = False
 
 
 def no_crossings() -> Lists:
@@ -92,13 +108,13 @@ def _through(x, p, q, a, b, c):
 
 
 @njit(cache=True, error_model="numpy")
-def crossings_of(x, edges, faces, same, finder, pairs, place):
+def crossings_of(x, mesh, finder, lists):
     """Finds the pairs of an edge and a face that pass through each other and share no vertex; x (V, 3) [m].
 
-    same (V,): vertices with equal numbers count as one. Written over: pairs (K, 2) int32 and where, place (K, 4), the
-    share of the way along the edge and the weights of the face's corners. Returns both, longer where they were full,
-    and how many there are.
+    lists, written over: pairs (K, 2) int32 and where, place (K, 4), the share of the way along the edge and the
+    weights of the face's corners. Returns both, longer where they were full, and how many there are.
     """
+    (pairs, place), edges, faces, same = lists, mesh.edges, mesh.faces, mesh.same
     half, wide = _reach(x, edges, faces)
     reach, middle = half + wide, finder.by_cell
     balls = finder.balls[: len(edges)]
@@ -142,7 +158,7 @@ def crossings_of(x, edges, faces, same, finder, pairs, place):
                     pairs[count, 0], pairs[count, 1] = e, f
                     place[count, 0], place[count, 1], place[count, 2], place[count, 3] = t, 1.0 - v - w, v, w
                     count += 1
-    return pairs, place, count
+    return (pairs, place), count
 
 
 @njit(cache=True, error_model="numpy")
@@ -189,8 +205,9 @@ def _shortening(x, i, j, third, a, b, c):
 
 
 @njit(cache=True, error_model="numpy")
-def _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step):
+def _shorten(x, mesh, third, lists, count, step):
     """One step of at most `step` [m] of every edge against its face; the sums are taken where all stood before."""
+    (pairs, place), inverse_mass, edges, faces = lists, mesh.inverse_mass, mesh.edges, mesh.faces
     move, weight = np.zeros_like(x), np.zeros(len(x))
     for k in range(count):
         i, j = edges[pairs[k, 0]]
@@ -240,57 +257,47 @@ def _together_with(left: np.ndarray, pairs: np.ndarray, edges: np.ndarray, moved
 
 
 def untangle(
-    x: np.ndarray,
-    v: np.ndarray,
-    inverse_mass: np.ndarray,
-    edges: np.ndarray,
-    faces: np.ndarray,
-    third: np.ndarray,
-    holds: Holds,
-    finder: Finder,
-    lists: Lists,
-    *,
-    step: float,
-    rounds: int,
-    partly: bool = False,
+    x: np.ndarray, v: np.ndarray, mesh: Mesh, third: np.ndarray, holds: Holds, memory: Memory, how: Untangling
 ) -> tuple[int, int, Lists]:
-    """Moves x (V, 3) [m] in place until no edge passes through a face, `rounds` times at most by `step` [m].
+    """Moves x (V, 3) [m] in place until no edge passes through a face, as far as it is allowed to.
 
     Tangles stand for themselves: one that does not come free is not moved, for what springs back frame by frame would
-    never come to rest. partly: fewer crossings are taken, too.
-    v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`; finder, lists: working memory. Returns
-    how many crossings there were before, and are now, and the lists, longer ones where they were full.
+    never come to rest.
+    v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`. Returns how many crossings there were
+    before, and are now, and the lists, longer ones where they were full.
     """
-    pairs, place, count = crossings_of(x, edges, faces, holds.same, finder, *lists)
+    finder = memory.finder
+    lists, count = crossings_of(x, mesh, finder, memory.lists)
     first = least = count
     if not first:
-        return 0, 0, (pairs, place)
+        return 0, 0, lists
+    edges, faces = mesh.edges, mesh.faces
     start, best, late = x.copy(), x.copy(), 0
     reach = NEAR * float(np.sqrt(((x[edges[:, 0]] - x[edges[:, 1]]) ** 2).sum(1).max()))
-    whole, tangled = (edges, faces), pairs[:count].copy()
+    tangled = lists[0][:count].copy()
     near_edges, near_faces = (
-        near_crossings(x, shape, edges[pairs[:count, 0]], reach) for shape in (edges, faces)
+        near_crossings(x, shape, edges[tangled[:, 0]], reach) for shape in (edges, faces)
     )
-    edges, third, faces = edges[near_edges], third[near_edges], faces[near_faces]
-    for _ in range(rounds):
-        pairs, place, count = crossings_of(x, edges, faces, holds.same, finder, pairs, place)
+    near, third = mesh._replace(edges=edges[near_edges], faces=faces[near_faces]), third[near_edges]
+    for _ in range(how.rounds):
+        lists, count = crossings_of(x, near, finder, lists)
         if count < least:
             best[:], least, late = x, count, 0
         if not count or late > PATIENCE:
             break
         late += 1
-        _shorten(x, inverse_mass, edges, faces, third, pairs, place, count, step)
+        _shorten(x, near, third, lists, count, how.step)
         bound(holds, x, v)
         mirror(holds, x, v)
     x[:] = best
-    if least and not partly:
-        pairs, place, count = crossings_of(best, edges, faces, holds.same, finder, pairs, place)
-        left = np.concatenate([edges[pairs[:count, 0]], faces[pairs[:count, 1]]], axis=1)
-        first_pairs = np.concatenate([whole[0][tangled[:, 0]], whole[1][tangled[:, 1]]], axis=1)
-        back = _together_with(left, np.concatenate([first_pairs, left]), edges, (x != start).any(1))
+    if least and not how.partly:
+        (pairs, place), count = crossings_of(best, near, finder, lists)
+        left = np.concatenate([near.edges[pairs[:count, 0]], near.faces[pairs[:count, 1]]], axis=1)
+        begun = np.concatenate([edges[tangled[:, 0]], faces[tangled[:, 1]]], axis=1)
+        back = _together_with(left, np.concatenate([begun, left]), near.edges, (x != start).any(1))
         x[back] = start[back]
-        pairs, place, least = crossings_of(x, *whole, holds.same, finder, pairs, place)
+        lists, least = crossings_of(x, mesh, finder, (pairs, place))
         if least >= first:
             x[:], least = start, first
     _stop_going_back(x - start, v)
-    return first, least, (pairs, place)
+    return first, least, lists

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
@@ -16,14 +16,13 @@ from sim_core.cloth.run.checkpoint import RunState
 from sim_core.cloth.run.smoothing import smoothed
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.conditions import Conditions
-from sim_core.cloth.step.engine import IMPLICIT_STEPS, Engine
+from sim_core.cloth.step.engine import IMPLICIT_STEPS, Engine, Stride
+from sim_core.cloth.step.frame import FRAME, Contact, Frame, Phase, State, checked_phases, schedule
 from sim_core.cloth.step.kernels.diagnostics import ways
-from sim_core.cloth.step.phases import FRAME, Contact, Moment, Phase, checked_phases, schedule
 from sim_core.cloth.step.precision import Pace
 from sim_core.cloth.step.stability import first_mode, passing_step, stable_with
 from sim_core.errors import SimCoreError
-from sim_core.validation import coordinates, of_kind, one_of, vertex_numbers, whole
+from sim_core.validation import coordinates, instance_of, integer, one_of, vector3, vertex_indices
 
 if TYPE_CHECKING:
     from sim_core.cloth.run.certified_run import Certified
@@ -46,114 +45,161 @@ _KINDS = {  # of what a run may be given, and the remedy
 }
 
 
-class _Step(NamedTuple):
-    """What a frame is done with: the longest step [s], least stiffness damping [s] and the usual step [s].
+@dataclass(frozen=True)
+class Setup:
+    """What a run is of; `drape` tells what each is. Raises SimCoreError for what is none."""
 
-    The usual step is that of a first try after frames that went well (safety 1). Layers repel with the force they have
-    at it, however short the steps of a later try are: an impulse for each step would throw the harder, the shorter
-    they are.
-    """
+    sheet: Sheet
+    phases: Sequence[Phase]
+    collider: Solid | MovingGrid | None = None
+    contact: Contact | None = None
+    pins: Sequence[int] = ()
+    holds: Holds | None = None
+    air: Air | None = None
+    down: Sequence[float] = (0.0, -1.0, 0.0)
+    substeps: int | None = None
+    integrator: str = "auto"
+    pace: Pace | None = None
+    certify: bool | Mesh = False
 
-    longest: float
-    guard: float
-    usual: float
+    def __post_init__(self) -> None:
+        if not any(vector3("down", self.down, "of the way down")):
+            raise SimCoreError(
+                "down: (0, 0, 0) has no direction – for no gravity give Phase(…, gravity=(0, 0))"
+            )
+        for name, (kind, remedy) in _KINDS.items():
+            if getattr(self, name) is not None:
+                instance_of(name, getattr(self, name), kind, remedy)
+        if self.substeps is not None:
+            integer("substeps", self.substeps, 1, f"1 to {MOST_FIXED} in a frame", most=MOST_FIXED)
+        one_of("integrator", self.integrator, INTEGRATORS)
+        count = len(self.sheet.rest)
+        object.__setattr__(self, "phases", checked_phases(self.phases))
+        object.__setattr__(self, "pins", vertex_indices("pins", self.pins, count))
+        if self.holds is not None and len(self.holds.same) != count:
+            raise SimCoreError(
+                f"holds: of {len(self.holds.same)} vertices – the sheet has {count}: Holds.of({count}, …)"
+            )
+        for phase in self.phases:
+            vertex_indices("phase.pins", phase.pins, count)
+
+
+class Options(TypedDict, total=False):
+    """Of a `Setup` what a live cloth takes, too."""
+
+    collider: Solid | MovingGrid | None
+    contact: Contact | None
+    pins: Sequence[int]
+    air: Air | None
+    substeps: int | None
+    integrator: str
+    pace: Pace | None
+    certify: bool | Mesh
+
+
+class DrapeOptions(Options, total=False):
+    """Of a `Setup` all but the sheet and its phases."""
+
+    holds: Holds | None
+    down: Sequence[float]
 
 
 class Run:
     """A sheet, what it goes through and what it may touch."""
 
-    def __init__(
-        self,
-        sheet: Sheet,
-        phases: Sequence[Phase],
-        collider: Solid | MovingGrid | None,
-        contact: Contact | None,
-        pins: Sequence[int],
-        holds: Holds | None,
-        *,
-        air: Air | None,
-        down: Sequence[float],
-        substeps: int | None,
-        integrator: str,
-        pace: Pace | None = None,
-    ) -> None:
-        for name, value, (kind, remedy) in zip(
-            _KINDS, (contact, holds, air, pace, collider), _KINDS.values(), strict=True
-        ):
-            if value is not None:
-                of_kind(name, value, kind, remedy)
-        if substeps is not None:
-            whole("substeps", substeps, 1, f"1 to {MOST_FIXED} in a frame", most=MOST_FIXED)
-        one_of("integrator", integrator, INTEGRATORS)
-        self.sheet, self.phases, self.fixed, self.air = sheet, checked_phases(phases), substeps, air
-        self.down, self.integrator, count = np.array(down, float), integrator, len(sheet.rest)
-        self.pins = vertex_numbers("pins", pins, count)
-        if holds is not None and len(holds.same) != count:
-            raise SimCoreError(
-                f"holds: of {len(holds.same)} vertices – the sheet has {count}: Holds.of({count}, …)"
-            )
-        for phase in self.phases:
-            vertex_numbers("phase.pins", phase.pins, count)
-        if isinstance(collider, MovingGrid):
-            for moment in schedule(self.phases):
-                collider.between(*moment.body)
-        self.engine = Engine(sheet, collider=collider, contact=contact, holds=holds, pace=pace)
+    def __init__(self, setup: Setup) -> None:
+        """Raises SimCoreError where a phase leads a moving body beyond its keys."""
+        self.setup, self.sheet = setup, setup.sheet
+        contact, material = setup.contact or Contact(), setup.sheet.material
+        self.usual = Frame(
+            gravity=np.array(setup.down, float),
+            damping=float(material.mass_damping),
+            friction=float(material.friction),
+            speed_limit=float(contact.speed_limit),
+            pins=np.array(setup.pins, np.int64),
+        )
+        self.frames = schedule(setup.phases, self.usual)
+        if isinstance(setup.collider, MovingGrid):
+            for frame in self.frames:
+                setup.collider.between(*frame.body)
+        self.engine = Engine(
+            setup.sheet, collider=setup.collider, contact=contact, holds=setup.holds, pace=setup.pace
+        )
         self.pace = self.engine.pace
         self.certified: Certified | None = None
-        none = np.zeros((0, 3))
-        self._left = (none, none), (none, none)  # what the last frame left, as given out and in band order
-        self._given = (contact or Contact(), holds or Holds.of(len(sheet.rest)))
+        none = State(np.zeros((0, 3)), np.zeros((0, 3)))
+        self._left = none, none  # what the last frame left, as given out and in band order
 
-    def certify(self, start: np.ndarray, solid: bool | Mesh) -> None:
-        """From now on every frame is certified; start (V, 3) [m], solid: the mesh of a still collider, or True."""
+    def _certify(self, start: np.ndarray) -> None:
+        """From now on every frame is certified; start (V, 3) [m]."""
         from sim_core.cloth.run.certified_run import (
             Certified,  # what only the certifier needs takes half a second
         )
 
-        if self.integrator == "implicit":
+        if self.setup.integrator == "implicit":
             raise SimCoreError("certify: frames are done again by the explicit scheme – take integrator auto")
-        self.certified = Certified(self.engine, start, None if solid is True else solid)  # type: ignore[arg-type]
+        solid = self.setup.certify
+        self.certified = Certified(self.engine, start, None if isinstance(solid, bool) else solid)
 
     def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
         """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
 
         Not where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
         """
+        if self.setup.certify is not False:
+            self._certify(x)
         engine, holds = self.engine, self.engine.holds
         held = engine.limited or len(holds.pairs) or len(holds.low) or len(holds.slaves)
         if held or engine.moving or len(engine.packed.kind) or self.certified is not None:
             return RunState(x, v)
-        smooth, length = smoothed(self.sheet, x, self._pinned(self.phases[0]))
+        smooth, length = smoothed(self.sheet, x, self.frames[0].pins)
         return RunState(smooth, v, smoothed=length)
 
-    def identity(self) -> tuple[object, ...]:
-        """What, beside sheet and start, decides the bits of the result."""
-        body = self.engine.moving
-        moving = body and body.identity()
-        contact, holds = self._given
-        settings = (self.phases, contact, self.pins, self.air, self.down, self.fixed, self.integrator, moving)
-        settings += () if self.air is None else (AIR_VERSION,)
-        settings += () if self.pace == Pace() else (self.pace,)
-        settings += () if self.engine.shell.thickness == 0.0 else (SHELL_VERSION,)
-        looked = () if self.certified is None else self.certified.certifier.solid
-        return (*settings, *self.engine.packed, *holds, self.certified is not None, *looked)
+    def identity(self) -> dict[str, object]:
+        """What decides the bits of the result, beside where it starts."""
+        setup, sheet, engine = self.setup, self.sheet, self.engine
+        stencil, body, layers = sheet.stencil, engine.moving, engine.shell.thickness > 0.0
+        rest = {"rest": sheet.rest, "faces": sheet.faces, "corner": sheet.corner, "mass": sheet.mass}
+        forces = {"own": stencil.own, "coupling": stencil.coupling, "bend": stencil.bend}
+        solids = {f"solid.{name}": value for name, value in engine.packed._asdict().items()}
+        if body:
+            solids |= {"body": body.name, "origin": body.origin, "cell": body.cell, "keys": body.count}
+            solids["beside"] = body.beside
+        looked = self.certified and self.certified.certifier.solid
+        return {
+            **rest,
+            **forces,
+            "material": sheet.material,
+            "phases": setup.phases,
+            "pins": setup.pins,
+            "down": self.usual.gravity,
+            "air": setup.air and (setup.air, AIR_VERSION),
+            "contact": (setup.contact or Contact(), SHELL_VERSION * layers),
+            "pace": self.pace,
+            "substeps": setup.substeps,
+            "integrator": setup.integrator,
+            **solids,
+            **{f"holds.{name}": value for name, value in engine.holds._asdict().items()},
+            "certified": looked is not None,
+            **dict(zip(("vertices", "sides"), looked or (), strict=False)),
+        }
 
-    def _pinned(self, phase: Phase) -> tuple[int, ...]:
-        return tuple(sorted({*self.pins, *phase.pins}))
-
-    def frame(self, state: RunState, now: Moment) -> None:
-        """One frame, by the explicit scheme at 0.7 (or the pace's share) of the stable step of the current tangent.
+    def frame(self, state: RunState) -> None:
+        """The next frame, by the explicit scheme at 0.7 (or the pace's share) of the stable step of the tangent.
 
         If it blows up it is rolled back and done with half the step, then by the implicit scheme; where layers touch
         or that does not help either, with half the step again and again.
         """
-        self.frame_under(state, self._conditions(now, state.frame), self._pinned(now.phase))
+        frame, air = self.frames[state.frame], self.setup.air
+        if air is not None:
+            frame = frame._replace(wind=air.over(state.frame * FRAME), press=air.press)
+        self.frame_under(state, frame)
 
-    def frame_under(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
-        """One frame under the given conditions; broken off in the midst, it leaves the state as it was."""
+    def frame_under(self, state: RunState, frame: Frame) -> None:
+        """One frame as it is told; broken off in the midst, it leaves the state as it was."""
         begun = replace(state, tally=replace(state.tally))
         try:
-            self._frame(state, under, pins)
+            self._frame(state, frame)
         except BaseException as error:
             for name in ("mode", "safety", "rollbacks", "fallbacks", "tally"):
                 setattr(state, name, getattr(begun, name))
@@ -161,47 +207,44 @@ class Run:
                 raise KeyboardInterrupt from error
             raise
 
-    def _frame(self, state: RunState, under: Conditions, pins: tuple[int, ...]) -> None:
+    def _frame(self, state: RunState, frame: Frame) -> None:
         engine = self.engine
         begin = self._begin(state)
         start = time.perf_counter()
-        if self.integrator == "implicit":
-            count = self.fixed or IMPLICIT_STEPS
-            x, v = self._implicit(under, pins, begin, count)
-            usual = 0.0
-            if not np.isfinite(x).all():
+        if self.setup.integrator == "implicit":
+            stride = Stride(self.setup.substeps or IMPLICIT_STEPS, state.last_step)
+            end = self._implicit(frame, begin, stride.count)
+            if not np.isfinite(end.x).all():
                 raise SimCoreError(
                     f"frame {state.frame}: the implicit scheme found no way on – use the explicit"
                 )
         else:
-            x, v, count, usual = self._explicit(state, under, pins, begin)
-        engine.untangle(pins, x, v)
+            end, stride = self._explicit(state, frame, begin)
+        engine.untangle(frame.pins, end)
+        count = stride.count
         if self.certified is not None:
-            last = state.last_step
-            x, v, count = self.certified.frame(state.tally, under, pins, begin, (x, v), last, count, usual)
+            end, count = self.certified.frame(state.tally, frame, begin, end, stride)
         state.seconds.append(time.perf_counter() - start)
-        way = np.zeros(x.shape[1])
-        ways(begin[0], x, way)
+        way = np.zeros(end.x.shape[1])
+        ways(begin.x, end.x, way)
         state.trace.append((float(np.percentile(way, 99)), float(way.max())))
-        state.stretch = max(state.stretch, engine.stretch(x))
-        state.positions, state.velocities = engine.outward(x), engine.outward(v)
-        self._left = (state.positions, state.velocities), (x, v)
+        state.stretch = max(state.stretch, engine.stretch(end.x))
+        state.positions, state.velocities = engine.outward(end.x), engine.outward(end.v)
+        self._left = State(state.positions, state.velocities), end
         state.last_step = FRAME / count
         state.frame, state.substeps = state.frame + 1, state.substeps + count
 
-    def _begin(self, state: RunState) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and velocities (3, V) in band order: those the last frame left, if they are the state's."""
-        given, arrays = self._left
-        if given[0] is state.positions and given[1] is state.velocities:
-            return arrays
-        return self.engine.inward(state.positions), self.engine.inward(state.velocities)
+    def _begin(self, state: RunState) -> State:
+        """The state (3, V) in band order: what the last frame left, if that is the run's."""
+        given, left = self._left
+        if given.x is state.positions and given.v is state.velocities:
+            return left
+        return State(self.engine.inward(state.positions), self.engine.inward(state.velocities))
 
-    def _implicit(
-        self, under: Conditions, pins: tuple[int, ...], begin: tuple[np.ndarray, np.ndarray], count: int
-    ) -> tuple[np.ndarray, np.ndarray]:
-        x, v = begin[0].copy(), begin[1].copy()
-        self.engine.advance_implicit(under, pins, x, v, count)
-        return x, v
+    def _implicit(self, frame: Frame, begin: State, count: int) -> State:
+        end = begin.copy()
+        self.engine.advance_implicit(frame, end, count)
+        return end
 
     def _count(self, step: float) -> int:
         """Steps of a frame, of a whole number of impulses of bending, at a largest stable step [s]."""
@@ -211,89 +254,72 @@ class Run:
     def _gives_in(self, attempt: int, count: int) -> bool:
         """Half the step did not help either, or there would be too many: the implicit scheme's turn, if it may."""
         late = attempt == 1 or (attempt == 0 and count > MOST_SUBSTEPS)
-        return late and self.integrator == "auto" and self.engine.shell.thickness == 0.0
+        return late and self.setup.integrator == "auto" and self.engine.shell.thickness == 0.0
 
-    def _paced(
-        self, state: RunState, under: Conditions, pins: tuple[int, ...], begin: tuple[np.ndarray, np.ndarray]
-    ) -> _Step:
-        """The step of a frame that begins so; the state's mode changes."""
+    def _paced(self, state: RunState, frame: Frame, begin: State) -> tuple[float, Stride]:
+        """The longest step [s] of a frame that begins so, and how it goes at that; the state's mode changes.
+
+        Its usual step is that of a first try after frames that went well (safety 1). Layers repel with the force they
+        have at it, however short the steps of a later try are: an impulse for each step would throw the harder, the
+        shorter they are.
+        """
         engine, pace = self.engine, self.pace
-        first = state.mode.shape != begin[0].shape
-        mode = first_mode(begin[0].shape[1]) if first else state.mode.copy()
-        stable = engine.step(pins, begin[0], mode, first=first)
+        first = state.mode.shape != begin.x.shape
+        mode = first_mode(begin.x.shape[1]) if first else state.mode.copy()
+        stable = engine.step(frame.pins, begin.x, mode, first=first)
         guard = pace.guard(stable, engine.bend_omega2)
         if guard > self.sheet.material.stiffness_damping:
             stable = stable_with(stable, guard)
         state.mode = mode
-        bounds = min(engine.air_step(under, begin[1]), self._layer_step(under, begin))
+        bounds = min(engine.air_step(frame, begin.v), self._layer_step(frame, begin))
         longest = min(stable, bounds / pace.courant)
-        return _Step(longest, guard, FRAME / self._count(longest))
+        count = self._count(longest)
+        return longest, Stride(count, state.last_step, guard, usual=FRAME / count)
 
-    def _explicit(
-        self,
-        state: RunState,
-        under: Conditions,
-        pins: tuple[int, ...],
-        begin: tuple[np.ndarray, np.ndarray],
-    ) -> tuple[np.ndarray, np.ndarray, int, float]:
-        """Positions, velocities (3, V), steps and usual step [s] of one frame; safety, mode and counters change."""
+    def _explicit(self, state: RunState, frame: Frame, begin: State) -> tuple[State, Stride]:
+        """Where one frame leads and how it was gone through; the run's safety, mode and counters change."""
         engine, longest = self.engine, np.inf
-        if self.fixed:
-            x, v = begin[0].copy(), begin[1].copy()
-            engine.advance(under, pins, x, v, state.last_step, self.fixed)
-            return x, v, self.fixed, FRAME / self.fixed
-        step, guard, usual = self._paced(state, under, pins, begin)
+        if self.setup.substeps:
+            end = begin.copy()
+            engine.advance(frame, end, Stride(self.setup.substeps, state.last_step))
+            return end, Stride(self.setup.substeps, state.last_step, usual=FRAME / self.setup.substeps)
+        step, stride = self._paced(state, frame, begin)
         for attempt in range(MAX_HALVINGS):
-            count = self._count(state.safety * step)
-            if count <= MOST_SUBSTEPS:
-                x, v = begin[0].copy(), begin[1].copy()
-                engine.advance(under, pins, x, v, state.last_step, count, guard, usual=usual)
-                good = engine.health.good(under, begin, (x, v))
-                if not good and not under.quiet and np.isfinite(x).all():
+            stride = stride._replace(count=self._count(state.safety * step))
+            if stride.count <= MOST_SUBSTEPS:
+                end = begin.copy()
+                engine.advance(frame, end, stride)
+                good = engine.health.good(frame, begin, end)
+                if not good and not frame.quiet and np.isfinite(end.x).all():
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
-                    before, longest = longest, engine.stretch(x)
+                    before, longest = longest, engine.stretch(end.x)
                     good = abs(before / longest - 1) < CONFIRMED
                 if good:
-                    late = passing_step(engine.shell.thickness, v)
-                    if FRAME / count <= LATE * late:
+                    late = passing_step(engine.shell.thickness, end.v)
+                    if FRAME / stride.count <= LATE * late:
                         state.safety = min(1.0, state.safety * 1.1)
-                        return x, v, count, usual
+                        return end, stride
                     step = min(step, late / self.pace.courant)  # faster on the way than layers can bear
                     engine.forget()
                     continue
                 engine.forget()
-            if self._gives_in(attempt, count):
-                x, v = self._implicit(under, pins, begin, IMPLICIT_STEPS)
-                if engine.health.good(under, begin, (x, v)):
+            if self._gives_in(attempt, stride.count):
+                end = self._implicit(frame, begin, IMPLICIT_STEPS)
+                if engine.health.good(frame, begin, end):
                     state.fallbacks += 1
-                    return x, v, IMPLICIT_STEPS, usual
+                    return end, stride._replace(count=IMPLICIT_STEPS)
                 engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
 
-    def _layer_step(self, under: Conditions, begin: tuple[np.ndarray, np.ndarray]) -> float:
+    def _layer_step(self, frame: Frame, begin: State) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
         if self.engine.shell.thickness == 0.0:
             return np.inf
-        v = begin[1].copy()
-        index = self.engine.number[under.led[0]]
-        v[:, index] = (under.led[1].T - begin[0][:, index]) / FRAME
+        v = begin.v.copy()
+        index = self.engine.number[frame.led]
+        v[:, index] = (frame.places.T - begin.x[:, index]) / FRAME
         return passing_step(self.engine.shell.thickness, v)
-
-    def _conditions(self, now: Moment, frame: int) -> Conditions:
-        material, phase = self.sheet.material, now.phase
-        wind, press = self.engine.air(self.air, frame * FRAME)
-        limit = self._given[0].speed_limit if phase.speed_limit is None else phase.speed_limit
-        return Conditions(
-            gravity=self.down * now.gravity,
-            damping=material.mass_damping if phase.damping is None else phase.damping,
-            friction=material.friction if phase.friction is None else phase.friction,
-            speed_limit=limit,
-            sewing=now.sewing,
-            body=now.body,
-            wind=wind,
-            press=press,
-        )
 
 
 def _interrupted(error: BaseException | None) -> bool:
@@ -307,7 +333,7 @@ def checked_state(
     sheet: Sheet, positions: np.ndarray, velocities: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Copies of positions and velocities (V, 3); raises SimCoreError for wrong shapes and what is not finite."""
-    of_kind("sheet", sheet, Sheet, "make one with Sheet.of")
+    instance_of("sheet", sheet, Sheet, "make one with Sheet.of")
     shape = (len(sheet.rest), 3)
     x = coordinates("positions", positions, shape)
     return x, np.zeros(shape) if velocities is None else coordinates("velocities", velocities, shape)

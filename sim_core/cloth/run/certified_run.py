@@ -8,15 +8,12 @@ import numpy as np
 
 from sim_core.cloth.run.certificate import Certificate, Tally
 from sim_core.cloth.run.certifier import Certifier, Mesh
-from sim_core.cloth.step.conditions import Conditions
-from sim_core.cloth.step.engine import Engine
-from sim_core.cloth.step.phases import FRAME
+from sim_core.cloth.step.engine import Engine, Stride
+from sim_core.cloth.step.frame import FRAME, Frame, State
 from sim_core.errors import SimCoreError
 
 PARTS = 8  # of a frame that is done again
 FINER = (2, 4)  # how many times more steps it is done with, one try after the other
-
-State = tuple[np.ndarray, np.ndarray]
 
 
 class Certified:
@@ -40,75 +37,58 @@ class Certified:
         return Certificate(good, tally.redone, tally.uncertified, tally.zones, crossed, self.seconds)
 
     def frame(
-        self,
-        tally: Tally,
-        under: Conditions,
-        pins: tuple[int, ...],
-        begin: State,
-        end: State,
-        last: float,
-        count: int,
-        usual: float,
-    ) -> tuple[np.ndarray, np.ndarray, int]:
-        """Positions, velocities (3, V) and steps of the frame that went from begin to end in `count` steps.
+        self, tally: Tally, frame: Frame, begin: State, end: State, stride: Stride
+    ) -> tuple[State, int]:
+        """The end, and the steps, of the frame that went from begin to end (3, V) in that stride.
 
-        last [s]: the step before it; usual [s]: as for `Engine.advance`. A frame that begins with intersections is
-        left as it is, to untangle.
+        A frame that begins with intersections is left as it is, to untangle.
         """
         start = time.perf_counter()
         try:
-            if tally.uncertified and self.certifier.intersections(begin[0].T):
+            if tally.uncertified and self.certifier.intersections(begin.x.T):
                 tally.uncertified += 1
-                return *end, count
-            if self.certifier.free(begin[0].T, end[0].T):
-                return *end, count
+                return end, stride.count
+            if self.certifier.free(begin.x.T, end.x.T):
+                return end, stride.count
             tally.redone += 1
-            return self._again(tally, under, pins, begin, end, last, count, usual)
+            return self._again(tally, frame, begin, end, stride)
         finally:
             self.seconds += time.perf_counter() - start
 
     def _again(
-        self,
-        tally: Tally,
-        under: Conditions,
-        pins: tuple[int, ...],
-        begin: State,
-        end: State,
-        last: float,
-        count: int,
-        usual: float,
-    ) -> tuple[np.ndarray, np.ndarray, int]:
-        engine, inverse, slow = self.engine, self.engine.inverse_mass(pins), self.engine.pace.slow
+        self, tally: Tally, frame: Frame, begin: State, end: State, stride: Stride
+    ) -> tuple[State, int]:
+        engine, slow = self.engine, self.engine.pace.slow
         for finer in FINER:
-            steps = slow * int(np.ceil(finer * count / (slow * PARTS)))
-            x, v, zones = self._in_parts(under, pins, begin, last, steps, usual)
-            if zones >= 0 and engine.health.good(under, begin, (x, v)):
+            steps = slow * int(np.ceil(finer * stride.count / (slow * PARTS)))
+            part = Stride(steps, stride.last, usual=stride.usual, share=1 / PARTS)
+            there, zones = self._in_parts(frame, begin, part)
+            if zones >= 0 and engine.health.good(frame, begin, there):
                 tally.zones += zones
-                return x, v, steps * PARTS
+                return there, steps * PARTS
             engine.forget()
-        there, speed, rounds, free = self.certifier.mended(begin[0].T, end[0].T, end[1].T, inverse)
+        inverse = engine.inverse_mass(frame.pins)
+        x, v, rounds, free = self.certifier.mended(begin.x.T, end.x.T, end.v.T, inverse)
         tally.zones += rounds
         if not free:
             tally.uncertified += 1
-            return *end, count
-        return np.ascontiguousarray(there.T), np.ascontiguousarray(speed.T), count
+            return end, stride.count
+        return State(np.ascontiguousarray(x.T), np.ascontiguousarray(v.T)), stride.count
 
-    def _in_parts(
-        self, under: Conditions, pins: tuple[int, ...], begin: State, last: float, steps: int, usual: float
-    ) -> tuple[np.ndarray, np.ndarray, int]:
-        """The frame's end and how often zones were needed, -1 where that did not help."""
-        engine, inverse, zones = self.engine, self.engine.inverse_mass(pins), 0
-        x, v = begin[0].copy(), begin[1].copy()
+    def _in_parts(self, frame: Frame, begin: State, stride: Stride) -> tuple[State, int]:
+        """The frame's end and how often zones were needed, -1 where that did not help; stride: of each part."""
+        engine, inverse, zones = self.engine, self.engine.inverse_mass(frame.pins), 0
+        now = begin.copy()
         for part in range(PARTS):
-            early, late, here = part / PARTS, (part + 1) / PARTS, x.copy()
-            now = under.part(early, late, engine.outward(x))
-            engine.advance(now, pins, x, v, last, steps, share=1 / PARTS, usual=usual)
-            if not np.isfinite(x).all():
-                return x, v, -1
-            there, speed, rounds, free = self.certifier.mended(here.T, x.T, v.T, inverse)
+            here = now.x.copy()
+            under = frame.part(part / PARTS, (part + 1) / PARTS, engine.outward(here))
+            engine.advance(under, now, stride)
+            if not np.isfinite(now.x).all():
+                return now, -1
+            x, v, rounds, free = self.certifier.mended(here.T, now.x.T, now.v.T, inverse)
             if not free:
-                return x, v, -1
+                return now, -1
             if rounds:
-                x[:], v[:], zones = there.T, speed.T, zones + rounds
-            last = FRAME / (PARTS * steps)
-        return x, v, zones
+                now.x[:], now.v[:], zones = x.T, v.T, zones + rounds
+            stride = stride._replace(last=FRAME / (PARTS * stride.count))
+        return now, zones

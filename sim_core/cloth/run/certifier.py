@@ -3,7 +3,13 @@
 Continuous collision detection by `ipctk` (optional) of every vertex against every triangle and every edge against
 every edge, of the cloth and of a solid's mesh, along straight ways: from a start without intersections a way without
 collisions leads to an end without, and nothing can have passed through anything. The cloth itself goes in hundreds of
-small steps; where the straight way from begin to end collides, the frame is done again in parts (see `running`).
+small steps; where the straight way from begin to end collides, the frame is done again in parts (see
+`certified_run`).
+
+What still would pass through something within a step goes along with it instead: impact zones, after Provot (1997)
+and Harmon et al. (2008), with translations alone. The vertices of all crossing pairs that share one move by their
+common mean, weighted by mass. Nothing within a zone moves against the rest of it, so it cannot cross; what a zone
+then runs into joins it. In the end the whole cloth is one zone, and stands still or flies.
 """
 
 from __future__ import annotations
@@ -12,13 +18,15 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from sim_core.cloth.run.zones import moved_together, zones_of
 from sim_core.errors import SimCoreError
 from sim_core.metrics import intersections
-from sim_core.validation import points, told, triangles
+from sim_core.validation import excerpt, points, triangles
 
 ROUNDS = 40  # in which zones may grow before a part is given up
+SAME = 1e-12  # [m] two led vertices that move alike to within this are one body
 LONGEST = 2_000  # halvings of one pair's way; parallel edges have no one place to meet: what is not free then, meets
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -37,7 +45,7 @@ def need_ipctk() -> Any:
     return ipctk
 
 
-def edges_of(faces: np.ndarray) -> np.ndarray:
+def _edges_of(faces: np.ndarray) -> np.ndarray:
     """Unique edges (E, 2) int32 of faces (F, 3)."""
     return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
 
@@ -53,7 +61,7 @@ class Certifier:
         self.solid = _checked(solid)
         self.still, solid_faces = self.solid
         self._all_faces = np.concatenate([self.faces, solid_faces + self.count]).astype(np.int32)
-        self._edges = edges_of(self._all_faces)
+        self._edges = _edges_of(self._all_faces)
         self._own = intersections(self.still, solid_faces) if len(solid_faces) else 0
         self._mesh = self._ipctk.CollisionMesh(
             self._whole(start), np.asfortranarray(self._edges), np.asfortranarray(self._all_faces)
@@ -112,12 +120,50 @@ class Certifier:
         return before + way[: self.count], speed[: self.count], ROUNDS, False
 
 
+def zones_of(stencils: np.ndarray, count: int) -> np.ndarray:
+    """The zone (count,) each vertex belongs to, -1: none. stencils (K, 4): the vertices of pairs that would cross."""
+    first = np.repeat(stencils[:, 0], stencils.shape[1])
+    links = coo_array((np.ones(stencils.size), (first, stencils.ravel())), shape=(count, count))
+    _, zone = connected_components(links, directed=False)
+    inside = np.zeros(count, bool)
+    inside[stencils.ravel()] = True
+    zone[~inside] = -1
+    _, renumbered = np.unique(zone[inside], return_inverse=True)
+    zone[inside] = renumbered
+    return zone
+
+
+def moved_together(
+    zone: np.ndarray, way: np.ndarray, v: np.ndarray, inverse_mass: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Ways (V, 3) [m] and velocities (V, 3) [m/s] once every zone moves as one, and how many zones cannot.
+
+    inverse_mass (V,) [1/kg]: 0 for what is held or led, whose way the zone then takes; a zone with two of different
+    ways is left alone.
+    """
+    way, v, stuck = way.copy(), v.copy(), 0
+    for number in range(int(zone.max(initial=-1)) + 1):
+        member = np.flatnonzero(zone == number)
+        held = member[inverse_mass[member] == 0.0]
+        if len(held):
+            if np.ptp(way[held], axis=0).max() > SAME:
+                stuck += 1
+                continue
+            way[member], v[member] = way[held[0]], v[held[0]]
+        else:
+            weight = 1.0 / inverse_mass[member]
+            weight /= weight.sum()
+            way[member] = (weight[:, None] * way[member]).sum(0)
+            v[member] = (weight[:, None] * v[member]).sum(0)
+    return way, v, stuck
+
+
 def _checked(solid: Mesh | None) -> Mesh:
     if solid is None:
         return np.zeros((0, 3)), np.zeros((0, 3), np.int32)
     if not isinstance(solid, tuple | list) or len(solid) != 2:
         raise SimCoreError(
-            f"certify: {told(solid)} – give True, or the vertices (S, 3) and faces (F, 3) of a solid"
+            f"certify: {excerpt(solid)} – give True, or the vertices (S, 3) and faces (F, 3) of a solid"
         )
     vertices = points("certify: the solid's vertices", solid[0])
     return vertices, triangles("certify: the solid's faces", solid[1], len(vertices)).astype(np.int32)

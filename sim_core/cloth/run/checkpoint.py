@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,10 +12,23 @@ import numpy as np
 
 from sim_core.cloth.run.certificate import Tally
 from sim_core.errors import FileProblem
-from sim_core.validation import told
+from sim_core.validation import excerpt, instance_of
 from sim_core.validation.files import read_npz
 
 _ARRAYS = ("key", "positions", "velocities", "numbers", "trace", "film", "mode")
+_NUMBERS: dict[
+    str, type[int] | type[float]
+] = {  # of a state, as they stand in `numbers`; then those of its tally
+    "frame": int,
+    "last_step": float,
+    "safety": float,
+    "rollbacks": int,
+    "substeps": int,
+    "fallbacks": int,
+    "stretch": float,
+    "smoothed": float,
+}
+_TALLY = ("redone", "zones", "uncertified")
 
 
 @dataclass
@@ -40,15 +53,32 @@ class RunState:
     smoothed: float = 0.0  # [m] over which a hopeless start was smoothed
 
 
-def run_key(parts: Iterable[object]) -> str:
-    """A hash of everything a run depends on; arrays by their bytes, the rest by its text.
+@dataclass(frozen=True)
+class Checkpoint:
+    """A file that keeps the state of a run, rewritten every few seconds.
+
+    keep: leave it behind, finished, for a caller who has more to do. only_own: refuse a state that the run cannot go on
+    from, where it would else be written over; a file that is no state at all is always refused.
+    """
+
+    path: str | Path
+    keep: bool = False
+    only_own: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("keep", "only_own"):
+            instance_of(f"checkpoint.{name}", getattr(self, name), bool, "True or False is meant")
+
+
+def run_key(parts: Mapping[str, object]) -> str:
+    """A hash of everything a run depends on, by name; arrays by their bytes, the rest by its text.
 
     Arrays that were computed differ in their last bits from machine to machine, so a run goes on where it began.
     """
     digest = hashlib.sha256()
-    for part in parts:
+    for name, part in sorted(parts.items()):
         data = np.ascontiguousarray(part).tobytes() if isinstance(part, np.ndarray) else repr(part).encode()
-        digest.update(str(len(data)).encode() + b":" + data)
+        digest.update(f"{name} {len(data)}:".encode() + data)
     return digest.hexdigest()
 
 
@@ -58,7 +88,7 @@ def checkpoint_file(path: str | Path) -> Path:
     A state cut off in the midst is no hindrance: it will be written over.
     """
     if not isinstance(path, str | Path) or not str(path) or "\0" in str(path):
-        raise FileProblem(f"checkpoint: {told(path)} – give the path of a file")
+        raise FileProblem(f"checkpoint: {excerpt(path)} – give the path of a file")
     file = Path(path)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -79,16 +109,14 @@ def save_checkpoint(path: Path, key: str, state: RunState) -> None:
     """Writes the state beside `path` and renames it over: an interrupt leaves the old or the new one."""
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
-    counters = (state.rollbacks, state.substeps, state.fallbacks, state.stretch)
-    counters += (state.tally.redone, state.tally.zones, state.tally.uncertified, state.smoothed)
-    numbers = np.array([state.frame, state.last_step, state.safety, *counters], float)
+    numbers = [getattr(state, name) for name in _NUMBERS] + [getattr(state.tally, name) for name in _TALLY]
     with beside.open("wb") as stream:
         np.savez(
             stream,
             key=np.array(key),
             positions=state.positions,
             velocities=state.velocities,
-            numbers=numbers,
+            numbers=np.array(numbers, float),
             trace=np.array(state.trace, float).reshape(-1, 2),
             mode=state.mode,
             film=np.array(state.film, np.float32).reshape(-1, *state.positions.shape),
@@ -104,23 +132,16 @@ def load_checkpoint(path: Path, key: str) -> RunState | None:
         data = read_npz(path, _ARRAYS, "a checkpoint", "the run begins anew")
         if str(data["key"]) != key:
             return None
-        frame, last, safety, rollbacks, substeps, fallbacks, stretch, *tally = data["numbers"]
-        smoothed = float(tally.pop()) if len(tally) > 3 else 0.0
+        kinds = [*_NUMBERS.values(), *(int for _ in _TALLY)]
+        values = [kind(number) for kind, number in zip(kinds, data["numbers"], strict=True)]
         return RunState(
             positions=data["positions"],
             velocities=data["velocities"],
-            frame=int(frame),
-            last_step=float(last),
-            safety=float(safety),
-            rollbacks=int(rollbacks),
-            substeps=int(substeps),
-            fallbacks=int(fallbacks),
-            stretch=float(stretch),
             trace=[(float(p), float(m)) for p, m in data["trace"]],
             film=list(data["film"]),
             mode=data["mode"],
-            tally=Tally(*map(int, tally)),
-            smoothed=smoothed,
+            tally=Tally(**dict(zip(_TALLY, values[len(_NUMBERS) :], strict=True))),
+            **dict(zip(_NUMBERS, values, strict=False)),
         )
     except (FileProblem, ValueError, TypeError, OverflowError):
         return None

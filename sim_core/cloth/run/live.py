@@ -3,32 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Unpack
 
 import numpy as np
 
-from sim_core.cloth.contact.moving_grid import MovingGrid
-from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.run.adaptive_run import Run, checked_state
+from sim_core.cloth.run.adaptive_run import Options, Run, Setup, checked_state
 from sim_core.cloth.run.certificate import Certificate
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.conditions import Conditions
-from sim_core.cloth.step.phases import FRAME, Contact, Phase
-from sim_core.cloth.step.precision import Pace
+from sim_core.cloth.step.frame import FRAME, Phase
 from sim_core.errors import SimCoreError
-from sim_core.validation import finite, of_kind, points, told, triple, vertex_numbers
-
-if TYPE_CHECKING:
-    from sim_core.cloth.run.certifier import Mesh
+from sim_core.validation import excerpt, finite, instance_of, points, vector3, vertex_indices
 
 
 class Live:
     """The state of a running cloth; `step` moves it on by one frame of 1/25 s.
 
-    sheet, positions (V, 3) [m], substeps and certify as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the
-    material's), which may be set anew between two frames. The same calls give the same bits on one
-    machine. Raises SimCoreError on bad input.
+    sheet, positions (V, 3) [m] and options as for `drape`; gravity (3,) [m/s2]; damping [1/s] (None: the material's),
+    which may be set anew between two frames. The same calls give the same bits on one machine. Raises SimCoreError on
+    bad input.
     """
 
     def __init__(
@@ -36,39 +29,17 @@ class Live:
         sheet: Sheet,
         positions: np.ndarray,
         *,
-        collider: Solid | MovingGrid | None = None,
-        contact: Contact | None = None,
-        pins: Sequence[int] = (),
-        air: Air | None = None,
         gravity: Sequence[float] = (0.0, -9.81, 0.0),
         damping: float | None = None,
-        integrator: str = "auto",
-        substeps: int | None = None,
-        pace: Pace | None = None,
-        certify: bool | Mesh = False,
+        **options: Unpack[Options],
     ) -> None:
         x, v = checked_state(sheet, positions, None)
-        self._gravity = np.array(triple("gravity", gravity, "in m/s2"))
+        self._gravity = np.array(vector3("gravity", gravity, "in m/s2"))
         self.damping = sheet.material.mass_damping if damping is None else finite("damping", damping, least=0)
-        phases = [Phase(FRAME)]
-        self._run = Run(
-            sheet,
-            phases,
-            collider,
-            contact,
-            pins,
-            None,
-            air=air,
-            down=(0.0, -1.0, 0.0),
-            substeps=substeps,
-            integrator=integrator,
-            pace=pace,
-        )
-        if certify is not False:
-            self._run.certify(x, certify)
+        setup = Setup(sheet, [Phase(FRAME)], **options)
+        self._run = Run(setup)
         self._state = self._run.begun(x, v)
-        self._limit = (contact or Contact()).speed_limit
-        self.pins, self.air, self.body = self._run.pins, air, 0.0
+        self.pins, self.air, self.body = tuple(setup.pins), setup.air, 0.0
 
     @property
     def positions(self) -> np.ndarray:
@@ -123,32 +94,33 @@ class Live:
         on bad input; then, and where it is interrupted, all is as it was.
         """
         count, held, air = len(self._state.positions), self.pins, self.air
-        held = vertex_numbers("pins", held if pins is None else pins, count)
+        held = vertex_indices("pins", held if pins is None else pins, count)
         if air is not None:
-            of_kind("air", air, Air, "an Air is meant")
+            instance_of("air", air, Air, "an Air is meant")
         before = np.zeros(3) if air is None else air.at(self._state.frame * FRAME)
         if wind is not None:
             air = (air or Air()).blowing(wind)
-        blown, press = None, 0.0
-        if air is not None:
-            blown, press = np.stack([before, air.at((self._state.frame + 1) * FRAME)]), air.press
+        after = before if air is None else air.at((self._state.frame + 1) * FRAME)
         early, late = (
             finite("body", key, least=0) for key in (self.body, self.body if body is None else body)
         )
         if self._run.engine.moving is not None:
             self._run.engine.moving.between(early, late)
-        under = Conditions(
+        led, places = _checked_targets(targets, held)
+        pulled, forces = _checked_pulls(pulls, count)
+        frame = self._run.usual._replace(
             gravity=self._gravity,
             damping=finite("damping", self.damping, least=0),
-            friction=self._run.sheet.material.friction,
-            speed_limit=self._limit,
             body=(early, late),
-            wind=blown,
-            press=press,
-            pulls=_checked_pulls(pulls, count),
-            led=_checked_targets(targets, held),
+            wind=np.stack([before, after]),
+            press=0.0 if air is None else air.press,
+            pins=np.array(sorted(set(held)), np.int64),
+            led=led,
+            places=places,
+            pulled=pulled,
+            pulls=forces,
         )
-        self._run.frame_under(self._state, under, tuple(sorted(set(held))))
+        self._run.frame_under(self._state, frame)
         self.pins, self.air, self.body = held, air, late
         self._state.trace, self._state.seconds = self._state.trace[-1:], self._state.seconds[-1:]
         return self.positions
@@ -171,8 +143,8 @@ def _checked_pulls(pulls: tuple[np.ndarray, np.ndarray] | None, count: int) -> t
     if pulls is None:
         return np.zeros(0, np.int64), np.zeros((0, 3))
     if not isinstance(pulls, tuple | list) or len(pulls) != 2:
-        raise SimCoreError(f"pulls: {told(pulls)} – give vertices (P,) and their forces (P, 3) [N]")
-    index, force = vertex_numbers("pulls: vertices", pulls[0], count), points("pulls: forces", pulls[1])
+        raise SimCoreError(f"pulls: {excerpt(pulls)} – give vertices (P,) and their forces (P, 3) [N]")
+    index, force = vertex_indices("pulls: vertices", pulls[0], count), points("pulls: forces", pulls[1])
     if len(force) != len(index):
         raise SimCoreError(
             f"pulls: {len(index)} vertices and forces {force.shape} – one finite force for each"

@@ -50,7 +50,7 @@ def hopeless(sheet: Sheet, x: np.ndarray) -> bool:
     return bool(len(cosine) >= FEWEST and cosine.mean() < ALIKE)
 
 
-def smoothed(sheet: Sheet, start: np.ndarray, pins: Sequence[int]) -> tuple[np.ndarray, float]:
+def smoothed(sheet: Sheet, start: np.ndarray, pins: Sequence[int] | np.ndarray) -> tuple[np.ndarray, float]:
     """A sheet near a hopeless start (V, 3) [m] that passes through itself nowhere, pins where they were.
 
     Also the length l [m] over which it was smoothed; the start itself and 0 where it is not hopeless, or where no

@@ -20,10 +20,10 @@ from sim_core.cloth.scenes.teapot import teapot_solid
 from sim_core.cloth.sheet.material import Material
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
-from sim_core.cloth.step.phases import FRAME, MOST_FRAMES, WIDEST, Contact, Phase
+from sim_core.cloth.step.frame import FRAME, MOST_FRAMES, WIDEST, Contact, Phase
 from sim_core.cloth.step.precision import COURANT
 from sim_core.errors import SimCoreError, WrongArgument
-from sim_core.validation import finite, of_kind, row, told, whole
+from sim_core.validation import excerpt, finite, instance_of, integer, vector
 
 FILE = Path(__file__).with_name("scenes.toml")
 NAMES = ("flag", "teapot", "hanging", "limb", "drape")
@@ -53,9 +53,24 @@ class Scene:
 
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""
-        frames = whole("frames", frames, 1, "1 or more, of 1/25 s", most=MOST_FRAMES)
+        frames = integer("frames", frames, 1, "1 or more, of 1/25 s", most=MOST_FRAMES)
         body = None if self.phases[0].body is None else (0.0, float(frames))  # a key for each frame
         return replace(self, phases=(replace(self.phases[0], seconds=frames * FRAME, body=body),))
+
+    def gusty(self, gusts: float, seed: int = 0) -> Scene:
+        """The same scene in gusts, their share of the wind, rms, seeded.
+
+        Raises WrongArgument where no wind blows.
+        """
+        gusts = finite("gusts", gusts, least=0)
+        if self.air is None:
+            raise WrongArgument(f"gusts – only the flag stands in the wind, not {self.name}")
+        return replace(self, air=replace(self.air, gusts=gusts, seed=seed))
+
+    def layered(self, layers: float) -> Scene:
+        """The same scene with layers of the cloth kept so far apart [m]; 0: they do not feel each other."""
+        layers = finite("layers [m]", layers, least=0, most=WIDEST)
+        return replace(self, contact=replace(self.contact or Contact(), thickness=layers))
 
     def drape(self, **settings: Any) -> Drape:
         """Simulates the scene; settings: those of `cloth.drape`."""
@@ -87,9 +102,9 @@ def case_values(name: str, case: int = 1) -> dict[str, Any]:
     Raises WrongArgument for a scene or case that is not there.
     """
     if not isinstance(name, str) or name not in NAMES:
-        raise WrongArgument(f"scene {told(name)} – there are {', '.join(NAMES)}")
+        raise WrongArgument(f"scene {excerpt(name)} – there are {', '.join(NAMES)}")
     if not isinstance(case, int) or not 1 <= case <= cases(name):
-        raise WrongArgument(f"case {told(case)} – {name} has 1 to {cases(name)}")
+        raise WrongArgument(f"case {excerpt(case)} – {name} has 1 to {cases(name)}")
     return dict(_data()[name]["cases"][case - 1])
 
 
@@ -107,43 +122,33 @@ def scene(
     size: Sequence[float] | None = None,
     wind: Sequence[float] | None = None,
     pins: str | None = None,
-    gusts: float = 0.0,
-    seed: int = 0,
     cloth: Material | None = None,
-    layers: float = 0.0,
 ) -> Scene:
     """A scene of `scenes.toml`: its case (from 1), changed by what is given.
 
-    size: width and height [m]; wind [m/s] (flag); gusts: share of the wind, rms, seeded; pins: one of PINS (hanging);
-    cloth: another material; layers [m]: the distance that layers of the cloth keep (0: they do not feel each other).
+    size: width and height [m]; wind [m/s] (flag); pins: one of PINS (hanging); cloth: another material.
     Raises WrongArgument for what the scene does not have.
     """
     values = case_values(name, case)
     data = _data()[name]
-    gusts = finite("gusts", gusts, least=0)
-    if (wind is not None or gusts) and name != "flag":
-        word = "gusts" if wind is None else "wind"
-        raise WrongArgument(f"{word} – only the flag stands in the wind, not {name}")
+    if wind is not None and name != "flag":
+        raise WrongArgument(f"wind – only the flag stands in the wind, not {name}")
     if pins is not None and name != "hanging":
         raise WrongArgument(f"pins – only the hanging cloth takes them, not {name}")
     values |= {k: v for k, v in (("size", size), ("wind", wind), ("pins", pins)) if v is not None}
     (width, height), cloth = checked_size(values["size"]), checked_cloth(cloth)
-    count = data["vertices"] if vertices is None else whole("vertices", vertices, 12, "12 or more")
+    count = data["vertices"] if vertices is None else integer("vertices", vertices, 12, "12 or more")
     most = {"least": 1, "why": "1 or more, of 1/25 s", "most": MOST_FRAMES}
-    values["frames"] = data["frames"] if frames is None else whole("frames", frames, **most)
+    values["frames"] = data["frames"] if frames is None else integer("frames", frames, **most)
     made = _MAKERS[name](values, width, height, count, cloth)
-    if made.air is not None:
-        made = replace(made, air=replace(made.air, gusts=gusts, seed=seed))
     made = replace(made, courant=values.get("courant", data.get("courant", COURANT)))
-    if finite("layers [m]", layers, least=0, most=WIDEST):
-        made = replace(made, contact=replace(made.contact or Contact(), thickness=layers))
     return made.lasting(values["frames"])
 
 
 def checked_size(size: object) -> tuple[float, float]:
     """Width and height [m] of a sheet; raises WrongArgument for what is none."""
     try:
-        width, height = row("size", size, "width and height of 0.05 to 10 m", 2, least=0.05, most=10.0)
+        width, height = vector("size", size, "width and height of 0.05 to 10 m", 2, least=0.05, most=10.0)
     except SimCoreError as error:
         raise WrongArgument(str(error)) from None
     return width, height
@@ -151,7 +156,7 @@ def checked_size(size: object) -> tuple[float, float]:
 
 def checked_cloth(cloth: Material | None) -> Material:
     """The material, that of `scenes.toml` if there is none; raises SimCoreError for what is none."""
-    return material() if cloth is None else of_kind("cloth", cloth, Material, "a Material is meant")
+    return material() if cloth is None else instance_of("cloth", cloth, Material, "a Material is meant")
 
 
 def _sheet(width: float, height: float, count: int, cloth: Material) -> Sheet:
@@ -164,7 +169,7 @@ def _flag(values: dict[str, Any], width: float, height: float, count: int, cloth
     positions = np.column_stack([sheet.rest[:, 0], -sheet.rest[:, 1], np.zeros(len(sheet.rest))])
     pins = tuple(int(i) for i in np.flatnonzero(sheet.rest[:, 0] < 1e-9))
     air = Air().blowing(values["wind"])
-    return Scene("flag", sheet, positions, (Phase(1.0, label="flag"),), pins, air=air)
+    return Scene("flag", sheet, positions, (Phase(1.0, label="flag"),), pins=pins, air=air)
 
 
 def _teapot(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
@@ -175,7 +180,7 @@ def _teapot(values: dict[str, Any], width: float, height: float, count: int, clo
     positions = np.column_stack([flat[:, 0] + x, np.full(len(flat), top), flat[:, 1] + z])
     contact = Contact(clearance=0.003, sample_clearance=0.001, cap=0.002)
     phases = (Phase(1.0, label="teapot"),)
-    return Scene("teapot", sheet, positions, phases, (), teapot_solid(scale), contact)
+    return Scene("teapot", sheet, positions, phases, collider=teapot_solid(scale), contact=contact)
 
 
 def _limb(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
@@ -188,20 +193,20 @@ def _limb(values: dict[str, Any], width: float, height: float, count: int, cloth
     phases = (Phase(1.0, label="limb", body=(0.0, 1.0)),)
     contact = Contact(clearance=0.003, sample_clearance=0.001)
     body, shown = moving_mesh(film, faces), (film[1:], faces)
-    return Scene("limb", sheet, positions, phases, (), body, contact, shown=shown)
+    return Scene("limb", sheet, positions, phases, collider=body, contact=contact, shown=shown)
 
 
 def _hanging(values: dict[str, Any], width: float, height: float, count: int, cloth: Material) -> Scene:
     sheet = _sheet(width, height, count, cloth)
     positions = np.column_stack([sheet.rest[:, 0], np.zeros(len(sheet.rest)), sheet.rest[:, 1]])
     pins = pinned(sheet.rest, width, height, values["pins"])
-    return Scene("hanging", sheet, positions, (Phase(1.0, label="hanging"),), pins)
+    return Scene("hanging", sheet, positions, (Phase(1.0, label="hanging"),), pins=pins)
 
 
 def pinned(rest: np.ndarray, width: float, height: float, kind: str) -> tuple[int, ...]:
     """The vertices a set of pins holds, `kind` one of PINS, on a sheet whose rest (V, 2) starts at the origin."""
     if not isinstance(kind, str) or kind not in PINS:
-        raise WrongArgument(f"pins: {told(kind)} – there are {', '.join(PINS)}")
+        raise WrongArgument(f"pins: {excerpt(kind)} – there are {', '.join(PINS)}")
     if kind == "edge":
         return tuple(int(i) for i in np.flatnonzero(rest[:, 1] < 1e-9))
     places = {
@@ -227,7 +232,8 @@ def _drape(values: dict[str, Any], width: float, height: float, count: int, clot
     positions = np.column_stack([rest[:, 0], 0.0035 + bump, rest[:, 1]])
     pedestal = Cylinder((0.0, -0.05, 0.0), (0.0, 0.0, 0.0), 0.3 * width, 0.002)
     contact = Contact(clearance=0.003, sample_clearance=0.001)
-    return Scene("drape", sheet, positions, (Phase(1.0, label="drape"),), (), pedestal, contact)
+    phases = (Phase(1.0, label="drape"),)
+    return Scene("drape", sheet, positions, phases, collider=pedestal, contact=contact)
 
 
 _MAKERS = {"flag": _flag, "teapot": _teapot, "hanging": _hanging, "limb": _limb, "drape": _drape}
@@ -248,7 +254,8 @@ def hang_edge(edge: float = 0.0134, *, seconds: float = 1.0, material: Material 
     rest, faces = equilateral_sheet(1.0, 1.0, edge)
     positions = np.stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]], axis=1)
     pins = tuple(int(i) for i in np.flatnonzero(rest[:, 1] < 1e-9))
-    return Scene("hang", Sheet.of(rest, faces, material), positions, (Phase(seconds, label="hanging"),), pins)
+    sheet, phases = Sheet.of(rest, faces, material), (Phase(seconds, label="hanging"),)
+    return Scene("hang", sheet, positions, phases, pins=pins)
 
 
 def bar(edge: float = 0.02, *, seconds: float = 1.6) -> Scene:
@@ -259,4 +266,4 @@ def bar(edge: float = 0.02, *, seconds: float = 1.6) -> Scene:
     contact = Contact(clearance=0.004, sample_clearance=0.001, thickness=0.003, speed_limit=4.0)
     phases = (Phase(seconds, damping=1.5, label="falling"), Phase(seconds / 2, damping=10.0, label="resting"))
     solid = Capsule((-0.3, 1.0, 0.0), (0.3, 1.0, 0.0), 0.02)
-    return Scene("bar", Sheet.of(rest, faces, material), positions, phases, (), solid, contact)
+    return Scene("bar", Sheet.of(rest, faces, material), positions, phases, collider=solid, contact=contact)

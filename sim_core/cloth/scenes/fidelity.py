@@ -26,9 +26,9 @@ from typing import Any
 from sim_core.cloth.scenes.catalogue import Scene, case_values, checked_cloth, checked_size, scene
 from sim_core.cloth.scenes.pilots import PILOTS, apart, gap, pilot
 from sim_core.cloth.sheet.material import Material
-from sim_core.cloth.step.phases import FRAME
+from sim_core.cloth.step.frame import FRAME
 from sim_core.errors import WrongArgument
-from sim_core.validation import finite, told, triple
+from sim_core.validation import excerpt, finite, vector3
 
 FILE = Path(__file__).with_name("fidelity.json")
 GRAVITY, AIR = 9.81, 0.6  # [m/s2]; half the density of air times Cd [kg/m3]
@@ -151,7 +151,7 @@ def choose(
     known = table()
     if not isinstance(name, str) or name not in known:
         raise WrongArgument(
-            f"scene {told(name)}: no table of errors – there is one for {', '.join(sorted(known))}"
+            f"scene {excerpt(name)}: no table of errors – there is one for {', '.join(sorted(known))}"
         )
     finite("error_mm: the budget [mm]", error_mm, above=0)
     asked = _asked(name, case, size, pins, wind, cloth)
@@ -187,7 +187,7 @@ def _asked(
     if wind is not None and name != "flag":
         raise WrongArgument(f"wind – only the flag stands in the wind, not {name}")
     values = case_values(name, case)
-    blown = triple("wind", values["wind"] if wind is None else wind, "in m/s") if name == "flag" else None
+    blown = vector3("wind", values["wind"] if wind is None else wind, "in m/s") if name == "flag" else None
     held = str(values.get("pins", "")) if pins is None else pins
     size = checked_size(values["size"] if size is None else size)
     return Asked(name, size, checked_cloth(cloth), held, blown, case)
@@ -220,7 +220,7 @@ def _within(asked: Asked) -> None:
     part = table()[asked.kind]
     known = part["laws"][0]["pins"]
     if not isinstance(asked.pins, str) or asked.pins not in known:
-        raise WrongArgument(f"pins {told(asked.pins)} – the table has {', '.join(sorted(known))}")
+        raise WrongArgument(f"pins {excerpt(asked.pins)} – the table has {', '.join(sorted(known))}")
     if asked.wind is not None and abs(asked.wind[2]) < LEAST_CROSS:
         raise WrongArgument(
             f"wind {asked.wind} – with less than {LEAST_CROSS} m/s across the flag rounding decides where it buckles, "

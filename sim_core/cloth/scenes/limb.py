@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim_core.cloth.step.phases import FRAME
+from sim_core.cloth.step.frame import FRAME
 
 AROUND, TO_POLE = 24, 6  # vertices of a ring, rings from the middle of an end to its pole
 

@@ -16,7 +16,7 @@ from scipy import sparse
 from sim_core.cloth.sheet.bending import bending_matrix
 from sim_core.cloth.sheet.material import Material
 from sim_core.errors import SimCoreError
-from sim_core.validation import coordinates, numeric, of_kind, told, triangles, vertex_numbers
+from sim_core.validation import coordinates, excerpt, instance_of, numeric_array, triangles
 
 SHORTEST = 1e-7  # [m], of a face's longest side
 
@@ -75,14 +75,14 @@ class Sheet:
         be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
         coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
         """
-        faces, kind = triangles("faces", faces), numeric("kind", kind, "expected whole numbers (F,)")
+        faces, kind = triangles("faces", faces), numeric_array("kind", kind, "expected whole numbers (F,)")
         corner = coordinates("corner", corner)
         if corner.shape != (*faces.shape, 2) or kind.shape != (len(faces),):
             raise SimCoreError(
                 f"corner: {corner.shape}, faces: {faces.shape}, kind: {kind.shape} – expected (F, 3, 2), (F, 3), (F,)"
             )
         if not isinstance(materials, list | tuple) or not materials:
-            raise SimCoreError(f"materials: {told(materials)} – give a list of Material, at least one")
+            raise SimCoreError(f"materials: {excerpt(materials)} – give a list of Material, at least one")
         if faces.max() >= faces.size:
             raise SimCoreError(
                 f"faces: index {faces.max()} – {len(faces)} faces have no more than {faces.size} vertices"
@@ -109,7 +109,7 @@ class Sheet:
         kind: np.ndarray,
     ) -> Sheet:
         for material in materials:
-            of_kind("material", material, Material, "a Material is meant")
+            instance_of("material", material, Material, "a Material is meant")
         _check_needles(corner)
         edges, face_edges = face_edge_table(faces)
         area = _areas(corner)
@@ -123,16 +123,28 @@ class Sheet:
         bend = np.array([material.bending() for material in materials])[kind]
         bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
-        length2 = _edge_lengths2(corner, face_edges, len(edges))
-        stencil = Stencil(1 / mass, edges, length2, own, around, coupling, rows, neighbour, edge_of, bend)
-        return Sheet(rest, faces, edges, face_edges, mass, materials[0], stencil, corner)
-
-    def pinned(self, pins: np.ndarray) -> Stencil:
-        """The stencil with the vertices `pins` (K,) held in place."""
-        pins = np.array(vertex_numbers("pins", pins, len(self.mass)), np.int64)
-        inverse = self.stencil.inverse_mass.copy()
-        inverse[pins] = 0.0
-        return self.stencil._replace(inverse_mass=inverse)
+        stencil = Stencil(
+            inverse_mass=1 / mass,
+            edges=edges,
+            length2=_edge_lengths2(corner, face_edges, len(edges)),
+            own=own,
+            around=around,
+            coupling=coupling,
+            rows=rows,
+            neighbour=neighbour,
+            edge_of=edge_of,
+            bend=bend,
+        )
+        return Sheet(
+            rest=rest,
+            faces=faces,
+            edges=edges,
+            face_edges=face_edges,
+            mass=mass,
+            material=materials[0],
+            stencil=stencil,
+            corner=corner,
+        )
 
 
 def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -250,3 +262,34 @@ def _neighbours(
     bend[np.searchsorted(all_keys, by_hinge)] = values
     rows = np.searchsorted(all_keys, np.arange(count + 1, dtype=np.int64) * count)
     return rows.astype(np.int32), (all_keys % count).astype(np.int32), edge_of, bend
+
+
+def mended(
+    rest: np.ndarray, faces: np.ndarray, *, near: float = 1e-6
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rest (W, 2), faces (G, 3) and the new number (V,) of every vertex of rest (V, 2) [m], faces (F, 3).
+
+    Vertices closer than `near` [m] become one; faces that lose a corner or have no area (height below `near`), and
+    those that are there twice, go; vertices no face names get the number -1. Raises SimCoreError if nothing is left.
+    """
+    from scipy.spatial import KDTree  # a quarter of a second that few need
+
+    rest, faces = coordinates("rest", rest), triangles("faces", faces)
+    if faces.min() < 0 or faces.max() >= len(rest):
+        raise SimCoreError(f"faces: {faces.min()} to {faces.max()} – there are vertices 0 to {len(rest) - 1}")
+    number = np.arange(len(rest))
+    for a, b in sorted(KDTree(rest).query_pairs(near)):
+        number[number == number[b]] = number[a]
+    faces = number[faces]
+    a, b, c = (rest[faces[:, k]] for k in range(3))
+    double = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    longest = np.sqrt(np.maximum.reduce([((p - q) ** 2).sum(1) for p, q in ((a, b), (b, c), (c, a))]))
+    faces = faces[double > near * longest]
+    _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
+    faces = faces[np.sort(first)]
+    if not len(faces):
+        raise SimCoreError("faces: none has an area – the mesh is empty once mended")
+    used = np.unique(faces)
+    place = np.full(len(rest), -1)
+    place[used] = np.arange(len(used))
+    return rest[used], place[faces].astype(np.int32), place[number]

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_core.validation import FURTHEST, finite, triple, whole
+from sim_core.cloth.step.frame import FRAME
+from sim_core.validation import FURTHEST, finite, integer, vector3
 
 _TONES = 6  # sine waves a gust is made of
 
@@ -29,20 +30,24 @@ class Air:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "wind", triple("air.wind", self.wind, "in m/s"))
+        object.__setattr__(self, "wind", vector3("air.wind", self.wind, "in m/s"))
         for name in ("density", "drag", "gusts"):
             finite(f"air.{name}", getattr(self, name), least=0, most=FURTHEST)
         finite("air.gust_seconds", self.gust_seconds, above=0)
-        whole("air.seed", self.seed, 0, "a whole number of 0 or more", most=2**63)
+        integer("air.seed", self.seed, 0, "a whole number of 0 or more", most=2**63)
 
     @property
     def press(self) -> float:
         """density Cd / 12 [kg/m3]: what the compiled loop takes."""
-        return self.density * self.drag / 12
+        return float(self.density * self.drag / 12)
+
+    def over(self, seconds: float) -> np.ndarray:
+        """The wind (2, 3) [m/s] at the begin and end of the frame that starts at a time [s]."""
+        return np.stack([self.at(seconds), self.at(seconds + FRAME)])
 
     def blowing(self, wind: Sequence[float]) -> Air:
         """The same air with another wind (x, y, z) [m/s]."""
-        return replace(self, wind=triple("air.wind", wind, "in m/s"))
+        return replace(self, wind=vector3("air.wind", wind, "in m/s"))
 
     def at(self, seconds: float) -> np.ndarray:
         """The wind (3,) [m/s] at a time [s]."""

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth.contact.constraints import Holds
-from sim_core.cloth.contact.packed import Packed
-from sim_core.cloth.contact.pairs import Finder
-from sim_core.cloth.contact.repulsion import Shell
+from sim_core.cloth.contact.pairs import Mesh
 from sim_core.cloth.sheet.sheet import Sheet
+from sim_core.cloth.step.frame import Frame, State
 from sim_core.cloth.step.kernels.bands import Bands
 from sim_core.cloth.step.kernels.diagnostics import lane_mode, stored_lanes
 from sim_core.cloth.step.kernels.lanes import Lanes, lattice_lanes, plain_lanes
-from sim_core.cloth.step.leapfrog import Surroundings, room_of
-from sim_core.cloth.step.leapfrog_lanes import advance_lanes
+from sim_core.cloth.step.leapfrog import Steps, Touch, advance, room_of
 from sim_core.cloth.step.stability import LEAST_ROUNDS, MOST_ROUNDS, SETTLED, first_mode
 from sim_core.validation import finite, one_of
 
@@ -75,11 +72,11 @@ def lanes_for(sheet: Sheet, bands: Bands, precision: str) -> Lanes | None:
 class Laned:
     """A sheet in band order ready to be moved over its lanes, in their precision."""
 
-    def __init__(self, sheet: Sheet, lanes: Lanes, longest: int, samples: tuple[int, int]) -> None:
+    def __init__(self, sheet: Sheet, lanes: Lanes, longest: int) -> None:
         count, real = len(sheet.mass), lanes.bands.own.dtype.type
-        self.sheet, self.lanes, self.real = sheet, lanes, real
-        self.room = room_of(lanes.edges, count, longest, samples, real)
-        self._state = [np.zeros((3, count), real) for _ in range(3)]
+        self.lanes, self.real = lanes, real
+        self.room = room_of(lanes.edges, count, longest, real)
+        self._state = State(np.zeros((3, count), real), np.zeros((3, count), real))
         self._ones = np.ones(count, real)
         self._start = 0.2 * first_mode(count)
         self._inverse: dict[int, tuple[np.ndarray, np.ndarray]] = {}
@@ -92,43 +89,33 @@ class Laned:
 
     def advance(
         self,
-        inverse: np.ndarray,
-        packed: Packed,
-        samples: tuple[np.ndarray, np.ndarray],
-        holds: Holds,
-        shell: Shell,
-        around: Surroundings,
-        finder: Finder,
-        points: np.ndarray,
-        crossings: np.ndarray,
-        x: np.ndarray,
-        v: np.ndarray,
-        last: float,
-        dt: float,
-        count: int,
+        mesh: Mesh,
+        touch: Touch,
+        frame: Frame,
+        steps: Steps,
+        state: State,
+        pairs: tuple[np.ndarray, np.ndarray],
     ) -> tuple[np.ndarray, np.ndarray]:
-        """`leapfrog.advance`: x, v (3, V) float64 change in place; single counts free cloth from its middle."""
-        here, there, speed = self._state
-        absolute = (
-            self.real is np.float64 or len(packed.kind) > 0 or len(holds.low) > 0 or len(holds.slaves) > 0
-        )
+        """`leapfrog.advance` of a state in float64; single counts free cloth from its middle."""
+        x, v, inverse = state.x, state.v, mesh.inverse_mass
+        there = len(touch.solid.kind) > 0 or len(touch.holds.low) > 0 or len(touch.holds.slaves) > 0
+        absolute = there or self.real is np.float64
         middle = np.zeros((3, 1)) if absolute else x.mean(axis=1, keepdims=True)
-        here[:] = x - middle
-        speed[:] = v
-        s = self.sheet
-        fixed = (self.lanes, self._cast(inverse), s.edges, s.faces, s.rest, s.stencil.length2, packed)
-        touch = (*samples, holds, shell, around, self.room, finder, points, crossings)
-        pairs = advance_lanes(*fixed, *touch, here, speed, there, last, dt, count)
-        v[:] = speed
+        own = self._state
+        own.x[:] = x - middle
+        own.v[:] = v
+        mesh = mesh._replace(inverse_mass=self._cast(inverse))
+        pairs = advance(self.lanes, mesh, touch, frame, steps, self.room, own, pairs)
+        v[:] = own.v
         still = inverse == 0.0
-        kept = x[:, still] + v[:, still] * (dt * count)
-        x[:] = here + middle
+        kept = x[:, still] + v[:, still] * (steps.dt * steps.count)
+        x[:] = own.x + middle
         x[:, still] = kept  # what is pinned is exactly where it was, or was led to
         return pairs
 
     def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
         """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""
-        here, there, _ = self._state
+        here, there = self._state.x, self.room.spare
         here[:] = x - x.mean(axis=1, keepdims=True)
         there[:] = mode if first else mode + self._start
         usual = LEAST_ROUNDS if self.real is np.float64 else HASTY_ROUNDS
@@ -137,9 +124,9 @@ class Laned:
         mode[:] = there
         return float(value)
 
-    def stored(self, inverse: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
+    def stored(self, inverse: np.ndarray, state: State) -> float:
         """`diagnostics.stored_energy` [J]."""
-        return float(stored_lanes(self.lanes, inverse, self._ones, self.room, x, v))
+        return float(stored_lanes(self.lanes, inverse, self._ones, self.room, state.x, state.v))
 
     def forget(self) -> None:
         """Clears what a frame that blew up has left."""

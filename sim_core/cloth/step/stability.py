@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.step.kernels.banded import (
+    axes,
     band_add,
     band_bends,
     band_pulls,
@@ -30,23 +31,22 @@ def stiffness_times(bands, room, x, p, out, stiffer=1.0):
 
     stiffer: what the elastic part is multiplied with (an implicit step's damping).
     """
-    g, c = room.air, bands.coupling
-    band_strain_changes(bands.edge_runs, x[0], x[1], x[2], p[0], p[1], p[2], room.strain)
-    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.change)
+    g = room.air
+    band_strain_changes(bands.edge_runs, axes(x), axes(p), room.strain)
+    band_tensions(bands.tension_runs, bands.own, bands.coupling, room.strain, room.change)
     if stiffer != 1.0:
         room.change[:] *= stiffer
-    band_pulls(bands.vertex_runs, room.change, x[0], x[1], x[2], out[0], out[1], out[2])
-    band_pulls(bands.vertex_runs, room.tension, p[0], p[1], p[2], g[0], g[1], g[2])
-    band_add(out[0], out[1], out[2], g[0], g[1], g[2])
-    band_bends(bands.bend_runs, bands.bend, 1.0, p[0], p[1], p[2], out[0], out[1], out[2])
+    band_pulls(bands.vertex_runs, room.change, axes(x), axes(out))
+    band_pulls(bands.vertex_runs, room.tension, axes(p), axes(g))
+    band_add(axes(out), axes(g))
+    band_bends(bands.bend_runs, bands.bend, 1.0, axes(p), axes(out))
 
 
 @njit(cache=True, error_model="numpy")
 def tensions_at(bands, room, x):
     """Fills room.strain and room.tension for positions x (3, V), without damping."""
-    c = bands.coupling
-    band_strains(bands.edge_runs, bands.length2, x[0], x[1], x[2], room.strain)
-    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    band_strains(bands.edge_runs, bands.length2, axes(x), room.strain)
+    band_tensions(bands.tension_runs, bands.own, bands.coupling, room.strain, room.tension)
 
 
 @njit(cache=True, error_model="numpy")
@@ -62,7 +62,7 @@ def _grown(bands, inverse, room, x, mode, least, bend_only):
         before = value
         if bend_only:
             out[:] = 0.0
-            band_bends(bands.bend_runs, bands.bend, 1.0, mode[0], mode[1], mode[2], out[0], out[1], out[2])
+            band_bends(bands.bend_runs, bands.bend, 1.0, axes(mode), axes(out))
         else:
             stiffness_times(bands, room, x, mode, out)
         square = 0.0

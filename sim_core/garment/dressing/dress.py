@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.body.pose import Pose
-from sim_core.cloth import Drape, Holds, Phase, drape
+from sim_core.cloth import Checkpoint, Drape, Holds, Phase, drape
 from sim_core.cloth.run.drape_run import ENGINE_VERSION
 from sim_core.garment.dressing.course import Course, courses
 from sim_core.garment.dressing.fitting import check_fits
@@ -215,7 +215,6 @@ class _Dressing:
                     collider=solid,
                     contact=self._contact(course),
                     holds=self._holds(sheet, course, places, x),
-                    keep=True,
                     **self._hooks(sheet, number, first, phases),
                 )
             )
@@ -278,11 +277,11 @@ class _Dressing:
             if self.on_frame is not None:
                 self.on_frame(Frame(self.number, positions, self.moves.poses[key]))
 
-        listens = self.on_frame is not None or self._is_beneath()
+        listens, file = self.on_frame is not None or self._is_beneath(), self._file(number)
         return {
             "progress": told if self.progress else None,
             "on_frame": heard if listens else None,
-            "checkpoint": self._file(number),
+            "checkpoint": file and Checkpoint(file, keep=True),
         }
 
     def _both(self, x: np.ndarray) -> np.ndarray:

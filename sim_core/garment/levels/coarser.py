@@ -10,7 +10,7 @@ from scipy.spatial import KDTree
 
 from sim_core import metrics
 from sim_core.cloth import Solid
-from sim_core.cloth.contact.collisions import collide_samples, collide_vertices, contact_samples
+from sim_core.cloth.contact import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet.sheet import face_edge_table
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
@@ -180,8 +180,9 @@ def _cleared(positions: np.ndarray, faces: np.ndarray, solid: Solid) -> np.ndarr
     edges, _ = face_edge_table(faces)
     vertices, middles = contact_samples(edges, faces, len(x))
     packed, free = solid.packed(), np.ones(len(x))
+    push = Push(clearance=0.001, cap=0.0005, friction=0.0, dt=1.0)
     for _ in range(60):
-        collide_samples(packed, free, x, v, middles, 0.001, 0.0005)
-        collide_vertices(packed, free, x, v, vertices, 0.001, 1.0, 0.0, 0.0005)
+        collide_samples(packed, free, x, v, middles, push)
+        collide_vertices(packed, free, x, v, vertices, push)
         v[:] = 0.0
     return x

@@ -54,7 +54,9 @@ def contours(strokes: list[tuple[Stroke, Role]], remarks: list[str], left_out: C
         if not stroke.closed:
             stroke = replace(stroke, closed=True)
             name = piece_name(owner_of(stroke)) or stroke.layer or "a piece"
-            remarks.append(f"{name}: its {role} line is open, closed straight from end to end as on a fold")
+            remarks.append(
+                f"{name}: its {role or 'outer'} line is open, closed straight from end to end as on a fold"
+            )
         stroke, shape = _without_loops(stroke, remarks)
         if np.ptp(stroke.points, axis=0).min() >= NARROWEST and shape.area > 0:
             owner = owner_of(stroke)

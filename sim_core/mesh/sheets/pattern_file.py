@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem
+from sim_core.mesh.geometry.curves import bezier_points
 from sim_core.mesh.sheets.garment_code import CodeEdge, CodePanel, GarmentCode
 from sim_core.mesh.sheets.legs import Leg, cubic_through, legs_of
 
@@ -115,7 +116,7 @@ def pattern_text(name: str, code: GarmentCode, edge: float) -> tuple[str, list[s
             _way(code, stitch.b, names, turned=not stitch.right_wrong),
         )
         seam = f'[[seam]]\nsewn = ["{sides[0]}", "{sides[1]}"]'
-        lengths = [_length(code.leg(*side)) for side in (stitch.a, stitch.b)]
+        lengths = [_length(code, *side) for side in (stitch.a, stitch.b)]
         if abs(lengths[0] - lengths[1]) > EASE * max(lengths):
             both = " and ".join(f"{1000 * length:.1f}" for length in lengths)
             remarks.append(f"stitch {number}: sides of {both} mm are gathered, left out of the seams")
@@ -160,7 +161,11 @@ def _way(code: GarmentCode, side: tuple[str, int], names: dict[str, str], *, tur
     return f"{names[side[0]]}: " + (f"{end} < {start}" if turned else f"{start} > {end}")
 
 
-def _length(leg: np.ndarray) -> float:
+def _length(code: GarmentCode, panel: str, number: int) -> float:
+    """Of an edge [m] as the pattern file has it: an arc is a cubic there, and a little longer or shorter."""
+    leg = code.leg(panel, number)
+    if code.panels[panel].edges[number].curve != "line":
+        leg = np.vstack([leg[0], *bezier_points([leg[0], *_controls(code, panel, number), leg[-1]])])
     return float(np.hypot(*np.diff(leg, axis=0).T).sum())
 
 

@@ -33,7 +33,7 @@ def sorted_sheet(strokes: list[Stroke]) -> Sheet:
     numbered = _numbered(strokes)
     outlines: list[tuple[Stroke, Role]] = []
     others: list[tuple[Stroke, Role]] = []
-    for stroke in joined(strokes):
+    for stroke in joined(strokes, remarks):
         role: Role = role_of(stroke.layer, stroke.words, numbered=numbered)
         if role in ("mark", "hidden"):
             left_out[_called(stroke, role, numbered=numbered)] += 1

@@ -1,18 +1,27 @@
 """The loops over runs (`bands.py`): strains, tensions, forces, air and their derivatives, as vector instructions.
 
-Every function takes positions and velocities as three arrays (V,), none of which overlaps another argument.
+Every function takes positions, velocities and forces as three arrays (V,), a tuple for each (see `axes`), and no array
+overlaps another.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from sim_core.cloth.step.kernels.compiled import distinct
 
 
+@njit(error_model="numpy", inline="always")
+def axes(x):
+    """The rows of x (3, V): what the kernels take as x, y and z."""
+    return x[0], x[1], x[2]
+
+
 @distinct
-def band_strains(runs, length2, x, y, z, strain):
+def band_strains(runs, length2, at, strain):
     """eps = |d|^2 - L^2 [m2] of every edge."""
+    x, y, z = at
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
         for t in range(count):
@@ -21,8 +30,9 @@ def band_strains(runs, length2, x, y, z, strain):
 
 
 @distinct
-def band_damped_strains(runs, length2, x, y, z, rate, before, strain):
+def band_damped_strains(runs, length2, at, rate, before, strain):
     """eps of every edge plus `rate` times its change since `before` (E,), which is renewed."""
+    x, y, z = at
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
         for t in range(count):
@@ -33,8 +43,9 @@ def band_damped_strains(runs, length2, x, y, z, rate, before, strain):
 
 
 @distinct
-def band_strain_changes(runs, x, y, z, p, q, s, change):
-    """2 d.(p_i - p_j) of every edge: the derivative of eps along (p, q, s)."""
+def band_strain_changes(runs, at, way, change):
+    """2 d.(p_i - p_j) of every edge: the derivative of eps along the way p."""
+    (x, y, z), (p, q, s) = at, way
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
         for t in range(count):
@@ -44,8 +55,9 @@ def band_strain_changes(runs, x, y, z, p, q, s, change):
 
 
 @distinct
-def band_tensions(runs, own, c0, c1, c2, c3, strain, tension):
+def band_tensions(runs, own, coupling, strain, tension):
     """T = 2 sum K eps [N/m] of every edge, from its own strain and those of the four around it."""
+    c0, c1, c2, c3 = coupling[0], coupling[1], coupling[2], coupling[3]
     for r in range(len(runs)):
         e0, count = runs[r, 0], runs[r, 1]
         a0, a1, a2, a3 = runs[r, 2], runs[r, 3], runs[r, 4], runs[r, 5]
@@ -57,8 +69,9 @@ def band_tensions(runs, own, c0, c1, c2, c3, strain, tension):
 
 
 @distinct
-def band_pulls(runs, weight, x, y, z, fx, fy, fz):
+def band_pulls(runs, weight, at, out):
     """Force (V,) per axis: sum of weight_e (x_j - x_i) over the neighbours; the first group of a vertex sets it."""
+    (x, y, z), (fx, fy, fz) = at, out
     for r in range(len(runs)):
         i0, count, more = runs[r, 0], runs[r, 1], float(runs[r, 2])
         a, b, c, d, e, f = runs[r, 3], runs[r, 4], runs[r, 5], runs[r, 6], runs[r, 7], runs[r, 8]
@@ -80,8 +93,9 @@ def band_pulls(runs, weight, x, y, z, fx, fy, fz):
 
 
 @distinct
-def band_bends(runs, bend, factor, x, y, z, fx, fy, fz):
-    """Adds `factor` times the bending force -Q x to (fx, fy, fz)."""
+def band_bends(runs, bend, factor, at, out):
+    """Adds `factor` times the bending force -Q x to `out`."""
+    (x, y, z), (fx, fy, fz) = at, out
     for r in range(len(runs)):
         i0, count, k = runs[r, 0], runs[r, 1], runs[r, 2]
         a, b, c, d, e, f = runs[r, 4], runs[r, 5], runs[r, 6], runs[r, 7], runs[r, 8], runs[r, 9]
@@ -102,13 +116,14 @@ def band_bends(runs, bend, factor, x, y, z, fx, fy, fz):
 
 
 @distinct
-def band_air(runs, x, y, z, u, v, w, back, ux, uy, uz, press, fx, fy, fz, hx, hy, hz):
-    """Air on every face into (fx, fy, fz): a quarter rho Cd |s| s / |c|^2 c, c twice the area vector.
+def band_air(runs, at, speed, back, wind, press, out, aside):
+    """Air on every face into `out`: a quarter rho Cd |s| s / |c|^2 c, c twice the area vector.
 
-    s = (wind - mean velocity).c, wind (ux, uy, uz) [m/s], press = rho Cd / 12 (a third of it for each corner);
-    hx, hy, hz: room for the longest run. Faces are taken where they were `back` [s] ago, with these
-    velocities.
+    s = (wind - mean velocity).c, wind [m/s], press = rho Cd / 12 (a third of it for each corner); aside: room for the
+    longest run. Faces are taken where they were `back` [s] ago, with these velocities.
     """
+    (x, y, z), (u, v, w), (ux, uy, uz) = at, speed, wind
+    (fx, fy, fz), (hx, hy, hz) = out, aside
     fx[:] = 0.0
     fy[:] = 0.0
     fz[:] = 0.0
@@ -153,8 +168,9 @@ def band_ahead(now, past, ahead, out):
 
 
 @distinct
-def band_add(fx, fy, fz, gx, gy, gz):
-    """(fx, fy, fz) += (gx, gy, gz), each (V,)."""
+def band_add(out, more):
+    """out += more."""
+    (fx, fy, fz), (gx, gy, gz) = out, more
     for i in range(len(fx)):
         fx[i] += gx[i]
         fy[i] += gy[i]
@@ -162,8 +178,9 @@ def band_add(fx, fy, fz, gx, gy, gz):
 
 
 @distinct
-def band_kick(inverse_mass, fx, fy, fz, ax, ay, az, keep, gain, u, v, w):
-    """v = keep v + gain (f / m + a), a the acceleration all share; what is pinned keeps its velocity."""
+def band_kick(inverse_mass, force, fall, keep, gain, speed):
+    """v = keep v + gain (f / m + a), a the acceleration `fall` of all; what is pinned keeps its velocity."""
+    (fx, fy, fz), (ax, ay, az), (u, v, w) = force, fall, speed
     for i in range(len(u)):
         m = inverse_mass[i]
         free = 1.0 if m > 0.0 else 0.0
@@ -174,8 +191,9 @@ def band_kick(inverse_mass, fx, fy, fz, ax, ay, az, keep, gain, u, v, w):
 
 
 @distinct
-def band_drift(x, y, z, u, v, w, dt):
+def band_drift(at, speed, dt):
     """x += dt v."""
+    (x, y, z), (u, v, w) = at, speed
     for i in range(len(x)):
         x[i] += dt * u[i]
         y[i] += dt * v[i]
@@ -183,8 +201,9 @@ def band_drift(x, y, z, u, v, w, dt):
 
 
 @distinct
-def band_limit(u, v, w, limit):
+def band_limit(speed, limit):
     """Speeds above `limit` [m/s] are brought down to it."""
+    u, v, w = speed
     most = limit * limit
     for i in range(len(u)):
         slower = limit / np.sqrt(max(u[i] * u[i] + v[i] * v[i] + w[i] * w[i], most))
@@ -194,8 +213,9 @@ def band_limit(u, v, w, limit):
 
 
 @distinct
-def band_strain_before(runs, length2, x, y, z, u, v, w, dt, before):
+def band_strain_before(runs, length2, at, speed, dt, before):
     """eps (E,) of the positions a step of dt [s] ago."""
+    (x, y, z), (u, v, w) = at, speed
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
         for t in range(count):

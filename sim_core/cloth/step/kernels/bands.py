@@ -74,17 +74,16 @@ def bands_of(sheet: Sheet) -> Bands:
     bend_runs, bend = _bend_runs(stencil.rows, stencil.neighbour, stencil.bend, count)
     first, size = _runs(sheet.faces.astype(np.int64))
     face_runs = np.column_stack([first, size, sheet.faces[first]])
-    whole = [np.ascontiguousarray(a, np.uint64) for a in (edge_runs, tension_runs, vertex_runs, bend_runs)]
     return Bands(
-        whole[0],
-        whole[1],
-        stencil.length2,
-        2.0 * stencil.own,
-        np.ascontiguousarray(2.0 * coupling.T),
-        whole[2],
-        whole[3],
-        bend,
-        np.ascontiguousarray(face_runs, np.uint64),
+        edge_runs=np.ascontiguousarray(edge_runs, np.uint64),
+        tension_runs=np.ascontiguousarray(tension_runs, np.uint64),
+        length2=stencil.length2,
+        own=2.0 * stencil.own,
+        coupling=np.ascontiguousarray(2.0 * coupling.T),
+        vertex_runs=np.ascontiguousarray(vertex_runs, np.uint64),
+        bend_runs=np.ascontiguousarray(bend_runs, np.uint64),
+        bend=bend,
+        face_runs=np.ascontiguousarray(face_runs, np.uint64),
     )
 
 
@@ -190,8 +189,17 @@ def ordered(sheet: Sheet) -> tuple[Sheet, np.ndarray]:
         edge_of=edge_of[by_row].astype(np.int32),
         bend=s.bend[by_row],
     )
-    parts = (sheet.rest[old], faces[by_face].astype(np.int32), stencil.edges, number[side].astype(np.int32))
-    return Sheet(*parts, sheet.mass[old], sheet.material, stencil, corner), order
+    found = Sheet(
+        rest=sheet.rest[old],
+        faces=faces[by_face].astype(np.int32),
+        edges=stencil.edges,
+        face_edges=number[side].astype(np.int32),
+        mass=sheet.mass[old],
+        material=sheet.material,
+        stencil=stencil,
+        corner=corner,
+    )
+    return found, order
 
 
 def _turned(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

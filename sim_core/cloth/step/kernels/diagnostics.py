@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.step.kernels.banded import band_bends, band_strains, band_tensions
+from sim_core.cloth.step.kernels.banded import axes, band_bends, band_strains, band_tensions
 from sim_core.cloth.step.kernels.laned import (
     lane_bends,
     lane_further,
@@ -37,21 +37,19 @@ def _works(f, inverse, x, v):
 def stored_lanes(lanes, inverse, ones, room, x, v):
     """`stored_energy` of x, v (3, V) float64 over lanes, its terms taken from x in their precision; ones (V,)."""
     b, here, f = lanes.bands, room.air_now, room.force
-    c = b.coupling
     for k in range(3):
         for i in range(len(inverse)):
             here[k, i] = x[k, i] - x[k, 0]
-    lane_strains(b.edge_runs, b.length2, here[0], here[1], here[2], room.strain)
-    lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    lane_strains(b.edge_runs, b.length2, axes(here), room.strain)
+    lane_tensions(b.tension_runs, b.own, b.coupling, room.strain, room.tension)
     half = len(room.strain) // 2
     stretch, other = 0.0, room.tension[2 * half] * room.strain[-1] if len(room.strain) > 2 * half else 0.0
     for e in range(half):
         stretch += room.tension[e] * room.strain[e]
         other += room.tension[half + e] * room.strain[half + e]
     f[:] = 0.0
-    p, q = (here[0], here[1], here[2]), (f[0], f[1], f[2])
-    lane_bends(b.bend_runs, b.bend, ones, 1.0, *p, *q)
-    lane_odd_bends(lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight, ones, 1.0, *p, *q)
+    lane_bends(b.bend_runs, b.bend, ones, 1.0, axes(here), axes(f))
+    lane_odd_bends(lanes.odd, ones, 1.0, axes(here), axes(f))
     bend, kinetic = _works(f, inverse, x, v)
     return 0.25 * (stretch + other) - 0.5 * bend + 0.5 * kinetic
 
@@ -59,14 +57,14 @@ def stored_lanes(lanes, inverse, ones, room, x, v):
 @njit(cache=True, error_model="numpy")
 def stored_energy(bands, inverse, room, x, v):
     """Membrane, bending and kinetic energy [J] of x, v (3, V); inverse (V,) [1/kg] without pins. Uses the room."""
-    c, f = bands.coupling, room.force
-    band_strains(bands.edge_runs, bands.length2, x[0], x[1], x[2], room.strain)
-    band_tensions(bands.tension_runs, bands.own, c[0], c[1], c[2], c[3], room.strain, room.tension)
+    f = room.force
+    band_strains(bands.edge_runs, bands.length2, axes(x), room.strain)
+    band_tensions(bands.tension_runs, bands.own, bands.coupling, room.strain, room.tension)
     stretch = 0.0
     for e in range(len(room.strain)):
         stretch += room.tension[e] * room.strain[e]
     f[:] = 0.0
-    band_bends(bands.bend_runs, bands.bend, 1.0, x[0], x[1], x[2], f[0], f[1], f[2])
+    band_bends(bands.bend_runs, bands.bend, 1.0, axes(x), axes(f))
     bend, kinetic = _works(f, inverse, x, v)
     return 0.25 * stretch - 0.5 * bend + 0.5 * kinetic
 
@@ -113,26 +111,23 @@ def longest2(edges, length2, x):
 def lane_mode(lanes, inverse, room, x, mode, least, most, settled):
     """`stability._grown` for lanes: the largest eigenvalue of M^-1 K [1/s2] at x, mode (3, V), which is renewed."""
     b, out, aside = lanes.bands, room.force, room.air
-    c, tension, change = b.coupling, room.tension, room.change
-    odd = (lanes.odd_rows, lanes.odd_vertex, lanes.odd_other, lanes.odd_weight)
-    none = np.zeros(3)
-    lane_strains(b.edge_runs, b.length2, x[0], x[1], x[2], room.strain)
-    lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, tension)
+    tension, change, none = room.tension, room.change, np.zeros(3)
+    lane_strains(b.edge_runs, b.length2, axes(x), room.strain)
+    lane_tensions(b.tension_runs, b.own, b.coupling, room.strain, tension)
     value = 0.0
     out[:] = 0.0
     for turn in range(most):
         before = value
-        lane_strain_changes(b.edge_runs, x[0], x[1], x[2], mode[0], mode[1], mode[2], room.strain)
-        lane_tensions(b.tension_runs, b.own, c[0], c[1], c[2], c[3], room.strain, change)
-        f, h = (out[0], out[1], out[2]), (aside[0], aside[1], aside[2])
-        p, y = (mode[0], mode[1], mode[2]), (x[0], x[1], x[2])
-        lane_leap(b.vertex_runs, change, inverse, *y, none, 0.0, 1.0, 0.0, *f, *h)
-        lane_leap(b.vertex_runs, tension, inverse, *p, none, 1.0, 1.0, 0.0, *f, *h)
+        at, way, f, h = axes(x), axes(mode), axes(out), axes(aside)
+        lane_strain_changes(b.edge_runs, at, way, room.strain)
+        lane_tensions(b.tension_runs, b.own, b.coupling, room.strain, change)
+        lane_leap(b.vertex_runs, change, inverse, at, none, (0.0, 1.0, 0.0), f, h)
+        lane_leap(b.vertex_runs, tension, inverse, way, none, (1.0, 1.0, 0.0), f, h)
         if len(lanes.further_runs) > 0:
-            lane_further(lanes.further_runs, change, inverse, *y, 1.0, *f)
-            lane_further(lanes.further_runs, tension, inverse, *p, 1.0, *f)
-        lane_bends(b.bend_runs, b.bend, inverse, 1.0, *p, *f)
-        lane_odd_bends(*odd, inverse, 1.0, *p, *f)
+            lane_further(lanes.further_runs, change, inverse, at, 1.0, f)
+            lane_further(lanes.further_runs, tension, inverse, way, 1.0, f)
+        lane_bends(b.bend_runs, b.bend, inverse, 1.0, way, f)
+        lane_odd_bends(lanes.odd, inverse, 1.0, way, f)
         sx = sy = sz = 0.0
         for i in range(len(inverse)):
             sx += out[0, i] * out[0, i]

@@ -11,8 +11,9 @@ from sim_core.cloth.step.kernels.compiled import distinct_contracted
 
 
 @distinct_contracted
-def lane_strains(runs, length2, x, y, z, strain):
+def lane_strains(runs, length2, at, strain):
     """eps = |d|^2 - L^2 [m2] of every edge."""
+    x, y, z = at
     for r in range(len(runs)):
         e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
         for t in range(count):
@@ -21,8 +22,9 @@ def lane_strains(runs, length2, x, y, z, strain):
 
 
 @distinct_contracted
-def lane_damped_strains(runs, length2, x, y, z, given_rate, before, strain):
+def lane_damped_strains(runs, length2, at, given_rate, before, strain):
     """eps of every edge plus `given_rate` times its change since `before`, which is renewed."""
+    x, y, z = at
     rate = x.dtype.type(given_rate)
     for r in range(len(runs)):
         e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
@@ -34,8 +36,9 @@ def lane_damped_strains(runs, length2, x, y, z, given_rate, before, strain):
 
 
 @distinct_contracted
-def lane_tensions(runs, own, c0, c1, c2, c3, strain, tension):
+def lane_tensions(runs, own, coupling, strain, tension):
     """T = 2 sum K eps [N/m] of every edge, from its own strain and those of the four around it."""
+    c0, c1, c2, c3 = coupling[0], coupling[1], coupling[2], coupling[3]
     for r in range(len(runs)):
         e0, count, k0 = runs[r, 0], runs[r, 1], runs[r, 6]
         a0, a1, a2, a3 = runs[r, 2], runs[r, 3], runs[r, 4], runs[r, 5]
@@ -47,14 +50,17 @@ def lane_tensions(runs, own, c0, c1, c2, c3, strain, tension):
 
 
 @distinct_contracted
-def lane_leap(runs, weight, inverse, x, y, z, g, kept, gained, step, u, v, w, nx, ny, nz):
-    """One step: v = kept v + gained (pulls / m + g), (nx, ny, nz) = x + step v; what is pinned keeps its velocity.
+def lane_leap(runs, weight, inverse, at, fall, pace, speed, there):
+    """One step: v = keep v + gain (pulls / m + fall), there = x + step v; what is pinned keeps its velocity.
 
-    The pulls are sum of weight_e (x_j - x_i) over the first six neighbours; g (3,) [m/s2].
+    The pulls are sum of weight_e (x_j - x_i) over the first six neighbours; fall (3,) [m/s2]; pace: keep, gain [s],
+    step [s].
     """
+    (x, y, z), (u, v, w), (nx, ny, nz) = at, speed, there
     real = x.dtype.type
-    keep, gain, dt, one, nothing = real(kept), real(gained), real(step), real(1), real(0)
-    gx, gy, gz = real(g[0]), real(g[1]), real(g[2])
+    keep, gain, dt = real(pace[0]), real(pace[1]), real(pace[2])
+    one, nothing = real(1), real(0)
+    gx, gy, gz = real(fall[0]), real(fall[1]), real(fall[2])
     for r in range(len(runs)):
         i0, count = runs[r, 0], runs[r, 1]
         a, b, c, d, e, f = runs[r, 3], runs[r, 4], runs[r, 5], runs[r, 6], runs[r, 7], runs[r, 8]
@@ -80,8 +86,9 @@ def lane_leap(runs, weight, inverse, x, y, z, g, kept, gained, step, u, v, w, nx
 
 
 @distinct_contracted
-def lane_further(runs, weight, inverse, x, y, z, gained, u, v, w):
+def lane_further(runs, weight, inverse, at, gained, speed):
     """v += gained / m times the pulls of a seventh and later neighbour."""
+    (x, y, z), (u, v, w) = at, speed
     gain = x.dtype.type(gained)
     for r in range(len(runs)):
         i0, count = runs[r, 0], runs[r, 1]
@@ -100,8 +107,9 @@ def lane_further(runs, weight, inverse, x, y, z, gained, u, v, w):
 
 
 @distinct_contracted
-def lane_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
+def lane_bends(runs, bend, inverse, gained, at, speed):
     """v += gained / m times the bending force -Q x."""
+    (x, y, z), (u, v, w) = at, speed
     gain = x.dtype.type(gained)
     for r in range(len(runs)):
         i0, count, k, k0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 10]
@@ -124,8 +132,10 @@ def lane_bends(runs, bend, inverse, gained, x, y, z, u, v, w):
 
 
 @distinct_contracted
-def lane_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v, w):
-    """`lane_bends` for entries one by one: those of vertex[n] lie from rows[n] to rows[n + 1]."""
+def lane_odd_bends(odd, inverse, gained, at, speed):
+    """`lane_bends` for `Odd` entries one by one."""
+    (x, y, z), (u, v, w) = at, speed
+    rows, vertex, other, weight = odd
     real = x.dtype.type
     gain, nothing = real(gained), real(0)
     for n in range(len(vertex)):
@@ -144,8 +154,9 @@ def lane_odd_bends(rows, vertex, other, weight, inverse, gained, x, y, z, u, v, 
 
 
 @distinct_contracted
-def lane_kick(inverse, gained, fx, fy, fz, u, v, w):
+def lane_kick(inverse, gained, force, speed):
     """v += gained f / m, each (V,)."""
+    (fx, fy, fz), (u, v, w) = force, speed
     gain = u.dtype.type(gained)
     for i in range(len(u)):
         m = gain * inverse[i]
@@ -155,8 +166,9 @@ def lane_kick(inverse, gained, fx, fy, fz, u, v, w):
 
 
 @distinct_contracted
-def lane_drift(x, y, z, u, v, w, step):
+def lane_drift(at, speed, step):
     """x += step v."""
+    (x, y, z), (u, v, w) = at, speed
     dt = x.dtype.type(step)
     for i in range(len(x)):
         x[i] += dt * u[i]
@@ -165,8 +177,9 @@ def lane_drift(x, y, z, u, v, w, step):
 
 
 @distinct_contracted
-def lane_strain_before(runs, length2, x, y, z, u, v, w, step, before):
+def lane_strain_before(runs, length2, at, speed, step, before):
     """eps of the positions a step [s] ago."""
+    (x, y, z), (u, v, w) = at, speed
     dt = x.dtype.type(step)
     for r in range(len(runs)):
         e0, count, i0, j0, c0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3], runs[r, 4]
@@ -179,8 +192,9 @@ def lane_strain_before(runs, length2, x, y, z, u, v, w, step, before):
 
 
 @distinct_contracted
-def lane_strain_changes(runs, x, y, z, p, q, s, change):
-    """2 d.(p_i - p_j) of every edge: the derivative of eps along (p, q, s)."""
+def lane_strain_changes(runs, at, way, change):
+    """2 d.(p_i - p_j) of every edge: the derivative of eps along the way p."""
+    (x, y, z), (p, q, s) = at, way
     for r in range(len(runs)):
         e0, count, i0, j0 = runs[r, 0], runs[r, 1], runs[r, 2], runs[r, 3]
         for t in range(count):

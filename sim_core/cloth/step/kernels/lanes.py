@@ -22,20 +22,25 @@ TABLE_BYTES = 4096  # of a coefficient that repeats: with five others it stays i
 SAME = 1e-10  # of the largest coefficient: what differs by less is rounding of the pattern's coordinates
 
 
+class Odd(NamedTuple):
+    """Entries of the bending matrix one by one."""
+
+    rows: np.ndarray  # (M + 1,) where those of each vertex begin
+    vertex: np.ndarray  # (M,)
+    other: np.ndarray  # (N,)
+    weight: np.ndarray  # (N,) [N/m]
+
+
 class Lanes(NamedTuple):
     """Bands whose runs name where their coefficients begin, and what does not fit the runs of bending.
 
-    Runs of edges, tensions and bending end in a further column, their first coefficient. odd_rows (M + 1,): where the
-    entries (N,) of each odd_vertex (M,) begin.
+    Runs of edges, tensions and bending end in a further column, their first coefficient.
     """
 
     bands: Bands
     edges: int  # slots, ghosts included
     further_runs: np.ndarray  # (R, 15) of `vertex_runs`: seventh and later neighbours
-    odd_rows: np.ndarray
-    odd_vertex: np.ndarray
-    odd_other: np.ndarray
-    odd_weight: np.ndarray
+    odd: Odd
 
 
 def lattice_lanes(sheet: Sheet, bands: Bands, real: type = np.float64) -> Lanes | None:
@@ -86,7 +91,7 @@ def lattice_lanes(sheet: Sheet, bands: Bands, real: type = np.float64) -> Lanes 
         bend=bend,
         bend_runs=bend_runs,
     )
-    return Lanes(made, slots, np.zeros((0, 15), np.uint64), *odd)
+    return Lanes(made, slots, np.zeros((0, 15), np.uint64), odd)
 
 
 def plain_lanes(bands: Bands, real: type = np.float32) -> Lanes:
@@ -104,7 +109,8 @@ def plain_lanes(bands: Bands, real: type = np.float32) -> Lanes:
     )
     none = np.zeros(0, np.int64)
     rest = np.ascontiguousarray(bands.vertex_runs[further])
-    return Lanes(first, len(bands.own), rest, np.zeros(1, np.int64), none, none, np.zeros(0, real))
+    odd = Odd(rows=np.zeros(1, np.int64), vertex=none, other=none, weight=np.zeros(0, real))
+    return Lanes(first, len(bands.own), rest, odd)
 
 
 def _own_coefficients(runs: np.ndarray) -> np.ndarray:
@@ -200,9 +206,7 @@ def _vertex_runs(steps: np.ndarray, base: np.ndarray, count: int) -> np.ndarray:
     return np.array(out, np.uint64)
 
 
-def _bends(
-    sheet: Sheet, count: int, folds: Folds
-) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+def _bends(sheet: Sheet, count: int, folds: Folds) -> tuple[np.ndarray, np.ndarray, Odd]:
     """Weights of the offsets that most vertices have, GROUP rows of a table each, their runs, and what is left over."""
     stencil, real = sheet.stencil, folds.real
     vertex = np.repeat(np.arange(count), np.diff(stencil.rows))
@@ -232,5 +236,5 @@ def _bends(
     for k, kept in enumerate(tables):
         bend[k * GROUP : (k + 1) * GROUP, : kept.shape[1]] = kept
     owner, starts = np.unique(vertex[~fits], return_index=True)
-    odd = np.r_[starts, (~fits).sum()], owner, other[~fits], weight[~fits].astype(real)
+    odd = Odd(np.r_[starts, (~fits).sum()], owner, other[~fits], weight[~fits].astype(real))
     return bend, np.array(runs, np.uint64), odd

@@ -38,6 +38,7 @@ GLYPH = re.compile(r"#?(glyph|font)[\d_-]*\d")  # as cairo and MuPDF name the le
 PAINT = ("fill", "stroke", "stroke-dasharray", "visibility")
 NAMING = ("class", "id", "label", "href", "marker", "text")
 LETTERS = ("id", "href", "xlink:href", "data-symbol")
+SAME = 0.01  # most by which width and height of one scale differ, as sizes are rounded
 STEPS, TURN = 24, 0.05  # of a curve piece; [rad] most of an arc in one step
 Shape = tuple[np.ndarray, bool]
 
@@ -45,8 +46,8 @@ Shape = tuple[np.ndarray, bool]
 def svg_strokes(path: Path, metres: float | None = None) -> Drawn:
     """The lines of an SVG file [m], y down; raises FileProblem.
 
-    metres: of a user unit; without it the width counts, and without that a user unit is a CSS pixel (FreeSewing: a
-    millimetre).
+    metres: of a user unit; without it the drawing's size counts, and without that a user unit is a CSS pixel
+    (FreeSewing: a millimetre).
     """
     root = svg_root(path)
     left_out = left_out_of(root)
@@ -70,14 +71,16 @@ def _drawing(root: ElementTree.Element, metres: float | None) -> tuple[Any, bool
     from svgelements import SVG
 
     box = [float(v) for v in re.split(r"[\s,]+", root.get("viewBox", "").strip()) if v]
-    width, height = (root.get(side, "").strip() for side in ("width", "height"))
-    unit = 1.0 if metres is None else metres / PIXEL
+    styled = dict(re.findall(r"([a-z-]+)\s*:\s*([^;]+)", root.get("style", "")))
+    width, height = (styled.get(side, root.get(side, "")).strip() for side in ("width", "height"))
+    unit = tall = 1.0 if metres is None else metres / PIXEL
     sized = bool(width) and not width.endswith("%")
     guessed = metres is None and (not sized or re.fullmatch(NUMBER.pattern, width) is not None)
     if metres is None and not sized and root.get("freesewing"):
         unit, guessed = 1e-3 / PIXEL, False
-    if metres is None and len(box) == 4 and box[2] > 0 and sized:
-        unit = _pixels(width) / box[2]
+        tall = unit
+    if metres is None and len(box) == 4 and min(box[2:]) > 0 and sized:
+        unit, tall = _scales(width, height, box, root.get("preserveAspectRatio", ""))
     if len(box) != 4:
         ends = [_pixels(v) / unit if v and not v.endswith("%") else float("nan") for v in (width, height)]
         flatten_viewports(root, (ends[0], ends[1]))
@@ -88,9 +91,22 @@ def _drawing(root: ElementTree.Element, metres: float | None) -> tuple[Any, bool
         flatten_viewports(root, (box[2], box[3]))
     root.set("viewBox", " ".join(repr(v) for v in box))
     root.set("width", repr(box[2] * unit))
-    root.set("height", repr(box[3] * unit))
+    root.set("height", repr(box[3] * tall))
     root.set("preserveAspectRatio", "none")
     return SVG.parse(StringIO(ElementTree.tostring(root, "unicode")), reify=True, ppi=96), guessed
+
+
+def _scales(width: str, height: str, box: list[float], aspect: str) -> tuple[float, float]:
+    """CSS pixels a user unit across and down, as a browser fits the viewBox into the size; raises ValueError."""
+    across = _pixels(width) / box[2]
+    down = _pixels(height) / box[3] if height and not height.endswith(("%", "auto")) else across
+    if abs(down - across) <= SAME * across:  # sizes are rounded: the width counts
+        return across, across
+    words = aspect.split()
+    if words[:1] == ["none"]:
+        return across, down
+    both = max(across, down) if words[1:] == ["slice"] else min(across, down)
+    return both, both
 
 
 def _pixels(text: str) -> float:

@@ -22,6 +22,7 @@ __all__ = ["LENGTHS", "NUMBER", "check_bounds", "flatten_viewports", "left_out_o
 
 WHAT = "a pattern drawn as SVG"
 DECLARED = re.compile(rb"^\s*<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]{1,40})[\"'][^>]*\?>")
+BARE = re.compile(r"&(?!#?\w+;)")  # FreeSewing writes what a text says as it is, "&" too
 PAINTING = {"mask", "pattern", "marker", "filter", "linearGradient", "radialGradient", "clipPath"}
 MOST_GROWN = 1_000_000  # characters that entities stand for
 MOST_DEEP = 200
@@ -48,7 +49,7 @@ def svg_root(path: Path) -> ElementTree.Element:
     text = _decoded(path, read_bytes(path, WHAT))
     _check_entities(path, text)
     try:
-        root = ElementTree.fromstring(text)
+        root = ElementTree.fromstring(BARE.sub("&amp;", text))
     except (ElementTree.ParseError, ValueError) as error:
         raise FileProblem(f"{path}: not valid SVG ({error}) – give {WHAT}") from error
     if (tag := str(root.tag).rsplit("}", 1)[-1]) != "svg":

@@ -55,14 +55,15 @@ def count_of(sections: Sections, side: str, lists: Lists, remarks: list[str]) ->
     """Threads announced, or as many as there are lines; lines beyond the announced number count too."""
     lines = max(lists, default=0)
     found = lines
-    if "threads" in sections.get(side, {}):
-        key, value = sections[side]["threads"]
+    key, value = sections.get(side, {}).get("threads", ("Threads", ""))
+    if value:
         told = whole(value, side, key, "give the number of threads")
         found = max(lines, told)
         if lines > told:
             remarks.append(f"[{side}] {key}: {told}, but there are lines for {lines} – {lines} were taken")
     else:
-        remarks.append(f"[{side}] Threads: missing – there are lines for {lines}")
+        what = "empty" if "threads" in sections.get(side, {}) else "missing"
+        remarks.append(f"[{side}] {key}: {what} – there are lines for {lines}")
     if not 1 <= found <= MOST_THREADS:
         raise WeaveError(f"[{side}] Threads: {found} – 1 to {MOST_THREADS} threads can be read")
     return found

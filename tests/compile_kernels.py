@@ -1,0 +1,131 @@
+"""Makes the machine code that tests need, once: two workers that meet a kernel at the same time would both compile it.
+
+    python tests/compile_kernels.py               all rooms, one after the other
+    python tests/compile_kernels.py cloth light   these
+
+`.ci/run` starts it on both cores, beside another step. What is made is kept where NUMBA_CACHE_DIR says; a kernel that
+no room here calls is compiled by the first test that needs it, as without this script.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from sim_core.metrics import compile_clock
+
+sys.path.insert(0, str(Path(__file__).parent / "hall_app"))
+ASSETS = Path(__file__).parents[1] / "assets"
+EDGE = 0.06  # [m] as coarse as the tests bake
+
+
+def mesh() -> None:
+    """Panels of both qualities: bare, with a hole and a line, and with lines that cross at a narrow angle."""
+    from sim_core.mesh import panel_mesh
+
+    outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+    hole, line = [[0.6, 0.4], [0.6, 0.6], [0.8, 0.6], [0.8, 0.4]], [[0.3, 0.0], [0.35, 1.0]]
+    for quality in ("fair", "best"):
+        panel_mesh(outline, edge=0.2, quality=quality)
+        panel_mesh(outline, edge=0.2, holes=[hole], constraints=[np.array(line)], quality=quality)
+    narrow = [np.array([[0.2, 0.2], [0.8, 0.24]]), np.array([[0.2, 0.24], [0.8, 0.2]])]
+    panel_mesh(outline, edge=0.1, constraints=narrow, quality="best")
+
+
+def weave() -> None:
+    """Yarns at rest, the cloth's parameters, and its maps."""
+    from sim_core.weave import Weave, relax_particles, solve, surface_maps
+
+    gauze = Weave.load(ASSETS / "weaves/gauze.toml")
+    relax_particles(gauze)
+    surface_maps(gauze, solve(gauze), pixels=64)
+
+
+def cloth() -> None:
+    """The published scenes, two frames of each: both precisions, wind, solids of every kind, layers."""
+    from sim_core.cloth import Pace, drape
+    from sim_core.cloth.scenes import bar, scene
+
+    made = [scene(name, frames=2, vertices=100) for name in ("flag", "drape", "teapot", "hanging")]
+    for one in (*made, bar(0.1, seconds=0.08)):
+        for pace in (None, Pace("single")):
+            drape(
+                one.sheet,
+                one.positions,
+                one.phases,
+                pins=one.pins,
+                collider=one.collider,
+                contact=one.contact,
+                air=one.air,
+                pace=pace,
+            )
+
+
+def garment() -> None:
+    """A scarf on its stand and a robe on the figure, a few frames each, with what is measured and drawn of them."""
+    from sim_core.garment.recipes import PHASES, Schedule
+
+    from sim_core.body import Figure, Mannequin, Pose
+    from sim_core.cloth import Phase
+    from sim_core.garment import Pattern, detail, robe_on_figure, scarf_on_stand
+    from sim_core.picture import Camera, Surface, render
+    from sim_core.weave import Weave
+
+    weaves = {name: Weave.load(ASSETS / f"weaves/{name}.toml") for name in ("gauze", "ling")}
+    short = (PHASES[0], Phase(0.08, (0.0, 9.81), 5.0, None, "falling"))
+    scarf = scarf_on_stand(
+        Pattern.load(ASSETS / "patterns/pibo.toml"), weaves["gauze"], edge=EDGE, phases=short
+    )
+    detail(scarf, 0.1)
+    timing = Schedule(
+        Pose(10.0, 2.0), sew=0.4, hold=0.08, hang=0.12, lower=0.2, settle=0.08, release=0.08, rest=0.08
+    )
+    figure = Figure(Mannequin.load(ASSETS / "mannequins/woman.npz"), cell=0.018)
+    robe_on_figure(
+        Pattern.load(ASSETS / "patterns/robe.toml"), weaves["ling"], figure, edge=EDGE, schedule=timing
+    )
+    render([Surface(scarf.positions, scarf.faces)], Camera((0, 1, 3), (0, 1, 0)), (8, 6))
+
+
+def light() -> None:
+    """A lit box with a spot in it."""
+    from light_rooms import box, quads
+
+    from hall_app.light import Sampling, Spot, bake_light
+
+    room = quads(box((0, 0, 0), (2, 2, 2), inward=True), albedo=0.5, emission=[1, 0, 0, 0, 0, 0], density=4)
+    spot = Spot(np.array([1, 1.9, 1]), np.array([1, 0.0, 1]), np.ones(3), 50.0, 20.0, 10.0)
+    bake_light(room, [spot], sampling=Sampling((4, 4)))
+
+
+ROOMS: dict[str, Callable[[], None]] = {
+    "mesh": mesh,
+    "weave": weave,
+    "cloth": cloth,
+    "garment": garment,
+    "light": light,
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("room", nargs="*", help=f"of {', '.join(ROOMS)}; default: all")
+    asked = parser.parse_args().room
+    if strange := [room for room in asked if room not in ROOMS]:
+        parser.error(f"{', '.join(strange)}: no room – choose from {', '.join(ROOMS)}")
+    for room in asked or ROOMS:
+        begin = time.monotonic()
+        with compile_clock() as clock:
+            ROOMS[room]()
+        print(f"{room:<8} {clock.seconds:6.1f} s of {time.monotonic() - begin:.1f} s compiling", flush=True)
+
+
+if __name__ == "__main__":
+    main()
