@@ -22,6 +22,7 @@ from sim_core.cloth import (
     drape,
 )
 from sim_core.cloth.contact import (
+    Mesh,
     distances,
     edge_edge_pairs,
     finder_of,
@@ -217,7 +218,8 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     x, reach, same = rng.normal(0, 0.03, (len(rest), 3)), 0.01, np.arange(len(rest), dtype=np.int32)
     finder = finder_of(len(x), len(edges), len(faces))
-    pairs, count = vertex_face_pairs(x, rest, faces, same, reach, 0.0, finder, pairs_of(0))
+    mesh = Mesh(np.ones(len(rest)), rest, edges, faces, np.zeros(len(edges)), same)
+    pairs, count = vertex_face_pairs(x, mesh, reach, 0.0, finder, pairs_of(0))
     found = {(int(v), int(f)) for v, f in pairs[:count]}
     expected = {
         (v, f)
@@ -228,7 +230,7 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     assert found == expected
     t = np.linspace(0, 1, 60)
     dense = x[edges[:, 0], None] * (1 - t[:, None]) + x[edges[:, 1], None] * t[:, None]
-    pairs, count = edge_edge_pairs(x, rest, faces, edges, same, reach, 0.0, finder, pairs_of(0))
+    pairs, count = edge_edge_pairs(x, mesh, reach, 0.0, finder, pairs_of(0))
     met = {tuple(sorted(map(int, pair))) for pair in pairs[:count]}
     for a in range(len(edges)):
         for b in range(a + 1, len(edges)):
