@@ -1,4 +1,4 @@
-"""What a recipe writes down about itself: versions of what computed it, seconds per stage."""
+"""What a dressing writes down about itself: versions of what computed it, seconds per stage."""
 
 from __future__ import annotations
 
