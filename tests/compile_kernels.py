@@ -48,22 +48,13 @@ def weave() -> None:
 
 def cloth() -> None:
     """The published scenes, two frames of each: both precisions, wind, solids of every kind, layers."""
-    from sim_core.cloth import Pace, drape
+    from sim_core.cloth import Pace
     from sim_core.cloth.scenes import bar, scene
 
     made = [scene(name, frames=2, vertices=100) for name in ("flag", "drape", "teapot", "hanging")]
     for one in (*made, bar(0.1, seconds=0.08)):
         for pace in (None, Pace("single")):
-            drape(
-                one.sheet,
-                one.positions,
-                one.phases,
-                pins=one.pins,
-                collider=one.collider,
-                contact=one.contact,
-                air=one.air,
-                pace=pace,
-            )
+            one.drape(pace=pace)
 
 
 def garment() -> None:

@@ -250,7 +250,7 @@ def _pace(settings: dict[str, Any]) -> Pace:
 
 
 def _simulated(made: Scene, settings: dict[str, Any], heard: _Heard, resume: Path | None) -> Drape:
-    from sim_core.cloth.run.checkpoint import Checkpoint
+    from sim_core.cloth import Checkpoint
 
     return made.drape(
         substeps=settings["substeps"],
