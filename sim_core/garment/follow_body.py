@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape, moving
 from sim_core.cloth.sheet import evened
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
+from sim_core.garment.dressing.sewn_sheet import APART
 from sim_core.garment.garment import Garment
-from sim_core.garment.recipes.halves import APART
-from sim_core.garment.recipes.schedule import UNTANGLE
+from sim_core.garment.outfit.outfit import UNTANGLE
 
 __all__ = ["follow", "garment_sheet"]
 
@@ -26,21 +26,29 @@ DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
 
 
+class Hooks(TypedDict, total=False):
+    """Who hears of the frames, and a file to go on from."""
+
+    progress: Callable[[float, str], None] | None
+    on_frame: Callable[[int, np.ndarray], None] | None
+    checkpoint: Path | None
+
+
 def garment_sheet(garment: Garment) -> Sheet:
     """The garment as a sheet: its welded vertices, the pattern's lengths, the materials and masses it was draped with.
 
     Raises SimCoreError where the garment does not say what it is made of.
     """
-    single = _material(garment, garment.material)
-    panels = garment.cut.get("panels") or garment.cut.get("panel") or []
-    doubled = [bool(panel.get("doubled")) for panel in panels] or [False]
-    apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)] or [0]
-    own = garment.panel % len(doubled)  # the right half's panels follow the left's
+    told = garment.material.get("kinds")
+    if not isinstance(told, dict) or not told:
+        raise SimCoreError(f"garment {garment.name}: its material is not told – bake it again")
+    materials = [_material(garment, kind) for kind in told.values()]
+    panels = garment.cut.get("panels") or [{"name": "cloth"}]
+    of_panel = [list(told).index(garment.material["panels"][panel["name"]]) for panel in panels]
+    apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)]
+    own = garment.panel % len(panels)  # the right half's panels follow the left's
     corner = garment.rest_corners() + APART * np.array(apart)[own][:, None, None] * np.array([1.0, 0.0])
-    materials, kinds = [single], np.zeros(len(own), np.int32)
-    if any(doubled):
-        materials = [single, _material(garment, garment.material.get("doubled"))]
-        kinds = np.array(doubled, np.int32)[own]
+    kinds = np.array(of_panel, np.int32)[own]
     sheet = Sheet.of_corners(corner, garment.faces, materials, kinds)
     if garment.settled is None or not garment.settled.even:
         return sheet
@@ -56,9 +64,7 @@ def follow(
     cell: float = 0.008,
     contact: Contact | None = None,
     damping: float | None = None,
-    progress: Callable[[float, str], None] | None = None,
-    on_frame: Callable[[int, np.ndarray], None] | None = None,
-    checkpoint: Path | None = None,
+    **hooks: Unpack[Hooks],
 ) -> Drape:
     """Lets the garment hang on, or follow its wearer, frame by frame of 1/25 s.
 
@@ -72,7 +78,6 @@ def follow(
     the garment does not say what it was settled with and no wearer is given.
     """
     settled = garment.settled
-    hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
     if body is None or faces is None:
         if settled is None:
             raise SimCoreError(
@@ -93,7 +98,6 @@ def follow(
     usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
     if settled is not None:
         usual["friction"] = settled.last.friction
-        hooks["holds"] = settled.holds
         contact = contact or replace(settled.contact, speed_limit=max(FASTEST, settled.contact.speed_limit))
     phases: list[Phase] = []
     if wearer.count > 1:
@@ -109,6 +113,7 @@ def follow(
         phases,
         collider=wearer,
         contact=contact or CONTACT,
+        holds=settled and settled.holds,
         **hooks,
     )
 
