@@ -24,7 +24,7 @@ examples:
   hall serve                          open the hall at http://127.0.0.1:8000
   hall serve --content my-hall        with a content folder of your own
   hall check my-hall                  say what is wrong in it, one line a problem
-  hall build                          simulate the garments whose pattern, weave or recipe changed
+  hall build                          dress the outfits that changed, or what they name
 
 The content folder is --content, else ./assets, else the copy that came with the program.
 Exit status: 0 done, 1 the work failed or content is invalid, 2 wrong arguments."""

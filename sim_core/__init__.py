@@ -26,7 +26,7 @@ _ROOMS = {
     ),
     "mesh": ("MeshReport", "PanelMesh", "panel_mesh"),
     "cloth": ("Drape", "Material", "drape"),
-    "garment": ("Garment", "Pattern", "Stand", "detail", "scarf_on_stand", "write_glb"),
+    "garment": ("Garment", "Outfit", "Pattern", "Stand", "detail", "dress", "load_outfit", "write_glb"),
     "metrics": ("Distances", "hausdorff"),
     "picture": ("render",),
 }

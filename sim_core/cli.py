@@ -12,9 +12,12 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "garment", "mannequin")
-ELSEWHERE = {"mannequin": "sim_core.body.cli"}  # commands that share another room
-BENCHES = ("weave", "drafts", "mesh", "cloth", "field")
+ROOMS = ("weave", "mesh", "cloth", "dress", "figure")
+ELSEWHERE = {
+    "dress": "sim_core.garment.cli",
+    "figure": "sim_core.body.cli",
+}  # commands that share another room
+BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure")
 
 DESCRIPTION = """\
 The simulation core, one stage at a time: files in, files out.
@@ -22,8 +25,8 @@ The simulation core, one stage at a time: files in, files out.
   weave    a weave file (TOML) becomes tileable texture maps and cloth parameters
   mesh     a panel outline (JSON) becomes a triangle mesh
   cloth    a mesh falls onto a collider under gravity
-  garment  a pattern and a weave become a draped garment and its GLB models
-  mannequin  free body data become the figure that garments are dressed on
+  dress    an outfit (TOML) becomes dressed garments, their model and picture
+  figure   who wears a garment: poses drawn, and new figures from free body data
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed

@@ -1,4 +1,4 @@
-"""Writing binary glTF: meshes, textures and materials into one file, with numpy and nothing else."""
+"""Binary glTF: written (`GlbFile`) and read (`glb_parts`), with numpy and nothing else."""
 
 from __future__ import annotations
 
@@ -9,13 +9,87 @@ from io import BytesIO
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sim_core.picture import normals
-
-__all__ = ["GlbFile"]
+__all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts"]
 
 VERTICES, INDICES = 34962, 34963  # what a buffer view holds
 FLOAT, U16, U32 = 5126, 5123, 5125
+COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", U16: "<u2", U32: "<u4", FLOAT: "<f4"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+HEADER = 20  # bytes ahead of the JSON part: the file's header and the part's own
+MAGIC, JSON_PART = b"glTF", b"JSON"
+
+
+class GlbError(ValueError):
+    """The file is no readable, plain GLB; `fix` says what to do."""
+
+    def __init__(self, what: str, fix: str) -> None:
+        super().__init__(what)
+        self.fix = fix
+
+
+@dataclass(frozen=True)
+class GlbParts:
+    """A GLB that was read: its bytes, its JSON part, and where in them its binary part begins.
+
+    Its methods raise what an inconsistent document brings about: KeyError, IndexError, TypeError or ValueError.
+    """
+
+    data: bytes
+    document: dict[str, Any]
+    begin: int
+
+    def numbers(self, accessor: int) -> NDArray[np.float64]:
+        """(N, width) an accessor's numbers; fractions where they are normalised."""
+        entry = self.document["accessors"][accessor]
+        view = self.document["bufferViews"][entry["bufferView"]]
+        kind, width = np.dtype(COMPONENTS[entry["componentType"]]), WIDTHS[entry["type"]]
+        start = self.begin + view.get("byteOffset", 0) + entry.get("byteOffset", 0)
+        stride = view.get("byteStride", width * kind.itemsize)
+        rows = np.ndarray((entry["count"], width), kind, self.data, start, (stride, kind.itemsize))
+        values = rows.astype(float)
+        return values / np.iinfo(kind).max if entry.get("normalized") else values
+
+    def picture_place(self, image: int) -> tuple[int, int]:
+        """Begin and end in the file of an image that it holds itself."""
+        view = self.document["bufferViews"][self.document["images"][image]["bufferView"]]
+        begin = self.begin + view.get("byteOffset", 0)
+        return begin, begin + view["byteLength"]
+
+    def picture_places(self) -> list[tuple[int, int]]:
+        """Of every image that it holds itself, in their order."""
+        images = enumerate(self.document.get("images", ()))
+        return [self.picture_place(number) for number, image in images if "bufferView" in image]
+
+    def picture(self, image: int) -> bytes:
+        """An image that it holds itself, as it is encoded."""
+        begin, end = self.picture_place(image)
+        return self.data[begin:end]
+
+    def pictures(self) -> list[bytes]:
+        """Every image that it holds itself, as it is encoded."""
+        return [self.data[begin:end] for begin, end in self.picture_places()]
+
+
+def glb_parts(data: bytes) -> GlbParts:
+    """The parts of a GLB. Raises GlbError naming why it is none."""
+    broken = "the GLB is broken or cut off"
+    if len(data) < HEADER or data[:4] != MAGIC:
+        raise GlbError("not a GLB file", "export the model as binary glTF 2.0 (.glb)")
+    version, length, size, kind = struct.unpack_from("<III4s", data, 4)
+    if version != 2 or length > len(data):
+        what = f"{broken}: {len(data)} bytes of {length}, version {version}"
+        raise GlbError(what, "copy or export it again")
+    if kind != JSON_PART or HEADER + size > len(data):
+        raise GlbError(f"{broken}: no JSON part", "export the model again")
+    try:
+        document = json.loads(data[HEADER : HEADER + size])
+    except (ValueError, RecursionError) as error:
+        raise GlbError(f"{broken}: its JSON part cannot be read", "export the model again") from error
+    if not isinstance(document, dict):
+        raise GlbError(f"{broken}: its JSON part is no object", "export the model again")
+    return GlbParts(data, document, HEADER + size + 8)
 
 
 @dataclass
@@ -88,17 +162,18 @@ class GlbFile:
         colours: np.ndarray | None = None,
         *,
         uv1: np.ndarray | None = None,
-        unlit: bool = False,
-        shading: np.ndarray | None = None,
+        shading: np.ndarray | bool = True,
     ) -> None:
         """Adds a node with one mesh: vertices (V, 3) [m], faces (F, 3), uv (V, 2), colours (V, 3) linear 0..1.
 
         uv1: (V, 2) in 0..1, of a light map, kept as 16-bit fractions. Normals are the mesh's own, area-weighted,
-        unless `shading` (V, 3) gives them; an unlit mesh, as every mesh with colours, has none.
+        unless `shading` (V, 3) gives them; with False, for what is unlit, and with colours it has none.
         """
+        from sim_core.picture import normals  # compiled: who only reads needs none of it
+
         attributes = {"POSITION": self._accessor(vertices.astype("<f4"), "VEC3", FLOAT, VERTICES)}
-        if colours is None and not unlit:
-            shading = normals(vertices, faces) if shading is None else shading
+        if colours is None and shading is not False:
+            shading = normals(vertices, faces) if shading is True else np.asarray(shading)
             attributes["NORMAL"] = self._accessor(shading.astype("<f4"), "VEC3", FLOAT, VERTICES)
         elif colours is not None:
             fractions = np.round(np.clip(np.c_[colours, np.ones(len(colours))], 0, 1) * 65535)
@@ -136,5 +211,5 @@ class GlbFile:
         text = json.dumps(document, separators=(",", ":")).encode()
         text += b" " * (-len(text) % 4)
         size = 12 + 8 + len(text) + 8 + len(self.blob)
-        head = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON")
+        head = struct.pack("<4sII", MAGIC, 2, size) + struct.pack("<I4s", len(text), JSON_PART)
         return head + text + struct.pack("<I4s", len(self.blob), b"BIN\0") + bytes(self.blob)

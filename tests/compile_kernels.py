@@ -58,28 +58,22 @@ def cloth() -> None:
 
 
 def garment() -> None:
-    """A scarf on its stand and a robe on the figure, a few frames each, with what is measured and drawn of them."""
-    from sim_core.body import Figure, Mannequin, Pose
-    from sim_core.cloth import Phase
-    from sim_core.garment import Pattern, detail, robe_on_figure, scarf_on_stand
-    from sim_core.garment.recipes import PHASES, Schedule
-    from sim_core.picture import Camera, Surface, render
-    from sim_core.weave import Weave
+    """A scarf on its stand, a robe and a gown on the figure, a few frames each, and what is measured and drawn."""
+    from dataclasses import replace
 
-    weaves = {name: Weave.load(ASSETS / f"weaves/{name}.toml") for name in ("gauze", "ling")}
-    short = (PHASES[0], Phase(0.08, (0.0, 9.81), 5.0, None, "falling"))
-    scarf = scarf_on_stand(
-        Pattern.load(ASSETS / "patterns/pibo.toml"), weaves["gauze"], edge=EDGE, phases=short
-    )
-    detail(scarf, 0.1)
-    timing = Schedule(
-        Pose(10.0, 2.0), sew=0.4, hold=0.08, hang=0.12, lower=0.2, settle=0.08, release=0.08, rest=0.08
-    )
-    figure = Figure(Mannequin.load(ASSETS / "mannequins/woman.npz"), cell=0.018)
-    robe_on_figure(
-        Pattern.load(ASSETS / "patterns/robe.toml"), weaves["ling"], figure, edge=EDGE, schedule=timing
-    )
-    render([Surface(scarf.positions, scarf.faces)], Camera((0, 1, 3), (0, 1, 0)), (8, 6))
+    from sim_core.garment import detail, dress, load_outfit
+    from sim_core.picture import Camera, Surface, render
+
+    for name in ("pibo", "robe", "gown"):
+        outfit = load_outfit(ASSETS / f"outfits/{name}.toml").coarser(EDGE)
+        layers = []
+        for layer in outfit.layers:
+            steps = tuple(replace(step, seconds=min(step.seconds, 0.2)) for step in layer.program.steps)
+            layers.append(replace(layer, program=replace(layer.program, steps=steps)))
+        (worn,) = dress(replace(outfit, layers=tuple(layers)))
+        if name == "pibo":
+            detail(worn, 0.1)
+            render([Surface(worn.positions, worn.faces)], Camera((0, 1, 3), (0, 1, 0)), (8, 6))
 
 
 def light() -> None:

@@ -49,6 +49,7 @@ def test_a_test_that_depends_on_the_machine_is_named_with_machine_and_round(tmp_
     assert "assert" in (tmp_path / "logs" / "generic-1.log").read_text("utf-8")
 
 
+@pytest.mark.nightly
 def test_a_run_that_breaks_off_is_no_success(tmp_path):
     done = told("--only", "generic", "--logs", tmp_path, "--", "-n", 0, tmp_path / "nothing.py")
     assert done.returncode == 1

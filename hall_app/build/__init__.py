@@ -1,7 +1,8 @@
-"""From a pattern, a weave and a recipe to what the hall shows.
+"""From an outfit to what the hall shows.
 
-encoding, film: pictures to films; recipes: the ways to drape; garment: one bake from inputs to record; command: `hall
-build`. Names are handed out when they are asked for (PEP 562).
+encoding, film: pictures to films; look: what they and the models show of an outfit; trails: how what is worn beneath
+moved; outfit: one bake from inputs to record; command: `hall build`. Names are handed out when they are asked for
+(PEP 562).
 """
 
 from importlib import import_module
@@ -9,14 +10,17 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
-    from hall_app.build.garment import bake_garment, budget
+    from hall_app.build.outfit import bake_outfit, budget
+    from hall_app.build.trails import TrailLostError, Trails
 
-__all__ = ["SOUND_RATE", "bake_garment", "budget", "encode_film", "film_possible"]
+__all__ = ["SOUND_RATE", "TrailLostError", "Trails", "bake_outfit", "budget", "encode_film", "film_possible"]
 
 _HOME = {
     "SOUND_RATE": "encoding",
-    "bake_garment": "garment",
-    "budget": "garment",
+    "TrailLostError": "trails",
+    "Trails": "trails",
+    "bake_outfit": "outfit",
+    "budget": "outfit",
     "encode_film": "encoding",
     "film_possible": "encoding",
 }

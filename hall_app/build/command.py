@@ -9,25 +9,35 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hall_app.content.bakes.store import bake_fault, bake_work, baked_here, data_bake, read_record
+from hall_app.content.bakes.store import (
+    bake_fault,
+    bake_folder,
+    bake_work,
+    baked_here,
+    data_bake,
+    read_record,
+)
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.loading import load
+from hall_app.content.loading import load, read_table
 from hall_app.content.lookup import content_folder, make_data_folder
+from hall_app.content.schema.exhibit import ExhibitFile
 
 __all__ = ["add_parser", "run"]
 
 Progress = Callable[[float, str], None]
 
 _EPILOG = """\
-Each garment is baked from its pattern, weave and recipe (exhibit.toml: [garment]) into baked/ beside it: the
-simulated garment, both models, film and pictures of the drape. The room is raised from plan.toml and its light
-computed, into room/. What is up to date is left alone. An interrupted build goes on where it stopped. Films need the
+Each outfit (exhibit.toml: outfit = "outfits/….toml") is baked into baked/ beside the exhibit: the simulated garments,
+both models, film and pictures. The room is raised from plan.toml and its light
+computed, into room/. What is up to date is left alone; where only [show] changed, the garment is not dressed again. An
+interrupted build goes on where it stopped. Films need the
 extra 'bake' (pip install '.[bake]'); without it they are left out.
 
 examples:
   hall build                      everything that changed, in ./assets
   hall build --exhibit pibo -f    this one again, changed or not
   hall build --room               the room alone
+  hall build --pattern            flat patterns, to be shown in texts: ![words](media/pattern.svg)
   hall build --media              music, pictures and the foreign model as well"""
 
 
@@ -44,6 +54,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser.add_argument("--data", type=Path, default=Path("hall-data"), metavar="FOLDER", help="work folder")
     parser.add_argument("--exhibit", metavar="ID", help="this exhibit alone")
     parser.add_argument("--room", action="store_true", help="the room alone")
+    parser.add_argument(
+        "--pattern", action="store_true", help="the flat pattern as SVG (media/pattern.svg), and nothing else"
+    )
     parser.add_argument("-f", "--force", action="store_true", help="bake again what is up to date")
     parser.add_argument("--no-film", action="store_true", help="leave the film of the drape out")
     parser.add_argument(
@@ -69,6 +82,9 @@ def run(arguments: argparse.Namespace) -> int:
         with _progress(arguments.json, "media") as progress:
             make_media(folder, progress)
     content = load(folder)
+    if arguments.pattern:
+        _draw_patterns(content, arguments)
+        return 0
     for exhibit in () if arguments.room else _chosen(content, arguments.exhibit):
         key = bake_key(content, exhibit)
         target = data_bake(arguments.data, exhibit.id, key) if arguments.into_data else baked_here(exhibit)
@@ -86,6 +102,17 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.exhibit is None:
         _build_room(content, arguments)
     return 0
+
+
+def _draw_patterns(content: Content, arguments: argparse.Namespace) -> None:
+    """The flat patterns of one exhibit or of all, as SVG beside the texts that show them."""
+    from hall_app.media.make import write_pattern_sheet
+
+    for exhibit in _chosen(content, arguments.exhibit):
+        assert exhibit.file.outfit is not None
+        path = write_pattern_sheet(content.folder, exhibit.id, exhibit.file.outfit)
+        name = path.relative_to(content.folder).as_posix()
+        _tell(arguments.json, {"exhibit": exhibit.id, "pattern": name}, f"{exhibit.id}: {name}")
 
 
 def _build_room(content: Content, arguments: argparse.Namespace) -> None:
@@ -117,26 +144,40 @@ def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
     if wanted is None:
         for problem in content.problems:
             print(f"left out: {problem}", file=sys.stderr)
-        return [exhibit for exhibit in content.exhibits if exhibit.file.garment is not None]
+        return [exhibit for exhibit in content.exhibits if exhibit.file.outfit is not None]
     exhibit = content.exhibit(wanted)
     if exhibit is None:
-        named = [
-            str(problem) for problem in content.problems if problem.file.startswith(f"exhibits/{wanted}/")
-        ]
+        named = [str(problem) for problem in content.problems if _concerns(content, problem.file, wanted)]
         raise ValueError(named[0] if named else f"no exhibit {wanted!r} in {content.folder}")
-    if exhibit.file.garment is None:
-        raise ValueError(f"{exhibit.toml}: has no [garment], nothing to bake")
+    if exhibit.file.outfit is None:
+        raise ValueError(f"{exhibit.toml}: names no outfit, nothing to bake")
     return [exhibit]
 
 
+def _concerns(content: Content, file: str, wanted: str) -> bool:
+    """Whether a faulty file belongs to an exhibit: it lies in its folder, or is the outfit it names."""
+    if file.startswith(f"exhibits/{wanted}/"):
+        return True
+    table, _ = read_table(content.folder, f"exhibits/{wanted}/exhibit.toml", ExhibitFile)
+    return table is not None and table.outfit == file
+
+
 def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
-    from hall_app.build.garment import bake_garment
+    from hall_app.build.outfit import bake_outfit
 
     make_data_folder(arguments.data)
     work = bake_work(arguments.data, exhibit.id, key)
+    former = None if arguments.force else bake_folder(content, exhibit, arguments.data)
     with _progress(arguments.json, exhibit.id) as progress:
-        return bake_garment(
-            content, exhibit, key=key, target=target, work=work, progress=progress, film=not arguments.no_film
+        return bake_outfit(
+            content,
+            exhibit,
+            key=key,
+            target=target,
+            work=work,
+            progress=progress,
+            film=not arguments.no_film,
+            former=former,
         )
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hall_app.build.encoding import encode_film
 
-__all__ = ["Film", "Look", "SIZE", "Solid", "filming", "stills"]
+__all__ = ["SIZE", "Film", "Look", "Part", "Piece", "filming", "stills"]
 
 SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
@@ -28,48 +28,47 @@ Picture = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
-class Solid:
-    """Something beside the cloth: mesh, sRGB colour 0..1, gloss; lift [m] it stands above its own y = 0."""
+class Part:
+    """Triangles of one look: faces (F, 3) int32, sRGB colour 0..1; alpha: share of the light it stops, seen head-on;
+    gloss, sheen: 0..1, as `sim_core.picture.Surface` has them."""
 
-    vertices: NDArray[np.floating]
     faces: NDArray[np.int32]
     colour: tuple[float, float, float]
-    gloss: float
+    alpha: float = 1.0
+    gloss: float = 0.0
+    sheen: float = 0.0
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Something that is shown: vertices (V, 3) [m], its parts, and by how much it is raised [m]."""
+
+    vertices: NDArray[np.floating]
+    parts: tuple[Part, ...]
     lift: float = 0.0
 
 
 @dataclass(frozen=True)
 class Look:
-    """What stays the same in every picture.
+    """All that a picture shows, what moves first; height seen [m]."""
 
-    cloth: faces (F, 3) and colour, sRGB 0..1, of each part; solids: the first may move; alpha: cover of the cloth;
-    height seen [m]; lift [m] of the cloth.
-    """
-
-    cloth: tuple[tuple[NDArray[np.int32], tuple[float, float, float]], ...]
-    solids: tuple[Solid, ...]
-    alpha: float
+    pieces: tuple[Piece, ...]
     height: float
-    lift: float = 0.0
 
 
-def _surfaces(
-    look: Look, positions: NDArray[np.floating], moved: NDArray[np.floating] | None = None
-) -> list[Any]:
-    """What is drawn; moved: vertices of the first solid."""
+def _surfaces(look: Look, moved: Sequence[NDArray[np.floating]] = ()) -> list[Any]:
+    """What is drawn; moved: vertices of the first pieces."""
     from sim_core.picture import Surface
 
-    x = np.asarray(positions, float) + [0.0, look.lift, 0.0]
-    cloth = [
-        Surface(x, faces, colour, alpha=look.alpha, sheen=0.5, through=0.3 if look.alpha < 1 else 0.0)
-        for faces, colour in look.cloth
-    ]
-    solids = []
-    for number, solid in enumerate(look.solids):
-        vertices = solid.vertices if moved is None or number else moved
-        raised = np.asarray(vertices, float) + [0.0, solid.lift, 0.0]
-        solids.append(Surface(raised, solid.faces, solid.colour, gloss=solid.gloss))
-    return [*cloth, *solids]
+    drawn = []
+    for number, piece in enumerate(look.pieces):
+        vertices = moved[number] if number < len(moved) else piece.vertices
+        raised = np.asarray(vertices, float) + [0.0, piece.lift, 0.0]
+        for part in piece.parts:
+            through = 0.3 if part.alpha < 1 else 0.0
+            more = {"alpha": part.alpha, "gloss": part.gloss, "sheen": part.sheen, "through": through}
+            drawn.append(Surface(raised, part.faces, part.colour, **more))
+    return drawn
 
 
 def _camera(look: Look, angle: float) -> Any:
@@ -93,24 +92,26 @@ class Film:
 
     def shoot(
         self,
-        positions: NDArray[np.floating],
-        moved: NDArray[np.floating] | None = None,
+        moved: Sequence[NDArray[np.floating]],
         angles: Sequence[float] = (STILLS["front"],),
     ) -> None:
-        """The next pictures, of one state of the cloth from each angle; what an interrupted build left is kept."""
+        """The next pictures, one from each angle; what an interrupted build left is kept.
+
+        moved: vertices of the look's first pieces as they are now.
+        """
         views = [
             (float(angle), self._folder / f"{self._count + number:05d}.png")
             for number, angle in enumerate(angles)
         ]
         self._count += len(views)
-        self._pictures.append(self._pool.submit(_shoot, self._look, np.array(positions), moved, views))
+        self._pictures.append(self._pool.submit(_shoot, self._look, [np.array(x) for x in moved], views))
 
-    def walk_round(self, positions: NDArray[np.floating], moved: NDArray[np.floating] | None = None) -> None:
+    def walk_round(self, moved: Sequence[NDArray[np.floating]]) -> None:
         """Once round the finished garment, slowly beginning and ending."""
         shares = np.arange(1, ROUND + 1) / ROUND
         angles = STILLS["front"] + 360.0 * shares * shares * (3 - 2 * shares)
         for piece in np.array_split(angles, 6):
-            self.shoot(positions, moved, piece.tolist())
+            self.shoot(moved, piece.tolist())
 
     def write(
         self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
@@ -137,8 +138,7 @@ def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | N
 
 def _shoot(
     look: Look,
-    positions: NDArray[np.floating],
-    moved: NDArray[np.floating] | None,
+    moved: Sequence[NDArray[np.floating]],
     views: list[tuple[float, Path]],
 ) -> None:
     from PIL import Image
@@ -148,7 +148,7 @@ def _shoot(
     left = [(angle, path) for angle, path in views if not path.is_file()]
     if not left:
         return
-    surfaces = _surfaces(look, positions, moved)
+    surfaces = _surfaces(look, moved)
     lit = lighting(surfaces)
     for angle, path in left:
         partial = path.with_suffix(".part")
@@ -172,13 +172,13 @@ def filming(look: Look, folder: Path) -> Iterator[Film]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def stills(look: Look, positions: NDArray[np.floating], folder: Path) -> None:
+def stills(look: Look, folder: Path) -> None:
     """Pictures from front, side and back, and the film's poster, as JPEG."""
     from PIL import Image
 
     from sim_core.picture import lighting, render
 
-    surfaces = _surfaces(look, positions)
+    surfaces = _surfaces(look)
     lit = lighting(surfaces)
     views = {"drape": (STILLS["front"], SIZE)}
     views |= {f"still-{name}": (angle, (900, 1125)) for name, angle in STILLS.items()}

@@ -15,9 +15,9 @@ __all__ = ["add_parser", "run"]
 DESCRIPTION = """\
 Look through a content folder: form of the TOML files, files named and present, both languages, descriptions
 of media, media and models (readable, in metres, within budget), exhibits inside the hall and reachable on
-foot, openings and signs held by walls, licences, questionnaires, weaves, patterns, bakes and the room (files
-as they were baked), unused files. One line a problem: file, key, what is
-wrong, how to put it right. A hint is no problem: something to do before visitors come.
+foot, openings and signs held by walls, licences, questionnaires, outfits, weaves, patterns, bakes
+and the room (files as they were baked), unused files. One line a problem: file, key, what is wrong, how to put it
+right. A hint is no problem: something to do before visitors come.
 
 With --garments instead: what every baked garment was measured to be, measured again from its files where that
 is cheap; marked ! where it breaks a limit or where record and files disagree.

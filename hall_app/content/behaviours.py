@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
-__all__ = ["BEHAVIOURS", "Behaviour", "Stage", "behaviour"]
+__all__ = ["BEHAVIOURS", "MOVING", "Behaviour", "Stage", "behaviour"]
 
 
 V = TypeVar("V")  # a visitor, whom a behaviour only hands on
@@ -17,7 +18,9 @@ class Stage(Protocol[V]):
     def on_click(self, exhibit: str, act: Callable[[V], None]) -> None: ...
     def on_near(self, exhibit: str, distance: float, act: Callable[[V, bool], None]) -> None: ...
     def on_open(self, exhibit: str, extra: dict[str, Any]) -> None: ...
+    def on_tick(self, exhibit: str, act: Callable[[V, float], None]) -> None: ...
     def notice(self, visitor: V, exhibit: str, on: bool, *, glow: bool) -> None: ...
+    def turn(self, visitor: V, exhibit: str, angle: float, rate: float) -> None: ...
     def open(self, visitor: V, exhibit: str) -> None: ...
 
 
@@ -26,6 +29,8 @@ Behaviour = Callable[[Stage[Any], str], None]
 BEHAVIOURS: dict[str, Behaviour] = {}
 
 NEAR = 3.0  # [m] from which an exhibit notices its visitor
+TURN = 0.25  # [rad/s] of what turns on its stand
+MOVING = frozenset({"turn_slowly"})  # behaviours that make an exhibit a moving one
 
 
 def behaviour(act: Behaviour) -> Behaviour:
@@ -48,7 +53,15 @@ def glow_when_near(stage: Stage[Any], exhibit: str) -> None:
 
 @behaviour
 def turn_slowly(stage: Stage[Any], exhibit: str) -> None:
-    """The model turns on its stand while a visitor sees it; each page turns it for itself (page/look/turning.js)."""
+    """The model turns on its stand, by the hall's clock, so that all who stand before it see the same side.
+
+    A page turns it on by itself between two ticks (page/look/turning.js).
+    """
+
+    def turned(visitor: Any, clock: float) -> None:
+        stage.turn(visitor, exhibit, TURN * clock % math.tau, TURN)
+
+    stage.on_tick(exhibit, turned)
 
 
 @behaviour

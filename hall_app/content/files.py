@@ -41,18 +41,9 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
             yield f"{name}.poster", medium.poster
 
 
-def recipe_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
-    """(key, path) of the files a garment is made from, relative to the content folder."""
-    if file.garment:
-        for name in ("pattern", "weave", "mannequin", "robe_pattern", "robe_weave"):
-            path = getattr(file.garment, name)
-            if path is not None:
-                yield f"garment.{name}", path
-
-
 def made_by_build(file: ExhibitFile, path: str) -> bool:
     """Whether `path` is written by `hall build`, so that its absence is no fault of the curator's."""
-    return file.garment is not None and path.startswith(BAKED)
+    return file.outfit is not None and path.startswith(BAKED)
 
 
 def file_problem(toml: str, key: str, base: Path, path: str, *, root: Path) -> Problem | None:

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
+from hall_app.content.bakes.inputs import outfit_problems
 from hall_app.content.files import (
     LEAVES,
     TEXTS,
@@ -16,7 +17,6 @@ from hall_app.content.files import (
     hall_files,
     leaves,
     made_by_build,
-    recipe_files,
     revision,
 )
 from hall_app.content.floor.footprints import body_footprint
@@ -189,9 +189,9 @@ def _text(root: Path, identity: str, name: str, problems: list[Problem]) -> str:
 
 
 def _file_problems(root: Path, folder: Path, toml: str, file: ExhibitFile) -> list[Problem]:
-    """Files named but missing, empty or, if models, unreadable."""
+    """Files named but missing, empty or, if models or outfits, unreadable; and those that an outfit names."""
     named = [(key, folder, path) for key, path in exhibit_files(file) if not made_by_build(file, path)]
-    named += [(key, root, path) for key, path in recipe_files(file)]
+    named += [("outfit", root, file.outfit)] if file.outfit else []
     problems = []
     for key, base, path in named:
         problem = file_problem(toml, key, base, path, root=root)
@@ -199,6 +199,8 @@ def _file_problems(root: Path, folder: Path, toml: str, file: ExhibitFile) -> li
             problem = _model_problem(toml, key, folder / path)
         if problem is not None:
             problems.append(problem)
+        elif key == "outfit":
+            problems += outfit_problems(root, path)
     return problems
 
 

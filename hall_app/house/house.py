@@ -119,9 +119,9 @@ class House:
         """Garments that are not shown as they should be, and will not be without a curator's doing."""
         return self._drawn.unreadable + tuple(
             self._failed.get(self._drawn.keys[e.id] or "")
-            or Problem(e.toml, "garment", "has not been baked", "run hall build")
+            or Problem(e.toml, "outfit", "has not been baked", "run hall build")
             for e in self.content.exhibits
-            if e.file.garment is not None and (self.given_up(e) or self._lacking(e))
+            if e.file.outfit is not None and (self.given_up(e) or self._lacking(e))
         )
 
     def _lacking(self, exhibit: Exhibit) -> bool:
@@ -162,7 +162,9 @@ class House:
             self._failed[bake.key] = Problem("plan.toml", "", what, fix)
         elif exhibit is not None:
             what = f"baking failed: {failure}"
-            self._failed[bake.key] = Problem(exhibit.toml, "garment", what, "correct pattern or weave")
+            self._failed[bake.key] = Problem(
+                exhibit.toml, "outfit", what, "correct the outfit or what it names"
+            )
 
     def given_up(self, exhibit: Exhibit) -> bool:
         """True when baking these very inputs has failed before."""

@@ -1,4 +1,4 @@
-"""Drawings for the panels: a weave with its draft, a pattern with its measures, the mirror's back."""
+"""Drawings for the panels: a weave with its draft, the mirror's back."""
 
 from __future__ import annotations
 
@@ -120,43 +120,6 @@ def _yarn(sheet: Sheet, box: tuple[float, float, float, float], colour: str, *, 
         a, b = band / bands, (band + 1) / bands
         piece = (x0, y0 + a * (y1 - y0), x1, y0 + b * (y1 - y0))
         sheet.box(piece if flat else (x0 + a * (x1 - x0), y0, x0 + b * (x1 - x0), y1), tone)
-
-
-def pattern_drawing(outlines: Sequence[np.ndarray]) -> Image.Image:
-    """Panels, each (N, 2) [m], one below the other, with length, width and warp direction.
-
-    Their x runs along the weft, their y along the warp.
-    """
-    sheet = Sheet((1200, 160 + 260 * len(outlines)))
-    for number, outline in enumerate(outlines):
-        points = np.asarray(outline, float) - np.min(outline, axis=0)
-        length, width = points.max(axis=0)
-        turned = width > length
-        if turned:  # the long way across the sheet
-            points, length, width = points[:, ::-1], width, length
-        scale = min(960 / length, 180 / width)
-        top = 110 + 260 * number
-        drawn = [(100 + x * scale, top + y * scale) for x, y in [*points, points[0]]]
-        sheet.pen.polygon([(OVER * x, OVER * y) for x, y in drawn], fill="#efe6d2")
-        sheet.line(drawn, INK, 2)
-        sheet.measure((100, top - 34), (100 + length * scale, top - 34), f"{length * 1000:.0f} mm")
-        side = 100 + length * scale + 24
-        sheet.measure((side, top), (side, top + width * scale), f"{width * 1000:.0f}")
-        _warp_arrow(sheet, 100 + length * scale / 2, top + width * scale / 2, along=turned)
-    return sheet.finished()
-
-
-def _warp_arrow(sheet: Sheet, x: float, y: float, *, along: bool) -> None:
-    """A double arrow at (x, y): the warp runs along the sheet or up and down."""
-    reach = 110 if along else 60
-
-    def at(forward: float, aside: float) -> tuple[float, float]:
-        return (x + forward, y + aside) if along else (x + aside, y + forward)
-
-    sheet.line([at(-reach, 0), at(reach, 0)], FAINT, 2)
-    for end in (-1, 1):
-        tip, barb = end * reach, end * (reach - 16)
-        sheet.line([at(barb, -9), at(tip, 0), at(barb, 9)], FAINT, 2)
 
 
 def mirror_drawing() -> Image.Image:

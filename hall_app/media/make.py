@@ -2,33 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hall_app.content.files import exhibit_files
 from hall_app.content.loading import read_table
 from hall_app.content.problems import ContentError
 from hall_app.content.schema.exhibit import ExhibitFile
 
 if TYPE_CHECKING:
+    from hall_app.media.cutting_plan import Plan
     from hall_app.media.drawings import Interlacing
     from sim_core.weave import Weave
 
 Progress = Callable[[float, str], None]
 QUALITY = 88  # of JPEG
-DRAWN = ("beizi", "pibo")  # simulated exhibits with drawings and a piece of music
+# What is made for each exhibit with an outfit that names it, inside its folder; the sheet by `hall build --pattern`.
+LISTENING = ("media/listening.webm", "media/listening.mp3")
+WEAVE, PATTERN, SHEET = "media/weave.jpg", "media/pattern.jpg", "media/pattern.svg"
 
 
 def make_media(folder: Path, progress: Progress = lambda fraction, label: None) -> None:
-    """Write the media of hall, pibo and mirror into the content folder; the same bytes from the same sources.
+    """Write the media of hall, garments and mirror into the content folder; the same bytes from the same sources.
 
     progress: called with a fraction 0..1 and a label. Raises ImportError without the extra `bake`.
     """
     steps: tuple[tuple[str, Callable[[Path], None]], ...] = (
         ("music of the hall", _hall_music),
-        ("music of the scarf", _scarf_music),
+        ("music of the garments", _exhibits_music),
         ("drawings of the weaves", _weaves),
         ("drawings of the patterns", _patterns),
         ("the mirror", _mirror),
@@ -53,26 +57,26 @@ def _hall_music(folder: Path) -> None:
         write_sound(_place(folder / f"media/music{ending}"), sound)
 
 
-def _scarf_music(folder: Path) -> None:
-    """One piece for both garments: they hang in one hall."""
+def _exhibits_music(folder: Path) -> None:
+    """One piece for all garments: they hang in one hall."""
     from hall_app.media.encode import write_sound
     from hall_app.media.music import falling_gauze
 
     sound = falling_gauze()
-    for exhibit in DRAWN:
-        for ending in (".webm", ".mp3"):
-            write_sound(_place(folder / f"exhibits/{exhibit}/media/listening{ending}"), sound)
+    for home, _ in _dressed(folder):
+        for path in _named(home, LISTENING):
+            write_sound(_place(path), sound)
 
 
 def _weaves(folder: Path) -> None:
     from hall_app.media.drawings import weave_drawing
-    from sim_core.garment import Pattern
-    from sim_core.weave import Weave
+    from sim_core.garment import load_outfit
 
-    for exhibit in DRAWN:
-        pattern, weave = (folder / path for path in _recipe(folder, exhibit))
-        picture = weave_drawing(interlacing(Weave.load(weave), Pattern.load(pattern).dye))
-        picture.save(_place(folder / f"exhibits/{exhibit}/media/weave.jpg"), quality=QUALITY)
+    for home, outfit in _dressed(folder):
+        for path in _named(home, (WEAVE,)):
+            layer = load_outfit(folder / outfit, folder).layers[-1]
+            picture = weave_drawing(interlacing(layer.weave, layer.pattern.dye))
+            picture.save(_place(path), quality=QUALITY)
 
 
 def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> Interlacing:
@@ -90,23 +94,51 @@ def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> 
 
 
 def _patterns(folder: Path) -> None:
+    from hall_app.media.cutting_sheet import plan_picture
+
+    for home, outfit in _dressed(folder):
+        for path in _named(home, (PATTERN,)):
+            plan_picture(outfit_plan(folder, outfit)).save(_place(path), quality=QUALITY)
+
+
+def outfit_plan(folder: Path, outfit: str) -> Plan:
+    """The flat pattern of an outfit, all its layers; raises what reading it raises, naming file, key and remedy."""
     from hall_app.media.cutting_plan import cutting_plan
-    from hall_app.media.drawings import pattern_drawing
-    from sim_core.garment import Pattern
+    from sim_core.garment import load_outfit
 
-    for exhibit in DRAWN:
-        pattern = Pattern.load(folder / _recipe(folder, exhibit)[0])
-        picture = cutting_plan(pattern) if pattern.panels else pattern_drawing([pattern.outline])
-        picture.save(_place(folder / f"exhibits/{exhibit}/media/pattern.jpg"), quality=QUALITY)
+    worn = load_outfit(folder / outfit, folder)
+    zh, en = (worn.title.get(language, worn.name) for language in ("zh", "en"))
+    return cutting_plan([layer.pattern for layer in worn.layers], (zh, en))
 
 
-def _recipe(folder: Path, exhibit: str) -> tuple[str, str]:
-    """Pattern and weave files of a garment, relative to the content folder."""
-    file, problems = read_table(folder, f"exhibits/{exhibit}/exhibit.toml", ExhibitFile)
+def write_pattern_sheet(folder: Path, identity: str, outfit: str) -> Path:
+    """Write the outfit's flat pattern as SVG into the exhibit's media folder; returns where it lies."""
+    from hall_app.media.cutting_sheet import plan_svg
+
+    path = _place(folder / "exhibits" / identity / SHEET)
+    path.write_text(plan_svg(outfit_plan(folder, outfit)), "utf-8")
+    return path
+
+
+def _dressed(folder: Path) -> Iterator[tuple[Path, str]]:
+    """(folder, outfit file) of every exhibit that is dressed. Raises ContentError for one that cannot be read."""
+    for home in sorted(path.parent for path in folder.glob("exhibits/*/exhibit.toml")):
+        file = _file(folder, home.name)
+        if file.outfit is not None:
+            yield home, file.outfit
+
+
+def _named(home: Path, wanted: Sequence[str]) -> Iterator[Path]:
+    """Those of the `wanted` files that the exhibit in `home` names."""
+    named = {path for _, path in exhibit_files(_file(home.parents[1], home.name))}
+    return (home / path for path in wanted if path in named)
+
+
+def _file(folder: Path, identity: str) -> ExhibitFile:
+    file, problems = read_table(folder, f"exhibits/{identity}/exhibit.toml", ExhibitFile)
     if file is None:
         raise ContentError(problems)
-    assert file.garment is not None  # both are simulated
-    return file.garment.pattern, file.garment.weave
+    return file
 
 
 def _mirror(folder: Path) -> None:

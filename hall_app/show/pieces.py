@@ -21,6 +21,7 @@ from functools import lru_cache
 from hashlib import sha256
 
 from hall_app.show.compression import best_frame
+from sim_core.gltf import glb_parts
 
 __all__ = ["LEAN", "Pieces", "split"]
 
@@ -235,21 +236,13 @@ def split(body: bytes) -> Iterator[bytes]:
 
 def _pictures(body: bytes) -> list[tuple[int, int]]:
     """Where the large pictures of a GLB lie, in order; nothing in what is no GLB."""
-    if body[:4] != b"glTF" or len(body) < 20:
-        return []
-    (length,) = struct.unpack_from("<I", body, 12)
     try:
-        document = json.loads(body[20 : 20 + length])
-        views = [document["bufferViews"][image["bufferView"]] for image in document.get("images", ())]
-        start = 20 + length + 8
-        places = sorted(
-            {(start + v.get("byteOffset", 0), v["byteLength"]) for v in views if v["byteLength"] >= PICTURE}
-        )
-    except (ValueError, KeyError, IndexError, TypeError):
+        places = sorted(set(glb_parts(body).picture_places()))
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError):
         return []  # whatever it is, it travels whole
     found, at = [], 0
-    for begin, size in places:
-        if begin >= at and begin + size <= len(body):
-            found.append((begin, begin + size))
-            at = begin + size
+    for begin, end in places:
+        if end - begin >= PICTURE and begin >= at and end <= len(body):
+            found.append((begin, end))
+            at = end
     return found

@@ -14,6 +14,7 @@ from hall_app.visit.visitors import Visitor, Visitors
 __all__ = ["Actor", "Figures", "Stage"]
 
 FORGET = 1.15  # leave at this multiple of the near distance: no flicker on the edge
+SIGHT = 10.0  # [m] from which a visitor is told what moves
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +50,7 @@ class Stage:
         self._clicks: dict[str, list[Callable[[Visitor], None]]] = defaultdict(list)
         self._near: dict[str, list[tuple[float, Callable[[Visitor, bool], None]]]] = defaultdict(list)
         self._opening: dict[str, dict[str, Any]] = defaultdict(dict)
+        self._ticks: dict[str, list[Callable[[Visitor, float], None]]] = defaultdict(list)
 
     def play(self, actors: tuple[Actor, ...]) -> None:
         """Take these exhibits on stage in place of the former ones."""
@@ -75,6 +77,13 @@ class Stage:
     def on_open(self, exhibit: str, extra: dict[str, Any]) -> None:
         self._opening[exhibit].update(extra)
 
+    def on_tick(self, exhibit: str, act: Callable[[Visitor, float], None]) -> None:
+        self._ticks[exhibit].append(act)
+
+    def turn(self, visitor: Visitor, exhibit: str, angle: float, rate: float) -> None:
+        """Tell a page by how much [rad] the model is turned from its front now, and how fast it goes on [rad/s]."""
+        visitor.say({"t": "turn", "id": exhibit, "angle": round(angle, 4), "rate": rate})
+
     def notice(self, visitor: Visitor, exhibit: str, on: bool, *, glow: bool) -> None:
         node = self.figures.node(exhibit)
         visitor.say({"t": "near", "id": exhibit, "on": on, "glow": glow, "caption": True, "node": node})
@@ -93,6 +102,16 @@ class Stage:
         visitor.say({"t": "closed"})
 
     # What happens to it.
+
+    def tick(self, clock: float) -> None:
+        """The hall's clock says so many seconds; who has entered and stands within SIGHT is told what moves."""
+        for exhibit, acts in self._ticks.items():
+            actor = self.actors[exhibit]
+            for visitor in self.visitors:
+                pose = visitor.walk.pose
+                if math.hypot(actor.x - pose.x, actor.z - pose.z) < SIGHT:
+                    for act in acts:
+                        act(visitor, clock)
 
     def clicked(self, visitor: Visitor, exhibit: str) -> None:
         for act in self._clicks.get(exhibit, ()):

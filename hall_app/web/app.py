@@ -269,11 +269,8 @@ def _add_media(app: FastAPI, house: House) -> None:
         if found is None:
             raise HTTPException(404, "no such file in the hall")
         # FileResponse answers Range requests.
-        return FileResponse(
-            found,
-            media_type=media_type(found.name),
-            headers={"Cache-Control": FOR_GOOD},
-        )
+        kind = media_type(found.name)
+        return FileResponse(found, media_type=kind, headers={"Cache-Control": FOR_GOOD} | _policy(kind))
 
     @app.get("/thumbnails/{owner}/{path:path}", include_in_schema=False)
     async def thumbnail(owner: str, path: str) -> FileResponse:
@@ -283,7 +280,14 @@ def _add_media(app: FastAPI, house: House) -> None:
         thumbnails = Thumbnails(house.data / _THUMBNAILS)
         small = thumbnails.made(found) or await SLOW.of(("thumbnail", found), lambda: thumbnails.file(found))
         cache = FOR_GOOD if small != found else REVALIDATED  # a disk that is full today is not for a year
-        return FileResponse(small, media_type=media_type(small.name), headers={"Cache-Control": cache})
+        kind = media_type(small.name)
+        return FileResponse(small, media_type=kind, headers={"Cache-Control": cache} | _policy(kind))
+
+
+def _policy(kind: str) -> dict[str, str]:
+    """Headers that keep a drawing a drawing: opened by itself, an SVG could run scripts as a page of the hall."""
+    rules = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; sandbox"
+    return {"Content-Security-Policy": rules} if kind == "image/svg+xml" else {}
 
 
 def _small_pictures(house: House) -> Callable[[str], Small | None]:

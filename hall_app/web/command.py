@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["add_parser", "run"]
 
 _POLL = 1.0  # [s] between two looks at the content folder, and at what is being baked
+_TICK = 1.0  # [s] between two ticks of the hall's clock
 
 OFFERS: frozenset[str] = frozenset()  # pages of the platform beside the hall: what needs one is not asked yet
 
@@ -179,12 +180,20 @@ async def _living(
     )
     _greet(house, arguments)
     look = Following(house, queue, light=arguments.light, say=_say).look
-    following = asyncio.create_task(_for_ever(_POLL, look, "following edits"))
+
+    async def tick() -> None:
+        house.stage.tick(loop.time())
+
+    tasks = [
+        asyncio.create_task(_for_ever(_POLL, look, "following edits")),
+        asyncio.create_task(_for_ever(_TICK, tick, "moving exhibits")),
+    ]
     try:
         yield
     finally:
-        following.cancel()
-        await asyncio.gather(following, return_exceptions=True)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
         queue.close()
         close()
         house.close()

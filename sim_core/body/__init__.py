@@ -1,18 +1,30 @@
 """Who wears a garment: a figure with joints and weights, its poses, and the moving solid that cloth meets."""
 
 from sim_core.body.beneath import Beneath, Surface
-from sim_core.body.mannequin import BONES, Mannequin, turn_between
-from sim_core.body.pose import Pose
+from sim_core.body.joints import JOINTS, OTHER_SIDE, PARENTS
+from sim_core.body.limits import LIMITS
+from sim_core.body.mannequin import Mannequin
+from sim_core.body.pose import POSES, Pose, pose_named
+from sim_core.body.skeleton import Skeleton
+from sim_core.body.skinning import SKINS, dual_quaternion_skin, linear_skin
 from sim_core.body.stand import Stand
 from sim_core.body.wearer import Figure
 
 __all__ = [
-    "BONES",
     "Beneath",
     "Figure",
+    "JOINTS",
+    "LIMITS",
     "Mannequin",
+    "OTHER_SIDE",
+    "PARENTS",
+    "POSES",
     "Pose",
+    "SKINS",
+    "Skeleton",
     "Stand",
     "Surface",
-    "turn_between",
+    "dual_quaternion_skin",
+    "linear_skin",
+    "pose_named",
 ]

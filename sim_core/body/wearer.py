@@ -1,28 +1,32 @@
-"""A mannequin as what a robe is dressed on: distance fields of its poses, with hands that sleeves slide over."""
+"""A mannequin as what cloth meets: distance fields of its poses and motions, with hands that sleeves slide over."""
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.body.beneath import Beneath, Surface
+from sim_core.body.beneath import BAND, MARGIN, Beneath, Surface
+from sim_core.body.joints import JOINTS
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
-from sim_core.cloth.contact.distance_field import field_of
+from sim_core.cloth.contact import DistanceField, MovingGrid, Solid, hull_faces, moving_mesh
+from sim_core.errors import SimCoreError
 
 __all__ = ["Figure"]
 
-MARGIN = 0.06  # [m] of the field around the figure
-HANDS = ("hand_l", "hand_r")
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A mannequin, and the cell [m] of its fields. The fields hold its left half and a little of the right.
+    """A mannequin, and the cell [m] of its fields.
 
-    In them each hand is its convex hull: cloth catches on fingers, which no dresser would allow.
+    In them each hand is its convex hull as well: cloth catches on fingers, which no dresser would allow. half: the
+    fields hold the left half and a little of the right, as a garment draped against its mirror image needs. The nodes
+    of all fields lie at whole cells from the origin, so that fields of one pose agree and mirror images meet.
     """
 
     mannequin: Mannequin
@@ -32,44 +36,63 @@ class Figure:
     def name(self) -> str:
         """Names the figure and its fields, whatever file they came from."""
         m = self.mannequin
-        digest = hashlib.sha256(
-            m.vertices.tobytes() + m.faces.tobytes() + m.weights.tobytes() + m.heads.tobytes()
-        )
+        arrays = (m.vertices, m.faces, m.weights, m.heads)
+        digest = hashlib.sha256(b"".join(array.tobytes() for array in arrays) + m.skin.encode())
         return f"{m.name} {digest.hexdigest()[:12]} cell {self.cell}"
-
-    @property
-    def origin(self) -> tuple[float, float, float]:
-        """The lowest node of every field [m]."""
-        low, _ = self._box()
-        return low
-
-    def _box(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """From two cells beyond the middle to the tip of the left hand; forearms may bend forward."""
-        v = self.mannequin.vertices
-        reach = float(v[:, 0].max()) + MARGIN
-        low = (-2 * self.cell, -MARGIN, float(v[:, 2].min()) - MARGIN)
-        return low, (reach, float(v[:, 1].max()) + MARGIN, float(v[:, 2].max()) + 0.25 + MARGIN)
-
-    def field(self, pose: Pose) -> np.ndarray:
-        """Signed distance (nx, ny, nz) float32 [m] of the posed figure; beyond 40 mm no more than that."""
-        posed = self.mannequin.posed(pose.arm, pose.elbow)
-        weights, bones = self.mannequin.weights, self.mannequin.bones
-        hands = [posed[weights[:, bones.index(hand)] > 0.5] for hand in HANDS[:1]]
-        made = field_of(
-            posed, self.mannequin.faces, cell=self.cell, band=0.04, hulls=hands, box=self._box(), far=False
-        )
-        return made.values
-
-    def beneath(self, pose: Pose) -> Beneath:
-        """The whole posed figure as what lies beneath cloth; its nodes are those of `field` and their mirror images."""
-        low, high = self._box()
-        reach = self.cell * float(np.ceil(high[0] / self.cell))
-        weights, bones = self.mannequin.weights, self.mannequin.bones
-        hands = tuple(np.flatnonzero(weights[:, bones.index(hand)] > 0.5).astype(np.int32) for hand in HANDS)
-        vertices, faces = self.mesh(pose)
-        box = (-reach, low[1], low[2]), (reach, high[1], high[2])
-        return Beneath((Surface(vertices, faces, hands),), cell=self.cell, box=box)
 
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         """The posed figure: vertices (V, 3) [m], faces (F, 3)."""
-        return self.mannequin.posed(pose.arm, pose.elbow), self.mannequin.faces
+        return self.mannequin.posed(pose), self.mannequin.faces
+
+    def hands(self) -> tuple[np.ndarray, np.ndarray]:
+        """Faces (H, 3) of the hulls of the left hand and of the right, on the figure's own vertices.
+
+        Raises SimCoreError where a figure has no hands.
+        """
+        left, right = (self._hand(joint) for joint in ("wrist_l", "wrist_r"))
+        return left, right
+
+    def trunk(self) -> np.ndarray:
+        """Vertices (T,) that are not of the arms: what a skirt goes round."""
+        arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
+        return np.flatnonzero(self.mannequin.weights[:, arms].sum(1) < 0.5)
+
+    def beneath(self, pose: Pose, *, half: bool = False) -> Beneath:
+        """The posed figure as what lies beneath cloth."""
+        vertices, faces = self.mesh(pose)
+        hands = tuple(np.unique(hand).astype(np.int32) for hand in self.hands()[: 1 if half else 2])
+        surface = Surface(vertices, faces, hands)
+        return Beneath((surface,), cell=self.cell, box=self._box(vertices[None], half))
+
+    def field(self, pose: Pose, *, half: bool = False) -> DistanceField:
+        """Signed distance [m] to the posed figure; BAND from its surface and beyond no more than that."""
+        return self.beneath(pose, half=half).field()
+
+    def moving(self, poses: Sequence[Pose], *, half: bool = False, beside: Solid | None = None) -> MovingGrid:
+        """The figure going through the poses, one a key of a film frame (1/25 s), fields made as they are needed.
+
+        beside: what stands still beside it, e.g. a floor: HalfSpace(). Raises SimCoreError where there is no pose, or
+        one that its joints cannot do.
+        """
+        if not len(poses):
+            raise SimCoreError("figure: no poses – give one for each frame")
+        frames = np.stack([self.mannequin.posed(pose) for pose in poses])
+        return moving_mesh(
+            frames,
+            self.mannequin.faces,
+            cell=self.cell,
+            band=BAND,
+            hulls=self.hands()[: 1 if half else 2],
+            box=self._box(frames, half),
+            beside=beside,
+        )
+
+    def _hand(self, joint: str) -> np.ndarray:
+        points = np.flatnonzero(self.mannequin.weights[:, JOINTS.index(joint)] > 0.5)
+        return points[hull_faces(self.mannequin.vertices[points])]
+
+    def _box(self, frames: np.ndarray, half: bool) -> Box:
+        """Around all frames (T, V, 3), to whole cells; of half the figure from two cells beyond the middle."""
+        x0, y0, z0 = (self.cell * float(np.floor(c / self.cell)) for c in frames.min((0, 1)) - MARGIN)
+        x1, y1, z1 = (self.cell * float(np.ceil(c / self.cell)) for c in frames.max((0, 1)) + MARGIN)
+        return (-2 * self.cell if half else x0, y0, z0), (x1, y1, z1)

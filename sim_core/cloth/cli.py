@@ -33,7 +33,7 @@ Simulates the scenes of the published work, and two more; --case picks a sequenc
   limb      a cloth on an arm that moves, frame by frame       3 cases, 100 frames
   drape     the disc of the Cusick test on its pedestal       3 cases, 100 frames
 
-Garments, on a stand, on a still mannequin or on one whose arms move, are draped by `simcore garment`.
+Garments, on a stand, on a still mannequin or on one whose arms move, are draped by `simcore dress`.
 A frame is 1/25 s. --out FILE.npz holds positions (T, V, 3) float32 [m], faces, uv, pins, dt and the settings as
 JSON. --error MM lets the shipped table choose mesh and steps (flag, teapot, hanging); by hand --vertices, --courant,
 --substeps and --integrator set them. What the table was not measured with, it refuses: --layers, --gusts, --precision

@@ -1,24 +1,32 @@
-"""Garments: patterns, placing, the drape as a value, levels of detail and GLB. See README.md."""
+"""Garments: patterns, outfits, dressing, the drape as a value, levels of detail and GLB. See README.md."""
 
 from sim_core.body import Stand
-from sim_core.garment.follow_body import follow, garment_sheet
+from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
+from sim_core.garment.follow_body import follow
 from sim_core.garment.garment import Garment
-from sim_core.garment.glb import write_glb
+from sim_core.garment.garment_sheet import garment_sheet
+from sim_core.garment.glb import Clothed, write_glb
 from sim_core.garment.levels import choose_detail, detail
+from sim_core.garment.outfit import Layer, Outfit, load_outfit
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.placement import Gathering
-from sim_core.garment.recipes import robe_on_figure, scarf_on_stand
+from sim_core.garment.settled import Settled
 
 __all__ = [
+    "Clothed",
+    "Frame",
     "Garment",
-    "Gathering",
+    "Layer",
+    "Outfit",
     "Pattern",
+    "Settled",
     "Stand",
+    "check_fits",
     "choose_detail",
     "detail",
+    "dress",
     "follow",
     "garment_sheet",
-    "robe_on_figure",
-    "scarf_on_stand",
+    "layer_order",
+    "load_outfit",
     "write_glb",
 ]

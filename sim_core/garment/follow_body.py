@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
-from sim_core.cloth import Contact, Drape, Material, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.sheet import evened
+from sim_core.cloth import Contact, Drape, Phase, drape, moving_mesh
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
-from sim_core.garment.recipes.halves import APART
-from sim_core.garment.recipes.schedule import UNTANGLE
+from sim_core.garment.garment_sheet import garment_sheet
+from sim_core.garment.outfit.outfit import UNTANGLE
 
-__all__ = ["follow", "garment_sheet"]
+__all__ = ["follow"]
 
 CONTACT = Contact(
     0.005, 0.0025, 0.004, speed_limit=8.0, untangle=UNTANGLE
@@ -26,25 +25,12 @@ DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
 
 
-def garment_sheet(garment: Garment) -> Sheet:
-    """The garment as a sheet: its welded vertices, the pattern's lengths, the materials and masses it was draped with.
+class Hooks(TypedDict, total=False):
+    """Who hears of the frames, and a file to go on from."""
 
-    Raises SimCoreError where the garment does not say what it is made of.
-    """
-    single = _material(garment, garment.material)
-    panels = garment.cut.get("panels") or garment.cut.get("panel") or []
-    doubled = [bool(panel.get("doubled")) for panel in panels] or [False]
-    apart = [number if panel.get("along") else 0 for number, panel in enumerate(panels)] or [0]
-    own = garment.panel % len(doubled)  # the right half's panels follow the left's
-    corner = garment.rest_corners() + APART * np.array(apart)[own][:, None, None] * np.array([1.0, 0.0])
-    materials, kinds = [single], np.zeros(len(own), np.int32)
-    if any(doubled):
-        materials = [single, _material(garment, garment.material.get("doubled"))]
-        kinds = np.array(doubled, np.int32)[own]
-    sheet = Sheet.of_corners(corner, garment.faces, materials, kinds)
-    if garment.settled is None or not garment.settled.even:
-        return sheet
-    return evened(sheet, np.array([material.density for material in materials])[kinds])
+    progress: Callable[[float, str], None] | None
+    on_frame: Callable[[int, np.ndarray], None] | None
+    checkpoint: Path | None
 
 
 def follow(
@@ -56,9 +42,7 @@ def follow(
     cell: float = 0.008,
     contact: Contact | None = None,
     damping: float | None = None,
-    progress: Callable[[float, str], None] | None = None,
-    on_frame: Callable[[int, np.ndarray], None] | None = None,
-    checkpoint: Path | None = None,
+    **hooks: Unpack[Hooks],
 ) -> Drape:
     """Lets the garment hang on, or follow its wearer, frame by frame of 1/25 s.
 
@@ -72,7 +56,6 @@ def follow(
     the garment does not say what it was settled with and no wearer is given.
     """
     settled = garment.settled
-    hooks: dict[str, Any] = {"progress": progress, "on_frame": on_frame, "checkpoint": checkpoint}
     if body is None or faces is None:
         if settled is None:
             raise SimCoreError(
@@ -93,8 +76,8 @@ def follow(
     usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
     if settled is not None:
         usual["friction"] = settled.last.friction
-        hooks["holds"] = settled.holds
-        contact = contact or replace(settled.contact, speed_limit=max(FASTEST, settled.contact.speed_limit))
+        fastest = max(FASTEST, settled.contact.speed_limit)
+        contact = contact or replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE)
     phases: list[Phase] = []
     if wearer.count > 1:
         way = (0.0, float(wearer.count - 1))
@@ -109,15 +92,6 @@ def follow(
         phases,
         collider=wearer,
         contact=contact or CONTACT,
+        holds=settled and settled.holds,
         **hooks,
     )
-
-
-def _material(garment: Garment, told: object) -> Material:
-    """The material of a garment's table, of which it keeps more than a solver needs."""
-    names = {field.name for field in fields(Material)}
-    try:
-        assert isinstance(told, dict)
-        return Material(**{name: value for name, value in told.items() if name in names})
-    except (AssertionError, TypeError) as error:
-        raise SimCoreError(f"garment {garment.name}: its material is not told – bake it again") from error

@@ -34,8 +34,9 @@ class Garment:
     pattern (P, 2) [m] in pattern axes (x weft, y down the warp), each panel in its own; pattern_faces (F, 3) int32;
     weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
     panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
-    meshed from (`Pattern.to_dict`); weave and material as plain dictionaries; provenance: inputs, seed, versions,
-    seconds per stage, measured errors; settled: what it came to rest in, for whoever carries it on.
+    meshed from (`Pattern.to_dict`); weave, weaves (of panels that have their own) and material as plain dictionaries;
+    provenance: inputs, seed, versions, seconds per stage, measured errors; settled: what it came to rest in,
+    for whoever carries it on.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Garment:
     dyes: tuple[Colour | None, ...] = (None,)
     cut: dict[str, Any] = field(default_factory=dict)
     weave: dict[str, Any] = field(default_factory=dict)
+    weaves: dict[str, Any] = field(default_factory=dict)
     material: dict[str, Any] = field(default_factory=dict)
     provenance: dict[str, Any] = field(default_factory=dict)
     dye: Colour | None = None
@@ -115,6 +117,7 @@ class Garment:
             "dyes": self.dyes,
             "cut": self.cut,
             "weave": self.weave,
+            "weaves": self.weaves,
             "material": self.material,
             "provenance": self.provenance,
             "settled": self.settled and self.settled.to_header(),
@@ -153,6 +156,7 @@ class Garment:
                 dyes=tuple(_colour(dye) for dye in header["dyes"]),
                 cut=_facts(header, "cut"),
                 weave=_facts(header, "weave"),
+                weaves=_facts(header, "weaves") if "weaves" in header else {},
                 material=_facts(header, "material"),
                 provenance=_facts(header, "provenance"),
                 dye=_colour(header.get("dye")),

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from sim_core.body.stand import Stand
 from sim_core.cloth import Cylinder
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Colour, Garment
+from sim_core.garment.pattern import unsided
 from sim_core.garment.slub import slub_normal
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals
+from sim_core.weave import Weave, solve, surface_maps
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
@@ -49,40 +50,61 @@ class MapsLike(Protocol):
     def size(self) -> tuple[float, float]: ...
 
 
+@dataclass(frozen=True)
+class Clothed:
+    """A garment and how its cloth looks: maps of its weave, and those of panels that have one of their own."""
+
+    garment: Garment
+    maps: MapsLike
+    panels: Mapping[str, MapsLike] = field(default_factory=dict)
+
+    def of(self, panel: int) -> MapsLike:
+        """The maps of a panel, of both halves of a mirrored pattern alike."""
+        return self.panels.get(unsided(self.garment.panels[panel]), self.maps)
+
+    @staticmethod
+    def woven(garment: Garment, pixels: int = 512) -> Clothed:
+        """With the maps of its own weaves, `pixels` wide; raises SimCoreError where it does not tell its weave."""
+        if not garment.weave:
+            raise SimCoreError(f"garment {garment.name}: does not tell its weave – bake it again")
+
+        def drawn(told: dict[str, Any]) -> MapsLike:
+            weave = Weave.from_dict(told)
+            return surface_maps(weave, solve(weave, particles=True), pixels=pixels)
+
+        return Clothed(garment, drawn(garment.weave), {name: drawn(w) for name, w in garment.weaves.items()})
+
+
 def write_glb(
-    path: Path,
-    garment: Garment,
-    maps: MapsLike,
-    *,
-    precision: Precision = "close",
-    stand: Stand | None = None,
-    figure: Shown | None = None,
-    beneath: tuple[Garment, MapsLike] | None = None,
+    path: Path, layers: Sequence[Clothed], *, precision: Precision = "close", figure: Shown | None = None
 ) -> int:
-    """Writes the garment and, where it has them, stand or figure; returns the size in bytes.
+    """Writes garments, from the skin outwards, and their stand or figure; returns the size in bytes.
 
-    beneath: another garment the figure wears under it, with its own weave's maps.
+    Panels of one look are one node: the garment's name, then its name and a number. Twins on a seam share place and
+    normal, so that no seam shows but for its change of colour. A figure and what it wears stand on its base.
 
-    Panels of one dye are one node: the garment's name, then its name and a number. Twins on a seam share place and
-    normal, so that no seam shows but for its change of colour. A figure and its robe stand on its base.
-
-    maps: tileable albedo, normal (n, m, 3) and opacity (n, m), uint8, size [m] of the tile. TEXCOORD_0 is in
+    Maps: tileable albedo, normal (n, m, 3) and opacity (n, m), uint8, size [m] of the tile. TEXCOORD_0 is in
     pattern millimetres, v not flipped; KHR_texture_transform brings it to tiles. close: the weave itself; hall:
     its mean colour and coverage and a coarser relief, since single yarns vanish beyond a hand's breadth.
     """
     if precision not in ("close", "hall"):
         raise SimCoreError(f"precision: {precision!r} – give 'close' or 'hall'")
-    if maps.albedo.shape[:2] != maps.opacity.shape or min(maps.size) <= 0:
-        raise SimCoreError(
-            f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
-        )
+    if not layers:
+        raise SimCoreError("glb: no garment – give one or more")
+    for layer in layers:
+        for maps in (layer.maps, *layer.panels.values()):
+            if maps.albedo.shape[:2] != maps.opacity.shape or min(maps.size) <= 0:
+                raise SimCoreError(
+                    f"maps: albedo {maps.albedo.shape}, opacity {maps.opacity.shape} – sizes must agree"
+                )
+    textures: dict[int, dict[str, Any]] = {}
     glb, lift = GlbFile(), np.array([0.0, figure.base[1] if figure else 0.0, 0.0])
-    for worn, woven in (*((beneath,) if beneath else ()), (garment, maps)):
-        _write_panels(glb, replace(worn, positions=worn.positions + lift), woven, precision)
-    if stand is None and "stand" in garment.provenance:
-        stand = Stand(**garment.provenance["stand"])
-    if stand is not None:
-        vertices, faces = stand.mesh(32 if precision == "close" else 16)
+    for layer in layers:
+        raised = replace(layer.garment, positions=layer.garment.positions + lift)
+        _write_panels(glb, replace(layer, garment=raised), precision, textures)
+    outermost = layers[-1].garment
+    if outermost.settled is not None and outermost.settled.beneath.stand is not None:
+        vertices, faces = outermost.settled.beneath.stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
     if figure is not None:
         glb.mesh(
@@ -91,7 +113,7 @@ def write_glb(
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
-    data = glb.bytes(garment.name, ["KHR_materials_sheen", "KHR_texture_transform"])
+    data = glb.bytes(outermost.name, ["KHR_materials_sheen", "KHR_texture_transform"])
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(path.name + ".part")
@@ -100,14 +122,16 @@ def write_glb(
     return len(data)
 
 
-def _write_panels(glb: GlbFile, garment: Garment, maps: MapsLike, precision: Precision) -> None:
-    """One mesh per dye, darkest last; textures are stored once."""
+def _write_panels(
+    glb: GlbFile, layer: Clothed, precision: Precision, textures: dict[int, dict[str, Any]]
+) -> None:
+    """One mesh per look (dye and weave), in the order of the panels; textures: those stored already, by weave."""
+    garment = layer.garment
     shading, worn = normals(garment.positions, garment.faces)[garment.weld], garment.worn()
     looks: dict[Any, list[int]] = {}
     for number in range(len(garment.panels)):
-        looks.setdefault(garment.dye_of(number), []).append(number)
-    textures: dict[str, Any] = {}
-    for count, (dye, own) in enumerate(looks.items()):
+        looks.setdefault((garment.dye_of(number), id(layer.of(number))), []).append(number)
+    for count, ((dye, weave), own) in enumerate(looks.items()):
         faces = garment.pattern_faces[np.isin(garment.panel, own)]
         used, index = np.unique(faces, return_inverse=True)
         make = _cloth_close if precision == "close" else _cloth_hall
@@ -116,7 +140,7 @@ def _write_panels(glb: GlbFile, garment: Garment, maps: MapsLike, precision: Pre
             name,
             worn[used],
             index.reshape(-1, 3).astype(np.int32),
-            make(glb, dye, maps, textures),
+            make(glb, dye, layer.of(own[0]), textures.setdefault(weave if precision == "close" else 0, {})),
             garment.pattern[used] * 1000.0,
             shading=shading[used],
         )

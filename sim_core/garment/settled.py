@@ -96,7 +96,7 @@ class Settled:
         )
 
 
-_HOLDS = ("pairs", "spans", "same", "low", "high", "slaves")
+_HOLDS = ("pairs", "spans", "ends", "same", "low", "high", "slaves")
 
 
 def _box(told: Any) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:

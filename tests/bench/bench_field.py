@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core import metrics
-from sim_core.body import Mannequin
+from sim_core.body import Mannequin, Pose
 from sim_core.cloth.contact import field_of
 from sim_core.picture import normals
 
@@ -25,7 +25,7 @@ def measured(
     margin: [m] of the box around the figure; None: the band.
     """
     woman = Mannequin.load(FILE)
-    mesh = woman.posed(58.0, 78.0), woman.faces
+    mesh = woman.posed(Pose.arms(58.0, 78.0)), woman.faces
     seconds: dict[bool, float] = {}
     room = band if margin is None else margin
     box = (mesh[0].min(0) - room, mesh[0].max(0) + room)

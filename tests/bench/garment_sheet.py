@@ -21,33 +21,20 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
 from hall_app.content.models import open_glb  # noqa: E402
+from sim_core.gltf import GlbParts  # noqa: E402
 from sim_core.picture import Camera, Surface, lighting, render  # noqa: E402
 
 ANGLES = (18.0, 108.0, 198.0, 288.0)  # [deg] about +y from the front
 SIZE = (400, 500)  # [pixels] of one view
-NUMBERS = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
-WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
-def numbers(document: dict, binary: bytes, index: int) -> np.ndarray:
-    """The values of one accessor, (n,) or (n, width)."""
-    accessor = document["accessors"][index]
-    view = document["bufferViews"][accessor["bufferView"]]
-    begin = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    width = WIDTH[accessor["type"]]
-    flat = np.frombuffer(binary, NUMBERS[accessor["componentType"]], accessor["count"] * width, begin)
-    return flat.reshape(-1, width) if width > 1 else flat
-
-
-def mean_colour(document: dict, binary: bytes, material: dict) -> tuple[float, float, float]:
+def mean_colour(parts: GlbParts, material: dict) -> tuple[float, float, float]:
     """sRGB 0..1: the factor, and the mean of the texture where there is one."""
     shown = material["pbrMetallicRoughness"]
     linear = np.array(shown.get("baseColorFactor", [1, 1, 1, 1])[:3], float)
     if "baseColorTexture" in shown:
-        image = document["images"][document["textures"][shown["baseColorTexture"]["index"]]["source"]]
-        view = document["bufferViews"][image["bufferView"]]
-        begin = view.get("byteOffset", 0)
-        with Image.open(io.BytesIO(binary[begin : begin + view["byteLength"]])) as picture:
+        texture = parts.document["textures"][shown["baseColorTexture"]["index"]]
+        with Image.open(io.BytesIO(parts.picture(texture["source"]))) as picture:
             linear *= ((np.asarray(picture.convert("RGB")) / 255.0) ** 2.2).mean((0, 1))
     red, green, blue = np.clip(linear, 0, 1) ** (1 / 2.2)
     return float(red), float(green), float(blue)
@@ -55,12 +42,13 @@ def mean_colour(document: dict, binary: bytes, material: dict) -> tuple[float, f
 
 def surfaces_of(model: Path) -> list[Surface]:
     """What a model shows; vertices that are there twice for their texture become one, so that shading is smooth."""
-    document, binary = open_glb(model)
+    parts = open_glb(model)
+    document = parts.document
     found = []
     for mesh in document["meshes"]:
         for part in mesh["primitives"]:
-            points = numbers(document, binary, part["attributes"]["POSITION"]).astype(float)
-            faces = numbers(document, binary, part["indices"]).astype(np.int64).reshape(-1, 3)
+            points = parts.numbers(part["attributes"]["POSITION"])
+            faces = parts.numbers(part["indices"]).astype(np.int64).reshape(-1, 3)
             _, first, weld = np.unique(np.round(points, 6), axis=0, return_index=True, return_inverse=True)
             faces = weld.reshape(-1)[faces]
             whole = (faces != np.roll(faces, 1, axis=1)).all(1)
@@ -69,7 +57,7 @@ def surfaces_of(model: Path) -> list[Surface]:
             look = {"sheen": 0.5} if cloth else {"gloss": 0.1}
             if material.get("alphaMode") == "BLEND":
                 look |= {"alpha": 0.6, "through": 0.3}
-            colour = mean_colour(document, binary, material)
+            colour = mean_colour(parts, material)
             found.append(Surface(points[first], faces[whole].astype(np.int32), colour, **look))
     return found
 

@@ -71,6 +71,7 @@ def stands_before_the_box(page) -> None:
     assert (x, z) == pytest.approx((at["x"], at["z"]), abs=0.01)
 
 
+@pytest.mark.nightly
 def test_an_open_exhibit_is_named_and_back_and_forward_lead_out_and_in(plain_hall, page):
     enter(page, f"{plain_hall.url}/?lang=en")
     place(page, 1.0, -3.0, 0.7)
@@ -104,6 +105,7 @@ def test_a_long_visit_leaves_one_entry_behind(plain_hall, page):
     assert page.url == "about:blank"
 
 
+@pytest.mark.nightly
 def test_leaving_a_direct_link_leads_beside_the_exhibit(plain_hall, page):
     enter(page, f"{plain_hall.url}/?exhibit=box&lang=en")
     is_open(page)

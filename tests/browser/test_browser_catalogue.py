@@ -14,6 +14,7 @@ SMALL = """
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("width", by_day([320], [320, 768, 1280]))
 @pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
 def test_the_catalogue_is_clean_and_fits(shipped_hall, chromium, lang, width):
@@ -30,6 +31,7 @@ def test_the_catalogue_is_clean_and_fits(shipped_hall, chromium, lang, width):
     page.close()
 
 
+@pytest.mark.nightly
 def test_a_picture_leads_to_the_large_one_and_print_leaves_the_doors_out(shipped_hall, chromium):
     page = chromium.new_page(viewport={"width": 800, "height": 600})
     page.goto(f"{shipped_hall.url}/catalogue?lang=en")

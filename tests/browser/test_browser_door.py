@@ -145,6 +145,7 @@ def refused(page) -> None:
     assert page.locator("[data-testid=catalogue]").is_visible()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     "lost",
     by_day(
@@ -168,6 +169,7 @@ def test_what_does_not_come_is_said(plain_hall, chromium, lost, how):
     page.close()
 
 
+@pytest.mark.nightly
 def test_line_that_breaks_in_the_middle_is_said_and_tried_again(plain_hall, chromium):
     with wire(plain_hall.port, 0.05, 4e6) as line:
         page = chromium.new_page(viewport={"width": 480, "height": 600})

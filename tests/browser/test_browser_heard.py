@@ -71,10 +71,12 @@ def closed(page) -> None:
         page.locator("[data-testid=panel]").wait_for(state="hidden")
 
 
+@pytest.mark.nightly
 def test_door(page):
     assert heard(page, "door") == []
 
 
+@pytest.mark.nightly
 def test_hall(page):
     closed(page)
     assert heard(page, "hall") == []
@@ -88,6 +90,7 @@ def test_near_an_exhibit(page):
     assert heard(page, "near") == []
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("window", by_day(["list"], ["list", "help", "settings", "hall-survey"]))
 def test_windows(page, window):
     closed(page)
@@ -110,6 +113,7 @@ def test_plan_folded_and_open(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("tab", by_day(["intro"], TABS))
 def test_panel(page, tab):
     opened(page)
@@ -128,6 +132,7 @@ def test_enlarged_picture(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_folded_panel(page):
     opened(page)
     if page.viewport_size["width"] < 700:
@@ -152,6 +157,7 @@ def test_picture_away(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_the_hall_itself_stays_an_application(page):
     stage = page.locator("[data-testid=stage]")
     assert stage.get_attribute("role") == "application"

@@ -250,6 +250,7 @@ def test_in_the_close_up_the_arrows_turn_the_exhibit(page):
     assert (after["yaw"], after["x"], after["z"]) == (before["yaw"], before["x"], before["z"])
 
 
+@pytest.mark.nightly
 def test_help_and_hints_show_the_keys(page):
     hints = page.locator("[data-testid=hints]").text_content()
     assert "Q" in hints
@@ -270,6 +271,7 @@ def caption_names(page, title: str) -> None:
     )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("way", by_day(["dot by key"], ["dot by key", "dot by mouse", "list"]))
 def test_enter_after_a_jump_opens_what_the_caption_names(page, way):
     if not page.locator("[data-testid=minimap-plan]").is_visible():

@@ -1,5 +1,7 @@
 """The overlay: readable, large enough to touch, nothing over anything else, still for whoever asked for less motion."""
 
+import math
+
 import pytest
 from bench.browser import CHOOSE, displayed, enter, pose, settled, soon
 from bench.readable import CROWDED, TARGETS, faint_texts
@@ -57,6 +59,7 @@ def go_in(page) -> None:
         page.locator("[data-testid=enter-screen]").wait_for(state="detached")
 
 
+@pytest.mark.nightly
 def test_enter_screen(page):
     wrong = []
     for lang in languages(page):
@@ -109,6 +112,7 @@ def test_panel(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("width", by_day([360], READ))
 def test_questionnaire_is_readable(plain_hall, chromium, width):
     form = chromium.new_page(viewport={"width": width, "height": SIZES[width]})
@@ -268,3 +272,36 @@ def test_clicks_follow_a_moved_view(plain_hall, chromium):
     page.locator("[data-testid=panel]").wait_for(timeout=60_000)
     assert page.evaluate("() => hall.opened()") == "box"
     page.close()
+
+
+TURNED = """() => {
+    const [w, , y] = window.__viserMutable.nodePoseData["/exhibits/box"].wxyz;
+    return 2 * Math.atan2(y, w);
+}"""
+
+
+@pytest.mark.nightly
+def test_a_moving_exhibit_shows_all_the_same_side(plain_hall, chromium):
+    """By the hall's clock: whoever comes later, too; and not at all for whoever asked for less motion."""
+    contexts = [
+        chromium.new_context(viewport={"width": 320, "height": 240}, reduced_motion=motion)
+        for motion in ("no-preference", "no-preference", "reduce")
+    ]
+    pages = []
+    for context in contexts:
+        pages.append(context.new_page())
+        enter(pages[-1], plain_hall.url)
+        place(pages[-1], 2.5, 4.6, 0.0)
+    one, other, calm = pages
+    begin = [page.evaluate(TURNED) for page in pages]
+
+    def apart() -> float:
+        for page in (one, other):
+            page.mouse.move(100, 100)  # somebody is there
+        away = one.evaluate(TURNED) - other.evaluate(TURNED)
+        return abs(math.remainder(away, math.tau))
+
+    soon(one, lambda: apart() < 0.1 and abs(math.remainder(one.evaluate(TURNED) - begin[0], math.tau)) > 0.5)
+    assert calm.evaluate(TURNED) == begin[2] == 0.0
+    for context in contexts:
+        context.close()

@@ -154,6 +154,7 @@ def test_nothing_overlaps(page):
     assert wrong == []
 
 
+@pytest.mark.nightly
 def test_text_can_be_read_to_its_end(page):
     opened(page)
     page.tap("[data-testid=tab-intro]")
@@ -175,6 +176,7 @@ def test_text_can_be_read_to_its_end(page):
     assert page.evaluate(REACHED, "[data-testid=exhibit-text] > :last-child")
 
 
+@pytest.mark.nightly
 def test_sheet_by_keyboard(page):
     opened(page)
     page.focus(FOLD)
@@ -238,6 +240,7 @@ def test_folding_keeps_the_exhibit_turned(page):
     assert bearing() == pytest.approx(turned, abs=1e-3)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("window", by_day(["hall-survey"], ["list", "settings", "help", "hall-survey"]))
 def test_windows_fit(page, window):
     """The hall's questionnaire is among them: everybody can reach it."""

@@ -272,6 +272,7 @@ def test_both_film_formats_are_whole(shipped_hall, page):
             assert sum(1 for _ in film.decode(video=0)) > 50
 
 
+@pytest.mark.nightly
 def test_escape_leads_back_to_the_same_spot(page):
     closed(page)
     before = displayed(page)

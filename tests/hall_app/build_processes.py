@@ -4,28 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from content_house import write_outfit
 from plain_hall import write_plain_hall
-
-ASSETS = Path(__file__).parents[2] / "assets"
 
 SCARF = """
 title = { zh = "帔", en = "Scarf" }
+outfit = "outfits/scarf.toml"
 place = { x = -2.5, z = 3.0 }
 body = { shape = "round", radius = 0.4 }
 licence = "CC0-1.0"
-[garment]
-pattern = "patterns/pibo.toml"
-weave = "weaves/gauze.toml"
-recipe = "scarf_on_stand"
 """
 
 
 def with_scarf(folder: Path) -> Path:
-    """A plain hall with a garment that has not been baked."""
+    """A plain hall with an outfit that has not been baked."""
     write_plain_hall(folder)
-    for name in ("patterns/pibo.toml", "weaves/gauze.toml"):
-        (folder / name).parent.mkdir()
-        (folder / name).write_bytes((ASSETS / name).read_bytes())
+    write_outfit(folder)
     home = folder / "exhibits/scarf"
     home.mkdir()
     (home / "exhibit.toml").write_text(SCARF, "utf-8")

@@ -59,6 +59,16 @@ file = "media/front.jpg"
 alt = { zh = "正面", en = "The front" }
 """
 
+OUTFIT = """
+title = { zh = "帔", en = "Scarf" }
+[stand]
+[[layer]]
+pattern = "patterns/pibo.toml"
+weave = "weaves/gauze.toml"
+seed = 1
+"""
+ASSETS = Path(__file__).parents[2] / "assets"
+
 
 def make_house(folder: Path) -> Path:
     """Write a content folder without a problem: one hall, one plan, one exhibit "chest"."""
@@ -79,6 +89,26 @@ def add_exhibit(folder: Path, identity: str, toml: str = EXHIBIT) -> Path:
     write_box(home / "media/chest.glb")
     Image.new("RGB", (8, 8), "#7a4b2e").save(home / "media/front.jpg")
     return home
+
+
+def write_outfit(folder: Path, *, more: str = "") -> Path:
+    """Write outfits/scarf.toml, a scarf over a stand, and the files it names; more: further keys of its layer."""
+    for name in ("patterns/pibo.toml", "weaves/gauze.toml"):
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes((ASSETS / name).read_bytes())
+    path = folder / "outfits/scarf.toml"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(OUTFIT + more, "utf-8")
+    return path
+
+
+def dressed(house: Path, identity: str = "chest") -> Path:
+    """Give an exhibit an outfit that is not baked in place of its model; returns the outfit's file."""
+    toml = house / "exhibits" / identity / "exhibit.toml"
+    edit(toml, '[models]\nhall = "media/chest.glb"\n', "")
+    edit(toml, "behaviours", 'outfit = "outfits/scarf.toml"\nbehaviours')
+    (house / "exhibits" / identity / "media/chest.glb").unlink()
+    return write_outfit(house)
 
 
 def write_box(path: Path, *, height: float = 0.8, scale: float = 1.0, foot: float = 0.0) -> None:

@@ -1,6 +1,5 @@
 """`hall build` as a curator uses it, on a coarse mesh: whole, up to date, interrupted, faulty, filmed."""
 
-import json
 import os
 import shutil
 import signal
@@ -11,29 +10,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from coarse_bake import LAYERED, build, coarse, last_line
+from content_house import edit
 
-from hall_app.build import SOUND_RATE, budget, encode_film, film_possible
+from hall_app.build import SOUND_RATE, TrailLostError, Trails, budget, encode_film, film_possible
 from hall_app.check import check
+from hall_app.check.garments import measured_again
 from hall_app.content import load
-from hall_app.content.bakes import bake_folder, bake_key, read_record
-from hall_app.content.models import read_glb
-from sim_core.garment import Garment
+from hall_app.content.bakes import bake_folder, bake_key, layer_files, read_record
+from hall_app.content.models import open_glb, read_glb
+from sim_core.body import Pose
+from sim_core.garment import Frame, Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
 pytestmark = pytest.mark.slow
-
-
-def coarse(place: Path) -> Path:
-    """The shipped content with a coarse scarf that has not been baked."""
-    home = place / "content"
-    shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked"))
-    shutil.rmtree(home / "exhibits" / "beizi")  # a minute of its own: tests/sim_core/test_garment_robe.py
-    toml = home / "exhibits" / "pibo" / "exhibit.toml"
-    lines = toml.read_text("utf-8").splitlines()
-    lines = ["edge = 0.06" if line.startswith("edge = ") else line for line in lines]
-    toml.write_text("\n".join(lines) + "\n", "utf-8")
-    return home
 
 
 @pytest.fixture
@@ -41,38 +32,8 @@ def folder(tmp_path):
     return coarse(tmp_path)
 
 
-def build(folder: Path, *options: str, **more) -> subprocess.CompletedProcess[str]:
-    """`hall build` of one garment (the room's light would take longer than all of these tests)."""
-    which = () if "--exhibit" in options else ("--exhibit", "pibo")
-    command = [
-        sys.executable,
-        "-m",
-        "hall_app",
-        "build",
-        "--content",
-        folder,
-        "--data",
-        folder.parent / "data",
-    ]
-    return subprocess.run(
-        [*command, "--no-film", "--json", *which, *options], capture_output=True, text=True, **more
-    )
-
-
-def last_line(done: subprocess.CompletedProcess[str]) -> dict:
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout.strip().splitlines()[-1])
-
-
-@pytest.fixture(scope="module")
-def built(tmp_path_factory):
-    """The folder with its scarf baked once for all tests that only look at it, and what the command said."""
-    home = coarse(tmp_path_factory.mktemp("built"))
-    return home, last_line(build(home))
-
-
-def test_build_is_whole_and_up_to_date(built):
-    folder, first = built
+def test_build_is_whole_and_up_to_date(coarse_scarf):
+    folder, first = coarse_scarf
     baked = folder / "exhibits" / "pibo" / "baked"
     assert first["state"] == "baked"
     assert {"garment.npz", "hall.glb", "close.glb", "bake.json", "drape.jpg"} <= {
@@ -84,16 +45,32 @@ def test_build_is_whole_and_up_to_date(built):
     low, high = read_glb(baked / "close.glb").low, read_glb(baked / "close.glb").high
     assert 1.2 < high[1] - low[1] < 2.0
     toml = "exhibits/pibo/exhibit.toml"  # the other garments of the folder are not built here
-    missing = [problem.what for problem in check(folder) if problem.file == toml and problem.key == "garment"]
+    missing = [problem.what for problem in check(folder) if problem.file == toml and problem.key == "outfit"]
     assert all(what.startswith("baked/drape.") for what in missing), (
         missing
     )  # the film, which was not asked for
     assert last_line(build(folder))["state"] == "up to date"
 
 
+def test_what_is_shown_otherwise_is_not_dressed_again(coarse_scarf, tmp_path):
+    folder = tmp_path / "content"
+    shutil.copytree(coarse_scarf[0], folder)
+    first, baked = coarse_scarf[1], folder / "exhibits" / "pibo" / "baked"
+    files = {path.name: path.read_bytes() for path in baked.iterdir() if path.suffix in (".npz", ".jpg")}
+    shown = folder / "exhibits" / "pibo" / "exhibit.toml"
+    edit(shown, "hall_error_px = 2.5", "hall_error_px = 20.0")
+    second = last_line(build(folder))
+    assert (second["state"], second["digest"]) == ("baked", first["digest"])
+    assert second["key"] != first["key"]
+    assert second["seconds"]["drape"] == first["seconds"]["drape"]  # what it took when it was dressed
+    assert second["errors"]["hall_triangles"] < first["errors"]["hall_triangles"]
+    assert {name: (baked / name).read_bytes() for name in files} == files
+    assert bake_folder(load(folder), load(folder).exhibit("pibo"), folder, stale=False) is not None
+
+
 @pytest.mark.nightly
-def test_a_build_by_force_is_equal_to_the_bit(built):
-    folder, first = built
+def test_a_build_by_force_is_equal_to_the_bit(coarse_scarf):
+    folder, first = coarse_scarf
     baked = folder / "exhibits" / "pibo" / "baked"
     models = {name: (baked / name).read_bytes() for name in ("hall.glb", "close.glb")}
     again = last_line(build(folder, "--force"))
@@ -101,9 +78,9 @@ def test_a_build_by_force_is_equal_to_the_bit(built):
     assert {name: (baked / name).read_bytes() for name in models} == models
 
 
-def test_a_changed_pattern_makes_the_bake_stale(built, tmp_path):
+def test_a_changed_pattern_makes_the_bake_stale(coarse_scarf, tmp_path):
     folder = tmp_path / "content"
-    shutil.copytree(built[0], folder)
+    shutil.copytree(coarse_scarf[0], folder)
     content = load(folder)
     exhibit = content.exhibit("pibo")
     assert bake_folder(content, exhibit, folder, stale=False) is not None
@@ -118,10 +95,8 @@ def test_a_changed_pattern_makes_the_bake_stale(built, tmp_path):
 
 @pytest.mark.nightly
 def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
-    toml = (
-        folder / "exhibits" / "pibo" / "exhibit.toml"
-    )  # fine enough to run longer than to its first checkpoint
-    toml.write_text(toml.read_text("utf-8").replace("edge = 0.06", "edge = 0.025"), "utf-8")
+    # Fine enough to run longer than to its first checkpoint.
+    edit(folder / "outfits/pibo.toml", "edge = 0.06", "edge = 0.025")
     whole = last_line(build(folder, "--into-data"))
     data = folder.parent / "data"
     shutil.rmtree(data / "bakes")
@@ -137,14 +112,14 @@ def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
         "--no-film",
         "--json",
     ]
-    state = data / "bake-work" / f"pibo-{whole['key']}" / "drape.npz"
+    state = data / "bake-work" / f"pibo-{whole['key']}" / "dress"
     with subprocess.Popen(
         [*command, "--exhibit", "pibo", "--into-data"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
         end = time.monotonic() + 120
-        while not state.is_file() and process.poll() is None and time.monotonic() < end:
+        while not list(state.glob("state.npz*")) and process.poll() is None and time.monotonic() < end:
             time.sleep(0.02)
-        assert state.is_file()
+        assert list(state.glob("state.npz*"))
         os.kill(process.pid, signal.SIGKILL)
     assert read_record(data / "bakes" / f"pibo-{whole['key']}") is None  # half a bake is none
     resumed = last_line(build(folder, "--into-data"))
@@ -164,12 +139,23 @@ def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
             "cross",
         ),
         ("weaves/gauze.toml", "", "weaves/gauze.toml"),
+        ("outfits/pibo.toml", "", "outfits/pibo.toml"),
+        ("outfits/pibo.toml", "[stand]\n[[layer]]\nseed = -1\n", "layer.1.pattern"),
+        ("outfits/pibo.toml", "stand = 3\n", "outfits/pibo.toml: stand"),
     ],
-    ids=["0-byte pattern", "broken pattern", "outline that crosses itself", "0-byte weave"],
+    ids=[
+        "0-byte pattern",
+        "broken pattern",
+        "outline that crosses itself",
+        "0-byte weave",
+        "0-byte outfit",
+        "layer without a pattern",
+        "outfit of another shape",
+    ],
 )
 def test_faulty_input_is_one_clear_line(folder, file, text, words):
     (folder / file).write_text(text, "utf-8")
-    done = build(folder, "--exhibit", "pibo")
+    done = build(folder)
     assert done.returncode == 1
     [line] = done.stderr.strip().splitlines()
     assert words in line
@@ -178,9 +164,67 @@ def test_faulty_input_is_one_clear_line(folder, file, text, words):
 
 @pytest.mark.parametrize("name", ["nobody", "mirror"])
 def test_only_garments_are_baked(folder, name):
-    done = build(folder, "--exhibit", name)
+    done = build(folder, exhibit=name)
     assert done.returncode == 1
     assert name in done.stderr
+
+
+@pytest.mark.nightly
+def test_layers_are_baked_from_the_skin_outwards_and_measured_again(coarse_layers):
+    folder, record = coarse_layers
+    baked = folder / "exhibits/pibo-figure/baked"
+    assert [layer["name"] for layer in record["layers"]] == ["robe", "pibo"]
+    garments = [Garment.load(baked / name) for name in layer_files(2)]
+    assert [garment.digest() for garment in garments] == [layer["digest"] for layer in record["layers"]]
+    again = measured_again(baked, 2)
+    assert [worn.name for worn in again.worn] == ["robe", "pibo"]
+    assert again.faults == ()
+    for name in ("inside_vertices", "self_intersections", "area_strain_max"):
+        assert again.figures[name] == pytest.approx(record["errors"][name])
+        assert again.figures[f"robe_{name}"] == pytest.approx(record["errors"][f"robe_{name}"])
+    names = {str(node.get("name")) for node in open_glb(baked / "hall.glb").document["nodes"]}
+    assert {"robe", "pibo", "figure", "base"} <= names
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")
+def test_the_film_shows_the_outermost_layer_over_what_is_worn_beneath(coarse_layers, tmp_path):
+    folder = tmp_path / "content"
+    shutil.copytree(coarse_layers[0], folder, ignore=shutil.ignore_patterns("baked"))
+    record = last_line(build(folder, exhibit=LAYERED, film=True))
+    assert record["digest"] == coarse_layers[1]["digest"], "to be filmed changes nothing"
+    assert {"drape.webm", "drape.mp4"} <= {
+        path.name for path in (folder / f"exhibits/{LAYERED}/baked").iterdir()
+    }
+
+
+def test_pattern_sheets_are_drawn_for_all_or_for_one(folder):
+    command = [sys.executable, "-m", "hall_app", "build", "--pattern", "--content", str(folder)]
+    for more, drawn in ((["--exhibit", "pibo"], {"pibo"}), ([], {"pibo", "pibo-figure"})):
+        done = subprocess.run([*command, *more], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert {path.parts[-3] for path in folder.glob("exhibits/*/media/pattern.svg")} == drawn
+    assert not list(folder.glob("exhibits/*/baked"))
+
+
+def test_what_is_worn_beneath_is_filmed_as_it_was_in_that_pose(tmp_path):
+    half, down = Pose.arms(20.0), Pose.arms(45.0)
+    told = [(0, Pose()), (0, Pose()), (0, half), (0, down), (0, down), (1, Pose()), (1, half)]
+    frames = [Frame(layer, np.full((2, 3), k, np.float32), pose) for k, (layer, pose) in enumerate(told)]
+    trails = Trails(tmp_path)
+    for frame in frames:
+        trails.hear(frame)
+
+    def shown(trails: Trails, layer: int, pose: Pose) -> list[float]:
+        return [float(positions[0, 0]) for positions in trails.beneath(layer, pose)]
+
+    assert shown(trails, 1, Pose()) == [1.0], "of frames in one pose the last: it has been sewn by then"
+    assert shown(trails, 1, Pose.arms(22.0)) == [2.0]
+    assert shown(trails, 2, down) == [6.0, 4.0], "the outermost first"
+    assert trails.beneath(0, down) == []
+    assert shown(Trails(tmp_path), 2, half) == [6.0, 2.0], "an interrupted bake finds them again"
+    with pytest.raises(TrailLostError, match="layer 3"):
+        Trails(tmp_path).beneath(3, half)
 
 
 def test_budget_is_a_pixel_at_the_nearest_view():

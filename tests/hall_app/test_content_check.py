@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from content_house import EXHIBIT, add_exhibit, edit, make_house, rewritten, write_box
+from content_house import add_exhibit, dressed, edit, make_house, rewritten, write_box
 from full_matrix import by_day
 
 from hall_app.check import check
@@ -249,22 +249,20 @@ def test_exhibits_are_looked_at_without_a_plan(house: Path):
 
 
 def test_stale_and_missing_bakes(house: Path):
-    for name, source in (("patterns/p.toml", "patterns/pibo.toml"), ("weaves/w.toml", "weaves/gauze.toml")):
-        (house / name).parent.mkdir()
-        (house / name).write_bytes((ASSETS / source).read_bytes())
-    recipe = '[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "scarf_on_stand"'
-    home = add_exhibit(house, "scarf", EXHIBIT.replace('[models]\nhall = "media/chest.glb"', recipe))
+    home = add_exhibit(house, "scarf")
+    outfit = dressed(house, "scarf")
     edit(home / "exhibit.toml", "x = 0.0", "x = 2.0")
-    (home / "media/chest.glb").unlink()
     assert lines(house) == [
-        "exhibits/scarf/exhibit.toml: garment: has not been baked – run: hall build --exhibit scarf"
+        "exhibits/scarf/exhibit.toml: outfit: has not been baked – run: hall build --exhibit scarf"
     ]
     (home / "baked").mkdir()
     (home / "baked/bake.json").write_text('{"key": "of long ago"}')
     assert "its bake is stale" in lines(house)[0]
-    edit(house / "patterns/p.toml", "size = [0.4, 2.4]", "size = [0.4, -2.4]")
+    edit(house / "patterns/pibo.toml", "size = [0.4, 2.4]", "size = [0.4, -2.4]")
     (line,) = lines(house)
-    assert line.startswith("patterns/p.toml: ")
+    assert line.startswith("patterns/pibo.toml: ")
+    outfit.write_text("x", "utf-8")
+    assert any(line.startswith("outfits/scarf.toml: not TOML") for line in lines(house))
 
 
 def run(*words: str) -> int:
@@ -311,6 +309,6 @@ def test_command_json(house: Path, capsys: pytest.CaptureFixture[str]):
 
 def test_shipped_content_has_no_problem():
     """The bake of this checkout is judged by the tests of baking: it is not made by every change of the content."""
-    found = [problem for problem in check(ASSETS) if problem.key != "garment"]
+    found = [problem for problem in check(ASSETS) if problem.key != "outfit"]
     assert [str(problem) for problem in found] == []
-    assert {"pibo", "mirror"} <= {exhibit.id for exhibit in load(ASSETS).exhibits}
+    assert {"pibo", "gown", "mirror"} <= {exhibit.id for exhibit in load(ASSETS).exhibits}

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from content_house import EXHIBIT, add_exhibit, edit, make_house
+from content_house import EXHIBIT, add_exhibit, dressed, edit, make_house, write_outfit
 
 from hall_app.content import ContentError, content_folder, load
+from hall_app.content.bakes import bake_key, key_now
 
 
 @pytest.fixture
@@ -129,12 +130,24 @@ CASES: dict[str, tuple[Callable[[Path], object], tuple[str, ...]]] = {
         ("place: stands where visitors begin", "move it"),
     ),
     "two models": (
+        lambda home: edit(home / "exhibit.toml", "licence", 'outfit = "outfits/o.toml"\nlicence'),
+        ("exhibit.toml: needs either outfit or [models]", "keep one"),
+    ),
+    "nothing to show": (
+        lambda home: edit(home / "exhibit.toml", '[models]\nhall = "media/chest.glb"', ""),
+        ("exhibit.toml: needs either outfit or [models]", "keep one"),
+    ),
+    "a ready-made model that is shown": (
+        lambda home: edit(home / "exhibit.toml", "[body]", "[show]\nnearest = 2.0\n[body]"),
+        ("exhibit.toml: [show] is for an outfit", "remove it"),
+    ),
+    "the table of before": (
         lambda home: edit(
             home / "exhibit.toml",
-            "[body]",
-            '[garment]\npattern = "p"\nweave = "w"\nrecipe = "scarf_on_stand"\n[body]',
+            '[models]\nhall = "media/chest.glb"',
+            '[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "x"\nnearest = 2.0',
         ),
-        ("exhibit.toml: needs either [models] or [garment]", "remove the other"),
+        ("exhibit.toml: garment: no longer a table", 'write outfit = "outfits/….toml"', "below [show]"),
     ),
     "body without a size": (
         lambda home: edit(home / "exhibit.toml", 'shape = "round"', 'shape = "box"'),
@@ -184,14 +197,41 @@ def test_link_that_leaves_the_folder_is_refused(house: Path, tmp_path: Path):
     assert "is a link that leaves the content folder – copy the file itself" in only_line(house)
 
 
-def test_zero_byte_pattern(house: Path):
-    recipe = '[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "scarf_on_stand"'
-    edit(house / "exhibits/chest/exhibit.toml", '[models]\nhall = "media/chest.glb"', recipe)
-    for name in ("patterns/p.toml", "weaves/w.toml"):
-        (house / name).parent.mkdir()
-        (house / name).write_bytes(b"" if "p.toml" in name else b"name = 'w'")
-    line = only_line(house)
-    assert "garment.pattern: patterns/p.toml is empty (0 bytes) – replace it by the whole file" in line
+@pytest.mark.parametrize("name", ["outfits/scarf.toml", "patterns/pibo.toml"])
+def test_zero_byte_input(house: Path, name: str):
+    dressed(house)
+    (house / name).write_bytes(b"")
+    key = (
+        "exhibits/chest/exhibit.toml: outfit" if "outfits" in name else "outfits/scarf.toml: layer.1.pattern"
+    )
+    assert only_line(house) == f"{key}: {name} is empty (0 bytes) – replace it by the whole file"
+
+
+def test_a_bake_depends_on_the_outfit_all_it_names_and_how_it_is_shown(house: Path):
+    dressed(house)
+    toml = house / "exhibits/chest/exhibit.toml"
+
+    def key() -> str:
+        content = load(house)
+        (exhibit,) = content.exhibits
+        return bake_key(content, exhibit)
+
+    keys = [key()]
+    edit(toml, "Chest", "Dress")
+    assert key() == keys[0], "what is written of it is no matter of its bake"
+    write_outfit(house, more='weaves = { cloth = "weaves/juan.toml" }')
+    (house / "weaves/juan.toml").write_text("one", "utf-8")
+    keys.append(key())
+    for name in ("weaves/juan.toml", "weaves/gauze.toml", "patterns/pibo.toml", "outfits/scarf.toml"):
+        path = house / name
+        path.write_text(path.read_text("utf-8") + "\n# changed\n", "utf-8")
+        keys.append(key())
+    edit(toml, "[body]", "[show]\nnearest = 3.0\n[body]")
+    keys.append(key())
+    assert len(set(keys)) == len(keys)
+    last = load(house)
+    (house / "weaves/juan.toml").unlink()
+    assert key_now(last, last.exhibits[0]) is None, "of what went away there is none"
 
 
 def test_name_of_an_exhibit(house: Path):

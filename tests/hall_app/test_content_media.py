@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -18,12 +20,18 @@ from hall_app.media import (
     Touch,
     back_height,
     bar_notes,
+    cutting_plan,
     falling_gauze,
     mirror_glb,
-    pattern_drawing,
+    outfit_plan,
+    plan_picture,
+    plan_svg,
     pluck,
     weave_drawing,
 )
+from sim_core.garment import Pattern
+from sim_core.garment.pattern import Panel, Seam, Spot, Tie
+from sim_core.garment.pattern import Path as Path_
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -112,8 +120,79 @@ def test_weave_drawing_shows_the_draft():
     assert np.array_equal(squares, np.tile(lift, (4, 4)))
 
 
-def test_pattern_drawing_measures_what_it_is_given():
-    small = pattern_drawing([np.array([[0, 0], [0.4, 0], [0.4, 2.4], [0, 2.4]])])
-    other = pattern_drawing([np.array([[0, 0], [0.4, 0], [0.4, 2.3], [0, 2.3]])])
-    assert small.size == other.size
+def strip(length: float) -> Pattern:
+    return Pattern("strip", np.array([[0, 0], [0.4, 0], [0.4, length], [0, length]]), 0.05)
+
+
+def half(*, length: float = 0.7) -> Pattern:
+    """Two rectangles, joined and sewn, tied at one corner."""
+    corners = [("a", (0.0, -length)), ("b", (0.3, -length)), ("c", (0.3, length)), ("d", (0.0, length))]
+
+    def panel(name: str, away: float) -> Panel:
+        points = [np.array([x + away, y]) for _, (x, y) in corners]
+        legs = tuple(np.array([p, q]) for p, q in zip(points, [*points[1:], points[0]], strict=True))
+        return Panel(name, tuple(name for name, _ in corners), legs)
+
+    panels = (panel("body", 0.0), panel("sleeve", 0.3))
+    seams = (
+        Seam("joined", Path_.read("body: b > c"), Path_.read("sleeve: a < d")),
+        Seam("middle", Path_.read("body: d > a")),
+    )
+    tie = Tie("belt", Spot("body", (0.0, length), "left"), Spot("sleeve", (0.6, length), "right"), 0.02)
+    title = {"zh": "衣", "en": "Coat"}
+    return Pattern("coat", panels[0].outline(), 0.05, title, None, panels, seams, True, (tie,))
+
+
+def outlines(svg: str) -> list[np.ndarray]:
+    """Corners (n, 2) [mm] of every outline of a sheet."""
+    paths = [path for path in ElementTree.fromstring(svg).iter() if path.get("class") == "outline"]
+    return [
+        np.array([[float(c) for c in pair.split()] for pair in path.attrib["d"].strip("MZ").split("L")])
+        for path in paths
+    ]
+
+
+def test_a_pattern_sheet_is_at_true_size_and_says_what_a_cutter_asks():
+    svg = plan_svg(cutting_plan([half(), strip(2.4)], ("衣与帔", "Coat and scarf")))
+    sheet = ElementTree.fromstring(svg)
+    assert sheet.attrib["width"] == f"{sheet.attrib['viewBox'].split()[2]}mm"
+    sizes = [sorted(np.ptp(outline, axis=0).round(1).tolist()) for outline in outlines(svg)]
+    assert sizes == [[300.0, 1400.0], [300.0, 1400.0], [400.0, 2400.0]]
+    width, height = (float(value) for value in sheet.attrib["viewBox"].split()[2:])
+    for outline in outlines(svg):
+        assert outline.min() > 0
+        assert (outline.max(0) < [width, height]).all()
+    words = [text.text for text in sheet.iter() if text.tag.endswith("text")]
+    assert "衣与帔 Coat and scarf" in words
+    for asked in ("1400", "300", "2400", "400", "body", "sleeve", "A 平缝 joined flat: body + sleeve, 1400"):
+        assert asked in words
+    assert words.count("A") == 2, "at both of its sides"
+    assert words.count("B") == 1, "to its own mirror image"
+    assert "系带 tie belt: body left + sleeve right, 20" in words
+    assert "衣，毫米，一半，翻转再裁一次" in words
+    kinds = [path.get("class") for path in sheet.iter() if path.get("class")]
+    assert kinds.count("fold") == 2, "the shoulder of both panels, none of a scarf"
+    assert kinds.count("tie") == 2
+    assert kinds.count("grain") == 9, "three strokes an arrow"
+
+
+def test_panels_of_a_sheet_lie_apart():
+    found = outlines(plan_svg(cutting_plan([half(), half(length=0.2), strip(2.4)], ("衣", "Coat"))))
+    boxes = [(outline.min(0), outline.max(0)) for outline in found]
+    for number, (low, high) in enumerate(boxes):
+        for other_low, other_high in boxes[:number]:
+            assert (high < other_low).any() or (other_high < low).any()
+
+
+def test_the_picture_of_a_sheet_measures_what_it_is_given():
+    small, other = (plan_picture(cutting_plan([strip(length)], ("帔", "Scarf"))) for length in (2.4, 2.3))
+    assert max(small.size) == max(other.size) == 1500
     assert np.asarray(small).tobytes() != np.asarray(other).tobytes()
+
+
+def test_shipped_sheets_are_of_the_patterns_as_they_are():
+    for sheet in ASSETS.glob("exhibits/*/media/pattern.svg"):
+        table = tomllib.loads((sheet.parents[1] / "exhibit.toml").read_text("utf-8"))
+        assert plan_svg(outfit_plan(ASSETS, table["outfit"])) == sheet.read_text("utf-8"), (
+            "hall build --pattern"
+        )

@@ -50,6 +50,12 @@ def jpeg() -> bytes:
     return out.getvalue()
 
 
+def svg(inner: bytes) -> bytes:
+    return b'<svg xmlns="http://www.w3.org/2000/svg">' + inner + b"</svg>"
+
+
+SVG = svg(b'<path d="M0 0L1 1"/>')
+
 BAD: dict[str, tuple[str, bytes, str, str, str]] = {
     "letters": ("a.jpg", b"not a jpg", "picture", "it is no picture, or broken", "export it again"),
     "a page": ("a.png", b"<script>alert(1)</script>", "picture", "it is no picture", "export it again"),
@@ -64,11 +70,29 @@ BAD: dict[str, tuple[str, bytes, str, str, str]] = {
     "cut off": ("a.jpg", jpeg()[:-400], "picture", "it is broken or cut off", "copy or export it again"),
     "misnamed": ("a.png", jpeg(), "picture", "its name says PNG, but it is JPEG", "rename it"),
     "drawing": (
-        "a.svg",
-        b"<svg/>",
+        "a.gif",
+        b"GIF89a",
         "picture",
-        "the hall shows no .svg as picture",
+        "the hall shows no .gif as picture",
         "convert it to one of .jpg",
+    ),
+    "svg of nothing": ("a.svg", b"<svg/>", "picture", "it is no SVG", "correct its name"),
+    "svg cut off": ("a.svg", SVG[:-4], "picture", "it is broken or cut off", "copy or export it again"),
+    "svg that unfolds": ("a.svg", b"<!DOCTYPE x>" + SVG, "picture", "a document type", "plain SVG"),
+    "svg that runs": ("a.svg", svg(b"<script/>"), "picture", "it holds a program", "remove scripts"),
+    "svg that acts": (
+        "a.svg",
+        svg(b'<path onload="x()"/>'),
+        "picture",
+        "it holds a program",
+        "remove scripts",
+    ),
+    "svg that asks": (
+        "a.svg",
+        svg(b'<image href="http://x/y.png"/>'),
+        "picture",
+        "it asks for another file",
+        "into the file itself",
     ),
     "no ending": ("a", jpeg(), "picture", "the hall shows no file without an ending", "convert it"),
     "film": ("a.webm", b"RIFF" + bytes(12), "video", "it is no webm file", "export it again in that format"),
@@ -97,6 +121,7 @@ def test_media_that_are_not_what_they_say(house: Path, case: str):
 
 GOOD = {
     "a.JPG": (jpeg(), "picture"),
+    "a.svg": (SVG, "picture"),
     "a.webm": (b"\x1a\x45\xdf\xa3....", "video"),
     "a.mp4": (b"\0\0\0\x18ftypmp42", "audio"),
     "a.m4a": (b"\0\0\0\x18ftypM4A ", "audio"),

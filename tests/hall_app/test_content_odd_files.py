@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from content_house import EXHIBIT, add_exhibit, edit, make_house, png_of, rewritten, with_texture
+from content_house import add_exhibit, dressed, edit, make_house, png_of, rewritten, with_texture
 from full_matrix import by_day
 
 from hall_app.check import check
@@ -143,24 +143,11 @@ def test_a_picture_of_a_text_with_an_impossible_name(house: Path, src: str):
     assert only(house).startswith("exhibits/chest/text.en.md: the picture media/")
 
 
-def garment(house: Path, more: str = "") -> Path:
-    """Make the chest a garment that is not baked; returns the content folder."""
-    recipe = (
-        f'[garment]\npattern = "patterns/p.toml"\nweave = "weaves/w.toml"\nrecipe = "scarf_on_stand"\n{more}'
-    )
-    toml(house).write_text(EXHIBIT.replace('[models]\nhall = "media/chest.glb"', recipe), "utf-8")
-    (house / "exhibits/chest/media/chest.glb").unlink()
-    shipped = Path(__file__).parents[2] / "assets"
-    for name, source in (("patterns/p.toml", "patterns/pibo.toml"), ("weaves/w.toml", "weaves/gauze.toml")):
-        (house / name).parent.mkdir()
-        (house / name).write_bytes((shipped / source).read_bytes())
-    return house
-
-
-@pytest.mark.parametrize("name", ["patterns/p.toml", "weaves/w.toml"])
+@pytest.mark.parametrize("name", ["patterns/pibo.toml", "weaves/gauze.toml", "outfits/scarf.toml"])
 @pytest.mark.parametrize("text", by_day([DIGITS, "x = 1"], [DEEP, DIGITS, "x = 1", "\ufeffx = 1"]))
 def test_odd_inputs_of_a_bake(house: Path, name: str, text: str):
-    (garment(house) / name).write_text(text, "utf-8")
+    dressed(house)
+    (house / name).write_text(text, "utf-8")
     assert only(house).startswith(f"{name}: ")
 
 
@@ -168,22 +155,55 @@ def test_an_input_that_fails_in_an_unforeseen_way(house: Path, monkeypatch: pyte
     def fail(path: Path) -> None:
         raise MemoryError
 
+    dressed(house)
     monkeypatch.setattr("sim_core.weave.Weave.load", fail)
-    assert only(garment(house)) == "weaves/w.toml: cannot be read (MemoryError) – correct the file"
+    assert only(house) == "weaves/gauze.toml: cannot be read (MemoryError) – correct the file"
 
 
 def test_huge_numbers_of_a_pattern_warn_of_nothing(house: Path):
-    text = (garment(house) / "patterns/p.toml").read_text("utf-8").replace("[0.4, 2.4]", "[1e300, 1e300]")
-    (house / "patterns/p.toml").write_text(text, "utf-8")
+    dressed(house)
+    edit(house / "patterns/pibo.toml", "[0.4, 2.4]", "[1e300, 1e300]")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         check(house)
 
 
-@pytest.mark.parametrize("key", by_day(["robe_weave"], ["mannequin", "robe_pattern", "robe_weave"]))
-def test_every_input_of_a_garment_has_to_be_there(house: Path, key: str):
-    garment(house, f'{key} = "patterns/none.toml"')
-    assert f"garment.{key}: missing file patterns/none.toml" in left_out(house)
+@pytest.mark.parametrize(
+    "key", by_day(["layer.1.weave"], ["layer.1.pattern", "layer.1.weave", "layer.1.weaves.cloth", "wearer"])
+)
+def test_every_file_an_outfit_names_has_to_be_there(house: Path, key: str):
+    outfit, name = dressed(house), key.rpartition(".")[2]
+    lines = [line for line in outfit.read_text("utf-8").splitlines() if not line.startswith(f"{name} =")]
+    named = {"cloth": 'weaves = { cloth = "none" }', "wearer": ""}.get(name, f'{name} = "none"')
+    outfit.write_text("\n".join(['wearer = "none"' if key == "wearer" else "", *lines, named]), "utf-8")
+    assert [exhibit.id for exhibit in load(house).exhibits] == ["other"]
+    assert only(house) == f"outfits/scarf.toml: {key}: missing file none – add none or correct the path"
+
+
+def test_a_file_of_an_outfit_may_not_leave_the_folder(house: Path):
+    (house.parent / "secret.toml").write_text("x = 1", "utf-8")
+    edit(dressed(house), "patterns/pibo.toml", "../secret.toml")
+    assert only(house).startswith("outfits/scarf.toml: layer.1.pattern: ../secret.toml is a link that leaves")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("seed = 1", "seeed = 1", "layer.1.seeed: unknown key – "),
+        ("seed = 1", "edge = 5.0", "layer.1.edge: "),
+        ("seed = 1", 'place = { way = "flat" }', "layer.1.place.way: 'flat' – choose over_bar"),
+        (
+            "seed = 1",
+            "measures = { width = 4 }",
+            "layer.1: patterns/pibo.toml: measures.width: no such measure",
+        ),
+    ],
+)
+def test_an_outfit_that_cannot_be_dressed_is_told_by_file_key_and_remedy(
+    house: Path, old: str, new: str, line: str
+):
+    edit(dressed(house), old, new)
+    assert only(house).startswith(f"outfits/scarf.toml: {line}")
 
 
 def test_an_exhibit_that_fails_in_an_unforeseen_way(house: Path, monkeypatch: pytest.MonkeyPatch):

@@ -165,11 +165,11 @@ def test_the_room_and_the_garments_of_the_content_as_it_is_are_kept(tmp_path: Pa
 @pytest.mark.nightly
 def test_a_data_folder_that_is_edited_on_and_on_does_not_grow(tmp_path: Path):
     folder = with_scarf(tmp_path / "content")
-    toml = folder / "exhibits/scarf/exhibit.toml"
+    toml = folder / "outfits/scarf.toml"
     house = House(load(folder), tmp_path / "data")
     queue = BakingQueue(lambda bake: Build(house.data, bake))
     follow = Following(house, queue, light=False, say=lambda line: None)
-    edit(toml, "[garment]", "[garment]\nseed = 100")
+    edit(toml, "seed = 1", "seed = 100")
 
     async def story() -> None:
         for seed in range(100, 100 + 2 * NEWEST):

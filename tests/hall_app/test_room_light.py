@@ -145,31 +145,19 @@ def test_hardly_anything_of_the_shipped_room_burns_out():
 
 def shipped_light(mesh: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The shipped light map (H, W, 3) linear, and where a mesh lies in it: (V, 2) and its faces (F, 3)."""
-    document, blob = open_glb(ASSETS / "room" / "room.glb")
+    parts = open_glb(ASSETS / "room" / "room.glb")
+    document = parts.document
     material = next(m for m in document["materials"] if m["name"] == "lightmap")
     source = document["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]["source"]
-    view = document["bufferViews"][document["images"][source]["bufferView"]]
-    start = view.get("byteOffset", 0)
-    picture = Image.open(io.BytesIO(blob[start : start + view["byteLength"]])).convert("RGB")
+    picture = Image.open(io.BytesIO(parts.picture(source))).convert("RGB")
     stored = np.asarray(picture) / 255
     light = 2 * np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
     primitive = next(m for m in document["meshes"] if m["name"] == mesh)["primitives"][0]
     uv, faces = (
-        _values(document, blob, primitive["attributes"]["TEXCOORD_1"]),
-        _values(document, blob, primitive["indices"]),
+        parts.numbers(primitive["attributes"]["TEXCOORD_1"]),
+        parts.numbers(primitive["indices"]),
     )
     return light, uv, faces.reshape(-1, 3).astype(int)
-
-
-def _values(document, blob, number: int) -> np.ndarray:
-    accessor = document["accessors"][number]
-    view = document["bufferViews"][accessor["bufferView"]]
-    kind = np.dtype({5126: "<f4", 5125: "<u4", 5123: "<u2", 5121: "u1"}[accessor["componentType"]])
-    wide = {"SCALAR": 1, "VEC2": 2}[accessor["type"]]
-    step = view.get("byteStride") or wide * kind.itemsize
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    found = np.ndarray((accessor["count"], wide), kind, blob, start, (step, kind.itemsize))
-    return found / np.iinfo(kind).max if accessor.get("normalized") else found
 
 
 LIT = """
@@ -205,7 +193,7 @@ def test_a_baked_room_carries_its_light_and_is_shown(tmp_path):
     shown = shown_room(load(house), data)
     assert shown.baked
     assert check(house) == []
-    document, _ = open_glb(target / "room.glb")
+    document = open_glb(target / "room.glb").document
     assert [m["name"] for m in document["meshes"]].count("lightmap") == 1
     environment = np.asarray(Image.open(target / "environment.jpg")).astype(float)
     assert environment[:60].max() > 240  # the laylight above

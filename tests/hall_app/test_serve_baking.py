@@ -89,7 +89,7 @@ def test_the_doors_open_while_a_garment_is_baked_and_a_superseded_bake_ends(tmp_
         edit(content / "exhibits/box/exhibit.toml", "Plain box", "Another title")
         until(lambda: title(hall, "Another title"), hall)
         assert builds_of(hall.process.pid) & first, "an edit that does not concern it leaves a bake alone"
-        edit(content / "exhibits/scarf/exhibit.toml", "[garment]", "[garment]\nseed = 7")
+        edit(content / "outfits/scarf.toml", "seed = 1", "seed = 7")
         until(lambda: not first & processes().keys(), hall)
         until(lambda: not before.exists(), hall)
         until(lambda: builds_of(hall.process.pid), hall)

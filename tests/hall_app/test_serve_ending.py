@@ -96,6 +96,7 @@ def test_a_garment_under_way_is_given_up_with_all_its_helpers(tmp_path: Path, si
         assert len(set(said)) == len(said), "a log is no terminal: nothing is said twice"
 
 
+@pytest.mark.nightly
 def test_the_rooms_light_under_way_is_given_up(tmp_path: Path):
     with serving(write_plain_hall(tmp_path / "content"), tmp_path) as hall:
         hall.until(lambda: "Preparing the room's light" in hall.said() and hall.builds())

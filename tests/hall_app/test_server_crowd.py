@@ -184,6 +184,7 @@ def test_floods_on_visers_socket_are_shown_out(plain_hall, message):
     event_loop.run(run())
 
 
+@pytest.mark.nightly
 def test_a_lively_visitor_is_never_touched(plain_hall):
     """240 inputs a second, the map, close-ups, a camera that never rests."""
     import random
@@ -300,6 +301,7 @@ async def opened(hall, address: str, forwarded: str) -> bool:
     return True
 
 
+@pytest.mark.nightly
 def test_forwarded_addresses_count_from_the_named_proxy_alone(small_hall):
     """Whoever exhausts his own budget cannot go on under another name; behind the proxy names are believed."""
 
@@ -592,6 +594,7 @@ def asked(hall, path: str = "/api/scene", **headers: str):
         return answer.status, answer.headers, answer.read()
 
 
+@pytest.mark.nightly
 def test_connections_that_say_nothing_leave_room_for_others(tight_hall):
     """More than there are descriptors, from one address; others are answered while they stand."""
     with contextlib.ExitStack() as stack:

@@ -36,6 +36,7 @@ def test_hundred_thousand_random_moves_never_end_inside():
     assert result["metres"] > 1000
 
 
+@pytest.mark.nightly
 def test_no_tunnelling_between_the_ends_of_a_long_move():
     """Five seconds in one step through a maze of 5 cm walls: cut into frames, every frame is clear as well."""
     floor = dense_floor(np.random.default_rng(7))

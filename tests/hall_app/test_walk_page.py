@@ -66,6 +66,7 @@ def test_clearance_and_normal_near_contact(page):
     assert np.quantile(cosine, 0.01) > math.cos(math.radians(1))
 
 
+@pytest.mark.nightly
 def test_ten_thousand_random_steps_agree(page):
     rng, world, moves = np.random.default_rng(1), world_of(FLOOR), []
     while len(moves) < 10_000:

@@ -219,7 +219,7 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     x, reach, same = rng.normal(0, 0.03, (len(rest), 3)), 0.01, np.arange(len(rest), dtype=np.int32)
     finder = finder_of(len(x), len(edges), len(faces))
     mesh = Mesh(np.ones(len(rest)), rest, edges, faces, np.zeros(len(edges)), same)
-    pairs, count = vertex_face_pairs(x, mesh, reach, 0.0, finder, pairs_of(0))
+    pairs, count = vertex_face_pairs(x, mesh, reach, reach, 0.0, finder, pairs_of(0))
     found = {(int(v), int(f)) for v, f in pairs[:count]}
     expected = {
         (v, f)
@@ -230,7 +230,7 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     assert found == expected
     t = np.linspace(0, 1, 60)
     dense = x[edges[:, 0], None] * (1 - t[:, None]) + x[edges[:, 1], None] * t[:, None]
-    pairs, count = edge_edge_pairs(x, mesh, reach, 0.0, finder, pairs_of(0))
+    pairs, count = edge_edge_pairs(x, mesh, reach, reach, 0.0, finder, pairs_of(0))
     met = {tuple(sorted(map(int, pair))) for pair in pairs[:count]}
     for a in range(len(edges)):
         for b in range(a + 1, len(edges)):
@@ -241,3 +241,40 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
                 assert (a, b) in met
             elif gap > reach + 2e-3:
                 assert (a, b) not in met
+
+
+def test_neighbours_that_a_fold_brings_together_are_candidates_at_any_angle() -> None:
+    """Did they come and go with the angle of their normals, the fold would never rest."""
+    rng = np.random.default_rng(5)
+    rest, faces = equilateral_sheet(0.2, 0.2, 0.02)
+    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
+    x = np.column_stack([rest[:, 0], rest[:, 1], np.zeros(len(rest))]) + rng.normal(0, 0.012, (len(rest), 3))
+    mesh = Mesh(
+        np.ones(len(rest)), rest, edges, faces, np.zeros(len(edges)), np.arange(len(rest), dtype=np.int32)
+    )
+    finder = finder_of(len(x), len(edges), len(faces))
+    every, some = (
+        [
+            {tuple(map(int, pair)) for pair in pairs[:count]}
+            for pairs, count in (
+                search(x, mesh, 0.004, 0.01, near, finder, pairs_of(0))
+                for search in (vertex_face_pairs, edge_edge_pairs)
+            )
+        ]
+        for near in (0.0, 0.07)
+    )
+    assert some[0] < every[0]  # what is flat is left out
+    assert some[1] < every[1]
+    for v, f in every[0] - some[0]:
+        apart = np.linalg.norm(rest[faces[f]] - rest[v], axis=1).min()
+        assert metrics.surface_distance(x[v : v + 1], x, faces[f][None])[0] >= min(
+            max(apart / 3, 0.004), apart / 2
+        )
+    t = np.linspace(0, 1, 200)[:, None]
+    for a, b in every[1] - some[1]:
+        apart = np.linalg.norm(rest[edges[a]][:, None] - rest[edges[b]], axis=2).min()
+        first, second = (x[edges[e, 0]] * (1 - t) + x[edges[e, 1]] * t for e in (a, b))
+        assert (
+            np.linalg.norm(first[:, None] - second, axis=2).min()
+            >= min(max(apart / 3, 0.004), apart / 2) - 1e-4
+        )

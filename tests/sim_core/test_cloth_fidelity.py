@@ -50,6 +50,7 @@ def test_the_implicit_scheme_is_never_the_cheaper_way(kind: str) -> None:
     assert all(row["ms"] > row["explicit_ms"] for row in tried)
 
 
+@pytest.mark.nightly
 def test_a_larger_budget_never_costs_more_and_budgets_lead_to_different_meshes() -> None:
     budgets = (3.0, 4.0, 8.0, 40.0)
     found = [choose("hanging", error_mm=b, size=(0.8, 0.8), pins="edge") for b in budgets]

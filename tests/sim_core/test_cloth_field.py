@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import Mannequin
+from sim_core.body import Mannequin, Pose
 from sim_core.cloth import Capsule
 from sim_core.cloth.contact import DistanceField, field_of, hull_mesh, solid_mesh, united
 from sim_core.errors import SimCoreError
@@ -27,7 +27,7 @@ def ball(radius: float = 0.1, at: tuple[float, float, float] = (0.0, 0.0, 0.0)):
 @pytest.fixture(scope="module")
 def posed() -> tuple[np.ndarray, np.ndarray]:
     woman = Mannequin.load(FILE)
-    return woman.posed(58.0, 78.0), woman.faces
+    return woman.posed(Pose.arms(58.0, 78.0)), woman.faces
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +58,7 @@ def test_the_whole_band_is_exact_when_asked(posed) -> None:
     assert np.abs(np.abs(values) - metrics.surface_distance(points, *posed)).max() < 1e-6
 
 
+@pytest.mark.nightly
 def test_signs_are_those_of_the_winding_number(posed, field: DistanceField) -> None:
     points, values = _nodes(field, (np.abs(field.values) < 0.03) & (np.abs(field.values) > 1e-5), 600)
     assert np.array_equal(values < 0, winding(points, *posed) > 0.5)

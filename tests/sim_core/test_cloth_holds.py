@@ -17,8 +17,8 @@ from sim_core.cloth import (
 from sim_core.cloth.scenes import GF_CM, equilateral_sheet
 from sim_core.cloth.step import Pace
 from sim_core.errors import SimCoreError
+from sim_core.garment.dressing import sewn_sheet
 from sim_core.garment.pattern import Cloth
-from sim_core.garment.recipes import half_sheet
 
 
 def test_panels_welded_along_a_seam_are_one_cloth() -> None:
@@ -94,7 +94,7 @@ def test_a_half_with_images_is_the_whole_cloth() -> None:
         return np.column_stack([rest[:, 0], np.full(len(rest), 1.05), rest[:, 1] - 0.14])
 
     kind = np.zeros(len(half_faces), np.int32)
-    half = half_sheet(cloth, cloth.closed, [GF_CM], kind, kind)
+    half = sewn_sheet(cloth, cloth.closed, [GF_CM], kind, kind, even=False)
     low, high = np.full(len(half.sheet.rest), -np.inf), np.full(len(half.sheet.rest), np.inf)
     low[half.middle] = high[half.middle] = 0.0
     holds = Holds.of(len(low), low=low, high=high, slaves=half.slaves)
@@ -219,3 +219,24 @@ def test_a_body_that_comes_quickly_wakes_the_cloth_in_time() -> None:
 def test_limits_are_two_numbers(limit: object) -> None:
     with pytest.raises(SimCoreError, match=r"holds\.limit"):
         Holds.of(4, limit=limit)  # type: ignore[arg-type]
+
+
+def test_pairs_are_drawn_to_the_length_they_are_given() -> None:
+    """A tie ends at its own length, a seam at nothing; what is nearer than its tie is long stays where it is."""
+    rest, faces = equilateral_sheet(0.3, 0.2, 0.05)
+    sheet = Sheet.of(rest, faces, GF_CM)
+    x = np.column_stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]])
+    corners = [
+        int(np.argmin(np.hypot(*(rest - corner).T))) for corner in ((0, 0), (0.3, 0), (0, 0.2), (0.3, 0.2))
+    ]
+    pairs = np.array([corners[:2], corners[2:]])
+    holds = Holds.of(len(rest), pairs=pairs, positions=x, ends=np.array([0.12, 0.0]))
+    phases = [Phase(0.4, (0.0, 0.0), 6.0, sewing=(1.0, 0.0)), Phase(0.2, (0.0, 0.0), 20.0)]
+    end = drape(sheet, x, phases, holds=holds).positions
+    apart = np.linalg.norm(end[pairs[:, 0]] - end[pairs[:, 1]], axis=1)
+    assert apart == pytest.approx([0.12, 0.0], abs=1e-3)
+    loose = Holds.of(len(rest), pairs=pairs[:1], positions=x, ends=np.array([0.5]))
+    still = drape(sheet, x, phases, holds=loose).positions
+    assert still == pytest.approx(x, abs=1e-6)
+    with pytest.raises(SimCoreError, match="ends"):
+        Holds.of(len(rest), pairs=pairs, positions=x, ends=np.array([0.1, -0.1]))

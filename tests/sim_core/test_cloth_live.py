@@ -43,6 +43,7 @@ def test_pins_go_where_they_are_led_and_are_let_go() -> None:
     assert x[pins[1:], 1].max() < start[pins[1:], 1].min() - 0.005
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("seed", by_day([0], [0, 3]))
 def test_pins_thrown_about_within_a_frame_do_not_break_layers(seed: int) -> None:
     """Neighbouring pins are torn apart by several edges: the frame is done again, and the cloth slows down after."""

@@ -75,5 +75,5 @@ def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) 
     x[3] = broken
     finder, same = finder_of(len(x), len(edges), len(faces)), np.arange(len(x), dtype=np.int32)
     mesh = Mesh(np.ones(len(x)), rest, edges, faces, np.ones(len(edges)), same)
-    assert vertex_face_pairs(x, mesh, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
-    assert edge_edge_pairs(x, mesh, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
+    assert vertex_face_pairs(x, mesh, 0.01, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
+    assert edge_edge_pairs(x, mesh, 0.01, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0

@@ -45,42 +45,26 @@ SIDES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 BALL = Capsule((0, -1, 0), (0, -1, 0), 0.05)
 FRAME = 0.04
 
+# What a person gets wrong: a forgotten value, words, no number, the wrong sign, size, kind, length or shape.
 ODD: dict[str, object] = {
     "None": None,
     "text": "abc",
-    "no text": "",
     "NaN": math.nan,
     "infinite": math.inf,
     "huge": 1e300,
-    "a number of 400 digits": 10**400,
-    "tiny": 1e-300,
     "negative": -1,
     "zero": 0,
     "broken": 2.5,
     "true": True,
-    "complex": 1j,
-    "a thing": object(),
-    "a type": Sheet,
-    "words": {"a": 1},
     "empty": [],
     "ragged": [[1, 2], [3]],
-    "texts": ["a", "b", "c"],
-    "Nones": (None, None, None),
     "NaNs": (math.nan,) * 3,
     "two": (1.0, math.inf),
-    "infinite ones": np.full(3, -math.inf),
-    "giants": [1e300] * 3,
     "broken ones": [3.7],
     "negative ones": [-1, -2],
     "far ones": [10**12],
-    "zeros": (0.0, 0.0, 0.0),
     "flat": np.zeros((2, 2)),
     "nothing of three": np.zeros((0, 3)),
-    "deep": np.zeros((2, 2, 2, 2)),
-    "objects": np.array([object()]),
-    "times": np.array(["2000-01-01"], "datetime64[D]"),
-    "a scalar array": np.array(3.0),
-    "a sheet": SHEET,
 }
 
 PHASE = {

@@ -38,8 +38,11 @@ def veil(ball) -> Garment:
         positions=worn.positions,
         panels=("left", "right"),
         dyes=(None, None),
-        cut={"panels": [{"doubled": False}, {"doubled": True}]},
-        material={**material, "doubled": {**material, "density": 0.1}},
+        cut={"panels": [{"name": "left"}, {"name": "right"}]},
+        material={
+            "kinds": {"thin": material, "thick": {**material, "density": 0.1}},
+            "panels": {"left": "thin", "right": "thick"},
+        },
     )
 
 

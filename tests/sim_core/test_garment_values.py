@@ -13,9 +13,11 @@ import trimesh
 from PIL import Image
 
 from sim_core import metrics
+from sim_core.body import Beneath
+from sim_core.cloth import Contact, Holds, Phase
 from sim_core.cloth.contact import solid_mesh
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
-from sim_core.garment import Garment, Pattern, Stand, choose_detail, detail, write_glb
+from sim_core.garment import Clothed, Garment, Pattern, Settled, Stand, choose_detail, detail, write_glb
 from sim_core.garment.levels import locate
 from sim_core.mesh import panel_mesh
 
@@ -46,11 +48,13 @@ def arched(edge: float = 0.02) -> Garment:
     down = np.maximum(np.abs(s) - r * np.pi / 2, 0)
     x = np.column_stack([0.15 - panel.vertices[:, 0], 1.5 + r * np.cos(angle) - down, r * np.sin(angle)])
     x[:, 2] += 0.02 * down * np.sin(40 * panel.vertices[:, 0])
-    facts = {"stand": {}, "edge": edge}
+    settled = Settled(Contact(), Phase(1.0), Holds.of(len(x)), Beneath(stand=Stand()))
     faces, weld = panel.faces.astype(np.int32), np.arange(len(x), dtype=np.int32)
     cut = Pattern("strip", outline, edge).to_dict()
     one = np.zeros(len(faces), np.int32)
-    return Garment("strip", panel.vertices, faces, weld, one, x, cut=cut, provenance=facts)
+    return Garment(
+        "strip", panel.vertices, faces, weld, one, x, cut=cut, settled=settled, provenance={"edge": edge}
+    )
 
 
 @pytest.mark.parametrize(
@@ -232,7 +236,7 @@ def accessor(document: dict, blob: bytes, number: int) -> np.ndarray:
 @pytest.mark.parametrize("precision", ["close", "hall"])
 def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
     garment, path = arched(0.04), tmp_path / "g.glb"
-    size = write_glb(path, garment, maps(), precision=precision)
+    size = write_glb(path, [Clothed(garment, maps())], precision=precision)
     assert size == path.stat().st_size < 1_500_000
     document, blob = chunks(path)
     assert [node["name"] for node in document["nodes"]] == ["strip", "stand"]
@@ -268,7 +272,7 @@ def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision)
     dense = maps()
     dense.opacity[:] = 255
     dense.opacity[:8, :8] = 0
-    write_glb(tmp_path / "g.glb", arched(0.04), dense, precision=precision)
+    write_glb(tmp_path / "g.glb", [Clothed(arched(0.04), dense)], precision=precision)
     document, blob = chunks(tmp_path / "g.glb")
     cloth = document["materials"][0]
     assert "alphaMode" not in cloth
@@ -284,7 +288,7 @@ def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision)
 
 def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
     garment = arched(0.04)
-    write_glb(tmp_path / "g.glb", garment, maps(), precision="close")
+    write_glb(tmp_path / "g.glb", [Clothed(garment, maps())], precision="close")
     scene = trimesh.load(tmp_path / "g.glb")
     assert isinstance(scene, trimesh.Scene)
     strip = scene.geometry["strip"]
@@ -296,7 +300,7 @@ def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
 
 def test_opaque_cloth_is_opaque_and_dye_is_the_mean_colour(tmp_path: Path) -> None:
     garment = Garment(**{**arched(0.05).__dict__, "dye": (0.7, 0.2, 0.1)})
-    write_glb(tmp_path / "g.glb", garment, maps(255), precision="close")
+    write_glb(tmp_path / "g.glb", [Clothed(garment, maps(255))], precision="close")
     document, blob = chunks(tmp_path / "g.glb")
     cloth = document["materials"][0]
     assert "alphaMode" not in cloth
@@ -313,8 +317,8 @@ def test_opaque_cloth_is_opaque_and_dye_is_the_mean_colour(tmp_path: Path) -> No
 
 def test_wrong_precision_and_maps_are_named(tmp_path: Path) -> None:
     with pytest.raises(SimCoreError, match="precision"):
-        write_glb(tmp_path / "g.glb", arched(0.05), maps(), precision="middle")  # pyright: ignore[reportArgumentType]
+        write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), maps())], precision="middle")  # pyright: ignore[reportArgumentType]
     wrong = Maps(maps().albedo, maps().normal, np.zeros((4, 4), np.uint8), (0.004, 0.004))
     with pytest.raises(SimCoreError, match="maps"):
-        write_glb(tmp_path / "g.glb", arched(0.05), wrong)
+        write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), wrong)])
     assert not (tmp_path / "g.glb").exists()

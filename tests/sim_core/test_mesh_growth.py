@@ -105,6 +105,7 @@ def same_up_to_ties(points, faces, others) -> bool:
     return len(faces) == len(others)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", CLOUDS)
 def test_commutes_with_quarter_turns_and_mirroring(name):
     points = CLOUDS[name]

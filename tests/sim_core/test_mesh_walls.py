@@ -26,6 +26,7 @@ def sorted_ring(count: int):
     return points[order], rank, cells, found
 
 
+@pytest.mark.nightly
 def test_hidden_agrees_with_every_wall_tried():
     places, rank, cells, found = sorted_ring(60)
     rng = np.random.default_rng(5)

@@ -319,10 +319,12 @@ def test_archives_that_would_fill_the_memory(tmp_path: Path, monkeypatch: pytest
         ("heads", lambda a: a[:3], "shapes"),
         ("heads", lambda a: a.astype(complex), "heads"),
         ("marks", lambda a: a[1:], "shapes"),
+        ("skin", lambda a: np.array("leather"), "skin 'leather'"),
         ("mark_names", lambda a: np.char.add(a, "x"), "no mark"),
         ("mark_names", lambda a: np.arange(len(a)), "no mark"),
         ("format", lambda a: np.array([1, 1]), "another format"),
         ("format", lambda a: np.array("one"), "another format"),
+        ("format", lambda a: np.array(1), "another format"),
     ],
 )
 def test_mannequins_no_robe_fits(tmp_path: Path, name: str, change, word: str) -> None:
@@ -333,7 +335,7 @@ def test_mannequins_no_robe_fits(tmp_path: Path, name: str, change, word: str) -
     with pytest.raises(FileProblem) as caught:
         Mannequin.load(path)
     assert word in one_line(caught.value, path)
-    assert "simcore mannequin" in str(caught.value)
+    assert "simcore figure" in str(caught.value)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from sim_core import cli
 
 REPO = Path(__file__).parents[2]
 WEAVE = str(REPO / "assets" / "weaves" / "gauze.toml")
+OUTFIT = str(REPO / "assets" / "outfits" / "robe.toml")
 PATTERN = str(REPO / "assets" / "patterns" / "robe.toml")
 
 WRONG = {
@@ -40,16 +41,18 @@ WRONG = {
         *(["--video", word] for word in ("film.gif", "none/film.mp4")),
         *(["--seed", word] for word in ("-1", "0.5")),
     ],
-    "garment": [
+    "dress": [
         *(["--edge", word] for word in ("0", "-1", "nan", "1e-9", "5")),
-        *(["--budget", word] for word in ("0", "-1", "nan", "inf", "5")),
-        *(["--pixels", word] for word in ("-3", "0", "1e9")),
-        *(["--seed", word] for word in ("-1", "0.5")),
-        *(["--recipe", "robe_on_figure", "--arm", word] for word in ("90", "nan", "-11")),
-        *(["--recipe", "robe_on_figure", "--elbow", word] for word in ("-1", "111", "inf")),
-        ["--recipe", "robe_on_figure"],
+        *(["--out", word] for word in ("robe", "robe.glb")),
+        *(["--glb", word] for word in ("robe", "robe.npz")),
+        *(["--picture", word] for word in ("robe", "robe.jpg")),
     ],
-    "mannequin": [["--picture", "figure.jpeg"], ["--picture", "figure"]],
+    "figure": [
+        *(["--picture", word] for word in ("figure.jpeg", "figure")),
+        ["figure.obj", "--json"],
+        ["--picture", "figure.png", "--pose", "asleep"],
+        ["--pose", "held"],
+    ],
 }
 CASES = [(room, words) for room, cases in WRONG.items() for words in cases]
 
@@ -63,8 +66,8 @@ def test_wrong_arguments_end_with_2_and_leave_nothing(
         "weave": [WEAVE],
         "mesh": ["none.json"],
         "cloth": ["hanging"],
-        "garment": [PATTERN, "--weave", WEAVE, "--out", "out"],
-        "mannequin": ["figure.npz"],
+        "dress": [OUTFIT],
+        "figure": ["woman"],
     }[room]
     try:
         status = cli.main([room, *first, *words])
@@ -164,38 +167,36 @@ def test_places_that_cannot_be_written_are_told_before_the_work(tmp_path: Path, 
     outline.write_text(json.dumps({"outline": [[0, 0], [1, 0], [1, 1]]}), "utf-8")
     assert cli.main(["weave", WEAVE, "--maps", str(taken)]) == 1
     assert cli.main(["cloth", "hanging", "--out", str(taken / "frames.npz")]) == 2
-    assert cli.main(["garment", PATTERN, "--weave", WEAVE, "--out", str(taken)]) == 1
+    assert cli.main(["dress", OUTFIT, "--out", str(taken / "robe.npz")]) == 1
     assert cli.main(["mesh", str(outline), "--edge", "0.2", "--out", str(taken / "mesh.obj")]) == 1
     lines = capsys.readouterr().err.strip().splitlines()
-    assert len(lines) == 4
+    assert len(lines) == 4, lines
     assert all("taken" in line for line in lines)
+
+
+def outfit_of(folder: Path, figure: Path) -> Path:
+    """A robe on the figure of a file."""
+    text = f'wearer = "{figure}"\n[[layer]]\npattern = "{PATTERN}"\nweave = "{WEAVE}"\n'
+    path = folder / "outfit.toml"
+    path.write_text(text, "utf-8")
+    return path
 
 
 def test_a_figure_that_is_none_is_told_with_its_file(tmp_path: Path, capsys) -> None:
     path = tmp_path / "figure.npz"
     np.savez(path, vertices=np.zeros((3, 3)))
-    words = [
-        "garment",
-        PATTERN,
-        "--weave",
-        WEAVE,
-        "--out",
-        str(tmp_path / "out"),
-        "--recipe",
-        "robe_on_figure",
-    ]
-    assert cli.main([*words, "--mannequin", str(path)]) == 1
+    assert cli.main(["dress", str(outfit_of(tmp_path, path)), "--out", str(tmp_path / "out/robe.npz")]) == 1
     told = capsys.readouterr().err
     assert told.count("\n") == 1
     assert "figure.npz: not a mannequin" in told
-    assert not (tmp_path / "out").exists()
+    assert not list(tmp_path.glob("out/*"))
 
 
 @pytest.mark.parametrize(
     ("name", "change", "word"),
     [
         ("faces", lambda a: a[1:], "open or ill-wound at 3 edges"),
-        ("weights", lambda a: np.eye(7)[np.zeros(len(a), int)], "no hull"),
+        ("weights", lambda a: np.eye(21)[np.zeros(len(a), int)], "no hull"),
     ],
 )
 def test_a_figure_no_field_fits_is_told_before_the_drape(
@@ -205,19 +206,9 @@ def test_a_figure_no_field_fits_is_told_before_the_drape(
         arrays = dict(data)
     path = tmp_path / "figure.npz"
     np.savez(path, **{**arrays, name: change(arrays[name])})
-    words = [
-        "garment",
-        PATTERN,
-        "--weave",
-        WEAVE,
-        "--out",
-        str(tmp_path / "out"),
-        "--recipe",
-        "robe_on_figure",
-    ]
-    assert cli.main([*words, "--mannequin", str(path)]) == 1
+    assert cli.main(["dress", str(outfit_of(tmp_path, path)), "--out", str(tmp_path / "out/robe.npz")]) == 1
     told = capsys.readouterr().err
     assert told.count("\n") == 1
     assert "figure.npz: field: " in told
     assert word in told
-    assert not (tmp_path / "out").exists()
+    assert not list(tmp_path.glob("out/*"))

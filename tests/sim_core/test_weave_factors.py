@@ -78,6 +78,7 @@ def test_twenty_thousand_ends_and_picks_are_counted_by_their_shafts_and_treadles
     assert small.warp.longest <= facts.warp.longest <= small.warp.longest + 2
 
 
+@pytest.mark.nightly
 def test_what_has_no_factors_is_refused_by_name():
     rng = np.random.default_rng(7)
     many = np.eye(9_000, dtype=bool)

@@ -159,6 +159,7 @@ PLANS = (
 )
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("score", by_day([3], [1, 3, 5]))
 @pytest.mark.parametrize("plan", PLANS, ids=lambda plan: plan.__name__)
 def test_who_polls_without_end_and_gave_four_answers_recovers_no_score(hall, plan, score):
@@ -239,6 +240,7 @@ def test_of_no_second_window_four_known_scores_pin_what_was_taken_back(total, go
         assert all(len(left) > 1 and len(came) > 1 for left, came in worlds.values())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("later", range(10, 13))
 @pytest.mark.parametrize("early", [True, False])
 def test_of_no_two_windows_four_known_scores_pin_another(early, later):

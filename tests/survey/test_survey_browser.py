@@ -425,6 +425,7 @@ SPILT = """() => [...document.querySelectorAll("button")].filter((one) => one.ch
 TAKEN_BACK = (204, {"zh": "已撤回", "en": "are deleted."})
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("status", "told"),
     by_day(
@@ -453,6 +454,7 @@ def test_every_reply_to_a_withdrawal_is_told_and_its_button_stands_on_one_line(v
     page.get_by_text(told[language]).wait_for()
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("language", ["zh", "en"])
 @pytest.mark.parametrize("width", by_day([320], [320, 390, 1100]))
 def test_the_record_of_processing_fits_and_breaks_no_word(visit, width, language):

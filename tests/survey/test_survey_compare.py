@@ -80,6 +80,7 @@ def test_g_s_interval_is_the_noncentral_t_s_and_delta_is_the_rank_biserial():
     assert found.delta.value == pytest.approx(2.0 * found.u / (35 * 25) - 1.0, abs=1e-12)
 
 
+@pytest.mark.nightly
 def test_intervals_hold_the_truth_as_often_as_they_say():
     rng, hits, draws = np.random.default_rng(7), np.zeros(2), 300
     true_delta = 2.0 * stats.norm.cdf(0.5 / 2**0.5) - 1.0

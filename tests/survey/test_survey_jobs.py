@@ -267,6 +267,7 @@ def test_visitors_are_served_while_it_is_made_and_no_secret_stands_on_its_comman
     assert load_workbook(io.BytesIO(content))["answers"].max_row in (13, 14)
 
 
+@pytest.mark.nightly
 @linux
 @pytest.mark.parametrize("path", ["export/csv", "analysis"])
 def test_who_hangs_up_ends_it(service, path):
@@ -316,6 +317,7 @@ def test_the_end_of_the_service_is_its_end(service, how):
             assert waiting.result(PATIENCE)[0] == 503
 
 
+@pytest.mark.nightly
 @linux
 def test_a_killed_service_leaves_no_process_either(service):
     with ThreadPoolExecutor(1) as pool:
@@ -380,6 +382,7 @@ def test_a_full_temporary_folder_is_told_with_its_remedy(tmp_path):
         assert (made.returncode, made.stdout, made.stderr) == (1, "", told)
 
 
+@pytest.mark.nightly
 @linux
 def test_a_full_disk_leaves_the_earlier_file_where_it_was(tmp_path):
     small = tmp_path / "small"

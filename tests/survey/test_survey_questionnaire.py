@@ -188,6 +188,7 @@ def test_a_version_is_frozen_with_its_first_answer(content, tmp_path):
     mounted.close()
 
 
+@pytest.mark.nightly
 def test_an_edited_version_stays_readable_as_it_was_asked(content, tmp_path):
     app = FastAPI()
     write(content, SMALL)

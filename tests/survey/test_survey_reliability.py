@@ -337,6 +337,7 @@ def foreign(tmp_path):
     )
 
 
+@pytest.mark.nightly
 def test_age_gender_and_education_are_no_items_and_the_note_says_how_to_keep_them(foreign, capsys):
     found = told_by(capsys, foreign)
     assert found["items"] == BFI["names"]

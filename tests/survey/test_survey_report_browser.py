@@ -66,6 +66,7 @@ WIDE = """() => [...document.querySelectorAll('.scroll')].filter(one => one.offs
 PAGE = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("language", by_day(["zh"], ["en", "zh"]))
 @pytest.mark.parametrize("width", by_day([1100], [1100, 1280]))
 @pytest.mark.parametrize("name", by_day(["garment"], ["platform", "garment"]))
@@ -78,6 +79,7 @@ def test_nothing_is_cut_on_a_desk(reports, page, name, width, language):
     assert {one["hint"] for one in found} == {"none"}
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("language", by_day(["zh"], ["en", "zh"]))
 @pytest.mark.parametrize("name", by_day(["garment"], ["platform", "garment"]))
 def test_on_a_phone_the_page_stands_still_and_what_scrolls_says_so(reports, page, name, language):

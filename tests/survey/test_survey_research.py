@@ -123,6 +123,7 @@ CHOICES = {
 }
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("choice", by_day(["drop"], CHOICES))
 @pytest.mark.parametrize("database", ["sqlite"], indirect=True)
 def test_every_choice_of_the_analysis_reaches_it(hall, researcher, choice):

@@ -172,6 +172,7 @@ def reported(tmp_path, capsys):
     return report
 
 
+@pytest.mark.nightly
 def test_the_report_calls_roles_and_dimensions_by_their_names(reported):
     out = reported("role")
     tables = {

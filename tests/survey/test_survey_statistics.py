@@ -152,6 +152,7 @@ def plainly(table, draws, seed=0):
     return np.array(found)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("n", [60, 9000])
 def test_resamples_are_distributed_as_tables_drawn_row_by_row(n):
     # 9000 answers are drawn in several blocks; in order these differ, so that how many fall into each one matters.
@@ -249,6 +250,7 @@ def test_the_intervals_of_the_means_rest_on_all_scores_and_those_of_alpha_on_who
 # ---- rotations --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.nightly
 def test_several_starts_find_the_higher_of_two_maxima():
     # With many components the criterion has several maxima; a single start sometimes ends in a lower one.
     lower = 0

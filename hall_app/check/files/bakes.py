@@ -3,53 +3,84 @@
 from __future__ import annotations
 
 import json
+import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import bake_key
 from hall_app.content.bakes.store import NEEDED, RECORD, bake_fault
-from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, recipe_files, walk_files
+from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 
 FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}
-KINDS = {"pattern": "patterns", "weave": "weaves", "mannequin": "mannequins"}
+KINDS = {"pattern": "patterns", "weave": "weaves", "wearer": "mannequins"}  # by what an outfit calls them
+OUTFITS = "outfits"
+KEY = re.compile(r"(?P<key>[a-z][\w.]*): (?P<what>.+)", re.DOTALL)  # as the engine's messages begin
 
 
 def bake_problems(content: Content) -> list[Problem]:
-    """Garments not baked, baked from older inputs, or whose baked files are missing."""
+    """Outfits that cannot be dressed, not baked, baked from older inputs, or whose baked files are missing."""
     faults = _inputs(content)
     found = list(faults.values())
     for exhibit in content.exhibits:
-        if exhibit.file.garment and not faults.keys() & {path for _, path in recipe_files(exhibit.file)}:
+        if exhibit.file.outfit and not faults.keys() & _inputs_of(content.folder, exhibit.file.outfit):
             found += _bake(content, exhibit)
     return found
 
 
+def _inputs_of(folder: Path, outfit: str) -> set[str]:
+    """The outfit file and all it names."""
+    return {outfit, *(path for _, path in outfit_files(folder, outfit))}
+
+
 def _inputs(content: Content) -> dict[str, Problem]:
-    """Path -> what is wrong with it, of every pattern, weave and figure, whether an exhibit names it or not."""
-    readers = _readers()
-    named = {
-        path: KINDS[key.rpartition("_")[2].rpartition(".")[2]]
-        for exhibit in content.exhibits
-        for key, path in recipe_files(exhibit.file)
-    }
+    """Path -> what is wrong with it, of every outfit, pattern, weave and figure, whether an exhibit names it or not."""
+    folder, readers = content.folder, _readers(content.folder)
+    worn = {exhibit.file.outfit for exhibit in content.exhibits if exhibit.file.outfit}
+    worn |= {path for path, _ in _lying(folder, OUTFITS, ".toml")}
+    faults: dict[str, Problem | None] = {}
+    named: dict[str, str] = {}
+    for outfit in sorted(worn):
+        if problems := outfit_problems(folder, outfit):
+            faults[outfit] = problems[0]
+        else:
+            named |= {path: _kind(key) for key, path in outfit_files(folder, outfit)}
     for kind, ending in FOLDERS.items():
-        for file in walk_files(content.folder / kind):
-            if file.suffix == ending:
-                named.setdefault(file.relative_to(content.folder).as_posix(), kind)
-    faults = {path: _fault(content.folder, path, readers[kind]) for path, kind in sorted(named.items())}
+        named = dict(_lying(folder, kind, ending)) | named
+    faults |= {path: _fault(folder, path, readers[kind]) for path, kind in sorted(named.items())}
+    faulty = {path for path, fault in faults.items() if fault is not None}
+    for outfit in sorted(worn - faulty):
+        if not faulty & _inputs_of(folder, outfit):  # a file it names says itself what is wrong
+            faults[outfit] = _fault(folder, outfit, readers[OUTFITS])
     return {path: fault for path, fault in faults.items() if fault is not None}
 
 
-def _readers() -> dict[str, Callable[[Path], Any]]:
+def _lying(folder: Path, kind: str, ending: str) -> Iterator[tuple[str, str]]:
+    """(path, kind) of the files that lie in the folder of a kind."""
+    for file in walk_files(folder / kind):
+        if file.suffix == ending:
+            yield file.relative_to(folder).as_posix(), kind
+
+
+def _kind(key: str) -> str:
+    """What a key of an outfit names: `wearer`, `layer.1.pattern`, `layer.1.weaves.cuff`."""
+    name = "weave" if ".weaves." in key else key.rpartition(".")[2]
+    return KINDS[name]
+
+
+def _readers(folder: Path) -> dict[str, Callable[[Path], Any]]:
     from sim_core.body.mannequin import Mannequin
-    from sim_core.garment import Pattern
+    from sim_core.garment import Pattern, check_fits, load_outfit
     from sim_core.weave import Weave
 
-    return {"patterns": Pattern.load, "weaves": Weave.load, "mannequins": Mannequin.load}
+    def outfit(path: Path) -> None:
+        check_fits(load_outfit(path, folder))
+
+    return {"patterns": Pattern.load, "weaves": Weave.load, "mannequins": Mannequin.load, OUTFITS: outfit}
 
 
 def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | None:
@@ -57,7 +88,7 @@ def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | 
     from sim_core.errors import SimCoreError
 
     if not is_there(folder / path):
-        return Problem(path, "", "missing file", "add it, or correct the path in exhibit.toml")
+        return Problem(path, "", "missing file", "add it, or correct the path of whoever names it")
     if leaves(folder / path, folder):
         return Problem(path, "", f"it {LEAVES[0]}", LEAVES[1])
     try:
@@ -65,9 +96,11 @@ def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | 
             warnings.simplefilter("ignore")  # numpy's, about numbers that are refused a line later
             reader(folder / path)
     except (SimCoreError, OSError) as error:
-        message = str(error).removeprefix(str(folder / path)).lstrip(": ")
+        message = str(error).removeprefix(str(folder / path)).lstrip(": ").replace(f"{folder}/", "")
         what, _, fix = message.partition(" – ")
-        return Problem(path, "", what, fix or "correct the file")
+        told = KEY.match(what)
+        key, what = (told["key"], told["what"]) if told else ("", what)
+        return Problem(path, key, what, fix or "correct the file")
     except Exception as error:  # whatever else an odd file brings about
         reason = " ".join(str(error).split())[:200] or type(error).__name__
         return Problem(path, "", f"cannot be read ({reason})", "correct the file")
@@ -80,19 +113,19 @@ def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
     try:
         key = json.loads(note.read_text("utf-8"))["key"]
     except FileNotFoundError:
-        return [Problem(exhibit.toml, "garment", "has not been baked", fix)]
+        return [Problem(exhibit.toml, "outfit", "has not been baked", fix)]
     except (OSError, ValueError, KeyError, TypeError):
-        return [Problem(exhibit.toml, "garment", "baked/bake.json cannot be read", fix)]
+        return [Problem(exhibit.toml, "outfit", "baked/bake.json cannot be read", fix)]
     if key != bake_key(content, exhibit):
         return [
-            Problem(exhibit.toml, "garment", "its bake is stale: an input or the engine changed since", fix)
+            Problem(exhibit.toml, "outfit", "its bake is stale: an input or the engine changed since", fix)
         ]
     named = [path for _, path in exhibit_files(exhibit.file) if path.startswith(BAKED)]
     wanted = dict.fromkeys([BAKED + name for name in NEEDED] + named)
     missing = [
-        Problem(exhibit.toml, "garment", f"{name} is missing from the bake", fix)
+        Problem(exhibit.toml, "outfit", f"{name} is missing from the bake", fix)
         for name in wanted
         if not is_there(exhibit.folder / name)
     ]
     fault = None if missing else bake_fault(exhibit.folder / BAKED)
-    return [Problem(exhibit.toml, "garment", f"{BAKED}{fault[0]} {fault[1]}", fix)] if fault else missing
+    return [Problem(exhibit.toml, "outfit", f"{BAKED}{fault[0]} {fault[1]}", fix)] if fault else missing

@@ -19,7 +19,7 @@ def unused_problems(content: Content) -> list[Problem]:
         used = _used(exhibit)
         for path in walk_files(exhibit.folder):
             name = path.relative_to(exhibit.folder).as_posix()
-            if name not in used and not (exhibit.file.garment and name.startswith(BAKED)):
+            if name not in used and not (exhibit.file.outfit and name.startswith(BAKED)):
                 found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
     media = content.folder / "media"
     if media.is_dir():

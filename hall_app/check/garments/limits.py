@@ -1,23 +1,50 @@
-"""What a baked garment's measured figures may be, and how they are written."""
+"""What a baked garment's measured figures may be, by what the garment is, and how they are written."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-__all__ = ["LIMITS", "PIBO", "ROBE", "SCARF", "Limit", "limits_of", "writer"]
+__all__ = ["Limit", "Worn", "limits_of", "writer"]
 
-ROBE, SCARF, PIBO = "robe_on_figure", "scarf_on_stand", "pibo_on_figure"
+ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
+# [s] of processor time that dressing a layer may take; a sewn garment that is no mirror image, dressed whole
+PATIENCE, PATIENCE_WHOLE = 180, 900
+
+
+@dataclass(frozen=True)
+class Worn:
+    """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
+    whether one half was dressed against its mirror image, and whether others are worn over it."""
+
+    name: str
+    way: str
+    seams: bool = False
+    sewn: bool = False
+    half: bool = False
+    beneath: bool = False
+
+    @staticmethod
+    def of(garment: Any, *, beneath: bool) -> Worn:
+        """What a `sim_core.garment.Garment` tells of itself; raises KeyError or TypeError where it does not."""
+        kinds = {seam["kind"] for seam in garment.cut["seams"]}
+        whole, way = garment.provenance["whole"], str(garment.provenance["way"])
+        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath)
+
+    @property
+    def on_stand(self) -> bool:
+        """Whether it hangs on a stand, else on a wearer."""
+        return self.way in ON_STAND
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A measured figure and what it may be; recipes: which it is asked of (empty: all)."""
+    """A measured figure of one garment and what it may be."""
 
     name: str
     most: float | None = None
     least: float | None = None
-    recipes: tuple[str, ...] = ()
 
     def keeps(self, value: float) -> bool:
         """Whether the value lies within the limit; what is no number does not."""
@@ -33,47 +60,38 @@ class Limit:
         return f"at least {write(self.least)}" if self.least is not None else ""
 
 
-LIMITS = (
-    Limit("inside_vertices", 0),
-    Limit("inside_midpoints", 0),
-    Limit("inside_centroids", 0),
-    Limit("seam_gap_sewn_m", 1e-3, recipes=(ROBE,)),
-    Limit("seam_gap_m", 1e-4, recipes=(ROBE,)),
-    Limit("area_strain_p95", 0.03),
-    Limit("area_strain_max", 0.10),
-    Limit("rest_p99_m", 1e-5, recipes=(ROBE, PIBO)),
-    Limit("rest_p99_m", 1e-4, recipes=(SCARF,)),
-    Limit("self_intersections", 0, recipes=(SCARF,)),
-    Limit("self_intersections", 25, recipes=(ROBE,)),
-    Limit("self_intersections", 300, recipes=(PIBO,)),
-    Limit("asymmetry_m", 0.010, recipes=(ROBE, PIBO)),
-    # The robe under the scarf is a robe as any other.
-    Limit("robe_inside_vertices", 0, recipes=(PIBO,)),
-    Limit("robe_inside_midpoints", 0, recipes=(PIBO,)),
-    Limit("robe_inside_centroids", 0, recipes=(PIBO,)),
-    Limit("robe_seam_gap_sewn_m", 1e-3, recipes=(PIBO,)),
-    Limit("robe_seam_gap_m", 1e-4, recipes=(PIBO,)),
-    Limit("robe_area_strain_p95", 0.03, recipes=(PIBO,)),
-    Limit("robe_area_strain_max", 0.10, recipes=(PIBO,)),
-    Limit("robe_rest_p99_m", 1e-5, recipes=(PIBO,)),
-    Limit("robe_self_intersections", 25, recipes=(PIBO,)),
-    Limit("robe_asymmetry_m", 0.010, recipes=(PIBO,)),
-    Limit("triangles", least=11_000, recipes=(ROBE, PIBO)),
-    Limit("hall_all_triangles", 6_000, recipes=(ROBE, PIBO)),
-    Limit("hall_hausdorff_mean"),
-    Limit("hall_hausdorff_p99"),
-    Limit("hall_hausdorff_max"),
-    Limit("robe_hall_hausdorff_mean", recipes=(PIBO,)),
-    Limit("robe_hall_hausdorff_p99", recipes=(PIBO,)),
-    Limit("robe_hall_hausdorff_max", recipes=(PIBO,)),
-    Limit("drape_s", 180),
-    Limit("drape_cpu_s", recipes=(ROBE,)),
-)
+def limits_of(worn: Worn, deviation: float, layers: int = 1) -> list[Limit]:
+    """The limits asked of a garment, in the order in which they are told.
+
+    deviation: how far (p99) its model in the hall may be from the close one [m]; layers: of the outfit. Figures of what
+    is worn beneath bear its name: robe_area_strain_max.
+    """
+    found = [Limit(f"inside_{what}", 0) for what in ("vertices", "midpoints", "centroids")]
+    if worn.sewn:
+        found.append(Limit("seam_gap_sewn_m", 1e-3))
+    if worn.seams:
+        found.append(Limit("seam_gap_m", 1e-4))
+    found += [Limit("area_strain_p95", 0.03), Limit("area_strain_max", 0.10)]
+    found += [Limit("rest_p99_m", 1e-4 if worn.on_stand else 1e-5)]
+    found += [Limit("self_intersections", _crossings(worn)), Limit("layer_order", 0)]
+    if worn.half:
+        found.append(Limit("asymmetry_m", 0.010))
+    if not worn.on_stand and not worn.beneath:
+        found += [Limit("triangles", least=11_000), Limit("hall_all_triangles", 6_000)]
+    found += [Limit("hall_hausdorff_mean"), Limit("hall_hausdorff_p99", deviation)]
+    found += [Limit("hall_hausdorff_max")]
+    if not worn.beneath:
+        patience = PATIENCE_WHOLE if worn.sewn and not worn.half else PATIENCE
+        found += [Limit("drape_s"), Limit("drape_cpu_s", patience * layers)]
+    before = f"{worn.name}_" if worn.beneath else ""
+    return [Limit(before + limit.name, limit.most, limit.least) for limit in found]
 
 
-def limits_of(recipe: str) -> list[Limit]:
-    """The limits asked of a recipe's garments, in the order of the table."""
-    return [limit for limit in LIMITS if not limit.recipes or recipe in limit.recipes]
+def _crossings(worn: Worn) -> int:
+    """Edges that may pass through faces: stacked folds of a scarf along the arms squeeze each other most."""
+    if worn.on_stand:
+        return 0
+    return 300 if worn.way == ALONG_PATH else 25
 
 
 def writer(name: str) -> Callable[[float], str]:

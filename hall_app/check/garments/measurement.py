@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hall_app.content.models.glb import accessor, open_glb, read_glb
-from hall_app.content.schema.exhibit import GarmentRecipe
+from hall_app.check.garments.limits import Worn
+from hall_app.content.bakes.store import layer_files
+from hall_app.content.models.glb import open_glb, read_glb
 
 if TYPE_CHECKING:
+    from sim_core.body import Beneath
     from sim_core.garment import Garment
 
 __all__ = ["Cloth", "Measured", "cloth_in", "cloth_figures", "measured_again", "thinned_figures"]
@@ -37,10 +39,11 @@ class Cloth:
 
 @dataclass(frozen=True)
 class Measured:
-    """digest: of the simulated garment's arrays; figures: name -> value; faults: what the files contradict each
-    other in, in words."""
+    """digests: of the simulated garments' arrays, from the skin outwards; worn: what they are; figures: name -> value;
+    faults: what the files contradict each other in, in words."""
 
-    digest: str
+    digests: tuple[str, ...]
+    worn: tuple[Worn, ...]
     figures: dict[str, float]
     faults: tuple[str, ...]
 
@@ -50,16 +53,17 @@ def cloth_in(path: Path, name: str) -> Cloth:
 
     Raises ValueError where the model has none; GlbError, KeyError, IndexError or TypeError where it is broken.
     """
-    document, binary = open_glb(path)
+    parts = open_glb(path)
+    document = parts.document
     places, faces, flat, count = [], [], [], 0
     for node in document["nodes"]:
         if "mesh" not in node or not _named(str(node.get("name", "")), name):
             continue
         for part in document["meshes"][node["mesh"]]["primitives"]:
-            own = accessor(document, binary, part["attributes"]["POSITION"])
+            own = parts.numbers(part["attributes"]["POSITION"])
             places.append(own)
-            faces.append(accessor(document, binary, part["indices"]).astype(int).reshape(-1, 3) + count)
-            flat.append(accessor(document, binary, part["attributes"]["TEXCOORD_0"]) / 1000)
+            faces.append(parts.numbers(part["indices"]).astype(int).reshape(-1, 3) + count)
+            flat.append(parts.numbers(part["attributes"]["TEXCOORD_0"]) / 1000)
             count += len(own)
     if not places:
         raise ValueError(f"{path.name} holds no {name!r}")
@@ -74,8 +78,8 @@ def _named(node: str, name: str) -> bool:
     return node == name or (node.startswith(f"{name} ") and node.removeprefix(f"{name} ").isdigit())
 
 
-def cloth_figures(cloth: Cloth, solids: list[Solid], *, mirrored: bool) -> dict[str, float]:
-    """What any cloth is asked: inside solids, strain, self-intersections; of a mirrored one, how its halves differ."""
+def cloth_figures(cloth: Cloth, solids: list[Solid], *, half: bool) -> dict[str, float]:
+    """What any cloth is asked: inside solids, strain, crossings; of one half and its image, how they differ."""
     from scipy.spatial import KDTree
 
     from sim_core import metrics
@@ -89,7 +93,7 @@ def cloth_figures(cloth: Cloth, solids: list[Solid], *, mirrored: bool) -> dict[
     figures["area_strain_p95"] = float(np.percentile(strain, 95))
     figures["area_strain_max"] = float(strain.max())
     figures["self_intersections"] = metrics.intersections(cloth.positions, cloth.faces)
-    if mirrored:
+    if half:
         away, _ = KDTree(cloth.positions).query(cloth.positions * [-1.0, 1.0, 1.0])
         figures["asymmetry_m"] = float(np.max(away))
     return figures
@@ -103,52 +107,48 @@ def thinned_figures(close: Cloth, hall: Cloth, *, spacing: float = FINE) -> dict
     return {f"hall_hausdorff_{name}": getattr(apart, name) for name in ("mean", "p99", "max")}
 
 
-def robe_beneath(folder: Path, robe: str, lift: float, body: Solid) -> tuple[dict[str, float], Cloth]:
-    """Figures of the robe a scarf lies on, named robe_…, and the robe as simulated (its models stand `lift` [m] up)."""
-    close, hall = cloth_in(folder / "close.glb", robe), cloth_in(folder / "hall.glb", robe)
-    worn = Cloth(close.positions - [0.0, lift, 0.0], close.faces, close.rest)
-    figures = cloth_figures(worn, [body], mirrored=True) | thinned_figures(close, hall)
-    return {f"robe_{name}": value for name, value in figures.items()}, worn
+def measured_again(folder: Path, count: int) -> Measured:
+    """Measure the bake in `folder` of an outfit of `count` layers, from the garments and models that are shipped.
 
-
-def measured_again(root: Path, table: GarmentRecipe, folder: Path) -> Measured:
-    """Measure the bake in `folder` of the recipe `table`, whose files lie under `root`.
-
-    Raises SimCoreError, GlbError, ValueError, KeyError, IndexError, TypeError or OSError for files that cannot be read.
+    Figures of what is worn beneath bear its name: robe_self_intersections. Raises SimCoreError, GlbError, ValueError,
+    KeyError, IndexError, TypeError or OSError for files that cannot be read.
     """
     from sim_core.garment import Garment
+
+    garments = [Garment.load(folder / name) for name in layer_files(count)]
+    figures: dict[str, float] = {}
+    worn: list[Worn] = []
+    faults: list[str] = []
+    for number, garment in enumerate(garments, 1):
+        beneath = number < count
+        worn.append(Worn.of(garment, beneath=beneath))
+        own, fault = _layer_figures(folder, garment, worn[-1])
+        figures |= {f"{garment.name}_{name}" if beneath else name: value for name, value in own.items()}
+        faults += fault
+    figures["hall_all_triangles"] = read_glb(folder / "hall.glb").triangles
+    return Measured(tuple(g.digest() for g in garments), tuple(worn), figures, tuple(faults))
+
+
+def _layer_figures(folder: Path, garment: Garment, worn: Worn) -> tuple[dict[str, float], tuple[str, ...]]:
+    """The figures of one garment, and where its models contradict it."""
     from sim_core.garment.levels.figure import BASE
 
-    garment = Garment.load(folder / "garment.npz")
+    if garment.settled is None:
+        raise ValueError(f"{garment.name} does not say what it lies on")
     cloth = Cloth(garment.positions, garment.faces, garment.rest_corners())
-    solids, under = _solids(root, table, garment), {}
-    lift = BASE[1] if table.mannequin else 0.0
-    if table.robe_pattern is not None:
-        from sim_core.garment import Pattern
-        from sim_core.garment.recipes.worn_solid import capped
-
-        name = Pattern.load(root / table.robe_pattern).name
-        under, robe = robe_beneath(folder, name, lift, solids[0])
-        solids.append(capped(robe.positions, robe.faces))
-    figures = cloth_figures(cloth, solids, mirrored=bool(garment.cut.get("mirror"))) | under
-    shown, hall = cloth_in(folder / "close.glb", garment.name), cloth_in(folder / "hall.glb", garment.name)
-    figures |= thinned_figures(shown, hall, spacing=COARSE)
+    figures = cloth_figures(cloth, _solids(garment.settled.beneath), half=worn.half)
+    shown, hall = (cloth_in(folder / name, garment.name) for name in ("close.glb", "hall.glb"))
+    figures |= thinned_figures(shown, hall, spacing=FINE if worn.beneath else COARSE)
     figures["triangles"], figures["vertices"] = len(garment.faces), len(garment.positions)
     figures["hall_triangles"] = len(hall.faces)
-    figures["hall_all_triangles"] = read_glb(folder / "hall.glb").triangles
-    return Measured(garment.digest(), figures, _contradictions(garment, shown, lift))
+    return figures, _contradictions(garment, shown, 0.0 if worn.on_stand else BASE[1])
 
 
-def _solids(root: Path, table: GarmentRecipe, garment: Garment) -> list[Solid]:
-    """What the cloth hangs on: the posed figure, or the stand."""
-    if table.mannequin is not None:
-        from sim_core.body.mannequin import Mannequin
-
-        figure = Mannequin.load(root / table.mannequin)
-        return [(figure.posed(table.arm, table.elbow), figure.faces)]
-    from sim_core.garment import Stand
-
-    return [Stand(**garment.provenance["stand"]).mesh(48)]
+def _solids(beneath: Beneath) -> list[Solid]:
+    """What the cloth lies on: the stand, or the posed figure and what it wears already."""
+    if beneath.stand is not None:
+        return [beneath.stand.mesh(48)]
+    return [(surface.vertices, surface.faces) for surface in beneath.surfaces]
 
 
 def _contradictions(garment: Garment, shown: Cloth, lift: float) -> tuple[str, ...]:
@@ -158,6 +158,7 @@ def _contradictions(garment: Garment, shown: Cloth, lift: float) -> tuple[str, .
     away, _ = KDTree(garment.positions + [0.0, lift, 0.0]).query(shown.positions)
     if len(shown.faces) == len(garment.faces) and float(np.max(away)) < SHOWN:
         return ()
-    return (
-        f"close.glb shows another cloth than garment.npz (up to {1000 * float(np.max(away)):.1f} mm away)",
+    what = (
+        f"another cloth than {garment.name!r} was simulated (up to {1000 * float(np.max(away)):.1f} mm away)"
     )
+    return (f"close.glb shows {what}",)

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hall_app.check.garments.limits import PIBO, limits_of, writer
+from hall_app.check.garments.limits import Worn, limits_of, writer
 from hall_app.check.garments.measurement import Measured, measured_again
-from hall_app.content.bakes.store import bake_fault, baked_here, key_now, read_record
+from hall_app.content.bakes.store import bake_fault, baked_here, key_now, layer_files, read_record
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.loading import load
-from hall_app.content.schema.exhibit import GarmentRecipe
+from hall_app.content.schema.exhibit import Show
 
 __all__ = ["Line", "figure_lines", "garment_lines", "garments_checked", "table"]
 
 Numbers = Mapping[str, Any]
-SAME = 2e-3  # share by which a figure measured again from single precision may differ
+SAME = 2e-3  # share by which a figure measured again may differ
 ALIKE = 0.35  # the same of a distance of two surfaces, which is measured again on a seventh of the samples
 
 
@@ -45,12 +45,12 @@ def garment_lines(content: Content) -> list[Line]:
         exhibit = problem.file.split("/")[1] if problem.file.startswith("exhibits/") else problem.file
         lines.append(Line(exhibit, "exhibit", None, str(problem), False))
     for exhibit in content.exhibits:
-        if exhibit.file.garment is not None:
-            lines += _of(content, exhibit, exhibit.file.garment)
+        if exhibit.file.outfit is not None:
+            lines += _of(content, exhibit)
     return lines
 
 
-def _of(content: Content, exhibit: Exhibit, recipe: GarmentRecipe) -> list[Line]:
+def _of(content: Content, exhibit: Exhibit) -> list[Line]:
     folder, fix = baked_here(exhibit), f"run: hall build --exhibit {exhibit.id}"
 
     def wrong(name: str, what: str) -> Line:
@@ -64,23 +64,28 @@ def _of(content: Content, exhibit: Exhibit, recipe: GarmentRecipe) -> list[Line]
         lines.append(wrong("bake", "is stale: an input or the engine changed since"))
     if fault := bake_fault(folder):
         return [*lines, wrong("files", f"baked/{fault[0]} {fault[1]}")]
+    layers = record.get("layers")
+    if not isinstance(layers, list) or not layers:
+        return [*lines, wrong("bake", "does not tell its layers")]
     try:
-        again = measured_again(content.folder, recipe, folder)
+        again = measured_again(folder, len(layers))
     except Exception as error:  # files of whatever kind, whose digests are right
         reason = " ".join(str(error).split())[:200] or type(error).__name__
         return [*lines, wrong("files", f"cannot be measured ({reason})")]
-    if again.digest != record.get("digest"):
-        lines.append(wrong("digest", "garment.npz is not the garment that bake.json tells of"))
+    told = [layer.get("digest") if isinstance(layer, dict) else None for layer in layers]
+    for name, digest, noted in zip(layer_files(len(layers)), again.digests, told, strict=True):
+        if digest != noted:
+            lines.append(wrong("digest", f"{name} is not the garment that bake.json tells of"))
     lines += [wrong("files", fault) for fault in again.faults]
-    return lines + figure_lines(exhibit.id, recipe, record, again)
+    return lines + figure_lines(exhibit.id, exhibit.file.show, record, again)
 
 
-def figure_lines(exhibit: str, recipe: GarmentRecipe, record: Numbers, again: Measured) -> list[Line]:
-    """Each limit of the recipe against the record's figure, which is believed only where measuring again agrees."""
-    told, limits = _told(record), _budgets(recipe)
-    lines = []
-    for limit in limits_of(recipe.recipe):
-        limit = replace(limit, most=limits.get(limit.name, limit.most))
+def figure_lines(exhibit: str, show: Show, record: Numbers, again: Measured) -> list[Line]:
+    """Each limit of the layers, the outermost first, against the record's figure; that is believed only where measuring
+    again agrees."""
+    told, lines, layers = _told(record), [], len(again.worn)
+    asked = [limits_of(worn, _deviation(worn, show), layers) for worn in again.worn[::-1]]
+    for limit in [limit for limits in asked for limit in limits]:
         value, found = told.get(limit.name), again.figures.get(limit.name)
         if value is None:
             value = found
@@ -96,32 +101,25 @@ def figure_lines(exhibit: str, recipe: GarmentRecipe, record: Numbers, again: Me
 
 
 def _told(record: Numbers) -> dict[str, Any]:
-    """The record's figures by the limits' names; the time of a drape counts that of the robe beneath."""
+    """The record's figures by the limits' names."""
     errors, seconds, stages = (
         part if isinstance(part, dict) else {} for part in map(record.get, ("errors", "seconds", "stages"))
     )
-    told = {**errors, "drape_cpu_s": stages.get("drape_cpu")}
-    times = [seconds.get("drape"), seconds.get("beneath", 0.0)]
-    odd = [time for time in times if not isinstance(time, int | float)]
-    told["drape_s"] = odd[0] if odd else sum(times)
-    return told
+    return {**errors, "drape_s": seconds.get("drape"), "drape_cpu_s": stages.get("drape_cpu")}
 
 
-def _budgets(recipe: GarmentRecipe) -> dict[str, float]:
-    """How far a hall model may be from the close one [m], p99: what the recipe was thinned to."""
-    from hall_app.build.garment import budget
-    from hall_app.build.recipes.pibo import HALL_ROBE
+def _deviation(worn: Worn, show: Show) -> float:
+    """How far a garment's hall model may be from the close one [m], p99: what it was thinned to."""
+    from hall_app.build.look import HALL_BENEATH
+    from hall_app.build.outfit import budget
 
-    own = {"hall_hausdorff_p99": budget(recipe.nearest, recipe.hall_error_px)}
-    return own | ({"robe_hall_hausdorff_p99": HALL_ROBE} if recipe.recipe == PIBO else {})
+    return HALL_BENEATH if worn.beneath else budget(show.nearest, show.hall_error_px)
 
 
 def _agree(name: str, told: float, found: float) -> bool:
     """Whether a figure of the record is what measuring again finds."""
     if "hausdorff" in name:
         return abs(told - found) <= ALIKE * found + 2e-4
-    if name.startswith("robe_") and "intersections" in name:
-        return abs(told - found) <= 1 + SAME * found  # from single precision
     if "strain" in name or name.endswith("_m"):
         return abs(told - found) <= SAME * found + 1e-5
     return told == found

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from hall_app.content.behaviours import MOVING
 from hall_app.content.floor.placement import overlapping_bodies
 from hall_app.content.floor.walkable import facing_spots, reached_spots
 from hall_app.content.folder import Content, Exhibit
@@ -34,7 +35,7 @@ def _unreached(content: Content, exhibit: Exhibit, spots: np.ndarray) -> list[Pr
         what = f"cannot be reached on foot: nobody comes within {WITHIN:g} m and sees it (behind a wall?)"
         fix = "move place.x, place.z to the open side, or open a way of 0.75 m in plan.toml"
         return [Problem(exhibit.toml, "place", what, fix)]
-    if "turn_slowly" in exhibit.file.behaviours:
+    if MOVING.intersection(exhibit.file.behaviours):
         return []  # it shows every side by itself
     place = exhibit.file.place
     front = np.array([math.sin(math.radians(place.facing)), math.cos(math.radians(place.facing))])

@@ -6,11 +6,12 @@ import io
 from pathlib import Path
 
 from hall_app.content.folder import Content
-from hall_app.content.models.glb import GlbError, GlbInfo, open_glb, read_glb
+from hall_app.content.models.glb import GlbInfo, open_glb, read_glb
 from hall_app.content.models.pictures import picture_fault
 from hall_app.content.problems import Problem
 from hall_app.room.bake.key import room_key
 from hall_app.room.bake.store import ENVIRONMENT, GLB, RECORD, room_fault, room_here, room_record
+from sim_core.gltf import GlbError, GlbParts
 
 MB = 1_000_000
 TRIANGLES, BYTES = 40_000, 1.8 * MB
@@ -52,28 +53,26 @@ def _unopened(folder: Path) -> tuple[str, str] | None:
     """(file name, what is wrong) of the first file of the room that cannot be shown, whatever its record says."""
     try:
         read_glb(folder / GLB)
-        document, binary = open_glb(folder / GLB)
+        parts = open_glb(folder / GLB)
     except (GlbError, OSError) as error:
         return GLB, f"cannot be opened: {error}"
-    names = [str(mesh.get("name", "")) for mesh in document["meshes"]]
+    names = [str(mesh.get("name", "")) for mesh in parts.document["meshes"]]
     if names.count(LIGHT) != 1 or not any(name.startswith(MESH) for name in names):
         return GLB, f"is no baked room: it has no meshes {MESH}… with a {LIGHT}"
-    if fault := _texture_fault(document, binary):
+    if fault := _texture_fault(parts):
         return GLB, fault
     if fault := picture_fault(folder / ENVIRONMENT):
         return ENVIRONMENT, f"cannot be shown: {fault[0]}"
     return None
 
 
-def _texture_fault(document: dict, binary: bytes) -> str | None:
+def _texture_fault(parts: GlbParts) -> str | None:
     """What is wrong with the first texture that cannot be decoded."""
     from PIL import Image
 
-    for number, image in enumerate(document.get("images", ()), 1):
-        view = document["bufferViews"][image["bufferView"]]
-        start = view.get("byteOffset", 0)
+    for number, data in enumerate(parts.pictures(), 1):
         try:
-            with Image.open(io.BytesIO(binary[start : start + view["byteLength"]])) as picture:
+            with Image.open(io.BytesIO(data)) as picture:
                 picture.load()
         except Exception as error:  # a decoder of foreign files may fail in any way
             return f"its texture {number} cannot be shown ({error})"[:200]

@@ -1,8 +1,10 @@
 """Baked garments as they lie in folders.
 
-key: of the inputs; record: digests of the files; store: where a bake lies; models: what an exhibit is drawn with.
+inputs: what an outfit names; key: of inputs; record: digests of the files; store: where a bake lies; models: what an
+exhibit is drawn with.
 """
 
+from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import BAKE_VERSION, KEY_DIGITS, bake_key
 from hall_app.content.bakes.models import ExhibitModels, models_of
 from hall_app.content.bakes.record import FILES, Fault, publish, seal, seal_fault, seal_record, text_of
@@ -13,6 +15,7 @@ from hall_app.content.bakes.store import (
     baked_here,
     data_bake,
     key_now,
+    layer_files,
     read_record,
 )
 
@@ -29,7 +32,10 @@ __all__ = [
     "baked_here",
     "data_bake",
     "key_now",
+    "layer_files",
     "models_of",
+    "outfit_files",
+    "outfit_problems",
     "publish",
     "read_record",
     "seal",

@@ -5,29 +5,37 @@ from __future__ import annotations
 import hashlib
 import json
 
+from hall_app.content.bakes.inputs import outfit_files
 from hall_app.content.folder import Content, Exhibit
 
-__all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key"]
+__all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key", "dressing_key"]
 
 # Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
-BAKE_VERSION = 7
+BAKE_VERSION = 8
 
 KEY_DIGITS = 16
 
 
 def bake_key(content: Content, exhibit: Exhibit) -> str:
-    """16 hex digits over recipe, settings, patterns, weaves, mannequin and BAKE_VERSION.
+    """16 hex digits over the outfit file and every file it names, how it is shown, and BAKE_VERSION.
 
-    Raises ValueError for an exhibit without a garment.
+    Raises ValueError for an exhibit without an outfit, and what `outfit_files` raises for one that cannot be read.
     """
-    recipe = exhibit.file.garment
-    if recipe is None:
-        raise ValueError(f"exhibit {exhibit.id} has no garment to bake")
-    digest = hashlib.sha256(f"bake {BAKE_VERSION}\n".encode())
-    digest.update(json.dumps(recipe.model_dump(), sort_keys=True).encode())
-    for path in filter(
-        None, (recipe.pattern, recipe.weave, recipe.mannequin, recipe.robe_pattern, recipe.robe_weave)
-    ):
+    shown = json.dumps(exhibit.file.show.model_dump(), sort_keys=True)
+    return _hash(content, exhibit, f"bake {BAKE_VERSION}\n{shown}")
+
+
+def dressing_key(content: Content, exhibit: Exhibit) -> str:
+    """The same without how it is shown: what decides garments, film and pictures, and costs most of a bake."""
+    return _hash(content, exhibit, f"dressing {BAKE_VERSION}\n")
+
+
+def _hash(content: Content, exhibit: Exhibit, begin: str) -> str:
+    outfit = exhibit.file.outfit
+    if outfit is None:
+        raise ValueError(f"exhibit {exhibit.id} has no outfit to bake")
+    digest = hashlib.sha256(begin.encode())
+    for path in dict.fromkeys([outfit, *(path for _, path in outfit_files(content.folder, outfit))]):
         digest.update(f"\0{path}\0".encode())
         digest.update((content.folder / path).read_bytes())
     return digest.hexdigest()[:KEY_DIGITS]

@@ -38,7 +38,7 @@ def models_of(
     data: the data folder, where a bake of its own may lie; None looks beside the exhibit alone. stale: whether a bake
     of earlier inputs will do.
     """
-    if exhibit.file.garment is None:
+    if exhibit.file.outfit is None:
         hall, close = exhibit.model_path("hall"), exhibit.model_path("close")
         return ExhibitModels(hall, close or hall, None) if hall is not None else None
     folder = bake_folder(content, exhibit, data, stale=stale)

@@ -19,11 +19,18 @@ __all__ = [
     "baked_here",
     "data_bake",
     "key_now",
+    "layer_files",
     "read_record",
 ]
 
 RECORD = "bake.json"
-NEEDED = ("garment.npz", "hall.glb", "close.glb")
+GARMENT = "garment.npz"  # the outermost layer
+NEEDED = (GARMENT, "hall.glb", "close.glb")
+
+
+def layer_files(count: int) -> tuple[str, ...]:
+    """File names of the garments of `count` layers, from the skin outwards."""
+    return (*(f"beneath-{number}.npz" for number in range(1, count)), GARMENT)
 
 
 def read_record(folder: Path) -> dict[str, Any] | None:
@@ -61,7 +68,7 @@ def key_now(content: Content, exhibit: Exhibit) -> str | None:
     """The key of a bake of the exhibit's inputs as they are now, None while one of them cannot be read."""
     try:
         return bake_key(content, exhibit)
-    except OSError:  # it went away after the content was read
+    except (OSError, ValueError, RecursionError):  # it went away, or was spoilt, after the content was read
         return None
 
 

@@ -4,7 +4,7 @@ pictures: any picture; glb: models, their header and numbers; colours: a model's
 """
 
 from hall_app.content.models.colours import difference, hex_of, main_colour
-from hall_app.content.models.glb import GlbError, GlbInfo, accessor, open_glb, read_glb
+from hall_app.content.models.glb import GlbError, GlbInfo, open_glb, read_glb
 from hall_app.content.models.pictures import FORMATS, LARGEST, PictureError, picture_fault, picture_size
 
 __all__ = [
@@ -13,7 +13,6 @@ __all__ = [
     "GlbError",
     "GlbInfo",
     "PictureError",
-    "accessor",
     "difference",
     "hex_of",
     "main_colour",

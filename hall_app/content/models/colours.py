@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hall_app.content.models.glb import accessor, open_glb
+from hall_app.content.models.glb import open_glb
 from hall_app.content.models.pictures import LARGEST, PictureError, picture_size
+from sim_core.gltf import GlbParts
 
 __all__ = ["difference", "hex_of", "main_colour"]
 
@@ -43,7 +44,8 @@ def main_colour(path: Path) -> Floats | None:
 
     None where no material covers anything. Raises what reading a broken GLB raises, PictureError for a huge texture.
     """
-    document, binary = open_glb(path)
+    parts = open_glb(path)
+    document = parts.document
     area: dict[int, float] = {}
     tone: dict[int, Floats] = {}
     for node in document.get("nodes", ()):
@@ -51,7 +53,7 @@ def main_colour(path: Path) -> Floats | None:
             continue
         for primitive in document["meshes"][node["mesh"]]["primitives"]:
             material = primitive.get("material", -1)
-            covered, tint = _covered(document, binary, primitive)
+            covered, tint = _covered(parts, primitive)
             before = area.get(material, 0.0)
             area[material] = before + covered
             if covered > 0:
@@ -60,37 +62,36 @@ def main_colour(path: Path) -> Floats | None:
     if not tone:
         return None
     most = max(tone, key=lambda material: area[material])
-    return tone[most] * _colour_of(document, binary, most)
+    return tone[most] * _colour_of(parts, most)
 
 
-def _covered(document: dict[str, Any], binary: bytes, primitive: dict[str, Any]) -> tuple[float, Floats]:
+def _covered(parts: GlbParts, primitive: dict[str, Any]) -> tuple[float, Floats]:
     """Area [m2] of a primitive's triangles and the mean of its vertex colours."""
     attributes = primitive["attributes"]
-    points = accessor(document, binary, attributes["POSITION"])
+    points = parts.numbers(attributes["POSITION"])
     index = np.arange(len(points))
     if "indices" in primitive:
-        index = accessor(document, binary, primitive["indices"]).reshape(-1).astype(int)
+        index = parts.numbers(primitive["indices"]).reshape(-1).astype(int)
     corners = points[index[: len(index) // 3 * 3].reshape(-1, 3)]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     tint = np.ones(3)
     if "COLOR_0" in attributes:
-        tint = accessor(document, binary, attributes["COLOR_0"])[:, :3].mean(0)
+        tint = parts.numbers(attributes["COLOR_0"])[:, :3].mean(0)
     return float(np.linalg.norm(cross, axis=1).sum() / 2), tint
 
 
-def _colour_of(document: dict[str, Any], binary: bytes, number: int) -> Floats:
+def _colour_of(parts: GlbParts, number: int) -> Floats:
     """(3,) linear light: a material's factor times the mean of its texture."""
     if number < 0:
         return np.ones(3)
+    document = parts.document
     look = document["materials"][number].get("pbrMetallicRoughness", {})
     colour = np.array(look.get("baseColorFactor", [1.0, 1.0, 1.0, 1.0])[:3], float)
     if "baseColorTexture" not in look:
         return colour
     texture = document["textures"][look["baseColorTexture"]["index"]]
     source = texture.get("source", texture.get("extensions", {}).get("EXT_texture_webp", {}).get("source"))
-    view = document["bufferViews"][document["images"][source]["bufferView"]]
-    start = view.get("byteOffset", 0)
-    return colour * _mean(binary[start : start + view["byteLength"]])
+    return colour * _mean(parts.picture(source))
 
 
 def _mean(data: bytes) -> Floats:

@@ -1,34 +1,21 @@
-"""Reading a GLB: is it one, is it plain, how much does it hold, which numbers? numpy only, no drawing."""
+"""Looking into a GLB: is it plain, how much does it hold, how large is it? No drawing."""
 
 from __future__ import annotations
 
-import json
-import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hall_app.content.models.pictures import PictureError, picture_size
+from sim_core.gltf import GlbError, GlbParts, glb_parts
 
 # The page has no decoder for these: it would look for one on the network, and the hall works without.
 REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
-MAGIC, JSON_CHUNK = 0x46546C67, 0x4E4F534A
 TRIANGLES, STRIP, FAN = 4, 5, 6
 MOST = 2**32  # values one accessor can hold: their indices have 32 bits
-_COMPONENTS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTH = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 Corner = tuple[float, float, float]
-
-
-class GlbError(ValueError):
-    """The file is no readable, plain GLB; `fix` says what to do."""
-
-    def __init__(self, what: str, fix: str) -> None:
-        super().__init__(what)
-        self.fix = fix
 
 
 @dataclass(frozen=True)
@@ -49,15 +36,15 @@ class GlbInfo:
 
 def read_glb(path: Path) -> GlbInfo:
     """Read header and JSON of the GLB at `path`. Raises GlbError naming the fault, OSError if unreadable."""
-    data = path.read_bytes()
-    document, binary = _chunks(data)
+    parts = open_glb(path)
+    document = parts.document
     try:
         extensions = _plain_extensions(document)
         _no_outside_files(document)
         triangles = _triangles(document)
         with np.errstate(all="ignore"):  # what is not finite is refused by name
             low, high = _bounds(document)
-        return GlbInfo(len(data), triangles, _textures(document, binary), extensions, low, high)
+        return GlbInfo(len(parts.data), triangles, _textures(parts), extensions, low, high)
     except GlbError:
         raise
     except (KeyError, IndexError, TypeError, AttributeError, ValueError, ArithmeticError) as error:
@@ -82,42 +69,9 @@ def _plain_extensions(document: dict[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(extensions))
 
 
-def open_glb(path: Path) -> tuple[dict[str, Any], bytes]:
-    """The glTF document and the binary blob of the GLB at `path`. Raises GlbError if it is none."""
-    return _chunks(path.read_bytes())
-
-
-def accessor(document: dict[str, Any], binary: bytes, number: int) -> NDArray[np.float64]:
-    """(N, width) an accessor's numbers; fractions where they are normalised. Raises what a broken file brings about."""
-    entry = document["accessors"][number]
-    view = document["bufferViews"][entry["bufferView"]]
-    kind, width = np.dtype(_COMPONENTS[entry["componentType"]]), _WIDTH[entry["type"]]
-    start = view.get("byteOffset", 0) + entry.get("byteOffset", 0)
-    stride = view.get("byteStride", width * kind.itemsize)
-    rows = np.ndarray((entry["count"], width), kind, binary, start, (stride, kind.itemsize))
-    values = rows.astype(float)
-    return values / np.iinfo(kind).max if entry.get("normalized") else values
-
-
-def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
-    broken = "the GLB is broken or cut off"
-    if len(data) < 20 or struct.unpack_from("<I", data)[0] != MAGIC:
-        raise GlbError("not a GLB file", "export the model as binary glTF 2.0 (.glb)")
-    _, version, length = struct.unpack_from("<III", data)
-    if version != 2 or length > len(data):
-        raise GlbError(
-            f"{broken}: {len(data)} bytes of {length}, version {version}", "copy or export it again"
-        )
-    size, kind = struct.unpack_from("<II", data, 12)
-    if kind != JSON_CHUNK or 20 + size > len(data):
-        raise GlbError(f"{broken}: no JSON part", "export the model again")
-    try:
-        document = json.loads(data[20 : 20 + size])
-    except (ValueError, RecursionError) as error:
-        raise GlbError(f"{broken}: its JSON part cannot be read", "export the model again") from error
-    if not isinstance(document, dict):
-        raise GlbError(f"{broken}: its JSON part is no object", "export the model again")
-    return document, data[20 + size + 8 :]
+def open_glb(path: Path) -> GlbParts:
+    """The parts of the GLB at `path`. Raises GlbError if it is none, OSError if unreadable."""
+    return glb_parts(path.read_bytes())
 
 
 def _no_outside_files(document: dict[str, Any]) -> None:
@@ -188,17 +142,10 @@ def _matrix(node: dict[str, Any]) -> np.ndarray:
     return matrix
 
 
-def _textures(document: dict[str, Any], binary: bytes) -> tuple[tuple[int, int], ...]:
-    sizes = []
-    for image in document.get("images", ()):
-        if "bufferView" not in image:
-            continue
-        view = document["bufferViews"][image["bufferView"]]
-        start = view.get("byteOffset", 0)
-        try:
-            sizes.append(picture_size(binary[start : start + view["byteLength"]]))
-        except PictureError as error:
-            raise GlbError(
-                f"one of its textures cannot be read: {error}", "embed textures as PNG or JPEG"
-            ) from error
-    return tuple(sizes)
+def _textures(parts: GlbParts) -> tuple[tuple[int, int], ...]:
+    try:
+        return tuple(picture_size(picture) for picture in parts.pictures())
+    except PictureError as error:
+        raise GlbError(
+            f"one of its textures cannot be read: {error}", "embed textures as PNG or JPEG"
+        ) from error

@@ -9,7 +9,8 @@ from pathlib import Path
 __all__ = ["LARGEST", "PictureError", "picture_fault", "picture_size"]
 
 LARGEST = 8192  # [pixels] a side; beyond it graphics cards and Pillow's own guard refuse
-FORMATS = {".jpg": "JPEG", ".jpeg": "JPEG", ".png": "PNG", ".webp": "WEBP"}
+FORMATS = {".jpg": "JPEG", ".jpeg": "JPEG", ".png": "PNG", ".webp": "WEBP", ".svg": "SVG"}
+_SVG = "{http://www.w3.org/2000/svg}"
 
 
 class PictureError(ValueError):
@@ -42,6 +43,8 @@ def picture_fault(path: Path) -> tuple[str, str] | None:
 
     try:
         data = path.read_bytes()
+        if path.suffix.lower() == ".svg":
+            return _drawing_fault(data)
         kind, size = _head(data)
     except OSError as error:
         return f"cannot be read ({error.strerror})", "check the file"
@@ -58,4 +61,29 @@ def picture_fault(path: Path) -> tuple[str, str] | None:
             picture.load()
     except Exception as error:  # a decoder of foreign files may fail in any way
         return f"it is broken or cut off ({error})", "copy or export it again"
+    return None
+
+
+def _drawing_fault(data: bytes) -> tuple[str, str] | None:
+    """The same of an SVG: it must be whole, and neither run anything nor ask for anything beyond itself."""
+    from xml.etree import ElementTree
+
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        return "it declares a document type, which may unfold without end", "export it again as plain SVG"
+    try:
+        root = ElementTree.fromstring(data)
+    except ElementTree.ParseError as error:
+        return f"it is broken or cut off ({error})", "copy or export it again"
+    if root.tag != f"{_SVG}svg":
+        return "it is no SVG", "export it again as SVG, or correct its name"
+    for element in root.iter():
+        called = [name for name in element.attrib if name.rpartition("}")[2].lower().startswith("on")]
+        if element.tag in (f"{_SVG}script", f"{_SVG}foreignObject") or called:
+            return "it holds a program, which the hall does not run", "remove scripts and on… attributes"
+        links = [value for name, value in element.attrib.items() if name.rpartition("}")[2] == "href"]
+        if any(not link.startswith(("#", "data:image/")) for link in links):
+            return (
+                "it asks for another file, which a picture cannot",
+                "put what it shows into the file itself",
+            )
     return None

@@ -4,7 +4,7 @@ values: what their tables share; hall, plan, exhibit: one file each; complaints:
 """
 
 from hall_app.content.schema.complaints import key_name, schema_problems, table_of, toml_problem
-from hall_app.content.schema.exhibit import Body, ExhibitFile, GarmentRecipe, Media, Models, Place, Record
+from hall_app.content.schema.exhibit import Body, ExhibitFile, Media, Models, Place, Record, Show
 from hall_app.content.schema.hall import Eye, HallFile, Start
 from hall_app.content.schema.plan import (
     Bay,
@@ -27,7 +27,6 @@ __all__ = [
     "Curtain",
     "ExhibitFile",
     "Eye",
-    "GarmentRecipe",
     "HallFile",
     "Lantern",
     "Laylight",
@@ -38,6 +37,7 @@ __all__ = [
     "PlanFile",
     "Record",
     "Round",
+    "Show",
     "Sign",
     "Solid",
     "Start",

@@ -19,7 +19,8 @@ REMEDIES = {
     "blank_text": "write the text, in both languages",
     "unsafe_path": "copy the file into the folder and write its path from there, with / and without ..",
     "one_footprint": "keep one of them and remove the others",
-    "one_model": "keep the table that makes the model and remove the other",
+    "one_model": 'keep one: outfit = "outfits/….toml", or a [models] table',
+    "show_alone": "remove it",
     "one_source": 'write file = "media/…" or files = ["media/…", …]',
     "body_shape": 'write shape = "round" with radius, or shape = "box" with size = [width, depth]',
     "zero_length": "give the wall two different ends",
@@ -33,6 +34,14 @@ REMEDIES = {
     "finite_number": "write an ordinary number",
     "tuple_type": "write a list in [ ]",
     "model_type": 'write a table, e.g. { zh = "…", en = "…" }',
+}
+
+# Keys that files had once: what became of each, and what to write instead.
+FORMER: dict[Location, tuple[str, str]] = {
+    ("garment",): (
+        "no longer a table: pattern, weave and wearer stand in an outfit file",
+        'write outfit = "outfits/….toml" above the first table, and nearest and hall_error_px below [show]',
+    )
 }
 
 
@@ -51,6 +60,8 @@ def schema_problems(file: str, model: type[BaseModel], error: ValidationError) -
 def _problem(file: str, model: type[BaseModel], detail: ErrorDetails) -> Problem:
     location, kind, message = detail["loc"], detail["type"], detail["msg"]
     key = key_name(location)
+    if kind == "extra_forbidden" and location in FORMER:
+        return Problem(file, key, *FORMER[location])
     if kind == "extra_forbidden":
         known = _known_keys(model, location[:-1])
         close = difflib.get_close_matches(str(location[-1]), known, n=1)

@@ -43,30 +43,13 @@ class Models(Table):
     )
 
 
-class GarmentRecipe(Table):
-    """How `hall build` makes the garment."""
+class Show(Table):
+    """From how near an outfit is seen, which decides how coarse its model in the hall may be."""
 
-    pattern: ContentPath = Field(description="pattern file, e.g. patterns/pibo.toml")
-    weave: ContentPath = Field(description="weave file, e.g. weaves/gauze.toml")
-    recipe: Literal["scarf_on_stand", "robe_on_figure", "pibo_on_figure"] = Field(
-        description="how it is draped: scarf_on_stand, robe_on_figure or pibo_on_figure"
-    )
-    mannequin: ContentPath | None = Field(
-        None, description="figure of robe_on_figure and pibo_on_figure, e.g. mannequins/woman.npz"
-    )
-    robe_pattern: ContentPath | None = Field(
-        None, description="pattern of the robe under the scarf of pibo_on_figure, e.g. patterns/robe.toml"
-    )
-    robe_weave: ContentPath | None = Field(None, description="its weave, e.g. weaves/juan.toml")
-    robe_edge: float = Field(0.02, ge=0.004, le=0.1, description="edge length of its mesh [m]")
-    arm: float = Field(45.0, ge=0, le=70, description="degrees its upper arms hang below horizontal")
-    elbow: float = Field(12.0, ge=0, le=100, description="degrees its forearms are bent forward")
-    edge: float = Field(0.012, ge=0.004, le=0.1, description="edge length of the simulated cloth mesh [m]")
-    seed: int = Field(1, ge=0, description="seed of every random number of the recipe")
-    hall_error_px: float = Field(
-        1.0, gt=0, le=20, description="greatest deviation of the hall model, in pixels at the nearest view"
-    )
     nearest: Metres = Field(1.3, description="nearest distance from which a visitor sees it [m]")
+    hall_error_px: float = Field(
+        1.0, gt=0, le=20, description="greatest deviation of the hall's model, in pixels at the nearest view"
+    )
 
 
 class Body(Table):
@@ -140,10 +123,11 @@ class ExhibitFile(Table):
     title: Bilingual = Field(description="name of the exhibit")
     caption: Bilingual | None = Field(None, description="one sentence shown when a visitor comes near")
     place: Place = Field(description="where it stands")
-    models: Models | None = Field(None, description="ready-made models; either this or garment")
-    garment: GarmentRecipe | None = Field(
-        None, description="garment made by hall build; either this or models"
+    models: Models | None = Field(None, description="ready-made models; either this or outfit")
+    outfit: ContentPath | None = Field(
+        None, description="outfit that hall build dresses, e.g. outfits/beizi.toml; either this or models"
     )
+    show: Show = Field(Show.model_construct(), description="from how near the outfit is seen")
     body: Body = Field(description="rigid body")
     behaviours: tuple[Behaviour, ...] = Field(
         ("open_on_click", "glow_when_near"),
@@ -160,6 +144,10 @@ class ExhibitFile(Table):
 
     @model_validator(mode="after")
     def _one_model(self) -> ExhibitFile:
-        if (self.models is None) == (self.garment is None):
-            raise PydanticCustomError("one_model", "needs either [models] or [garment]")
+        if (self.models is None) == (self.outfit is None):
+            raise PydanticCustomError("one_model", "needs either outfit or [models]")
+        if self.outfit is None and "show" in self.model_fields_set:
+            raise PydanticCustomError(
+                "show_alone", "[show] is for an outfit; ready-made models stay as they are"
+            )
         return self

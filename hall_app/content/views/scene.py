@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from hall_app.content.behaviours import MOVING
 from hall_app.content.files import BAKED, digest, is_there
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
@@ -22,6 +23,7 @@ TYPES = {
     ".jpeg": "image/jpeg",
     ".png": "image/png",
     ".webp": "image/webp",
+    ".svg": "image/svg+xml",
     ".webm": "video/webm",
     ".mp4": "video/mp4",
     ".ogg": "audio/ogg",
@@ -122,7 +124,7 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "z": file.place.z,
         "facing": file.place.facing,
         "thumbnail": thumbnail(exhibit, baked),
-        "behaviours": list(file.behaviours),
+        "kind": "moving" if MOVING.intersection(file.behaviours) else "still",
         "caption": file.caption.as_json() if file.caption else None,
     }
 
@@ -164,7 +166,7 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
 
 
 def _has_close(exhibit: Exhibit, baked: Path | None) -> bool:
-    if exhibit.file.garment is not None:
+    if exhibit.file.outfit is not None:
         return media_file(exhibit, BAKED + "close.glb", baked).is_file()
     return exhibit.model_path("close") is not None
 

@@ -1,18 +1,23 @@
-// Exhibits that turn on their stand (behaviour "turn_slowly"): only in sight of a visitor who is there, and who has not
-// asked the system for less motion. Every page turns them for itself, so an empty or idle hall stands still.
+// Moving exhibits turn on their stand: the hall's clock says how far, and a page turns them on between two ticks of it; only
+// in sight of a visitor who is there, and who has not asked the system for less motion. An idle hall stands still.
 
 import { requestRender, turnNode } from "../viser/viser_adapter.js";
 
-const RATE = 0.25; // [rad/s]
 const SIGHT = 9; // [m]
 const ASIDE = Math.cos((50 * Math.PI) / 180); // farther from the middle of the picture nobody sees it turn
 const PRESENT = 60e3; // [ms] after the last sign of life
+const CATCH_UP = 2; // [1/s] share of what it lags behind that is made up, so that no tick shows
 const LIFE = ["pointermove", "pointerdown", "keydown", "wheel", "touchstart"];
 
-/** createTurning(wake) -> {frame(dt, scene, {x, z, yaw})}; dt [s]. */
+const TURN = 2 * Math.PI;
+/** The same angle [rad] within half a turn of nought. */
+const shortest = (angle) => angle - TURN * Math.round(angle / TURN);
+
+/** createTurning(wake) -> {heard({id, angle, rate}), frame(dt, scene, {x, z, yaw})}; [rad, rad/s], dt [s]. */
 export function createTurning(wake) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  const angles = new Map();
+  const told = new Map(); // id -> {angle, rate, at} of the last tick
+  const shown = new Map(); // id -> angle
   let seenAt = 0;
   for (const sign of LIFE) addEventListener(sign, () => (seenAt = performance.now()), { capture: true, passive: true });
 
@@ -23,20 +28,27 @@ export function createTurning(wake) {
     return away < SIGHT && ahead > ASIDE * away;
   }
 
-  function turn({ id, facing }, dt) {
-    const angle = ((angles.get(id) ?? 0) + RATE * dt) % (2 * Math.PI);
-    const half = ((facing * Math.PI) / 180 + angle) / 2;
+  function turn({ id, facing }, { angle, rate, at }, dt) {
+    const wanted = angle + (rate * (performance.now() - at)) / 1000;
+    const before = shown.get(id);
+    const next = before === undefined
+      ? wanted
+      : before + rate * dt + shortest(wanted - before - rate * dt) * Math.min(1, CATCH_UP * dt);
+    const half = ((facing * Math.PI) / 180 + next) / 2;
     if (!turnNode(`/exhibits/${id}`, [Math.cos(half), 0, Math.sin(half), 0])) return;
-    angles.set(id, angle);
+    shown.set(id, shortest(next));
     requestRender();
     wake();
   }
 
   return {
+    heard: ({ id, angle, rate }) => void told.set(id, { angle, rate, at: performance.now() }),
     frame(dt, scene, from) {
       if (calm.matches || performance.now() - seenAt > PRESENT) return;
-      for (const exhibit of scene.exhibits)
-        if (exhibit.behaviours.includes("turn_slowly") && inSight(exhibit, from)) turn(exhibit, dt);
+      for (const exhibit of scene.exhibits) {
+        const tick = told.get(exhibit.id);
+        if (tick && exhibit.kind === "moving" && inSight(exhibit, from)) turn(exhibit, tick, dt);
+      }
     },
   };
 }

@@ -57,7 +57,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection }) {
   const mark = createMark(display, (client) => walk.send({ t: "client", client }));
   const walk = createWalk({
     scene, grid, display, mark: mark.find, at: arrival,
-    on: { moved, open: openExhibit, closed: leave, near: comeNear, content: refresh, connection, heard: wake },
+    on: { moved, open: openExhibit, closed: leave, near: comeNear, turn: turning.heard, content: refresh, connection, heard: wake },
   });
 
   function open(id) { walk.send({ t: "open", id }); }

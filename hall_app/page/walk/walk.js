@@ -14,7 +14,7 @@ const clock = () => performance.now() / 1000; // [s]
 
 /**
  * at: {x, z} [m] to come in at, null for the entrance. `on` receives moved(pose), open(message), closed(),
- * near(message), content(message), connection(state, place), heard().
+ * near(message), turn(message), content(message), connection(state, place), heard().
  */
 export function createWalk({ scene, grid, display, mark, at, on }) {
   const pose = { x: scene.start.x, z: scene.start.z };
@@ -64,6 +64,7 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
     open: (message) => on.open(message),
     closed: (message) => on.closed(message),
     near: (message) => on.near(message),
+    turn: (message) => on.turn(message),
     content: (message) => on.content(message),
   };
 

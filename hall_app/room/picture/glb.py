@@ -50,7 +50,7 @@ def room_glb(room: Room, light: LightMap | None = None) -> bytes:
             uv,
             colours=_shade(patches) if light is None and not MATERIALS[name].glow else None,
             uv1=np.concatenate([corners[k] for k in chosen]) if corners is not None and lit else None,
-            unlit=True,
+            shading=False,
         )
     if light is not None:
         _add_light(glb, light)
@@ -137,4 +137,4 @@ def _add_light(glb: GlbFile, light: LightMap) -> None:
     look = {"baseColorTexture": glb.picture(data, "image/jpeg"), "metallicFactor": 0.0}
     material = glb.material({"name": "lightmap", "pbrMetallicRoughness": look, "extensions": {_UNLIT: {}}})
     points = np.array([[0, -5, 0], [0.001, -5, 0], [0, -5, 0.001]])
-    glb.mesh("lightmap", points, np.array([[0, 2, 1]]), material, np.zeros((3, 2)), unlit=True)
+    glb.mesh("lightmap", points, np.array([[0, 2, 1]]), material, np.zeros((3, 2)), shading=False)

@@ -2,7 +2,8 @@
 
 The trunk becomes a dress form: every horizontal section its convex hull (as a tape measure sees it), smoothed along
 and around. Hands become closed mittens, feet plain shapes, both by convex hulls; the neck ends in a dome. The parts
-meet by a smooth minimum, and the field they make is smoothed.
+meet by a smooth minimum, and the field they make is smoothed. The heights and widths below are those of the woman of
+1.62 m; another body is scaled until its shoulders are as high, and told how much wider it is and reaches further.
 """
 
 from __future__ import annotations
@@ -13,17 +14,21 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from scipy.spatial import ConvexHull
 
+from sim_core.body.joints import JOINTS
 from sim_core.body.making.source import Body
 from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_mesh
 
+SHOULDER, WRIST = np.array([0.1586, 1.2803]), 0.6162  # [m] of the woman of 1.62 m: x and y of the joint, x
 LOW, HIGH = np.array([-0.85, -0.03, -0.22]), np.array([0.85, 1.50, 0.30])  # [m] of the working field
 RAY = np.radians(np.arange(0.0, 360.0, 3.0))  # of a section
 
 
 @dataclass(frozen=True)
 class FormSettings:
-    """Lengths in metres; pairs are from..to heights."""
+    """Lengths in metres; pairs are from..to heights. wide: of the shoulders; reach: of the wrists beyond WRIST."""
 
+    wide: float = 1.0
+    reach: float = 0.0
     cell: float = 0.005
     slice: float = 0.005
     neck_top: float = 0.020  # above the neck's lower joint the section stays what it is there
@@ -39,6 +44,14 @@ class FormSettings:
     smooth_hand: float = 0.010
     hand_thicker: float = 0.003
     hand_slimmer: float = 0.70  # width of the closed hand in that of the spread one
+    web: float = (
+        0.0  # reach of the smooth minimum between hand and thumb: where their tips touch, else a hole is left
+    )
+
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest corner [m] of the working field, symmetric, in whole cells."""
+        more = np.array([self.cell * np.ceil(max(self.reach, 0.0) / self.cell), 0.0, 0.0])
+        return LOW - more, HIGH + more
 
 
 def step(x: np.ndarray, low: np.ndarray | float, high: np.ndarray | float) -> np.ndarray:
@@ -78,14 +91,14 @@ def figure_field(body: Body, settings: FormSettings) -> DistanceField:
     """The shop figure as a smoothed field, mirrored in x = 0; its zero surface is the figure."""
     s, fork = settings, crotch_height(body)
     body = replace(body, vertices=_slim_hands(body, s.hand_slimmer))
-    spaces = {"cell": s.cell, "band": 0.04, "box": (LOW, HIGH)}
+    spaces = {"cell": s.cell, "band": 0.04, "box": s.box()}
     form = field_of(*dress_form(body, fork, s), **spaces).values
     limbs = field_of(body.vertices, body.faces, **spaces).values
-    x, y = _nodes(form.shape, s.cell)
-    limbs = np.maximum(limbs + 0.06 * _trunk(x, y, fork), y - (body.neck[0] + 0.035))
+    x, y = _nodes(form.shape, s)
+    limbs = np.maximum(limbs + 0.06 * _trunk(x / s.wide, y, fork), y - (body.neck[0] + 0.035))
     blend = np.where(y < 1.0, s.blend[0], s.blend[1])
     solid = smooth_minimum(form, limbs, blend)
-    for side, wrist in enumerate((3, 6)):
+    for side, wrist in enumerate((JOINTS.index("wrist_l"), JOINTS.index("wrist_r"))):
         hand, thumb = body.weights[:, wrist] > 0.5, body.thumbs[side]
         ball = hand & (np.linalg.norm(body.vertices - body.heads[wrist], axis=1) < 0.05)
         foot = body.feet[side] & (body.vertices[:, 1] < 0.07)
@@ -95,22 +108,25 @@ def figure_field(body: Body, settings: FormSettings) -> DistanceField:
             (foot, 0.002),
         ):
             hull = field_of(*hull_mesh(body.vertices[chosen]), **spaces).values
-            solid = np.minimum(solid, hull - thicker)
+            union = np.minimum(solid, hull - thicker)
+            if s.web and chosen is not foot:
+                union = smooth_minimum(solid, hull - thicker, s.web)
+            solid = union
     solid = 0.5 * (solid + solid[::-1])
-    return DistanceField(LOW, s.cell, _smoothed(solid, x, y, s).astype(np.float32))
+    return DistanceField(s.box()[0], s.cell, _smoothed(solid, x, y, s).astype(np.float32))
 
 
 def _slim_hands(body: Body, width: float) -> np.ndarray:
     """Vertices (V, 3) with the spread fingers drawn together, in front and behind the wrist alike."""
-    x, wrist = body.vertices, body.heads[3]
+    x, wrist = body.vertices, body.heads[JOINTS.index("wrist_l")]
     share = 1 - (1 - width) * step(np.abs(x[:, 0]), wrist[0] - 0.01, wrist[0] + 0.09)
     middle = wrist[2] - 0.004
     return np.column_stack([x[:, :2], middle + share * (x[:, 2] - middle)])
 
 
-def _nodes(shape: tuple[int, ...], cell: float) -> tuple[np.ndarray, np.ndarray]:
+def _nodes(shape: tuple[int, ...], s: FormSettings) -> tuple[np.ndarray, np.ndarray]:
     """|x| (nx, 1, 1) and y (1, ny, 1) of a field's nodes [m]."""
-    x, y = (LOW[axis] + cell * np.arange(shape[axis]) for axis in (0, 1))
+    x, y = (s.box()[0][axis] + s.cell * np.arange(shape[axis]) for axis in (0, 1))
     return np.abs(x)[:, None, None], y[None, :, None]
 
 
@@ -130,7 +146,8 @@ def _smoothed(solid: np.ndarray, x: np.ndarray, y: np.ndarray, s: FormSettings) 
     hand, arm, trunk = (
         gaussian_filter(solid, w / s.cell) for w in (s.smooth_hand, s.smooth_arm, s.smooth_trunk)
     )
-    at_hand, at_arm = step(x, 0.58, 0.63), step(x, 0.22, 0.34) * step(y, 1.15, 1.20)
+    at_hand = step(x - s.reach, 0.58, 0.63)
+    at_arm = step(x / s.wide, 0.22, 0.34) * step(y, 1.15, 1.20)
     limb = at_hand * hand + (1 - at_hand) * arm
     return at_arm * limb + (1 - at_arm) * trunk
 
@@ -138,7 +155,7 @@ def _smoothed(solid: np.ndarray, x: np.ndarray, y: np.ndarray, s: FormSettings) 
 def dress_form(body: Body, fork: float, s: FormSettings) -> tuple[np.ndarray, np.ndarray]:
     """A closed mesh of hulled sections from below the fork to the neck, which ends in a dome."""
     heights = np.arange(fork - 0.10, body.neck[0] + s.neck_top, s.slice)
-    widths = np.interp(heights, [1.17, 1.20, 1.26, 1.33], [0.30, 0.165, 0.145, 0.14])
+    widths = np.interp(heights, [1.17, 1.20, 1.26, 1.33], [0.30, 0.165, 0.145, 0.14]) * s.wide
     radius, middle = _profile(body, heights, widths, s)
     slimmer = 0.6 + 0.4 * np.sqrt(step(heights, fork - 0.115, fork - 0.02))  # closes between the thighs
     radius *= slimmer[:, None]

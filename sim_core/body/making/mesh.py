@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.body.making.form import FormSettings, crotch_height, figure_field, section
+from sim_core.body.joints import JOINTS, OTHER_SIDE
+from sim_core.body.making.form import SHOULDER, WRIST, FormSettings, crotch_height, figure_field, section
 from sim_core.body.making.source import Body
-from sim_core.body.mannequin import BONES, Mannequin
+from sim_core.body.mannequin import Mannequin
 from sim_core.cloth.contact.distance_field import DistanceField
 from sim_core.mesh import split_quads, surface_net
 
+_SHOULDER, _WRIST = JOINTS.index("shoulder_l"), JOINTS.index("wrist_l")
+FOLDED = 0.0  # cosine of the angle between neighbouring faces' normals
 COARSE, MIDDLE, FINE = 0.0165, 0.0125, 0.0095  # [m] of cells: trunk, feet, hands
-OTHER_SIDE = [BONES.index(b[:-2] + {"_l": "_r", "_r": "_l"}[b[-2:]]) if b[-2] == "_" else 0 for b in BONES]
 
 
-def mannequin_of(name: str, body: Body, settings: FormSettings | None = None) -> Mannequin:
-    """The shop figure of an anatomical body, its arms posable."""
-    field = figure_field(body, settings or FormSettings())
-    axes = _axes()
+def mannequin_of(name: str, body: Body, web: float = 0.0) -> Mannequin:
+    """The shop figure of an anatomical body, all its joints posable; web [m]: filled between hand and thumb."""
+    scale = float(SHOULDER[1] / body.heads[_SHOULDER, 1])
+    body = _scaled(body, scale)
+    wide = float(body.heads[_SHOULDER, 0] / SHOULDER[0])
+    settings = FormSettings(wide=wide, reach=float(body.heads[_WRIST, 0] - WRIST), web=web)
+    field = figure_field(body, settings)
+    axes = _axes(settings.reach)
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = field.at(nodes.reshape(-1, 3)).reshape(nodes.shape[:3])
     vertices, quads = surface_net(0.5 * (values + values[::-1]), axes)
@@ -32,7 +39,17 @@ def mannequin_of(name: str, body: Body, settings: FormSettings | None = None) ->
     lift = np.array([0.0, vertices[:, 1].min(), 0.0])
     vertices = vertices - lift
     faces = split_quads(vertices, quads)
-    return Mannequin(name, vertices, faces, body.heads - lift, weights, _marks(vertices, faces, body))
+    vertices = _unfolded(vertices, faces, twin)
+    heads = body.heads - lift
+    heads = 0.5 * (heads + (heads * [-1, 1, 1])[list(OTHER_SIDE)])
+    marks = {mark: place / scale for mark, place in _marks(vertices, faces, body).items()}
+    return Mannequin(name, vertices / scale, faces, heads / scale, weights, marks)
+
+
+def _scaled(body: Body, scale: float) -> Body:
+    low, high = body.neck
+    neck = (scale * low, scale * high)
+    return replace(body, vertices=scale * body.vertices, heads=scale * body.heads, neck=neck)
 
 
 def _axis(low: float, high: float, size: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
@@ -43,8 +60,9 @@ def _axis(low: float, high: float, size: Callable[[np.ndarray], np.ndarray]) -> 
     return np.interp(np.linspace(0, count[-1], int(np.ceil(count[-1])) + 1), count, x)
 
 
-def _axes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    half = _axis(0.0, 0.84, lambda x: np.interp(x, [0.50, 0.62], [COARSE, FINE]))
+def _axes(reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lines of the grid whose cells are laid, finer at hands and feet; hands lie `reach` [m] further out."""
+    half = _axis(0.0, 0.84 + reach, lambda x: np.interp(x - reach, [0.50, 0.62], [COARSE, FINE]))
     up = _axis(
         -0.02,
         1.49,
@@ -79,14 +97,34 @@ def _relaxed(x: np.ndarray, sides: np.ndarray, field: DistanceField, rounds: int
     return x
 
 
+def _unfolded(x: np.ndarray, faces: np.ndarray, twin: np.ndarray, rounds: int = 20) -> np.ndarray:
+    """The surface with its folds drawn out: where two faces turn back on each other, as between thumb and hand."""
+    sides, first = np.unique(
+        np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0, return_inverse=True
+    )
+    pair = np.argsort(first.ravel(), kind="stable").reshape(-1, 2) // 3
+    for _ in range(rounds):
+        normal = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-15)
+        folded = (normal[pair[:, 0]] * normal[pair[:, 1]]).sum(1) < FOLDED
+        if not folded.any():
+            break
+        moved = np.zeros(len(x), bool)
+        moved[faces[pair[folded]].ravel()] = True
+        moved |= moved[twin]
+        x = np.where(moved[:, None], 0.5 * (x + _mean_of_neighbours(x, sides)), x)
+        x = 0.5 * (x + (x * [-1, 1, 1])[twin])
+    return x
+
+
 def _weights(x: np.ndarray, sides: np.ndarray, twin: np.ndarray, body: Body, rounds: int = 12) -> np.ndarray:
-    """Skinning weights (V, 7) from the body's nearest vertices, smoothed over the mesh, mirrored."""
+    """Skinning weights (V, 21) from the body's nearest vertices, smoothed over the mesh, mirrored."""
     far, near = KDTree(body.vertices).query(x, 8)
     share = 1 / (far + 0.003)
     weights = (body.weights[near] * (share / share.sum(1, keepdims=True))[..., None]).sum(1)
     for _ in range(rounds):
         weights = 0.5 * (weights + _mean_of_neighbours(weights, sides))
-    weights = weights + weights[twin][:, OTHER_SIDE]
+    weights = weights + weights[twin][:, list(OTHER_SIDE)]
     return weights / weights.sum(1, keepdims=True)
 
 

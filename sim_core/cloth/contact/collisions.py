@@ -69,7 +69,7 @@ def _meet(packed, fields, x, v, i, push):
     if d < push.clearance and nx * nx + ny * ny + nz * nz > 0.5:
         carry = (0.0, 0.0, 0.0)
         if len(packed.ways) > 0:
-            carry = carried(packed, x[i, 0], x[i, 1], x[i, 2])
+            carry = carried(packed, d, x[i, 0], x[i, 1], x[i, 2])
         _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
     return d - push.clearance
 

@@ -23,13 +23,15 @@ FARTHEST = 5e-6  # [m] that an edge is shortened or lengthened by in a substep: 
 class Holds(NamedTuple):
     """The arrays the compiled loops read; all may be empty. V vertices.
 
-    pairs (K, 2) int32 are drawn together from their spans (K,) [m]; same (V,) int32 gives both ends of a pair one
-    number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it mirrors in x = 0.
+    pairs (K, 2) int32 are drawn together from their spans (K,) [m] to their ends (K,) [m]; same (V,) int32 gives both
+    ends of a pair one number; low, high (V,) [m] bound x (all or none); slaves (M, 2) int32: vertex and the one it
+    mirrors in x = 0.
     limit: the shares of its length at rest by which an edge may be shorter, and longer, before it is held; 1: any.
     """
 
     pairs: np.ndarray
     spans: np.ndarray
+    ends: np.ndarray
     same: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -42,6 +44,7 @@ class Holds(NamedTuple):
         *,
         pairs: np.ndarray | None = None,
         positions: np.ndarray | None = None,
+        ends: np.ndarray | None = None,
         low: np.ndarray | None = None,
         high: np.ndarray | None = None,
         slaves: np.ndarray | None = None,
@@ -49,6 +52,7 @@ class Holds(NamedTuple):
     ) -> Holds:
         """Holds of a sheet of `count` vertices; spans of the pairs are taken from positions (V, 3) [m].
 
+        ends (K,) [m]: how far apart the pairs stay in the end, 0 for what is sewn (None: all of them).
         Raises SimCoreError for indices out of range, bounds that leave no room and a limit that is no share.
         """
         count = integer("holds: count", count, 1, "vertices of the sheet, 1 or more")
@@ -63,6 +67,10 @@ class Holds(NamedTuple):
                 raise SimCoreError("holds: pairs need positions – give where the sheet starts")
             positions = coordinates("holds: positions", positions, (count, 3))
             spans = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
+        apart = _bound("ends", ends, 0.0, len(pairs)) if len(pairs) else np.zeros(0)
+        if (apart < 0).any():
+            raise SimCoreError("holds.ends: below 0 – a pair is 0 m apart or more")
+        spans = np.maximum(spans, apart)
         if low is None and high is None:
             low = high = np.zeros(0)
         else:
@@ -74,13 +82,13 @@ class Holds(NamedTuple):
         same = np.arange(count, dtype=np.int32)
         for a, b in pairs:  # chains of pairs count as one point, too
             same[same == same[b]] = same[a]
-        return Holds(pairs, spans, same, low, high, slaves, (shorter, longer))
+        return Holds(pairs, spans, apart, same, low, high, slaves, (shorter, longer))
 
     def renumbered(self, number: np.ndarray, order: np.ndarray) -> Holds:
         """The same holds for vertices of which i is now called number[i]; order (V,) is the way back."""
         moved = [number[a].astype(np.int32) for a in (self.pairs, self.same[order], self.slaves)]
         low, high = (a[order] if len(a) else a for a in (self.low, self.high))
-        return Holds(moved[0], self.spans, moved[1], low, high, moved[2], self.limit)
+        return Holds(moved[0], self.spans, self.ends, moved[1], low, high, moved[2], self.limit)
 
 
 def _bound(name: str, value: np.ndarray | None, free: float, count: int) -> np.ndarray:
@@ -108,10 +116,14 @@ def _bring_together(x, v, i, j, shares, along, way, speed):
 
 @njit(cache=True, error_model="numpy")
 def draw_together(holds, inverse_mass, x, v, share, rate):
-    """No pair is further apart than `share` of its span; what is gets the speed of closing, rate * span [m/s]."""
+    """No pair is further apart than `share` of the way from its end to its span.
+
+    What is gets the speed of closing, rate * (span - end) [m/s].
+    """
     for k in range(len(holds.pairs)):
         i, j = holds.pairs[k]
-        limit = share * holds.spans[k]
+        way = holds.spans[k] - holds.ends[k]
+        limit = holds.ends[k] + share * way
         dx, dy, dz = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1], x[i, 2] - x[j, 2]
         gap = math.sqrt(dx * dx + dy * dy + dz * dz)
         total = inverse_mass[i] + inverse_mass[j]
@@ -126,7 +138,7 @@ def draw_together(holds, inverse_mass, x, v, share, rate):
         nx, ny, nz = dx / gap, dy / gap, dz / gap
         push = gap - limit
         apart = (v[i, 0] - v[j, 0]) * nx + (v[i, 1] - v[j, 1]) * ny + (v[i, 2] - v[j, 2]) * nz
-        excess = max(apart + rate * holds.spans[k], 0.0)
+        excess = max(apart + rate * way, 0.0)
         _bring_together(x, v, i, j, (a, b), (nx, ny, nz), push, excess)
 
 

@@ -161,8 +161,15 @@ def signed_distance(fields, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
-def carried(packed, x, y, z):
-    """Velocity [m/s] of the body's surface nearest to a point; 0 far from it."""
+def carried(packed, d, x, y, z):
+    """Velocity [m/s] of the body's surface nearest to a point, d [m] from the nearest solid.
+
+    0 far from the body, and where that solid is one that stands still beside it.
+    """
+    if len(packed.kind) > 1:
+        still = Fields(packed.kind[1:], packed.data[1:], packed.grid, packed.later, packed.blend)
+        if signed_distance(still, x, y, z)[0] <= d + 1e-12:
+            return 0.0, 0.0, 0.0
     row, (nx, ny, nz) = packed.data[0], packed.nearest.shape
     i = int(_within((x - row[0]) / row[3], nx) + 0.5)
     j = int(_within((y - row[1]) / row[3], ny) + 0.5)

@@ -14,7 +14,7 @@ from sim_core.errors import SimCoreError
 from sim_core.validation import FURTHEST, coordinates, excerpt, finite, triangles, vector3
 from sim_core.validation import points as checked_points
 
-__all__ = ["DistanceField", "field_of", "hull_mesh", "united"]
+__all__ = ["DistanceField", "field_of", "hull_faces", "hull_mesh", "united"]
 
 EXACT_CELLS = 2.5  # nodes nearer than this to a face are measured against it; the others ask their neighbours
 Corner = Sequence[float] | np.ndarray
@@ -112,8 +112,8 @@ def united(first: DistanceField, second: DistanceField, *, thicker: float = 0.0)
     return DistanceField(first.origin, first.cell, np.minimum(first.values, other - np.float32(thicker)))
 
 
-def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Convex hull of points (N, 3): its corners and its faces, counter-clockwise from outside.
+def hull_faces(points: np.ndarray) -> np.ndarray:
+    """Faces (H, 3) int32 of the convex hull of points (N, 3), counter-clockwise from outside.
 
     Raises SimCoreError where they are too few or lie in one plane.
     """
@@ -126,8 +126,12 @@ def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     corner = points[hull.simplices]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     inward = (normal * hull.equations[:, :3]).sum(1) < 0
-    faces = np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices)
-    used, index = np.unique(faces, return_inverse=True)
+    return np.where(inward[:, None], hull.simplices[:, ::-1], hull.simplices).astype(np.int32)
+
+
+def hull_mesh(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the convex hull of points (N, 3) and its faces; raises as `hull_faces`."""
+    used, index = np.unique(hull_faces(points), return_inverse=True)
     return np.ascontiguousarray(points[used], float), index.reshape(-1, 3).astype(np.int32)
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
 
 from sim_core.cloth.contact.packed import FASTEST, GRID, MOVING, Packed
-from sim_core.cloth.contact.solids import GridSdf, nodes
+from sim_core.cloth.contact.solids import GridSdf, Solid, Union, nodes
 from sim_core.errors import SimCoreError
 from sim_core.validation import (
     FURTHEST,
@@ -38,6 +38,7 @@ class MovingGrid:
     surface(k): the face nearest to each node (nx, ny, nz), -1 for none, and the corners of the faces (F, 3, 3) [m] in
     pose k, of which `name` tells as well. With it friction acts against the moving surface; without it a body pushes
     cloth by what it does across itself, and holds it back as if it stood still along itself.
+    beside: solids that stand still beside the body, such as a floor (HalfSpace()), with their exact distance; no grid.
     Raises SimCoreError, naming the value, for what is no grid.
     """
 
@@ -47,6 +48,7 @@ class MovingGrid:
     key: Callable[[int], np.ndarray] = field(repr=False)
     name: str = ""
     surface: Callable[[int], Worn] | None = field(default=None, repr=False, compare=False)
+    beside: Solid | None = None
     _kept: dict[int, np.ndarray] = field(default_factory=dict, repr=False, compare=False)
     _worn: dict[int, Worn] = field(default_factory=dict, repr=False, compare=False)
     _most: dict[tuple[int, int], float] = field(default_factory=dict, repr=False, compare=False)
@@ -61,6 +63,12 @@ class MovingGrid:
         if self.surface is not None:
             optional_callable("body.surface", self.surface)
         instance_of("body.name", self.name, str, "a text is meant")
+        if self.beside is not None:
+            instance_of("body.beside", self.beside, Solid, "a solid is meant, e.g. HalfSpace()")
+            if GRID in self.beside.packed().kind:
+                raise SimCoreError(
+                    "body.beside: a grid – only solids with exact distance stand beside a body"
+                )
 
     def packed(self, early: float, late: float) -> tuple[Packed, tuple[float, float]]:
         """The arrays for a frame in which the body goes from `early` to `late` (in keys), and both within its keys.
@@ -86,9 +94,10 @@ class MovingGrid:
             )
         return k, k + 1
 
-    def solid(self, k: int) -> GridSdf:
-        """The body in pose k, as a solid that stands still."""
-        return GridSdf(self.origin, self.cell, self._kept[k] if k in self._kept else self.key(k))
+    def solid(self, k: int) -> Solid:
+        """The body in pose k and what stands beside it, as a solid that stands still."""
+        own = GridSdf(self.origin, self.cell, self._kept[k] if k in self._kept else self.key(k))
+        return own if self.beside is None else Union((own, self.beside))
 
     def _pack(self, kind: int, first: int, second: int) -> Packed:
         _renew(self._kept, (first, second), lambda k: nodes(f"body: key {k}", self.key(k)))
@@ -96,10 +105,15 @@ class MovingGrid:
             raise SimCoreError(f"body: keys {first} and {second} have other nodes – all lie on one grid")
         data = np.zeros((1, _WIDTH))
         data[0, :3], data[0, 3], data[0, 19] = self.origin, self.cell, -1.0
-        packed = Packed(np.array([kind]), data, self._kept[first], self._kept[second], np.zeros(2))
+        if kind == MOVING:
+            data[0, FASTEST] = self._motion(first, second)
+        kinds = np.array([kind])
+        if self.beside is not None:  # the grid comes first
+            still = self.beside.packed()
+            kinds, data = np.concatenate([kinds, still.kind]), np.concatenate([data, still.data])
+        packed = Packed(kinds, data, self._kept[first], self._kept[second], np.zeros(2))
         if kind != MOVING:
             return packed
-        data[0, FASTEST] = self._motion(first, second)
         surface, shape = self.surface, self._kept[first].shape
         if surface is None:
             return packed
@@ -144,15 +158,24 @@ def _worn(name: str, value: object, shape: tuple[int, ...]) -> Worn:
 
 
 def moving_mesh(
-    positions: np.ndarray, faces: np.ndarray, *, cell: float = 0.008, band: float = 0.04
+    positions: np.ndarray,
+    faces: np.ndarray,
+    *,
+    cell: float = 0.008,
+    band: float = 0.04,
+    hulls: Sequence[np.ndarray] = (),
+    box: tuple[Sequence[float], Sequence[float]] | None = None,
+    beside: Solid | None = None,
 ) -> MovingGrid:
     """A body given by its vertices frame by frame, as what cloth lies on: one key for each frame.
 
     positions (T, V, 3) [m]; faces (F, 3) counter-clockwise from outside, closed; cell, band [m] of the distance
     fields, which are made as the frames come; the band grows with the longest way of a frame. A phase with
     body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what is thinner than twice the way of one frame may be missed
-    in between. Raises SimCoreError at once where the mesh is open, ill-wound or not finite, or is turned inside out in
-    any frame, and says where.
+    in between. hulls: faces (H, 3) of further closed meshes on the same vertices that are united with the body; box:
+    lowest and highest corner [m] of the fields, else all frames and the band around; beside: what stands still beside
+    it (a floor: HalfSpace()). Raises SimCoreError at once where the mesh is open, ill-wound or not finite, or is turned
+    inside out in any frame, and says where.
     """
     from sim_core.cloth.contact.distance_field import checked_cell, checked_mesh, field_and_faces, inside_out
 
@@ -170,13 +193,26 @@ def moving_mesh(
     # Where both distances are cut off at the band the body does not move; half its thickness is what it may go.
     way = float(np.sqrt((np.diff(frames, axis=0) ** 2).sum(2)).max(initial=0.0))
     band = max(band, min(way, 0.5 * float(np.ptp(frames, axis=1).min())) + 2 * cell)
-    low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
-    digest = hashlib.sha256(frames.tobytes() + faces.tobytes()).hexdigest()[:16]
+    if box is None:
+        low, high = frames.min((0, 1)) - band, frames.max((0, 1)) + band
+    else:
+        low, high = (np.array(vector3("moving mesh: box", corner, "in metres")) for corner in box)
+    parts = [faces]
+    for hull in hulls:
+        parts.append(np.array(triangles("moving mesh: hulls", hull, frames.shape[1]), np.int32, order="C"))
+    whole_faces = np.concatenate(parts)
+    digest = hashlib.sha256(frames.tobytes() + whole_faces.tobytes()).hexdigest()[:16]
 
     near: dict[int, np.ndarray] = {}  # the nearest faces of the keys made last
 
     def key(k: int) -> np.ndarray:
         values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
+        before = len(faces)
+        for hull in parts[1:]:
+            other, face = field_and_faces(frames[k], hull, cell=cell, band=band, box=(low, high))
+            nearer = other < values
+            values, nearest = np.where(nearer, other, values), np.where(nearer, face + before, nearest)
+            before += len(hull)
         for old in [j for j in near if abs(j - k) > 1]:
             del near[old]
         near[k] = nearest
@@ -185,11 +221,11 @@ def moving_mesh(
     def surface(k: int) -> Worn:
         if k not in near:
             key(k)
-        return near[k], frames[k][faces]
+        return near[k], frames[k][whole_faces]
 
     first, origin = key(0), (float(low[0]), float(low[1]), float(low[2]))
     for number, vertices in enumerate(frames[1:], 1):  # the first is looked at with its field
         if inside_out(vertices, faces):
             raise SimCoreError(f"moving mesh: frame {number} is turned inside out – mend it")
     name = f"mesh {digest} cell {cell} band {band}, carries"
-    return MovingGrid(origin, cell, len(frames), key, name, surface, {0: first})
+    return MovingGrid(origin, cell, len(frames), key, name, surface, beside, {0: first})

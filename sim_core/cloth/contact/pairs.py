@@ -180,8 +180,8 @@ def normals_of(x, faces, face, vertex):
 
 @njit(cache=True, error_model="numpy")
 def _one_sheet(x, rest, i, j, near2, n, m):
-    """Neighbours on a stretch that is neither folded nor crushed cannot touch: close at rest, still at least half
-    as far apart as there, normals within 60 degrees. (The outer layers of a Z-fold have equal normals.)
+    """Neighbours on a stretch that is neither folded nor crushed: close at rest, still at least half as far apart as
+    there, normals within 60 degrees. (The outer layers of a Z-fold have equal normals.)
     """
     flat2 = (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2
     if flat2 > near2:
@@ -189,6 +189,20 @@ def _one_sheet(x, rest, i, j, near2, n, m):
     if (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2 < 0.25 * flat2:
         return False
     return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.5
+
+
+@njit(cache=True, error_model="numpy")
+def _folded(rest, first, second, thickness):
+    """The gap [m] below which two neighbours are near by a fold: the thickness, but a third to a half of what the
+    nearest of their corners `first` and `second` are apart at rest. On one sheet they are further apart, however it
+    is curved.
+    """
+    least = np.inf
+    for i in first:
+        for j in second:
+            least = min(least, (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2)
+    apart = math.sqrt(least)
+    return min(max(thickness, apart / 3.0), apart / 2.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -204,11 +218,13 @@ def _vertex_near_face(x, i, face, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def vertex_face_pairs(x, mesh, reach, near, finder, pairs):
+def vertex_face_pairs(x, mesh, thickness, reach, near, finder, pairs):
     """(vertex, face) pairs nearer than `reach`, without the faces around the vertex, into pairs (K, 2) int32.
 
-    near [m]: pairs closer than this at rest count as one sheet while their normals agree. Returns the list, a longer
-    one where it was full, and how many there are.
+    thickness [m]: below it they touch; near [m]: pairs closer than this at rest count as one sheet while their normals
+    agree, and are left out until they are so near that only a fold brings them there: did a pair that touches come and
+    go with the angle of its fold, the fold would never rest. Returns the list, a longer one where it was full, and how
+    many there are.
     """
     rest, faces, same = mesh.rest, mesh.faces, mesh.same
     centre, sorted_x = finder.centre, finder.by_cell
@@ -240,11 +256,15 @@ def vertex_face_pairs(x, mesh, reach, near, finder, pairs):
                 for q in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
                     gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
                     i = order[q]
-                    if gap > span * span or _one_sheet(
-                        x, rest, i, faces[f, 0], near * near, finder.vertex_normal[i], finder.face_normal[f]
-                    ):
+                    if gap > span * span:
                         continue
-                    if _vertex_near_face(x, i, faces[f], same, reach):
+                    n, m, far = finder.vertex_normal[i], finder.face_normal[f], reach
+                    if _one_sheet(x, rest, i, faces[f, 0], near * near, n, m):
+                        corners = faces[f, 0], faces[f, 1], faces[f, 2]
+                        far = min(reach, _folded(rest, (i,), corners, thickness))
+                        if gap > (span - reach + far) ** 2:
+                            continue
+                    if _vertex_near_face(x, i, faces[f], same, far):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = i, f
                         count += 1
@@ -283,7 +303,7 @@ def _balls(x, faces, edges, finder):
 
 
 @njit(cache=True, error_model="numpy")
-def edge_edge_pairs(x, mesh, reach, near, finder, pairs):
+def edge_edge_pairs(x, mesh, thickness, reach, near, finder, pairs):
     """(edge, edge) pairs nearer than `reach` that share no vertex, into pairs (K, 2) int32.
 
     All else as for vertices and faces.
@@ -309,10 +329,13 @@ def edge_edge_pairs(x, mesh, reach, near, finder, pairs):
                     span = half + balls[q, 3]
                     if gap > span * span:
                         continue
-                    g = order[q]
-                    if _one_sheet(x, rest, edges[e, 0], edges[g, 0], near * near, balls[s, 4:], balls[q, 4:]):
-                        continue
-                    if _edges_near(x, edges[e], edges[g], same, reach):
+                    g, far = order[q], reach
+                    (a, b), (c, d) = edges[e], edges[g]
+                    if _one_sheet(x, rest, a, c, near * near, balls[s, 4:], balls[q, 4:]):
+                        far = min(reach, _folded(rest, (a, b), (c, d), thickness))
+                        if gap > (span - reach + far) ** 2:
+                            continue
+                    if _edges_near(x, edges[e], edges[g], same, far):
                         pairs = _grown(pairs, count)
                         pairs[count, 0], pairs[count, 1] = e, g
                         count += 1

@@ -113,6 +113,6 @@ def candidate_pairs(x, mesh, shell, finder, pairs):
         side += math.sqrt(length2[e])
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
     near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
-    points, first = vertex_face_pairs(x, mesh, reach, near, finder, points)
-    crossings, second = edge_edge_pairs(x, mesh, reach, near, finder, crossings)
+    points, first = vertex_face_pairs(x, mesh, shell.thickness, reach, near, finder, points)
+    crossings, second = edge_edge_pairs(x, mesh, shell.thickness, reach, near, finder, crossings)
     return (points, crossings), (first, second)

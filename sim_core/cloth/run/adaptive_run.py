@@ -164,6 +164,7 @@ class Run:
         solids = {f"solid.{name}": value for name, value in engine.packed._asdict().items()}
         if body:
             solids |= {"body": body.name, "origin": body.origin, "cell": body.cell, "keys": body.count}
+            solids["beside"] = body.beside
         looked = self.certified and self.certified.certifier.solid
         return {
             **rest,

@@ -26,7 +26,7 @@ from sim_core.errors import FileProblem
 from sim_core.validation import optional_callable
 
 ENGINE_VERSION = (
-    4  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
+    5  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
 )
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 

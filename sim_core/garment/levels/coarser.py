@@ -9,7 +9,6 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from sim_core import metrics
-from sim_core.body.stand import Stand
 from sim_core.cloth import Solid
 from sim_core.cloth.contact import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet.sheet import face_edge_table
@@ -17,7 +16,6 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.levels.thinning import Thinning
 from sim_core.garment.pattern.pattern import Pattern
-from sim_core.mesh import panel_mesh
 
 SHARES = tuple(
     float(share) for share in np.geomspace(0.6, 0.05, 24).round(3)
@@ -38,8 +36,8 @@ def detail(
     if not garment.cut:
         raise SimCoreError(f"garment {garment.name}: does not tell how it was cut – bake it again")
     coarse = _sampled(garment, Pattern.from_dict(garment.cut), edge)
-    if solid is None and "stand" in garment.provenance:
-        solid = Stand(**garment.provenance["stand"]).collider()
+    if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
+        solid = garment.settled.beneath.solid()
     if solid is not None:
         coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
     return _measured(garment, coarse, spacing, edge=edge)
@@ -47,21 +45,9 @@ def detail(
 
 def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
     """The pattern meshed again; every new point where the drape has it, twins at their mean."""
-    if not pattern.panels:
-        mesh = panel_mesh(pattern.outline, edge=edge)
-        count = len(mesh.vertices)
-        vertices, faces = mesh.vertices, mesh.faces.astype(np.int32)
-        panel, owner, weld = (np.zeros(n, np.int32) for n in (len(faces), count, count))
-        weld[:] = np.arange(count)
-    else:
-        cloth = pattern.cloth(edge).mirrored() if pattern.mirror else pattern.cloth(edge)
-        vertices, faces, panel, owner, weld = (
-            cloth.vertices,
-            cloth.faces,
-            cloth.panel,
-            cloth.panel_of,
-            cloth.closed,
-        )
+    cloth = pattern.cloth(edge).mirrored() if pattern.mirror else pattern.cloth(edge)
+    vertices, faces, panel = cloth.vertices, cloth.faces, cloth.panel
+    owner, weld = cloth.panel_of, cloth.closed
     worn, out = garment.worn(), np.zeros((len(vertices), 3))
     for number in range(len(garment.panels)):
         own = garment.pattern_faces[garment.panel == number]
@@ -88,8 +74,8 @@ def thinned(
     mesh = Thinning(
         garment.positions[own], garment.pattern_faces[:faces], weld.reshape(-1), garment.pattern[:vertices]
     )
-    if solid is None and "stand" in garment.provenance:
-        solid = Stand(**garment.provenance["stand"]).collider()
+    if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
+        solid = garment.settled.beneath.solid()
     for count in sorted(counts, reverse=True):
         mesh.to(count // twice)
         left, index = mesh.faces(), mesh.numbers()

@@ -1,8 +1,8 @@
 """A garment as it is cut: panels, seams, pattern files and GarmentCode, and the cloth they are meshed to."""
 
-from sim_core.garment.pattern.cloth import SIDES, Cloth, cut_cloth
+from sim_core.garment.pattern.cloth import SIDES, Cloth, cut_cloth, unsided
 from sim_core.garment.pattern.measures import measured
-from sim_core.garment.pattern.panels import Panel, Path, Seam
+from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie
 from sim_core.garment.pattern.pattern import Pattern
 
 __all__ = [
@@ -12,6 +12,9 @@ __all__ = [
     "Path",
     "Pattern",
     "Seam",
+    "Spot",
+    "Tie",
     "cut_cloth",
     "measured",
+    "unsided",
 ]

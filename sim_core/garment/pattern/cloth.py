@@ -10,13 +10,20 @@ import numpy as np
 
 from sim_core.errors import OutlineError
 from sim_core.garment.pattern.panels import Panel, Path, Seam, arc_length, at_length
-from sim_core.mesh import panel_mesh
+from sim_core.mesh import PanelMesh, panel_mesh
 from sim_core.mesh.outline import check_edge, signed_area
 
-__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth"]
+__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth", "unsided"]
 
 SIDES = (" left", " right")  # of the wearer: a panel of a whole cloth is called so behind its name
+
+
 MOST_VERTICES = 200_000  # of a panel that is to be draped: a night's work
+
+
+def unsided(name: str) -> str:
+    """A panel's name without the side of a mirrored pattern."""
+    return next((name.removesuffix(side) for side in SIDES if name.endswith(side)), name)
 
 
 @dataclass(frozen=True)
@@ -38,6 +45,15 @@ class Cloth:
     pairs: np.ndarray
     middle: np.ndarray
     paths: dict[str, np.ndarray]
+
+    @staticmethod
+    def of(mesh: PanelMesh, name: str = "cloth") -> Cloth:
+        """A single panel without seams."""
+        alone = np.arange(len(mesh.vertices), dtype=np.int32)
+        none = np.zeros(0, np.int32)
+        faces = mesh.faces.astype(np.int32)
+        panel, owner = np.zeros(len(faces), np.int32), np.zeros(len(alone), np.int32)
+        return Cloth((name,), mesh.vertices, faces, panel, owner, alone, alone, none.reshape(0, 2), none, {})
 
     def along(self, path: Path, panel: Panel, side: str = "") -> np.ndarray:
         """Numbers of the pattern vertices on a path, in its direction; side: of a whole cloth, one of SIDES."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim_core.errors import OutlineError
 
-__all__ = ["Panel", "Path", "Seam", "check_extent"]
+__all__ = ["Panel", "Path", "Seam", "Spot", "Tie", "check_extent"]
 
 NARROWEST, LONGEST = 0.002, 20.0  # [m] of a panel
 
@@ -108,6 +108,30 @@ class Seam:
     kind: SeamKind
     a: Path
     b: Path | None = None
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A point of a garment: panel, place (2,) [m] in the panel's own coordinates, of which the nearest vertex is meant;
+    side: of a mirrored pattern, "left" or "right" of the wearer, "" for both halves alike."""
+
+    panel: str
+    place: tuple[float, float]
+    side: str = ""
+
+    def __str__(self) -> str:
+        x, y = (1000 * c for c in self.place)
+        return f"{' '.join(filter(None, (self.panel, self.side)))} at {x:.0f}, {y:.0f} mm"
+
+
+@dataclass(frozen=True)
+class Tie:
+    """Two points that a tie, loop or pin draws together to `length` [m]."""
+
+    name: str
+    a: Spot
+    b: Spot
+    length: float
 
 
 def arc_length(points: np.ndarray) -> np.ndarray:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment.pattern.cloth import MOST_VERTICES, Cloth, cut_cloth
-from sim_core.garment.pattern.panels import Panel, Seam, check_extent
+from sim_core.garment.pattern.panels import Panel, Seam, Spot, Tie, check_extent
 from sim_core.garment.pattern.panels import Path as Path_
 from sim_core.garment.pattern.tables import (
     CutProblem,
@@ -19,8 +20,10 @@ from sim_core.garment.pattern.tables import (
     Number,
     PanelTable,
     SeamTable,
+    TieTable,
     read_cut,
     read_dye,
+    read_measures,
 )
 from sim_core.mesh import PanelMesh, panel_mesh
 from sim_core.mesh.outline import check_count
@@ -45,10 +48,12 @@ class Pattern:
     panels: tuple[Panel, ...] = ()
     seams: tuple[Seam, ...] = ()
     mirror: bool = False
+    ties: tuple[Tie, ...] = ()
+    measures: Mapping[str, float] = field(default_factory=dict)
 
     @staticmethod
-    def load(path: Path) -> Pattern:
-        """Reads a pattern file; raises FileProblem naming file, key, value and remedy."""
+    def load(path: Path, measures: Mapping[str, float | str] | None = None) -> Pattern:
+        """Reads a pattern file, some measures [mm] replaced; raises FileProblem naming file, key, value and remedy."""
         path = Path(path)
         values = read_toml(
             path, "a pattern file (TOML); it needs name, edge, and size, outline or [[panel]] tables"
@@ -57,7 +62,11 @@ class Pattern:
             read = _PatternFile.model_validate(values)
         except ValidationError as error:
             raise FileProblem(f"{path}: {_first(error)}") from error
-        pattern = _made(path, read)
+        for name in measures or {}:
+            if name not in read.measures:
+                known = ", ".join(read.measures) or "none"
+                raise FileProblem(f"{path}: measures.{name}: no such measure – measures: {known}")
+        pattern = _made(path, read.model_copy(update={"measures": {**read.measures, **(measures or {})}}))
         try:
             pattern.check()
         except OutlineError as error:
@@ -95,6 +104,7 @@ class Pattern:
             "panels": [panel.to_dict() for panel in self.panels],
             "seams": [{"kind": s.kind, "a": str(s.a), "b": s.b and str(s.b)} for s in self.seams],
             "mirror": self.mirror,
+            "ties": [asdict(tie) for tie in self.ties],
         }
 
     @staticmethod
@@ -124,7 +134,18 @@ class Pattern:
 
     def cloth(self, edge: float | None = None) -> Cloth:
         """All panels meshed at `edge` [m] (its own when left out), one half of a mirrored pattern."""
+        if not self.panels:
+            return Cloth.of(self.mesh(edge))
         return cut_cloth(self.panels, self.seams, self.step(edge))
+
+    def coloured(self, dye: str | None, dyes: Mapping[str, str]) -> Pattern:
+        """The pattern in another colour '#rrggbb', and single panels in theirs; raises SimCoreError for no panel."""
+        for name in dyes:
+            self.panel(name)
+        panels = tuple(
+            replace(p, dye=read_dye(dyes[p.name]) if p.name in dyes else p.dye) for p in self.panels
+        )
+        return replace(self, dye=read_dye(dye) if dye else self.dye, panels=panels)
 
     def mesh(self, edge: float | None = None) -> PanelMesh:
         """The panel's mesh at `edge` [m] (its own when left out)."""
@@ -146,7 +167,15 @@ def _restored(data: dict[str, Any]) -> Pattern:
         tuple(Panel.from_dict(panel) for panel in data["panels"]),
         tuple(seams),
         data["mirror"],
+        tuple(_tie(told) for told in data.get("ties", ())),
     )
+
+
+def _tie(told: dict[str, Any]) -> Tie:
+    a, b = (
+        Spot(end["panel"], (end["place"][0], end["place"][1]), end["side"]) for end in (told["a"], told["b"])
+    )
+    return Tie(told["name"], a, b, told["length"])
 
 
 class _PatternFile(BaseModel):
@@ -161,6 +190,7 @@ class _PatternFile(BaseModel):
     measures: dict[str, Measure] = {}
     panel: list[PanelTable] = Field([], max_length=100)
     seam: list[SeamTable] = Field([], max_length=400)
+    tie: list[TieTable] = Field([], max_length=100)
 
     @model_validator(mode="after")
     def _one_shape(self) -> _PatternFile:
@@ -168,8 +198,8 @@ class _PatternFile(BaseModel):
             raise ValueError(
                 "give either size = [width, length] or outline = [[x, y], …], in metres, or [[panel]] tables"
             )
-        if not self.panel and (self.mirror or self.measures or self.seam):
-            raise ValueError("mirror, measures and seam belong to [[panel]] tables – add them")
+        if not self.panel and (self.mirror or self.measures or self.seam or self.tie):
+            raise ValueError("mirror, measures, seam and tie belong to [[panel]] tables – add them")
         if self.size and not all(np.isfinite(s) and 0 < s <= 20 for s in self.size):
             raise ValueError(f"size: {list(self.size)} – both above 0 and at most 20 m")
         if self.outline is not None and not all(np.isfinite(c) for point in self.outline for c in point):
@@ -190,11 +220,21 @@ def _made(path: Path, read: _PatternFile) -> Pattern:
     if not read.panel:
         return Pattern(read.name, read.points(), read.edge, dict(read.title), dye)
     try:
-        panels, seams = read_cut(read.measures, read.panel, read.seam, mirrored=read.mirror)
+        panels, seams, ties = read_cut(read.measures, read.panel, read.seam, read.tie, mirrored=read.mirror)
+        known = read_measures(read.measures)
     except CutProblem as error:
         raise FileProblem(f"{path}: {error}") from error
     return Pattern(
-        read.name, panels[0].outline(), read.edge, dict(read.title), dye, panels, seams, read.mirror
+        read.name,
+        panels[0].outline(),
+        read.edge,
+        dict(read.title),
+        dye,
+        panels,
+        seams,
+        read.mirror,
+        ties,
+        known,
     )
 
 

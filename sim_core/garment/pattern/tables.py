@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from sim_core.errors import OutlineError
 from sim_core.garment.pattern.measures import measured
-from sim_core.garment.pattern.panels import Panel, Path, Seam, check_extent
+from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie, check_extent
 from sim_core.mesh.outline import clean_contours
 
-__all__ = ["CutProblem", "PanelTable", "SeamTable", "read_cut", "read_dye"]
+__all__ = [
+    "CutProblem",
+    "PanelTable",
+    "SeamTable",
+    "SpotTable",
+    "TieTable",
+    "read_cut",
+    "read_dye",
+    "read_measures",
+    "read_spot",
+]
 
 Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
 Measure = Number | str
@@ -53,6 +63,40 @@ class SeamTable(Table):
     middle: str | None = None
 
 
+class SpotTable(Table):
+    panel: str = Field(description="panel of the pattern")
+    side: Literal["", "left", "right"] = Field("", description="of the wearer, for a mirrored pattern")
+    at: tuple[Measure, Measure] = Field(description="place in the panel's coordinates [mm], or expressions")
+
+
+class TieTable(Table):
+    name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
+    a: SpotTable
+    b: SpotTable
+    length: Measure
+
+
+def read_spot(
+    key: str, table: SpotTable, known: Mapping[str, float], made: Mapping[str, Panel], *, mirrored: bool
+) -> Spot:
+    """A point of a panel; raises CutProblem naming the key."""
+    if table.panel not in made:
+        raise CutProblem(f"{key}.panel", f"{table.panel!r} is no panel – panels: {', '.join(made)}")
+    if table.side and not mirrored:
+        raise CutProblem(f"{key}.side", "only a pattern with mirror = true has sides – leave it out")
+    x, y = (_told(f"{key}.at", lambda v=v: measured(v, known)) / 1000 for v in table.at)
+    outline = made[table.panel].outline()
+    low, high = outline.min(0), outline.max(0)
+    away = max(low[0] - x, x - high[0], low[1] - y, y - high[1])
+    if away > 1e-6:
+        raise CutProblem(
+            f"{key}.at",
+            f"{1000 * x:.0f}, {1000 * y:.0f} mm lies {1000 * away:.0f} mm outside the panel, which spans "
+            f"{1000 * low[0]:.0f} to {1000 * high[0]:.0f} and {1000 * low[1]:.0f} to {1000 * high[1]:.0f}",
+        )
+    return Spot(table.panel, (x, y), table.side)
+
+
 def read_dye(text: str | None) -> tuple[float, float, float] | None:
     """sRGB 0..1 of '#rrggbb'."""
     if text is None:
@@ -62,12 +106,15 @@ def read_dye(text: str | None) -> tuple[float, float, float] | None:
 
 
 def read_cut(
-    measures: Mapping[str, Measure], panels: list[PanelTable], seams: list[SeamTable], *, mirrored: bool
-) -> tuple[tuple[Panel, ...], tuple[Seam, ...]]:
-    """Panels and seams in metres. Raises CutProblem naming the key."""
-    known: dict[str, float] = {}
-    for name, value in measures.items():
-        known[name] = _told(f"measures.{name}", lambda value=value: measured(value, known))
+    measures: Mapping[str, Measure],
+    panels: list[PanelTable],
+    seams: list[SeamTable],
+    ties: list[TieTable],
+    *,
+    mirrored: bool,
+) -> tuple[tuple[Panel, ...], tuple[Seam, ...], tuple[Tie, ...]]:
+    """Panels, seams and ties in metres. Raises CutProblem naming the key."""
+    known = read_measures(measures)
     made: dict[str, Panel] = {}
     for table in panels:
         if table.name in made:
@@ -75,7 +122,36 @@ def read_cut(
         made[table.name] = _panel(table, known, made)
     stitched = tuple(_seam(k, table, made, mirrored) for k, table in enumerate(seams))
     _check_once(stitched, made)
-    return tuple(made.values()), stitched
+    return tuple(made.values()), stitched, _ties(ties, known, made, mirrored)
+
+
+def read_measures(measures: Mapping[str, Measure]) -> dict[str, float]:
+    """Every measure [mm], each reckoned from those above it; raises CutProblem naming the key."""
+    known: dict[str, float] = {}
+    for name, value in measures.items():
+        known[name] = _told(f"measures.{name}", lambda value=value: measured(value, known))
+    return known
+
+
+def _ties(
+    tables: list[TieTable], known: Mapping[str, float], made: Mapping[str, Panel], mirrored: bool
+) -> tuple[Tie, ...]:
+    ties: dict[str, Tie] = {}
+    for table in tables:
+        key = f"tie.{table.name}"
+        if table.name in ties:
+            raise CutProblem(key, "is there twice – give each tie a name of its own")
+        a, b = (
+            read_spot(f"{key}.{end}", spot, known, made, mirrored=mirrored)
+            for end, spot in (("a", table.a), ("b", table.b))
+        )
+        length = _told(f"{key}.length", lambda table=table: measured(table.length, known)) / 1000
+        if not 0 < length <= 5:
+            raise CutProblem(
+                f"{key}.length", f"{1000 * length:.0f} mm – a tie is above 0 and at most 5000 mm long"
+            )
+        ties[table.name] = Tie(table.name, a, b, length)
+    return tuple(ties.values())
 
 
 def _told(key: str, do: Callable[[], Any]) -> Any:

@@ -1,15 +1,25 @@
-"""How cloth is put before it falls: flat before and behind, over a bar, along a path."""
+"""How cloth lies before it is dressed: flat before and behind, wrapped round, over a bar, along a path, folded."""
 
-from sim_core.garment.placement.along_path import Accordion, arranged_path, swept
-from sim_core.garment.placement.flat import Laying, laid
-from sim_core.garment.placement.over_bar import Gathering, gathered_strip
+from sim_core.garment.placement.along_path import Accordion, AlongPath, Knot, arranged_path, swept
+from sim_core.garment.placement.flat import Flat
+from sim_core.garment.placement.folded import Folded
+from sim_core.garment.placement.ground import WORN, Ground
+from sim_core.garment.placement.over_bar import OverBar
+from sim_core.garment.placement.wrapped import Wrapped
+
+Placement = Flat | OverBar | AlongPath | Wrapped | Folded
 
 __all__ = [
+    "WORN",
     "Accordion",
-    "Gathering",
-    "Laying",
+    "AlongPath",
+    "Flat",
+    "Folded",
+    "Ground",
+    "Knot",
+    "OverBar",
+    "Placement",
+    "Wrapped",
     "arranged_path",
-    "gathered_strip",
-    "laid",
     "swept",
 ]

@@ -6,16 +6,68 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from sim_core.cloth.contact.distance_field import DistanceField
+from sim_core.cloth.contact import DistanceField
 from sim_core.errors import SimCoreError
+from sim_core.garment.pattern import Cloth, Pattern
+from sim_core.garment.placement.ground import Ground
+from sim_core.garment.placement.path_search import cleared_line
 
-__all__ = ["Accordion", "arranged_path", "swept"]
+__all__ = ["Accordion", "AlongPath", "Knot", "arranged_path", "swept"]
 
 STEP = 0.005  # [m] between stations of the path
 TWIST = 0.5  # strain by twist counts that much of one by a bend over the edge: it is second order
+
+
+@dataclass(frozen=True)
+class Knot:
+    """A point of the path: the mean of the landmarks `near`, and by (3,) [m] from there; room [m] the middle of the
+    cloth keeps from what lies beneath."""
+
+    near: tuple[str, ...]
+    by: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    room: float = 0.05
+
+
+@dataclass(frozen=True)
+class AlongPath:
+    """A strip swept along a line through knots, the first in the mirror plane; beyond the last it hangs straight down.
+
+    x of the pattern runs along the line from the middle, y across. along: two landmarks, the strip's width lies
+    along the way from the first to the second where the line is highest; stations: width [m] at distances [m] from
+    there; begin, end [m]: width at the strip's middle and end; waves: folds across the width.
+    """
+
+    knots: tuple[Knot, ...]
+    along: tuple[str, str] = ("elbow_l", "wrist_l")
+    stations: tuple[tuple[float, float], ...] = ()
+    begin: float = 0.22
+    end: float = 0.24
+    waves: float = 5.0
+
+    halves = True  # `start` takes the left half of a mirrored pattern
+
+    def hanging(self, cloth: Cloth) -> float:
+        """The longest free length [m]."""
+        return float(np.ptp(cloth.vertices[:, 0])) / 2
+
+    def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
+        """Positions (P, 3) [m] of the pattern vertices, of a mirrored pattern those of its left half.
+
+        Raises SimCoreError where a landmark is not known or the strip is too short.
+        """
+        length = float(np.ptp(cloth.vertices[:, 0]))
+        points = np.array(
+            [np.mean([ground.mark(name) for name in k.near], axis=0) + k.by for k in self.knots]
+        )
+        room = np.array([knot.room for knot in self.knots])
+        path = arranged_path(points, ground.distance, room, length)
+        top = float(np.argmax(path[:, 1])) * STEP
+        stations = (0.0, *(top + away for away, _ in self.stations), length)
+        widths = (self.begin, *(width for _, width in self.stations), self.end)
+        direction = ground.mark(self.along[1]) - ground.mark(self.along[0])
+        return swept(cloth.vertices, path, direction, Accordion(stations, widths, self.waves), rng)
 
 
 @dataclass(frozen=True)
@@ -40,10 +92,11 @@ def arranged_path(
 ) -> np.ndarray:
     """A smooth line (N, 3) through the neighbourhood of knots (K, 3) [m], N stations STEP apart, `length` [m] long.
 
-    It starts in the mirror plane at the first knot, and keeps room (K,) [m], interpolated, to the field's solid:
-    like a rope it is drawn straight and pushed out by turns. Beyond the last knot it hangs straight down.
+    It starts in the mirror plane at the first knot, and keeps room (K,) [m], interpolated, to the field's solid: it
+    goes past the knots by the cheapest way through free space, and like a rope it is drawn straight and pushed out by
+    turns. Beyond the last knot it hangs straight down.
     """
-    line, clear = _resampled(knots, room)
+    line, clear = _resampled(*cleared_line(knots, room, field))
     for _ in range(rounds):
         value, gradient = field.with_gradient(line)
         size = np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), 0.3)
@@ -57,24 +110,17 @@ def arranged_path(
     left = length - STEP * (len(line) - 1)
     if left < 0.05:
         raise SimCoreError(
-            f"pibo: half of {length:.2f} m does not reach round the arm – cut it {0.1 - left:.2f} m longer"
+            f"place: half a strip of {length:.2f} m does not reach round the arm – cut it {0.1 - left:.2f} m longer"
         )
     fall = line[-1] - np.arange(1, int(np.ceil(left / STEP)) + 2)[:, None] * [0.0, STEP, 0.0]
     return np.concatenate([line, fall])
 
 
-def _resampled(knots: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points STEP apart on a spline through knots (K, 3), and the values (K,) there."""
-    t = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(knots, axis=0), axis=1))]
-    fine = np.linspace(0, t[-1], 2000)
-    curve = CubicSpline(t, knots)(fine) if len(knots) < 50 else _linear(fine, t, knots)
-    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))]
+def _resampled(line: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points STEP apart on a line (N, 3), and the values (N,) there."""
+    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     at = np.arange(0.0, s[-1], STEP)
-    return _linear(at, s, curve), np.interp(np.interp(at, s, fine), t, values)
-
-
-def _linear(at: np.ndarray, s: np.ndarray, points: np.ndarray) -> np.ndarray:
-    return np.stack([np.interp(at, s, points[:, c]) for c in range(3)], axis=1)
+    return np.stack([np.interp(at, s, line[:, c]) for c in range(3)], axis=1), np.interp(at, s, values)
 
 
 def swept(

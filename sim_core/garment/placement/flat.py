@@ -10,11 +10,55 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.garment.pattern.cloth import Cloth
-from sim_core.garment.pattern.panels import Panel
-from sim_core.garment.pattern.pattern import Pattern
+from sim_core.garment.pattern import Cloth, Panel, Path, Pattern
+from sim_core.garment.placement.ground import Ground
 
-__all__ = ["Laying", "laid"]
+__all__ = ["Flat", "Laying", "laid"]
+
+OVER = 0.012  # [m] of the laid cloth above shoulders and arms
+RISING = 0.07  # [m] of the shoulder fold over which a front that lies outside is raised to its height
+
+
+@dataclass(frozen=True)
+class Flat:
+    """Flat before and behind the wearer's outstretched arms.
+
+    over: the front, of the wearer, that lies outside where fronts overlap, lift [m] off the other from the shoulder
+    on; front, back [m]: of the sheets before and behind the middle.
+    """
+
+    over: str = "left"
+    lift: float = 0.012
+    front: float = 0.17
+    back: float = 0.15
+
+    halves = True  # `start` takes the left half of a mirrored pattern
+
+    def hanging(self, cloth: Cloth) -> float:
+        """The longest free length [m]."""
+        return float(np.abs(cloth.vertices[:, 1]).max())
+
+    def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
+        """Positions (P, 3) [m] of the pattern vertices, of a mirrored pattern those of its left half."""
+        laying = self._laying(ground)
+        return laid(pattern, cloth, laying)[0]
+
+    def whole(self, pattern: Pattern, cloth: Cloth, ground: Ground) -> np.ndarray:
+        """Positions (2P, 3) [m] of both halves of a mirrored pattern, the outer front raised off the other."""
+        laying = self._laying(ground)
+        own, fall = laid(pattern, cloth, laying)
+        both = np.stack([own, own * [-1.0, 1.0, 1.0]])
+        share = np.clip(fall / RISING, 0.0, 1.0)
+        amount = self.lift * share * share * (3 - 2 * share)
+        outer = 0 if self.over == "left" else 1
+        both[outer] += amount[:, None] * laying.normal(fall)
+        return both.reshape(-1, 3)
+
+    def _laying(self, ground: Ground) -> Laying:
+        """Over the highest point of arms and shoulders, the neck left out."""
+        points = ground.points()
+        top = float(points[np.abs(points[:, 0]) > 0.1, 1].max()) + OVER
+        return Laying(top=top, front=self.front, back=-self.back)
 
 
 @dataclass(frozen=True)
@@ -45,22 +89,31 @@ class Laying:
         z = self.fold + np.where(ahead, out, -out)
         return np.stack([points[:, 0], self.top - down, z], axis=1)
 
+    def normal(self, fall: np.ndarray) -> np.ndarray:
+        """Outward unit vectors (N, 3) of the front sheet `fall` (N,) [m] below the shoulder fold."""
+        flat = self.front - self.fold - self.bend
+        angle = np.clip((fall - flat) / self.bend, 0, np.pi / 2)
+        return np.stack([np.zeros(len(fall)), np.cos(angle), np.sin(angle)], axis=1)
 
-def laid(pattern: Pattern, cloth: Cloth, laying: Laying) -> np.ndarray:
-    """Start positions (P, 3) of all pattern vertices of one half."""
-    positions = np.zeros((len(cloth.vertices), 3))
+
+def laid(pattern: Pattern, cloth: Cloth, laying: Laying) -> tuple[np.ndarray, np.ndarray]:
+    """Start positions (P, 3) [m] of all pattern vertices, and how far below the shoulder fold (P,) [m] each lies in
+    front; behind it the figure is negative. Of a band it is that of the edge it lies along."""
+    positions, fall = np.zeros((len(cloth.vertices), 3)), np.zeros(len(cloth.vertices))
     for number, panel in enumerate(pattern.panels):
         own = np.flatnonzero(cloth.panel_of == number)
         if panel.along is None:
-            positions[own] = laying.place(cloth.vertices[own])
+            positions[own], fall[own] = laying.place(cloth.vertices[own]), cloth.vertices[own, 1]
     for number, panel in enumerate(pattern.panels):
         if panel.along is not None:
             own = np.flatnonzero(cloth.panel_of == number)
-            positions[own] = _beside(pattern, panel, cloth, own, laying)
-    return positions
+            positions[own], fall[own] = _beside(pattern, panel, cloth, own, laying)
+    return positions, fall
 
 
-def _beside(pattern: Pattern, band: Panel, cloth: Cloth, own: np.ndarray, laying: Laying) -> np.ndarray:
+def _beside(
+    pattern: Pattern, band: Panel, cloth: Cloth, own: np.ndarray, laying: Laying
+) -> tuple[np.ndarray, np.ndarray]:
     """A band beside the edge it is sewn to: towards the middle in front, turned upright before it meets the neck."""
     assert band.along is not None
     edge = cloth.along(band.along, pattern.panel(band.along.panel))
@@ -68,22 +121,25 @@ def _beside(pattern: Pattern, band: Panel, cloth: Cloth, own: np.ndarray, laying
     mine = cloth.along(sewn, band) if sewn is not None else own[:1]
     points, arc = cloth.vertices[own], cloth.vertices[mine, 1]
     order = np.argsort(arc)
-    down = cloth.vertices[edge, 1]  # y in the garment's plane: how far below the shoulder fold
-    place = laying.place(cloth.vertices[edge])
+    line = cloth.vertices[edge]  # in the garment's plane
+    way = np.gradient(line, axis=0)
+    inwards = np.stack([way[:, 1], -way[:, 0]], axis=1) / np.linalg.norm(way, axis=1)[:, None]
+    inwards *= -np.sign(inwards[:, :1]) * np.ones(2)  # towards the middle of the front and beyond
     begin, end = laying.turn
-    share = np.clip((begin - down) / (begin - end), 0, 1)
+    share = np.clip((begin - line[:, 1]) / (begin - end), 0, 1)
     rise = 0.5 * np.pi * share * share * (3 - 2 * share)
 
     def at(values: np.ndarray) -> np.ndarray:
         return np.interp(points[:, 1], arc[order], values[order])
 
     away = np.abs(points[:, 0] - cloth.vertices[mine, 0].mean())
-    base = np.stack([at(place[:, c]) for c in range(3)], axis=1)
-    lean = at(rise)
-    return base + away[:, None] * np.stack([-np.cos(lean), np.sin(lean), np.zeros(len(lean))], axis=1)
+    lean, fall = at(rise), at(line[:, 1])
+    flat = np.stack([at(line[:, c]) + away * np.cos(lean) * at(inwards[:, c]) for c in range(2)], axis=1)
+    out = laying.place(flat) + (away * np.sin(lean))[:, None] * laying.normal(fall)
+    return out, fall
 
 
-def _partner(pattern: Pattern, band: Panel):
+def _partner(pattern: Pattern, band: Panel) -> Path | None:
     """The band's own side of the seam it lies along."""
     for seam in pattern.seams:
         if seam.a == band.along and seam.b is not None and seam.b.panel == band.name:

@@ -6,9 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sim_core.errors import SimCoreError
+from sim_core.garment.pattern import Cloth, Pattern
+from sim_core.garment.placement.ground import Ground
+
+__all__ = ["OverBar"]
+
 
 @dataclass(frozen=True)
-class Gathering:
+class OverBar:
     """A strip's start over a bar. Lengths in metres.
 
     front: cloth in front of the bar's axis; at_bar, at_end: gathered width there and at the free ends;
@@ -25,7 +31,33 @@ class Gathering:
     skew: float = 0.10
     spread: float = 0.35
 
-    def resolved(self, width: float, edge: float) -> Gathering:
+    halves = False  # `start` takes the whole of a mirrored pattern
+
+    def hanging(self, cloth: Cloth) -> float:
+        """The longest free length [m]."""
+        return max(self.front, float(np.ptp(cloth.vertices[:, 1])) - self.front)
+
+    def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
+        """Positions (P, 3) [m]; raises SimCoreError where the cloth does not fit the stand."""
+        stand = ground.bar()
+        width, length = (float(c) for c in np.ptp(cloth.vertices, axis=0))
+        gathering = self.resolved(width, ground.edge)
+        longest = max(self.front, length - self.front)
+        if not 0.1 < self.front < length - 0.1:
+            raise SimCoreError(
+                f"pattern {pattern.name}: {length:.2f} m long – needs more than front {self.front} + 0.1 m"
+            )
+        if longest > stand.height - 0.05:
+            raise SimCoreError(
+                f"pattern {pattern.name}: an end of {longest:.2f} m touches the floor – raise the stand's bar"
+            )
+        if max(gathering.at_bar, gathering.at_end) > stand.span - 0.1 or gathering.at_end > width:
+            raise SimCoreError(
+                f"pattern {pattern.name}: gathered to {gathering.at_end} m – between stand and cloth width"
+            )
+        return gathered_strip(cloth.vertices, stand.height, gathering, rng)
+
+    def resolved(self, width: float, edge: float) -> OverBar:
         """As many folds as a mesh of step `edge` [m] shows, four edges to a fold; fewer folds are gathered less."""
         folds = min(self.folds, width / (4 * edge))
         loose = (1 - folds / self.folds) * 0.85
@@ -35,7 +67,7 @@ class Gathering:
 
 
 def gathered_strip(
-    rest: np.ndarray, bar_height: float, gathering: Gathering, rng: np.random.Generator
+    rest: np.ndarray, bar_height: float, gathering: OverBar, rng: np.random.Generator
 ) -> np.ndarray:
     """Start positions (V, 3) of a strip rest (V, 2): x across, y along it (y = 0 hangs in front).
 
@@ -67,7 +99,7 @@ def _section(
     s: float,
     ends: np.ndarray,
     width: float,
-    g: Gathering,
+    g: OverBar,
     phase: float,
     lean: float,
     wander: np.ndarray,
@@ -97,7 +129,7 @@ def _section(
 
 
 def _arched(
-    along: np.ndarray, lateral: np.ndarray, offset: np.ndarray, bar_height: float, g: Gathering
+    along: np.ndarray, lateral: np.ndarray, offset: np.ndarray, bar_height: float, g: OverBar
 ) -> np.ndarray:
     """Bends the strip over an arch whose top is `drop` above the bar, straight down on both sides."""
     quarter = g.arch * np.pi / 2

@@ -1,0 +1,180 @@
+"""How an outfit and its garments look: what film and stills show of them, and what their models hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from hall_app.build.film import Look, Part, Piece
+
+if TYPE_CHECKING:
+    from sim_core.garment import Garment, Layer, Outfit
+    from sim_core.garment.glb import Clothed, MapsLike
+
+__all__ = ["HALL_BENEATH", "Wardrobe"]
+
+HALL_BENEATH = 0.004  # [m] by how much what is worn beneath may deviate in the hall, p99
+HALL_FIGURE = 1600  # triangles of a figure in the hall
+THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
+PIXELS = 512  # of the weaves' maps
+
+
+@dataclass(frozen=True)
+class Wardrobe:
+    """An outfit with the maps of its cloth, each weave drawn once."""
+
+    outfit: Outfit
+
+    @cached_property
+    def maps(self) -> tuple[tuple[MapsLike, dict[str, MapsLike]], ...]:
+        """Of each layer: its cloth's maps, and those of panels that have a weave of their own."""
+        from sim_core.weave import surface_maps
+
+        drawn: dict[Any, MapsLike] = {}
+
+        def of(layer: Layer, panel: str = "") -> MapsLike:
+            weave = layer.weave_of(panel)
+            key = repr(weave.to_dict())
+            if key not in drawn:
+                drawn[key] = surface_maps(weave, layer.yarns(panel), pixels=PIXELS)
+            return drawn[key]
+
+        return tuple(
+            (of(layer), {panel: of(layer, panel) for panel in layer.weaves}) for layer in self.outfit.layers
+        )
+
+    def film(self) -> Look:
+        """What the film shows, what moves first: the outermost layer as it is cut, those beneath, the wearer.
+
+        Vertices of the cloth are those of its pattern, as frames of a dressing give them.
+        """
+        pieces, last = [], len(self.outfit.layers) - 1
+        for number, layer in enumerate(self.outfit.layers):
+            cloth = layer.cloth
+            weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
+            _, first, index = np.unique(weld, return_index=True, return_inverse=True)
+            faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
+            parts = self._parts(number, faces, cloth.panel, cloth.names)
+            pieces.append(Piece(np.zeros((len(cloth.vertices), 3)), parts))
+        return self._look(pieces)
+
+    def still(self, garments: Sequence[Garment]) -> Look:
+        """What the stills show: the garments at rest."""
+        pieces = [
+            Piece(garment.positions, self._parts(number, garment.faces, garment.panel, garment.panels))
+            for number, garment in enumerate(garments)
+        ]
+        return self._look(pieces)
+
+    def write_models(self, garments: Sequence[Garment], folder: Path, budget: float) -> tuple[Garment, ...]:
+        """Writes close.glb, and hall.glb with each layer's cheapest level; returns these levels.
+
+        budget [m]: how far (p99) the outermost may deviate in the hall.
+        """
+        from sim_core.garment import choose_detail
+
+        self._write(garments, folder / "close.glb", "close")
+        levels = [choose_detail(garment, HALL_BENEATH) for garment in garments[:-1]]
+        levels.append(choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels)))
+        self._write(levels, folder / "hall.glb", "hall")
+        return tuple(levels)
+
+    def _write(self, garments: Sequence[Garment], path: Path, precision: Literal["close", "hall"]) -> None:
+        from sim_core.garment import Clothed, write_glb
+
+        layers = [Clothed(garment, *maps) for garment, maps in zip(garments, self.maps, strict=True)]
+        write_glb(path, layers, precision=precision, figure=self._figure(layers, precision))
+
+    def _figure(self, layers: Sequence[Clothed], precision: str) -> Any:
+        """The wearer as far as no dense cloth hides it."""
+        from sim_core.garment.levels import shown_figure
+
+        wearer = self.outfit.wearer
+        if wearer is None:
+            return None
+        points, faces, count = [], [], 0
+        for layer in layers:
+            garment = layer.garment
+            dense = [k for k in range(len(garment.panels)) if not _sheer(_cover(layer.of(k)))]
+            points.append(garment.positions)
+            faces.append(garment.faces[np.isin(garment.panel, dense)] + count)
+            count += len(garment.positions)
+        most = HALL_FIGURE if precision == "hall" else None
+        body = wearer.posed(self.outfit.pose), wearer.faces
+        return shown_figure(*body, np.concatenate(points), np.concatenate(faces), triangles=most)
+
+    def _parts(
+        self, number: int, faces: np.ndarray, panel: np.ndarray, names: Sequence[str]
+    ) -> tuple[Part, ...]:
+        """The looks of a layer's cloth: one for each colour and cover."""
+        from sim_core.garment.pattern import unsided
+
+        layer, (maps, own) = self.outfit.layers[number], self.maps[number]
+        dyes = {cut.name: cut.dye for cut in layer.pattern.panels}
+        looks = []
+        for name in map(unsided, names):
+            woven = own.get(name, maps)
+            cover = _cover(woven)
+            alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
+            looks.append((_colour(dyes.get(name) or layer.pattern.dye, woven), alpha))
+        return tuple(
+            Part(faces[np.isin(panel, [k for k, own in enumerate(looks) if own == look])], *look, sheen=0.5)
+            for look in dict.fromkeys(looks)
+        )
+
+    def _look(self, cloth: Sequence[Piece]) -> Look:
+        """Cloth, given from the skin outwards, and what bears it."""
+        from sim_core.cloth import Cylinder
+        from sim_core.cloth.contact.solid_meshes import solid_mesh
+        from sim_core.garment.glb import LACQUER, LINEN
+        from sim_core.garment.levels.figure import BASE
+
+        if self.outfit.wearer is None:
+            assert self.outfit.stand is not None
+            vertices, faces = self.outfit.stand.mesh()
+            stand = Piece(vertices, (Part(faces, LACQUER, gloss=0.35),))
+            return Look((*cloth[::-1], stand), float(vertices[:, 1].max()))
+        radius, lift = BASE
+        vertices = self.outfit.wearer.posed(self.outfit.pose)
+        disc, around = solid_mesh(Cylinder((0, 0, 0), (0, lift, 0), radius, 0.4 * lift), 48)
+        body = Piece(vertices, (Part(self.outfit.wearer.faces, LINEN, gloss=0.05),), lift)
+        base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
+        raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
+        return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)
+
+
+def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:
+    """The solid that a coarser mesh is moved out of: the wearer in these levels. None: as the garment knows."""
+    from sim_core.garment.dressing import capped
+
+    if not beneath or garment.settled is None:
+        return None
+    lain = garment.settled.beneath
+    body, *worn = lain.surfaces
+    surfaces = []
+    for surface, level in zip(worn, beneath, strict=True):
+        vertices, faces = capped(level.positions, level.faces)
+        surfaces.append(replace(surface, vertices=vertices, faces=faces))
+    return replace(lain, surfaces=(body, *surfaces)).solid()
+
+
+def _cover(maps: MapsLike) -> float:
+    """Share of the light that the cloth stops."""
+    return float(maps.opacity.mean() / 255)
+
+
+def _sheer(cover: float) -> bool:
+    from sim_core.garment.glb import SHEER
+
+    return cover < SHEER
+
+
+def _colour(dye: tuple[float, float, float] | None, maps: MapsLike) -> tuple[float, float, float]:
+    """The colour [sRGB] of cloth seen from afar: its dye, else the mean of its yarns."""
+    red, green, blue = dye if dye is not None else maps.albedo.reshape(-1, 3).mean(axis=0) / 255
+    return (float(red), float(green), float(blue))

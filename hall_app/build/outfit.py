@@ -1,0 +1,236 @@
+"""One outfit, from files to what the hall shows: simulated garments, both models, film, stills, record."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import time
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hall_app.build.encoding import film_possible
+from hall_app.build.film import Film, filming, stills
+from hall_app.build.look import Wardrobe
+from hall_app.build.trails import TrailLostError, Trails
+from hall_app.content.bakes.key import dressing_key
+from hall_app.content.bakes.record import FILES, publish, seal, text_of
+from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
+from hall_app.content.folder import Content, Exhibit
+from hall_app.content.models.glb import read_glb
+
+if TYPE_CHECKING:
+    from sim_core.garment import Frame, Garment, Outfit
+
+__all__ = ["bake_outfit", "budget"]
+
+Progress = Callable[[float, str], None]
+
+FILM = ("drape.webm", "drape.mp4")
+SCREEN = 1080  # [pixels] height of the picture a pixel's budget is reckoned for
+FIELD_OF_VIEW = math.radians(58)
+
+
+def bake_outfit(
+    content: Content,
+    exhibit: Exhibit,
+    *,
+    key: str,
+    target: Path,
+    work: Path,
+    progress: Progress,
+    film: bool = True,
+    former: Path | None = None,
+) -> dict[str, Any]:
+    """Bake the exhibit's outfit into `target` and return the record that is kept beside it.
+
+    work: where an interrupted bake left its state and where this one leaves its own; gone after success.
+    film: whether to film how the outermost layer is dressed, which needs PyAV.
+    former: an earlier bake, whose garments, film and pictures serve again where only how they are shown has changed.
+    Raises what reading, meshing, weaving and dressing raise, each naming file and remedy.
+    """
+    from sim_core.garment import load_outfit
+
+    began = time.perf_counter()
+    out = work / "out"
+    out.mkdir(parents=True, exist_ok=True)
+    assert exhibit.file.outfit is not None
+    wardrobe = Wardrobe(load_outfit(content.folder / exhibit.file.outfit, content.folder))
+    show = exhibit.file.show
+    levels: list[Garment] = []
+
+    def models(garments: Sequence[Garment]) -> None:
+        for garment, name in zip(garments, layer_files(len(garments)), strict=True):
+            garment.save(out / name)
+        levels.extend(wardrobe.write_models(garments, out, budget(show.nearest, show.hall_error_px)))
+
+    dressing = dressing_key(content, exhibit)
+    film = film and film_possible()
+    kept = _kept(former, dressing, len(wardrobe.outfit.layers), out, film=film) if former else None
+    if kept is None:
+        garments, seconds = _dress(wardrobe, work, out, progress, models, film=film)
+        progress(0.95, "pictures")
+        stills(wardrobe.still(garments), out)
+        seconds["all"] = round(time.perf_counter() - began, 2)
+    else:
+        garments, seconds = kept
+        progress(0.6, "models")
+        clock = time.perf_counter()
+        models(garments)
+        took = time.perf_counter() - clock
+        seconds["all"] = round(seconds["all"] + took - seconds["models"], 2)
+        seconds["models"] = round(took, 2)
+    record: dict[str, Any] = {**_record(key, garments, levels, seconds), "dressing": dressing}
+    record["errors"]["hall_all_triangles"] = read_glb(out / "hall.glb").triangles
+    record[FILES] = seal(out, RECORD)
+    (out / RECORD).write_text(text_of(record), "utf-8")
+    publish(out, target, RECORD)
+    shutil.rmtree(work, ignore_errors=True)
+    progress(1.0, "done")
+    return record
+
+
+def _kept(
+    former: Path, dressing: str, layers: int, out: Path, *, film: bool
+) -> tuple[tuple[Garment, ...], dict[str, float]] | None:
+    """Garments and seconds of an earlier bake, its film and pictures copied to `out`; None where it will not do."""
+    from sim_core.garment import Garment
+
+    record = read_record(former)
+    if record is None or record.get("dressing") != dressing or bake_fault(former) is not None:
+        return None
+    if film and FILM[0] not in record[FILES]:
+        return None
+    for name in record[FILES]:
+        if not name.endswith(".glb"):  # models are made anew
+            shutil.copyfile(former / name, out / name)
+    return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
+
+
+def budget(nearest: float, pixels: float) -> float:
+    """The length [m] that `pixels` of a full-screen picture show at the nearest viewing distance [m]."""
+    return pixels * 2 * nearest * math.tan(FIELD_OF_VIEW / 2) / SCREEN
+
+
+def _dress(
+    wardrobe: Wardrobe,
+    work: Path,
+    out: Path,
+    progress: Progress,
+    models: Callable[[Sequence[Garment]], None],
+    *,
+    film: bool,
+) -> tuple[tuple[Garment, ...], dict[str, float]]:
+    """Dress, and film it meanwhile; `models` writes what is to be written while the last pictures are drawn."""
+    look = wardrobe.film()  # draws the weaves' maps, too, which takes no time of the dressing
+    clock, seconds = time.perf_counter(), {}
+
+    def lap(name: str) -> None:
+        nonlocal clock
+        now = time.perf_counter()
+        seconds[name], clock = round(now - clock, 2), now
+
+    with filming(look, work / "film") if film else nullcontext() as taken:
+        garments = _dressed(
+            wardrobe.outfit, work / "dress", taken, lambda share, label: progress(0.6 * share, label)
+        )
+        lap("drape")
+        if taken is not None:
+            taken.walk_round(_at_rest(wardrobe.outfit, garments))
+        progress(0.6, "models")
+        models(garments)
+        lap("models")
+        if taken is not None:
+            progress(0.7, "film")
+            paths = (out / FILM[0], out / FILM[1])
+            taken.write(paths, _sound(), lambda share: progress(0.7 + 0.25 * share, "film"))
+            lap("film")
+    return garments, seconds
+
+
+def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress) -> tuple[Garment, ...]:
+    """Dress the outfit, each frame of its outermost layer filmed; goes on from `state` where that is whole."""
+    from sim_core.garment import dress
+
+    state.mkdir(parents=True, exist_ok=True)
+    if taken is None:
+        return dress(outfit, progress=progress, checkpoint=state / "state.npz")
+    last = len(outfit.layers) - 1
+
+    def shoot(frame: Frame, trails: Trails) -> None:
+        if frame.layer < last:
+            trails.hear(frame)
+            return
+        body = [] if outfit.wearer is None else [outfit.wearer.posed(frame.pose)]
+        taken.shoot([frame.positions, *trails.beneath(last, frame.pose), *body])
+
+    for _ in range(2):
+        trails = Trails(state)
+        try:
+            return dress(
+                outfit,
+                progress=progress,
+                on_frame=lambda frame, trails=trails: shoot(frame, trails),
+                checkpoint=state / "state.npz",
+            )
+        except TrailLostError:  # interrupted between two layers: what was not seen cannot be filmed
+            shutil.rmtree(state)
+            state.mkdir()
+    raise AssertionError("a dressing that began anew has heard all of its layers")
+
+
+def _at_rest(outfit: Outfit, garments: Sequence[Garment]) -> list[np.ndarray]:
+    """What moves in the film, as it came to rest."""
+    body = [] if outfit.wearer is None else [outfit.wearer.posed(outfit.pose)]
+    return [*(garment.worn() for garment in reversed(garments)), *body]
+
+
+def _sound() -> np.ndarray:
+    """The film's music, mono at 48 kHz."""
+    from hall_app.media.music import falling_gauze
+
+    return falling_gauze().mean(axis=1).astype(np.float32)
+
+
+def _record(
+    key: str, garments: Sequence[Garment], levels: Sequence[Garment], seconds: dict[str, float]
+) -> dict[str, Any]:
+    """What the hall tells of this bake; every number comes from a measurement."""
+    errors: dict[str, float] = {}
+    stages: dict[str, float] = {}
+    for number, (garment, light) in enumerate(zip(garments, levels, strict=True), 1):
+        before = "" if number == len(garments) else f"{garment.name}_"
+        errors |= {f"{before}{name}": value for name, value in _figures(garment, light).items()}
+        for stage, taken in garment.provenance["seconds"].items():
+            stages[stage] = round(stages.get(stage, 0.0) + taken, 2)
+    return {
+        "key": key,
+        "digest": garments[-1].digest(),
+        "layers": [_layer(garment) for garment in garments],
+        "errors": errors,
+        "seconds": seconds,
+        "stages": stages,
+        "hall_budget_m": levels[-1].provenance["detail"].get("budget_m"),
+        "versions": garments[-1].provenance["versions"],
+    }
+
+
+def _layer(garment: Garment) -> dict[str, Any]:
+    """Which garment it is, and how it was dressed."""
+    return {"name": garment.name, "digest": garment.digest()} | {
+        fact: garment.provenance[fact] for fact in ("way", "whole")
+    }
+
+
+def _figures(garment: Garment, light: Garment) -> dict[str, float]:
+    """The measured figures of one garment and of its level in the hall."""
+    told = garment.provenance["errors"]
+    errors = {name: value for name, value in told.items() if not isinstance(value, list)}
+    apart = light.provenance["detail"].get("hausdorff", {})
+    errors |= {f"hall_hausdorff_{name.removesuffix('_m')}": value for name, value in apart.items()}
+    errors["vertices"], errors["triangles"] = len(garment.positions), len(garment.faces)
+    errors["hall_triangles"] = len(light.faces)
+    return errors

@@ -1,0 +1,52 @@
+"""The files an outfit names, read without the engine that dresses it: what its bake depends on."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hall_app.content.files import file_problem
+from hall_app.content.problems import Problem
+from hall_app.content.schema.complaints import toml_problem
+
+__all__ = ["outfit_files", "outfit_problems"]
+
+LAYER = ("pattern", "weave")  # keys of a layer that name a file; `weaves` holds those of single panels
+
+
+def outfit_files(folder: Path, outfit: str) -> tuple[tuple[str, str], ...]:
+    """(key, path) of every file the outfit names, relative to the content folder; keys as `load_outfit` tells them.
+
+    What is no path where one belongs is passed over: whoever dresses the outfit refuses it. Raises OSError,
+    UnicodeDecodeError, tomllib.TOMLDecodeError, ValueError or RecursionError for a file that cannot be read.
+    """
+    table = tomllib.loads((folder / outfit).read_bytes().decode("utf-8-sig"))
+    return tuple((key, path) for key, path in _named(table) if isinstance(path, str) and path)
+
+
+def _named(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    yield "wearer", table.get("wearer")
+    layers = table.get("layer")
+    for number, layer in enumerate(layers if isinstance(layers, list) else [], 1):
+        if not isinstance(layer, dict):
+            continue
+        for name in LAYER:
+            yield f"layer.{number}.{name}", layer.get(name)
+        weaves = layer.get("weaves")
+        for panel, path in (weaves if isinstance(weaves, dict) else {}).items():
+            yield f"layer.{number}.weaves.{panel}", path
+
+
+def outfit_problems(folder: Path, outfit: str) -> list[Problem]:
+    """Why nothing can be dressed by an outfit file that is there: it cannot be read, or a file it names is missing."""
+    try:
+        named = outfit_files(folder, outfit)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        return [toml_problem(outfit, error)]
+    except (OSError, ValueError, RecursionError) as error:
+        what = f"cannot be read ({type(error).__name__})"
+        return [Problem(outfit, "", what, "check the file, shorten its numbers and lists")]
+    found = (file_problem(outfit, key, folder, path, root=folder) for key, path in named)
+    return [problem for problem in found if problem is not None]

@@ -1,0 +1,113 @@
+"""A garment's materials: what its weaves measure, simplified as far as the scene needs it, and said in words."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim_core.cloth import Material
+from sim_core.garment.outfit import GRAVITY, Layer, Program
+from sim_core.garment.pattern import Cloth
+from sim_core.weave import ClothParameters, parameters_of
+
+__all__ = ["Materials", "materials_of", "simplified"]
+
+DOUBLED = "doubled"
+
+
+@dataclass(frozen=True)
+class Materials:
+    """kinds: material of each kind of panel, `names` theirs (weave, and whether it is doubled); of_panel (N,): which
+    each panel of the pattern has; choices: what was simplified, in words; provenance of the first weave's numbers."""
+
+    kinds: tuple[Material, ...]
+    names: tuple[str, ...]
+    of_panel: np.ndarray
+    choices: dict[str, str]
+    provenance: dict[str, str]
+
+    def of_faces(self, cloth: Cloth) -> np.ndarray:
+        """Kind (F,) int32 of each face."""
+        return self.of_panel[cloth.panel % len(self.of_panel)].astype(np.int32)
+
+
+def materials_of(layer: Layer, cloth: Cloth, hanging: float) -> Materials:
+    """The materials of a layer whose longest free length hangs `hanging` [m]."""
+    solved: dict[str, ClothParameters] = {}
+    kinds: dict[tuple[str, bool], int] = {}
+    materials: list[Material] = []
+    names, choices, of_panel = [], {}, []
+    panels = layer.pattern.panels
+    for name, doubled in [(p.name, p.doubled) for p in panels] or [("cloth", False)]:
+        weave = layer.weave_of(name)
+        cloth_kind = json.dumps(weave.to_dict(), sort_keys=True)
+        first = not solved
+        if cloth_kind not in solved:
+            solved[cloth_kind] = parameters_of(weave, layer.yarns(name))
+        kind = cloth_kind, doubled
+        if kind not in kinds:
+            kinds[kind] = len(materials)
+            single, said = simplified(solved[cloth_kind], layer.program, hanging, layer.edge)
+            materials.append(_doubled(single, layer, solved[cloth_kind]) if doubled else single)
+            names.append(f"{weave.name} {DOUBLED}" if doubled else weave.name)
+            choices |= {key if first else f"{key} of {weave.name}": text for key, text in said.items()}
+            if doubled:
+                choices[DOUBLED] = "twice the mass and stretch, six times the bending"
+        of_panel.append(kinds[kind])
+    provenance = dict(next(iter(solved.values())).provenance)
+    return Materials(tuple(materials), tuple(names), np.array(of_panel, np.int32), choices, provenance)
+
+
+def simplified(
+    parameters: ClothParameters, program: Program, hanging: float, edge: float
+) -> tuple[Material, dict[str, str]]:
+    """The weave's material as far as the scene needs it, and what was simplified, in words.
+
+    hanging: longest free length [m]; edge: mesh step [m]. Silk hardly stretches, and a solver that resolved its true
+    stiffness would spend its time on strains of 1e-5: stiffness is lowered until the cloth's own weight strains it by
+    program.sag. Bending takes the weave's lower bound, fibres free to slide (degummed silk), but no less than the mesh
+    resolves: (B / rho g)^(1/3) >= program.fold edges, below which folds look like crumpled paper.
+    """
+    density = float(parameters.density)
+    enough = density * GRAVITY * hanging / program.sag
+    stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
+    free = [float(parameters.bounds[name][0]) for name in ("bend_warp", "bend_weft")]
+    resolved = density * GRAVITY * (program.fold * edge) ** 3
+    material = Material(
+        density=density,
+        stretch=stretch[0],
+        stretch_warp=stretch[1],
+        shear=min(float(parameters.shear), min(stretch) / 2.6),
+        poisson=min(float(parameters.poisson), 0.3),
+        bend=max(free[1], resolved),
+        bend_warp=max(free[0], resolved),
+        friction=float(parameters.friction),
+        mass_damping=2.0,
+        stiffness_damping=2e-5,
+    )
+    choices = {
+        "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: "
+        f"{program.sag:.2%} strain by its weight",
+        "bend": f"lower bounds, warp {free[0]:.2e} and weft {free[1]:.2e} N m (fibres free), at least {resolved:.2e} "
+        f"for a {edge * 1e3:.0f} mm mesh",
+        "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",
+    }
+    return material, choices
+
+
+def _doubled(single: Material, layer: Layer, parameters: ClothParameters) -> Material:
+    """Of cloth folded along its length: two layers that slide a little."""
+    resolved = float(parameters.density) * GRAVITY * (layer.program.fold * layer.edge) ** 3
+    free = float(parameters.bounds["bend_warp"][0])
+    assert single.stretch_warp is not None
+    return replace(
+        single,
+        density=2 * single.density,
+        stretch=2 * single.stretch,
+        stretch_warp=2 * single.stretch_warp,
+        shear=2 * (single.shear or 0.0),
+        bend=6 * single.bend,
+        bend_warp=6 * max(free, resolved),
+    )

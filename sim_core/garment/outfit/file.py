@@ -1,0 +1,247 @@
+"""Reads outfit files: every path, pattern, weave, pose and step is looked at here, before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from sim_core.body import Figure, Mannequin, Pose, Stand, pose_named
+from sim_core.body.pose import T_POSE
+from sim_core.cloth import Contact
+from sim_core.errors import FileProblem, SimCoreError
+from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
+from sim_core.garment.outfit.steps import Step, Touch
+from sim_core.garment.outfit.tables import LayerTable, OutfitTable, Place, PoseTable, ProgramTable, StepTable
+from sim_core.garment.pattern import Pattern
+from sim_core.garment.pattern.tables import CutProblem, read_spot
+from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Wrapped
+from sim_core.validation.files import read_toml, shown
+from sim_core.weave import Weave
+
+__all__ = ["default_program", "load_outfit"]
+
+LOOK = 0.02  # [m] cell of the field by which a figure is tried
+WAYS: dict[str, type[Placement]] = {
+    "flat": Flat,
+    "over_bar": OverBar,
+    "along_path": AlongPath,
+    "wrapped": Wrapped,
+    "folded": Folded,
+}
+
+
+def load_outfit(path: Path, content: Path | None = None) -> Outfit:
+    """The outfit of a file. Paths in it are read from `content`, else from the folder that holds its `outfits`.
+
+    Raises FileProblem naming file, key, value and remedy for whatever is wrong with it or with a file it names.
+    """
+    path = Path(path)
+    values = read_toml(path, "an outfit file (TOML); it needs a wearer or a stand, and [[layer]] tables")
+    try:
+        read = OutfitTable.model_validate(values)
+    except ValidationError as error:
+        raise FileProblem(f"{path}: {_first(error, OutfitTable)}") from error
+    folder = content or (path.parent.parent if path.parent.name == "outfits" else path.parent)
+    reader = _Reader(path, folder)
+    return reader.outfit(read)
+
+
+class _Reader:
+    """Turns the tables of one file into values, naming file and key in every error."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        self._path, self._folder = path, folder
+
+    def outfit(self, read: OutfitTable) -> Outfit:
+        if (read.wearer is None) == (read.stand is None):
+            raise self._wrong(
+                "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
+            )
+        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer))
+        stand = None if read.stand is None else self._of("stand", lambda: Stand(**read.stand.model_dump()))  # type: ignore[union-attr]
+        if stand is not None and read.pose is not None:
+            raise self._wrong("pose", "a stand has none – leave it out")
+        pose = self.pose("pose", read.pose) if wearer is not None else T_POSE
+        layers = [self.layer(f"layer.{k}", table, wearer is None) for k, table in enumerate(read.layer, 1)]
+        if stand is not None and len(layers) > 1:
+            raise self._wrong("layer.2", "a stand bears one layer – give a wearer")
+        for k, layer in enumerate(layers):
+            if any(layer.name == other.name for other in layers[:k]):
+                raise self._wrong(
+                    f"layer.{k + 1}.name", f"{layer.name!r} is there twice – name each layer once"
+                )
+        name = read.name or self._path.stem
+        return Outfit(name, tuple(layers), wearer, stand, pose, dict(read.title))
+
+    def _wearer(self, file: Path) -> Mannequin:
+        """A figure that cloth can lie on: closed, with hands."""
+        wearer = Mannequin.load(file)
+        try:
+            Figure(wearer, cell=LOOK).field(T_POSE)
+        except SimCoreError as error:
+            raise FileProblem(f"{file}: {error}") from error
+        return wearer
+
+    def layer(self, key: str, table: LayerTable, on_stand: bool) -> Layer:
+        pattern = self._pattern(key, table)
+        weave = Weave.load(self._file(f"{key}.weave", table.weave))
+        weaves = {
+            name: Weave.load(self._file(f"{key}.weaves.{name}", file)) for name, file in table.weaves.items()
+        }
+        for name in weaves:
+            self._of(f"{key}.weaves", lambda name=name: pattern.panel(name))
+        way = table.place.way if table.place else ("over_bar" if on_stand else "flat")
+        if on_stand != (way in ("over_bar", "folded")):
+            ways = "over_bar or folded on a stand" if on_stand else "flat, wrapped or along_path on a wearer"
+            raise self._wrong(f"{key}.place.way", f"{way!r} – choose {ways}")
+        place = self.placement(key, table.place) if table.place else WAYS[way]()  # type: ignore[call-arg]
+        if way == "flat" and not pattern.panels:
+            raise self._wrong(
+                f"{key}.pattern", f"{table.pattern} is one panel – flat dressing needs [[panel]] tables"
+            )
+        if way == "along_path" and not pattern.mirror:
+            raise self._wrong(
+                f"{key}.pattern", f"{table.pattern} is no half – along_path needs mirror = true"
+            )
+        program = default_program(way)
+        if table.step:
+            steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
+            program = replace(program, steps=steps)
+        _check_order(self, key, program.steps, pattern)
+        edge = pattern.edge if table.edge is None else table.edge
+        return Layer(table.name or pattern.name, pattern, weave, place, program, edge, weaves, table.seed)
+
+    def _pattern(self, key: str, table: LayerTable) -> Pattern:
+        file = self._file(f"{key}.pattern", table.pattern)
+        pattern = self._of(key, lambda: Pattern.load(file, table.measures))
+        return self._of(f"{key}.dyes", lambda: pattern.coloured(table.dye, table.dyes))
+
+    def placement(self, key: str, table: Place) -> Placement:
+        values = table.model_dump(exclude={"way"})
+        if table.way == "along_path":
+            knots = tuple(Knot(tuple(k["near"]), k["by"], k["room"]) for k in values.pop("knot"))
+            values["knots"] = knots
+            values["stations"] = tuple(values["stations"])
+            if values["along"] is None:
+                del values["along"]
+        return WAYS[table.way](**values)
+
+    def pose(self, key: str, told: PoseTable | None) -> Pose:
+        if told is None:
+            return pose_named("display")
+        where = f"{self._path}: {key}"
+        try:
+            return pose_named(told, where) if isinstance(told, str) else Pose.of(told, where)
+        except SimCoreError as error:
+            raise FileProblem(str(error)) from error
+
+    def step(self, key: str, table: StepTable, pattern: Pattern | None) -> Step:
+        spots: list[Any] = []
+        for k, spot in enumerate(table.at, 1):
+            if isinstance(spot, str) or pattern is None:
+                spots.append(spot)
+                continue
+            panels = {panel.name: panel for panel in pattern.panels}
+            try:
+                spots.append(
+                    read_spot(f"{key}.at.{k}", spot, pattern.measures, panels, mirrored=pattern.mirror)
+                )
+            except CutProblem as error:
+                raise FileProblem(f"{self._path}: {error}") from error
+        if table.do == "pin" and not spots:
+            raise self._wrong(f"{key}.at", 'say what is pinned: at = ["nape"], or places of panels')
+        known = [tie.name for tie in pattern.ties] if pattern is not None else []
+        for name in table.ties:
+            if pattern is not None and name not in known:
+                raise self._wrong(f"{key}.ties", f"{name!r} is no tie – ties: {', '.join(known) or 'none'}")
+        if table.seconds == 0 and table.do not in ("weld", "pin", "release"):
+            raise self._wrong(f"{key}.seconds", f"{table.do} takes time – give seconds above 0")
+        return Step(
+            do=table.do,
+            seconds=table.seconds,
+            gravity=table.gravity,
+            damping=table.damping,
+            friction=table.friction,
+            speed=table.speed,
+            still=table.still,
+            spots=tuple(spots),
+            ties=tuple(table.ties),
+            pose=None if table.pose is None else self.pose(f"{key}.pose", table.pose),
+            touch=Touch(**table.touch.model_dump()),
+            label=table.label or table.do,
+        )
+
+    def _file(self, key: str, name: str) -> Path:
+        path = self._folder / name
+        if not path.is_file():
+            raise self._wrong(key, f"no file {name} in {self._folder} – correct the path")
+        return path
+
+    def _wrong(self, key: str, text: str) -> FileProblem:
+        return FileProblem(f"{self._path}: {key}: {text}")
+
+    def _of(self, key: str, make: Any) -> Any:
+        """What `make` makes; its errors told with file and key."""
+        try:
+            return make()
+        except SimCoreError as error:
+            raise FileProblem(f"{self._path}: {key}: {error}") from error
+
+
+def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:
+    """Steps that cannot follow each other: refused before anything runs."""
+    welded, pinned = False, False
+    sewn = any(seam.kind == "sewn" for seam in pattern.seams)
+    for number, step in enumerate(steps, 1):
+        where = f"{key}.step.{number}.do"
+        if step.do == "sew" and welded:
+            raise reader._wrong(where, "sew after weld – seams that are welded are one cloth; sew before")
+        if step.do == "weld":
+            if welded:
+                raise reader._wrong(where, "welded already – leave it out")
+            welded = True
+        if step.do in ("close", "pose") and sewn and not welded:
+            raise reader._wrong(where, f"{step.do} before weld – seams are still open; weld first")
+        if step.do == "release":
+            if not pinned:
+                raise reader._wrong(where, "nothing is pinned – leave it out")
+            pinned = False
+        pinned = pinned or step.do == "pin"
+    if sewn and not welded:
+        raise reader._wrong(f"{key}.step", "the pattern has sewn seams and no step welds them – add one")
+    if not any(step.timed for step in steps):
+        raise reader._wrong(f"{key}.step", "no step takes time – add settle or rest")
+
+
+@cache
+def _programs() -> Mapping[str, ProgramTable]:
+    folder = resources.files("sim_core.garment.outfit")
+    values = read_toml(Path(str(folder / "programs.toml")), "the default programs (TOML)")
+    return {way: ProgramTable.model_validate(table) for way, table in values.items()}
+
+
+def default_program(way: str) -> Program:
+    """How a layer is dressed that does not say it, by its way of placing."""
+    table = _programs()[way]
+    reader = _Reader(Path("programs.toml"), Path())
+    steps = tuple(reader.step(f"{way}.{k}", step, None) for k, step in enumerate(table.step, 1))
+    contact = Contact(**table.contact.model_dump(), untangle=UNTANGLE)
+    start = pose_named(table.start) if table.start else None
+    return Program(steps, contact, start, table.sag, table.fold, table.limit, table.even)
+
+
+def _first(error: ValidationError, table: type[BaseModel]) -> str:
+    """The first problem of a file in one line: key, what, value."""
+    first = error.errors()[0]
+    key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])
+    if first["type"] == "extra_forbidden":
+        return f"{key[:80]}: unknown key – remove it or correct its name (see `simcore dress --help`)"
+    text = first["msg"].removeprefix("Value error, ")
+    value = f" (found {shown(first['input'])})" if key and first["type"] != "missing" else ""
+    return f"{key}: {text}{value}" if key else text

@@ -1,0 +1,129 @@
+"""`Outfit`: what is dressed on whom, layer by layer from the skin outwards."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from sim_core.body.mannequin import Mannequin
+from sim_core.body.pose import T_POSE, Pose
+from sim_core.body.stand import Stand
+from sim_core.cloth import Contact
+from sim_core.errors import SimCoreError
+from sim_core.garment.outfit.steps import Step
+from sim_core.garment.pattern import Cloth, Pattern
+from sim_core.garment.placement import Placement
+from sim_core.weave import Weave, solve
+
+__all__ = ["Layer", "Outfit", "Program"]
+
+UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
+
+
+@dataclass(frozen=True)
+class Program:
+    """How a layer is dressed: steps, how it touches from the first on, and how far its cloth is simplified.
+
+    start: the wearer's pose at first; sag: strain under the cloth's own weight it is softened to; fold: bending length
+    in mesh edges it is stiffened to; limit: shares by which an edge may be shorter, and longer, before it is held;
+    even: whether mass is shared out for longer time steps.
+    """
+
+    steps: tuple[Step, ...]
+    contact: Contact = field(default_factory=lambda: Contact(untangle=UNTANGLE))
+    start: Pose | None = None
+    sag: float = 0.0013
+    fold: float = 1.3
+    limit: tuple[float, float] = (0.04, 0.04)
+    even: bool = True
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One garment of an outfit. weaves: the cloth's first, then those of panels by name; edge [m]: its mesh step;
+    seed: of the folds' irregularity."""
+
+    name: str
+    pattern: Pattern
+    weave: Weave
+    place: Placement
+    program: Program
+    edge: float
+    weaves: Mapping[str, Weave] = field(default_factory=dict)
+    seed: int = 0
+
+    def weave_of(self, panel: str) -> Weave:
+        """What a panel is cut from."""
+        return self.weaves.get(panel, self.weave)
+
+    @cached_property
+    def cut(self) -> Cloth:
+        """Its pattern, meshed once; of a mirrored one the half that is drawn."""
+        return self.pattern.cloth(self.edge)
+
+    @cached_property
+    def cloth(self) -> Cloth:
+        """The whole of it."""
+        return self.cut.mirrored() if self.pattern.mirror else self.cut
+
+    @cached_property
+    def _solved(self) -> dict[str, Any]:
+        return {}
+
+    def yarns(self, panel: str = "") -> Any:
+        """The yarns at rest of what a panel is cut from, as `sim_core.weave.solve` gives them; each weave once."""
+        weave = self.weave_of(panel)
+        key = json.dumps(weave.to_dict(), sort_keys=True)
+        if key not in self._solved:
+            self._solved[key] = solve(weave, particles=True)
+        return self._solved[key]
+
+
+@dataclass(frozen=True)
+class Outfit:
+    """Layers from the skin outwards on a wearer in a pose, or on a stand."""
+
+    name: str
+    layers: tuple[Layer, ...]
+    wearer: Mannequin | None = None
+    stand: Stand | None = None
+    pose: Pose = T_POSE
+    title: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.layers:
+            raise SimCoreError(f"outfit {self.name}: no layer – a [[layer]] names a pattern and a weave")
+        if (self.wearer is None) == (self.stand is None):
+            raise SimCoreError(f"outfit {self.name}: give a wearer or a stand, one of both")
+
+    def coarser(self, edge: float) -> Outfit:
+        """The same with every layer meshed at `edge` [m]."""
+        from dataclasses import replace
+
+        return replace(self, layers=tuple(replace(layer, edge=edge) for layer in self.layers))
+
+    def to_dict(self) -> dict[str, Any]:
+        """What decides the result, as plain values."""
+        return {
+            "name": self.name,
+            "wearer": self.wearer and [self.wearer.name, float(np.abs(self.wearer.vertices).sum())],
+            "stand": self.stand and repr(self.stand),
+            "pose": self.pose.table(),
+            "layers": [
+                {
+                    "pattern": layer.pattern.to_dict(),
+                    "weave": layer.weave.to_dict(),
+                    "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},
+                    "edge": layer.edge,
+                    "seed": layer.seed,
+                    "place": repr(layer.place),
+                    "program": repr(layer.program),
+                }
+                for layer in self.layers
+            ],
+        }

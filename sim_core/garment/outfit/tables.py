@@ -1,0 +1,166 @@
+"""The tables of an outfit file and of the default programs, checked key by key."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from sim_core.garment.outfit.steps import GRAVITY, Do
+from sim_core.garment.pattern.tables import Measure, SpotTable
+
+__all__ = ["LayerTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Length = Annotated[float, Field(strict=True, gt=0, le=20, allow_inf_nan=False)]
+Share = Annotated[float, Field(strict=True, gt=0, le=1, allow_inf_nan=False)]
+Vector = tuple[Number, Number, Number]
+Words = dict[str, str]
+
+
+class Table(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class TouchTable(Table):
+    clearance: Number | None = Field(
+        None, ge=0, le=0.1, description="[m] vertices keep from what lies beneath"
+    )
+    sample_clearance: Number | None = Field(None, ge=0, le=0.1, description="[m] the same of midpoints")
+    thickness: Number | None = Field(None, ge=0, le=0.1, description="[m] layers keep from each other")
+    self_friction: Number | None = Field(None, ge=0, le=5, description="of cloth on cloth")
+    separation: Number | None = Field(None, ge=0, le=1, description="share of parting speed near layers lose")
+    partly: bool | None = Field(None, description="whether tangles are shortened that do not come free")
+    untangle: int | None = Field(
+        None, ge=0, le=1000, description="steps a frame in which tangles are taken apart; 0: left alone"
+    )
+
+
+PoseTable = str | dict[str, Any]
+
+
+class StepTable(Table):
+    do: Do = Field(description="sew, weld, pin, release, close, pose, settle or rest")
+    seconds: Number = Field(0.0, ge=0, le=600, description="how long")
+    gravity: tuple[Number, Number] = Field((GRAVITY, GRAVITY), description="[m/s2] at its begin and end")
+    damping: Number | None = Field(None, ge=0, description="of the cloth [1/s]; hanging cloth: 2 to 10")
+    friction: Number | None = Field(None, ge=0, le=5, description="on what lies beneath; else the weave's")
+    speed: Number | None = Field(None, gt=0, description="[m/s] that no vertex passes")
+    still: Number | None = Field(None, gt=0, description="[m] a frame (p99) at which the step ends early")
+    at: list[Literal["nape", "top"] | SpotTable] = Field(
+        [], description="what is pinned: nape, top or places"
+    )
+    ties: list[str] = Field([], description="which ties are closed; none named: all")
+    pose: PoseTable | None = Field(None, description="pose to go to; else the outfit's")
+    touch: TouchTable = Field(TouchTable.model_construct(), description="how it touches from here on")
+    label: str = Field("", max_length=40, description="what the progress says")
+
+
+class ContactTable(Table):
+    clearance: Length
+    sample_clearance: Length
+    thickness: Number = Field(ge=0, le=0.1)
+    speed_limit: Length
+    self_friction: Number = Field(0.2, ge=0, le=5)
+    separation: Number = Field(0.05, ge=0, le=1)
+    every: int = Field(1, ge=1, le=16)
+    partly: bool = False
+
+
+class ProgramTable(Table):
+    sag: Share
+    fold: Length
+    limit: tuple[Share, Share]
+    even: bool = True
+    contact: ContactTable
+    start: str = "t"
+    step: list[StepTable] = Field(min_length=1, max_length=200)
+
+
+class FlatTable(Table):
+    way: Literal["flat"]
+    over: Literal["left", "right"] = Field(
+        "left", description="the outer front where fronts overlap (右衽: left)"
+    )
+    lift: Length = Field(0.012, description="[m] by which it is held off the other")
+    front: Length = Field(0.17, description="[m] of the front sheet before the middle")
+    back: Length = Field(0.15, description="[m] of the back sheet behind it")
+
+
+class OverBarTable(Table):
+    way: Literal["over_bar"]
+    front: Length = Field(1.27, description="[m] of cloth in front of the bar")
+    at_bar: Length = Field(0.14, description="[m] gathered width at the bar")
+    at_end: Length = Field(0.25, description="[m] gathered width at the ends")
+    folds: Number = Field(5.0, gt=0, le=100, description="waves across the width")
+
+
+class KnotTable(Table):
+    near: list[str] = Field(min_length=1, max_length=4, description="landmarks of the wearer, their mean")
+    by: Vector = Field((0.0, 0.0, 0.0), description="[m] from there")
+    room: Length = Field(0.05, description="[m] the cloth's middle keeps from the body")
+
+
+class AlongPathTable(Table):
+    way: Literal["along_path"]
+    knot: list[KnotTable] = Field(min_length=3, max_length=50)
+    along: tuple[str, str] | None = Field(
+        None, description="landmarks whose direction it lies along at the top"
+    )
+    stations: list[tuple[Number, Length]] = Field(
+        [], description="[m] from the path's highest point, [m] of width"
+    )
+    begin: Length = Field(0.22, description="[m] width at the strip's middle")
+    end: Length = Field(0.24, description="[m] width at its end")
+    waves: Number = Field(5.0, gt=0, le=100, description="folds across the width")
+
+
+class WrappedTable(Table):
+    way: Literal["wrapped"]
+    mark: str = Field("waist", description="landmark of the wearer at whose height the top lies")
+    rise: Number = Field(0.0, ge=-1, le=1, description="[m] of the top above it")
+    begin: Number = Field(
+        180.0, description="[deg] about +y where the first edge lies; 0 the front, 90 the left"
+    )
+    gap: Length = Field(0.006, description="[m] between layers of the wrap")
+
+
+class FoldedTable(Table):
+    way: Literal["folded"]
+    front: Length = Field(description="[m] of cloth in front of the bar")
+
+
+Place = Annotated[
+    FlatTable | OverBarTable | AlongPathTable | WrappedTable | FoldedTable, Field(discriminator="way")
+]
+
+
+class LayerTable(Table):
+    name: str | None = Field(None, min_length=1, max_length=80, description="else the pattern's")
+    pattern: str = Field(min_length=1, description="pattern file, e.g. patterns/robe.toml")
+    weave: str = Field(min_length=1, description="weave file, e.g. weaves/juan.toml")
+    weaves: dict[str, str] = Field({}, description="weave files of single panels")
+    dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$", description="colour, else the pattern's")
+    dyes: dict[str, str] = Field({}, description="colours of single panels")
+    measures: dict[str, Measure] = Field({}, description="measures of the pattern to be changed [mm]")
+    edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
+    seed: int = Field(0, ge=0, le=2**32 - 1, description="of the folds' irregularity")
+    place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
+    step: list[StepTable] = Field(
+        [], max_length=200, description="dressing steps; else those of its way of placing"
+    )
+
+
+class StandTable(Table):
+    height: Length = Field(1.5, description="of the bar [m]")
+    span: Length = Field(0.70, description="between the posts [m]")
+    bar_radius: Length = Field(0.017, description="[m]")
+
+
+class OutfitTable(Table):
+    name: str | None = Field(None, min_length=1, max_length=80)
+    title: Words = {}
+    wearer: str | None = Field(None, description="figure file, e.g. mannequins/woman.npz")
+    stand: StandTable | None = None
+    pose: PoseTable | None = Field(None, description="name of a pose, or { name, joints, shift }")
+    layer: list[LayerTable] = Field(min_length=1, max_length=20)

@@ -1,0 +1,126 @@
+"""Cloth wrapped round the body: upright along a convex line about hips and waist, closed or lapped, without strain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from sim_core.errors import SimCoreError
+from sim_core.garment.pattern import Cloth, Pattern
+from sim_core.garment.placement.ground import Ground
+
+__all__ = ["Wrapped", "girth"]
+
+FINE = 0.002  # [m] between the points of the line
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """x of the pattern goes round, y down from the top edge.
+
+    mark: landmark at whose height the top lies; rise [m] above it; begin [deg] about +y where x begins, 0 the front,
+    90 the wearer's left; gap [m] between layers of cloth that goes round more than once.
+    """
+
+    mark: str = "waist"
+    rise: float = 0.0
+    begin: float = 180.0
+    gap: float = 0.006
+
+    halves = False  # `start` takes the whole of a mirrored pattern
+
+    def hanging(self, cloth: Cloth) -> float:
+        """The longest free length [m]."""
+        return float(np.ptp(cloth.vertices[:, 1]))
+
+    def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
+        """Positions (P, 3) [m] of the pattern vertices. Raises SimCoreError where the cloth does not go round."""
+        low, high = cloth.vertices.min(0), cloth.vertices.max(0)
+        top = float(ground.mark(self.mark)[1]) + self.rise
+        hull = _section(ground, top - float(high[1] - low[1]), top)
+        width, room = float(high[0] - low[0]), ground.clearance + 0.002
+        begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
+        closed = len(np.intersect1d(begin, end)) > 0  # sewn to itself: a tube
+        need = girth(hull) + 2 * np.pi * room
+        if width < need:
+            raise SimCoreError(
+                f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {self.mark!r} it needs "
+                f"{need:.3f} m; make it wider or place it elsewhere"
+            )
+        if closed or width < 1.02 * need:
+            line = _around(hull, np.radians(self.begin), (width - girth(hull)) / (2 * np.pi), 0.0, width)
+        else:
+            line = _around(hull, np.radians(self.begin), room, self.gap, width)
+        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+        along = (cloth.vertices[:, 0] - low[0]) * (arc[-1] / width)
+        x, z = (np.interp(along, arc, line[:, c]) for c in range(2))
+        return np.stack([x, top - (cloth.vertices[:, 1] - low[1]), z], axis=1)
+
+
+def girth(hull: np.ndarray) -> float:
+    """Length [m] of a closed convex line (n, 2): what a tape measure says."""
+    return float(np.linalg.norm(hull - np.roll(hull, 1, axis=0), axis=1).sum())
+
+
+def _section(ground: Ground, low: float, high: float) -> np.ndarray:
+    """Corners (n, 2) [m] in x and z of the convex hull of trunk, legs and garments between two heights, one way round
+    from the front to the wearer's left."""
+    parts = [ground.vertices[ground.trunk], *(vertices for vertices, _ in ground.worn)]
+    points = np.concatenate(parts)
+    points = points[(points[:, 1] >= low) & (points[:, 1] <= high + 0.01)]
+    if len(points) < 3:
+        raise SimCoreError(
+            f"place: nothing of the wearer between {low:.2f} and {high:.2f} m – choose another mark"
+        )
+    flat = points[:, [0, 2]]
+    hull = flat[ConvexHull(flat).vertices]
+    ahead = np.arctan2(hull[:, 0], hull[:, 1])
+    hull = hull[np.argsort(ahead - ahead.min())]
+    return hull
+
+
+def _around(hull: np.ndarray, begin: float, away: float, gap: float, length: float) -> np.ndarray:
+    """A line (n, 2) of `length` [m] round a convex hull (m, 2), `away` [m] off, `gap` [m] further off each turn.
+
+    Points are told by the direction (sin, cos) they lie in from the hull, along its sides and round its corners.
+    """
+    sides = np.roll(hull, -1, axis=0) - hull
+    normals = np.stack([-sides[:, 1], sides[:, 0]], axis=1) / np.linalg.norm(sides, axis=1)[:, None]
+    if ((hull.mean(0) - hull) * normals).sum() > 0:
+        normals = -normals
+    points, outward = [], []
+    for k in range(len(hull)):
+        first, second = (float(np.arctan2(*normals[j])) for j in (k - 1, k))
+        turn = (second - first) % (2 * np.pi)
+        turn = turn if turn <= np.pi else turn - 2 * np.pi
+        count = max(2, int(abs(turn) * max(away, 0.02) / FINE) + 1)
+        angle = first + turn * np.linspace(0, 1, count)
+        points.append(np.repeat(hull[k : k + 1], count, axis=0))
+        outward.append(np.stack([np.sin(angle), np.cos(angle)], axis=1))
+        steps = np.linspace(0, 1, int(np.linalg.norm(sides[k]) / FINE) + 2)[1:-1, None]
+        points.append(hull[k] + steps * sides[k])
+        outward.append(np.repeat(normals[k : k + 1], len(steps), axis=0))
+    on, off = np.concatenate(points), np.concatenate(outward)
+    middle = hull.mean(0)
+    first = int(np.argmax((on - middle) @ np.array([np.sin(begin), np.cos(begin)])))
+    on, off = np.roll(on, -first, axis=0), np.roll(off, -first, axis=0)
+    line: list[np.ndarray] = []
+    left, turns = length, 0
+    while left > 0:
+        spread = away + gap * (turns + np.arange(len(on)) / len(on))
+        ring = on + spread[:, None] * off
+        if not line or gap == 0.0:
+            ring = np.concatenate([ring, on[:1] + (away + gap * (turns + 1)) * off[:1]])
+        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(ring, axis=0), axis=1))]
+        kept = ring[arc < left]
+        if arc[-1] >= left:
+            end = [np.interp(left, arc, ring[:, c]) for c in range(2)]
+            kept = np.concatenate([kept, [end]])
+        line.append(kept[1:] if line else kept)
+        left -= float(arc[-1])
+        turns += 1
+        if gap == 0.0:
+            break
+    return np.concatenate(line)

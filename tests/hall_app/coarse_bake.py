@@ -1,0 +1,40 @@
+"""Outfits on coarse meshes, and `hall build` of one: what is dear is baked once for all tests that only look at it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from content_house import edit
+
+ASSETS = Path(__file__).parents[2] / "assets"
+STAND, LAYERED = "pibo", "pibo-figure"  # the exhibits that are kept: a scarf on a stand, a scarf over a robe
+
+
+def coarse(place: Path) -> Path:
+    """The shipped content with two coarse outfits that have not been baked."""
+    home = place / "content"
+    shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked", "beizi", "gown"))
+    edit(home / "outfits/pibo.toml", "seed = 3", "seed = 3\nedge = 0.06")
+    edit(home / "outfits/pibo-figure.toml", "edge = 0.018", "edge = 0.05")
+    edit(home / "outfits/pibo-figure.toml", "edge = 0.014", "edge = 0.04")
+    return home
+
+
+def build(
+    folder: Path, *options: str, exhibit: str = STAND, film: bool = False
+) -> subprocess.CompletedProcess[str]:
+    """`hall build` of one exhibit (the room's light would take longer than all of these tests)."""
+    where = ("--content", str(folder), "--data", str(folder.parent / "data"))
+    what = ("--json", "--exhibit", exhibit, *(() if film else ("--no-film",)))
+    command = [sys.executable, "-m", "hall_app", "build", *where, *what, *options]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def last_line(done: subprocess.CompletedProcess[str]) -> dict:
+    """What a build that succeeded said last."""
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.strip().splitlines()[-1])

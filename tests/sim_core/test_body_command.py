@@ -1,0 +1,68 @@
+"""`simcore figure`: names, draws, and says in one line what it lacks."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sim_core import cli
+from sim_core.body import JOINTS, POSES
+from sim_core.body.making import FIGURES
+
+WOMAN = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"
+
+
+def test_it_names_figures_and_poses(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["figure", "--list"]) == 0
+    told = capsys.readouterr().out
+    assert all(f"  {name} " in told for name in (*FIGURES, *POSES))
+    assert cli.main(["figure", "--list", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["figures"]["man-167"]["stature_m"] == 1.67
+    assert set(facts["poses"]["step"]["joints"]) <= set(JOINTS)
+
+
+def test_it_draws_a_figure_in_a_pose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shades = {}
+    for pose in ("t", "held"):
+        path = tmp_path / f"{pose}.png"
+        words = ["figure", str(WOMAN), "--pose", pose, "--picture", str(path), "--json"]
+        assert cli.main(words) == 0
+        facts = json.loads(capsys.readouterr().out)
+        assert facts["figure"] == "woman"
+        assert facts["pose"] == pose
+        shades[pose] = np.asarray(Image.open(path).convert("L"), float)
+    assert shades["t"].shape == (700, 1120)
+    assert (np.abs(shades["t"] - shades["held"]) > 20).mean() > 0.02  # arms are elsewhere
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "NAME: missing"),
+        (["woman"], "nothing to do"),
+        (["woman", "--picture", "p.png"], "OUT.npz is missing"),
+        (["nobody", "out.npz"], "no figure of that name"),
+    ],
+)
+def test_what_cannot_be_meant_ends_with_2(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["figure", *words]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_without_anny_it_says_where_figures_are_made(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "anny", None)
+    assert cli.main(["figure", "woman", str(tmp_path / "out.npz")]) == 1
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "where figures are made" in told
+    assert not list(tmp_path.iterdir())

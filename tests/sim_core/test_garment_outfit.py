@@ -1,0 +1,234 @@
+"""Outfit files: what they hold, what they leave to defaults, and what is refused before anything runs."""
+
+from pathlib import Path
+
+import pytest
+
+from sim_core.body import Pose, pose_named
+from sim_core.errors import FileProblem, SimCoreError
+from sim_core.garment import check_fits, load_outfit
+from sim_core.garment.dressing import courses
+from sim_core.garment.outfit import default_program
+from sim_core.garment.placement import AlongPath, Flat, OverBar
+
+ASSETS = Path(__file__).parents[2] / "assets"
+ROBE = """\
+wearer = "mannequins/woman.npz"
+pose = "display"
+[[layer]]
+pattern = "patterns/robe.toml"
+weave = "weaves/juan.toml"
+"""
+SCARF = """\
+[stand]
+height = 1.5
+[[layer]]
+pattern = "patterns/pibo.toml"
+weave = "weaves/gauze.toml"
+"""
+GOWN = ROBE.replace("robe.toml", "gown.toml").replace("juan", "gauze")
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "it.toml"
+    path.write_text(text, "utf-8")
+    return path
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in (ASSETS / "outfits").glob("*.toml")))
+def test_shipped_outfits_are_read_and_fit(name: str) -> None:
+    outfit = load_outfit(ASSETS / "outfits" / f"{name}.toml")
+    check_fits(outfit)
+    assert outfit.title["zh"]
+    assert outfit.title["en"]
+
+
+def test_a_plain_robe_needs_no_steps(tmp_path: Path) -> None:
+    outfit = load_outfit(written(tmp_path, ROBE), ASSETS)
+    (layer,) = outfit.layers
+    assert isinstance(layer.place, Flat)
+    assert layer.program == default_program("flat")
+    assert layer.edge == layer.pattern.edge
+    runs, moves = courses(layer, outfit.pose)
+    assert [run.closed for run in runs] == [False, True, True]
+    assert moves.poses[0] == pose_named("t")
+    assert moves.poses[-1] == pose_named("display")
+    assert moves.shares[0] == 0.0
+    assert moves.shares[-1] == pytest.approx(1.0)
+    last = runs[-1].steps[-1]
+    assert last.keys == (len(moves.poses) - 1,) * 2
+    assert not last.pins
+    assert runs[-1].steps[0].pins == ("nape",)
+
+
+def test_a_pattern_with_ties_closes_them_where_one_without_passes_over(tmp_path: Path) -> None:
+    plain, _ = courses(load_outfit(written(tmp_path, ROBE), ASSETS).layers[0], Pose())
+    gown = load_outfit(written(tmp_path, GOWN), ASSETS).layers[0]
+    runs, _ = courses(gown, Pose())
+    assert not any(run.ties for run in plain)
+    assert len(runs) == len(plain) + 1
+    closing = next(run for run in runs if run.ties)
+    assert [timed.sewing for timed in closing.steps][0] == (1.0, 0.0)
+    assert all(run.ties == gown.pattern.ties for run in runs[runs.index(closing) :])
+
+
+def test_scarves_lie_over_a_bar_or_along_a_path() -> None:
+    (over,) = load_outfit(ASSETS / "outfits/pibo.toml").layers
+    assert isinstance(over.place, OverBar)
+    robe, along = load_outfit(ASSETS / "outfits/pibo-figure.toml").layers
+    assert isinstance(robe.place, Flat)
+    assert isinstance(along.place, AlongPath)
+
+
+def test_measures_colours_and_weaves_of_panels_are_changed(tmp_path: Path) -> None:
+    text = ROBE + (
+        'weaves = { band = "weaves/ling.toml" }\ndye = "#102030"\ndyes = { band = "#ffffff" }\n'
+        'measures = { length = 1100, hem = "chest + 60" }\nname = "short"\n'
+    )
+    (layer,) = load_outfit(written(tmp_path, text), ASSETS).layers
+    assert layer.name == "short"
+    assert layer.pattern.measures["length"] == 1100
+    assert layer.pattern.measures["hem"] == layer.pattern.measures["chest"] + 60
+    assert layer.pattern.panel("body").outline()[:, 1].max() == pytest.approx(1.1)
+    assert layer.pattern.dye == pytest.approx((16 / 255, 32 / 255, 48 / 255))
+    assert layer.pattern.panel("band").dye == (1.0, 1.0, 1.0)
+    assert layer.weave_of("band").name == "ling"
+    assert layer.weave_of("body").name == "juan"
+
+
+def test_a_pose_is_a_name_or_joints(tmp_path: Path) -> None:
+    text = ROBE.replace('"display"', '{ name = "held", joints = { neck = [10.0, 0.0, 0.0] } }')
+    outfit = load_outfit(written(tmp_path, text), ASSETS)
+    assert outfit.pose.vector("neck") == pytest.approx((10, 0, 0))
+    assert outfit.pose.vector("elbow_l") == pytest.approx(pose_named("held").vector("elbow_l"))
+
+
+def test_steps_replace_the_usual_ones(tmp_path: Path) -> None:
+    text = ROBE + (
+        '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
+        '[[layer.step]]\ndo = "pin"\nat = [{ panel = "body", at = ["neck", 0] }]\n'
+        '[[layer.step]]\ndo = "settle"\nseconds = 0.4\nfriction = 0.3\n'
+    )
+    (layer,) = load_outfit(written(tmp_path, text), ASSETS).layers
+    assert [step.do for step in layer.program.steps] == ["sew", "weld", "pin", "settle"]
+    (spot,) = layer.program.steps[2].spots
+    assert spot.place == pytest.approx((0.092, 0.0))
+    assert layer.program.contact == default_program("flat").contact
+
+
+BAD = {
+    "neither": (SCARF.replace("[stand]\nheight = 1.5\n", ""), "wearer: give either"),
+    "both": ('wearer = "mannequins/woman.npz"\n' + SCARF, "wearer: give either"),
+    "no layer": ('wearer = "mannequins/woman.npz"\n', "layer"),
+    "unknown key": (ROBE + "colour = 3\n", "layer.1.colour: unknown key"),
+    "no such file": (ROBE.replace("robe.toml", "rope.toml"), r"layer.1.pattern: no file patterns/rope.toml"),
+    "no such weave of a panel": (ROBE + 'weaves = { band = "x" }\n', r"layer.1.weaves.band: no file x"),
+    "weave of no panel": (
+        ROBE + 'weaves = { hood = "weaves/ling.toml" }\n',
+        "no panel 'hood' – panels: body",
+    ),
+    "dye of no panel": (ROBE + 'dyes = { hood = "#000000" }\n', "layer.1.dyes: .*no panel 'hood'"),
+    "no such measure": (
+        ROBE + "measures = { lenght = 3 }\n",
+        "measures.lenght: no such measure – measures: length",
+    ),
+    "no such pose": (ROBE.replace("display", "flying"), "pose: .*'flying'.* there are t, gown"),
+    "no such joint": (
+        ROBE.replace('"display"', "{ joints = { wing = [1, 2, 3] } }"),
+        "pose: joints: no joint 'wing'",
+    ),
+    "beyond a limit": (
+        ROBE.replace('"display"', "{ joints = { elbow_l = [0, -170, 0] } }"),
+        "pose: joints: elbow_l",
+    ),
+    "no such way": (ROBE + '[layer.place]\nway = "hung"\n', "layer.1.place"),
+    "way on a stand": (
+        SCARF + '[layer.place]\nway = "flat"\n',
+        "layer.1.place.way: 'flat' – choose over_bar",
+    ),
+    "way on a wearer": (
+        ROBE + '[layer.place]\nway = "over_bar"\n',
+        "layer.1.place.way: 'over_bar' – choose flat",
+    ),
+    "flat without panels": (ROBE.replace("robe.toml", "pibo.toml"), "layer.1.pattern: .* needs .*panel"),
+    "no such step": (ROBE + '[[layer.step]]\ndo = "iron"\n', "layer.1.step.1.do"),
+    "no such tie": (
+        GOWN + '[[layer.step]]\ndo = "close"\nseconds = 1.0\nties = ["belt"]\n',
+        "'belt' is no tie – ties: in",
+    ),
+    "no time": (ROBE + '[[layer.step]]\ndo = "sew"\n', "layer.1.step.1.seconds: sew takes time"),
+    "never welded": (ROBE + '[[layer.step]]\ndo = "rest"\nseconds = 1.0\n', "layer.1.step: .*no step welds"),
+    "sewn after welding": (
+        ROBE + '[[layer.step]]\ndo = "weld"\n[[layer.step]]\ndo = "sew"\nseconds = 1.0\n',
+        "layer.1.step.2.do: sew after weld",
+    ),
+    "pinned nothing": (ROBE + '[[layer.step]]\ndo = "pin"\n', "layer.1.step.1.at: say what is pinned"),
+    "let go of nothing": (ROBE + '[[layer.step]]\ndo = "release"\n', "layer.1.step.1.do: nothing is pinned"),
+    "spot outside": (
+        ROBE + '[[layer.step]]\ndo = "pin"\nat = [{ panel = "body", at = [5000, 0] }]\n',
+        "layer.1.step.1.at.1.at: 5000, 0 mm lies 4530 mm outside",
+    ),
+    "twice": (ROBE + ROBE.split("\n", 2)[2], "layer.2.name: 'robe' is there twice"),
+    "two on a stand": (SCARF + SCARF.split("\n", 2)[2], "layer.2: a stand bears one layer"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_wrong_is_told_with_file_key_and_remedy(tmp_path: Path, case: str) -> None:
+    text, words = BAD[case]
+    path = written(tmp_path, text)
+    with pytest.raises(FileProblem, match=words) as caught:
+        load_outfit(path, ASSETS)
+    assert str(caught.value).startswith(str(tmp_path)) or str(ASSETS) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+NARROW = {
+    "sleeve": ("measures = { cuff = 60, armhole = 62 }\n", "its sleeve is .* cm round, what must pass it"),
+    "neck": (
+        "measures = { neck = 30, neck_back = 5, close = 60, band = 5 }\n",
+        "its neck hole is .* cm round",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", NARROW)
+def test_what_the_body_cannot_pass_is_refused(tmp_path: Path, case: str) -> None:
+    changed, words = NARROW[case]
+    outfit = load_outfit(written(tmp_path, ROBE + changed), ASSETS)
+    with pytest.raises(SimCoreError, match=words):
+        check_fits(outfit)
+
+
+def test_a_tie_shorter_than_the_girth_it_goes_round_is_refused(tmp_path: Path) -> None:
+    """A gown whose fronts are tied right round to the back would have to be narrower than the hips."""
+    text = (
+        (ASSETS / "patterns/gown.toml")
+        .read_text("utf-8")
+        .replace('at = ["lap", "upper"]', 'at = ["waist", "upper"]')
+    )
+    (tmp_path / "tight.toml").write_text(text.replace("waist = 240 ", "waist = 190 "), "utf-8")
+    outfit = load_outfit(
+        written(tmp_path, GOWN.replace("patterns/gown.toml", str(tmp_path / "tight.toml"))), ASSETS
+    )
+    with pytest.raises(
+        SimCoreError, match="tie 'inner_high' and the cloth .* the girth they go round .* longer"
+    ):
+        check_fits(outfit)
+
+
+def test_a_layer_dressed_on_the_way_needs_one_beneath_that_came_the_same_way(tmp_path: Path) -> None:
+    text = ROBE + (
+        '[[layer]]\nname = "over"\npattern = "patterns/beizi.toml"\nweave = "weaves/ling.toml"\n'
+        '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
+        '[[layer.step]]\ndo = "rest"\nseconds = 0.4\n'
+    )
+    check_fits(load_outfit(written(tmp_path, text), ASSETS))
+    held = text.replace(
+        '[[layer]]\nname = "over"',
+        '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n'
+        '[[layer.step]]\ndo = "weld"\n[[layer.step]]\ndo = "rest"\nseconds = 0.4\n[[layer]]\nname = "over"',
+    )
+    moving = held.rsplit("[[layer.step]]", 1)[0] + '[[layer.step]]\ndo = "pose"\nseconds = 0.4\n'
+    with pytest.raises(SimCoreError, match="layer 2 .over.: it is dressed while the wearer moves"):
+        check_fits(load_outfit(written(tmp_path, moving), ASSETS))

@@ -1,0 +1,192 @@
+"""Each way of placing, proved by a small outfit of its own: wrapped round, folded over a bar, along a path."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core import metrics
+from sim_core.body import Figure, Mannequin, pose_named
+from sim_core.errors import SimCoreError
+from sim_core.garment import Garment, dress, load_outfit
+from sim_core.garment.pattern import Pattern
+from sim_core.garment.placement import Ground, Wrapped
+
+ASSETS = Path(__file__).parents[2] / "assets"
+SKIRT = """\
+name = "skirt"
+edge = 0.03
+[measures]
+round = 1080
+length = 500
+[[panel]]
+name = "tube"
+outline = [
+  { name = "top_begin", at = [0, 0] },
+  { name = "hem_begin", at = [0, "length"] },
+  { name = "hem_end", at = ["round", "length"] },
+  { name = "top_end", at = ["round", 0] },
+]
+[[seam]]
+sewn = ["tube: top_begin > hem_begin", "tube: top_end < hem_end"]
+"""
+LAPPED = SKIRT.split("[[seam]]")[0].replace("1080", "1500").replace('"skirt"', '"lapped"')
+CLOTH = 'name = "cloth"\nedge = 0.03\nsize = [0.5, 1.2]\n'
+BAND = """\
+name = "band"
+edge = 0.03
+mirror = true
+[measures]
+half = 700
+width = 60
+[[panel]]
+name = "strip"
+outline = [
+  { name = "top", at = [0, 0] },
+  { name = "bottom", at = [0, "width"] },
+  { name = "end_bottom", at = ["half", "width"] },
+  { name = "end_top", at = ["half", 0] },
+]
+[[seam]]
+middle = "strip: top > bottom"
+"""
+STEPS = """
+[[layer.step]]
+do = "settle"
+seconds = 0.2
+gravity = [0.0, 9.81]
+damping = 10.0
+[[layer.step]]
+do = "rest"
+seconds = 1.0
+damping = 12.0
+friction = 0.6
+still = 1e-4
+"""
+
+
+def of(folder: Path, pattern: str, place: str, on: str, steps: str = STEPS) -> tuple[Garment, ...]:
+    """A small outfit from files, dressed."""
+    (folder / "piece.toml").write_text(pattern, "utf-8")
+    head = f'{on}\n[[layer]]\npattern = "{folder / "piece.toml"}"\nweave = "weaves/juan.toml"\n'
+    (folder / "it.toml").write_text(f"{head}[layer.place]\n{place}\n{steps}", "utf-8")
+    return dress(load_outfit(folder / "it.toml", ASSETS))
+
+
+WEARER = 'wearer = "mannequins/woman.npz"\npose = "display"'
+WELDED = """
+[[layer.step]]
+do = "pin"
+at = ["top"]
+[[layer.step]]
+do = "sew"
+seconds = 0.08
+[[layer.step]]
+do = "weld"
+"""
+
+
+@pytest.fixture(scope="module")
+def woman() -> Mannequin:
+    return Mannequin.load(ASSETS / "mannequins/woman.npz")
+
+
+def clear(garment: Garment) -> bool:
+    facts = garment.provenance["errors"]
+    return facts["inside_vertices"] + facts["inside_midpoints"] + facts["inside_centroids"] == 0
+
+
+@pytest.mark.slow
+def test_a_tube_skirt_goes_round_the_hips_and_hangs(tmp_path: Path, woman: Mannequin) -> None:
+    (skirt,) = of(tmp_path, SKIRT, 'way = "wrapped"', WEARER, WELDED + STEPS)
+    facts = skirt.provenance["errors"]
+    assert clear(skirt)
+    assert facts["self_intersections"] == 0
+    assert facts["area_strain_p95"] < 0.03
+    assert facts["seam_gap_m"] == 0.0
+    waist = woman.landmarks(pose_named("display"))["waist"][1]
+    x = skirt.worn()
+    top = x[skirt.pattern[:, 1] < 1e-6]
+    assert top[:, 1] == pytest.approx(waist, abs=1e-3)  # held there
+    assert x[:, 1].min() == pytest.approx(waist - 0.5, abs=0.02)
+    angle = np.sort(np.arctan2(top[:, 0], top[:, 2]))
+    assert np.diff(angle).max() < 0.3  # all the way round
+    assert skirt.settled is not None
+    assert len(skirt.settled.last.pins) > 20  # and stays held when it is carried on
+
+
+@pytest.mark.parametrize(("text", "turns"), [(SKIRT, 1.0), (LAPPED, 1.5)])
+def test_wrapped_cloth_is_not_strained_and_keeps_its_layers_apart(
+    tmp_path: Path, woman: Mannequin, text: str, turns: float
+) -> None:
+    (tmp_path / "piece.toml").write_text(text, "utf-8")
+    pattern = Pattern.load(tmp_path / "piece.toml")
+    figure, pose = Figure(woman), pose_named("display")
+    vertices, faces = figure.mesh(pose)
+    ground = Ground(vertices, faces, figure.trunk(), woman.landmarks(pose))
+    cloth = pattern.cloth(0.02)
+    x = Wrapped().start(pattern, cloth, ground, np.random.default_rng(0))
+    strain = metrics.area_strain(cloth.vertices, x, cloth.faces)
+    assert np.abs(strain).max() < 0.03
+    welded = np.zeros((cloth.closed.max() + 1, 3))
+    welded[cloth.closed] = x
+    assert metrics.intersections(welded, cloth.closed[cloth.faces]) == 0
+    assert metrics.penetration(x, cloth.faces, vertices, faces).total == 0
+    middle = vertices[figure.trunk()].mean(0)
+    ahead = np.unwrap(
+        np.arctan2(x[:, 0], x[:, 2] - middle[2])[np.argsort(cloth.vertices[:, 0], kind="stable")]
+    )
+    assert np.ptp(ahead) / (2 * np.pi) == pytest.approx(turns, abs=0.1)
+
+
+def test_a_skirt_narrower_than_the_hips_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(
+        SimCoreError, match=r"0\.700 m wide – to go round the wearer below 'waist' it needs 0\.9"
+    ):
+        of(tmp_path, SKIRT.replace("1080", "700"), 'way = "wrapped"', WEARER, WELDED + STEPS)
+
+
+def test_a_cloth_folded_over_a_bar_hangs_on_both_sides(tmp_path: Path) -> None:
+    (cloth,) = of(tmp_path, CLOTH, 'way = "folded"\nfront = 0.6', "[stand]\nheight = 1.5")
+    facts = cloth.provenance["errors"]
+    assert clear(cloth)
+    assert facts["self_intersections"] == 0
+    assert facts["area_strain_p95"] < 0.03
+    x = cloth.positions
+    assert 1.5 < x[:, 1].max() < 1.53
+    for side in (1, -1):
+        own = x[side * x[:, 2] > 0]
+        assert own[:, 1].min() == pytest.approx(0.92, abs=0.03)
+        assert np.abs(own[own[:, 1] < 1.3, 2]).max() < 0.15
+
+
+def test_what_does_not_fit_a_stand_is_refused(tmp_path: Path) -> None:
+    bar = "[stand]\nheight = 1.0"
+    with pytest.raises(SimCoreError, match="touches the floor"):
+        of(tmp_path, CLOTH.replace("1.2", "2.4"), 'way = "folded"\nfront = 0.6', bar)
+    with pytest.raises(SimCoreError, match="wider than the stand"):
+        of(tmp_path, CLOTH.replace("0.5", "0.9"), 'way = "folded"\nfront = 0.6', bar)
+    with pytest.raises(SimCoreError, match="leaves none"):
+        of(tmp_path, CLOTH, 'way = "folded"\nfront = 1.6', bar)
+
+
+def test_a_band_lies_along_a_path_over_the_arms(tmp_path: Path, woman: Mannequin) -> None:
+    knots = (
+        '{ near = ["nape"], by = [0.0, -0.02, -0.06] }, { near = ["shoulder_l"], by = [-0.04, 0.06, -0.03] }, '
+        '{ near = ["shoulder_l"], by = [-0.03, 0.03, 0.09] }, { near = ["shoulder_l"], by = [-0.04, -0.15, 0.15] }'
+    )
+    place = 'way = "along_path"\nalong = ["clavicle_l", "shoulder_l"]\n'
+    place += f"begin = 0.05\nend = 0.055\nwaves = 1.0\nknot = [{knots}]"
+    (band,) = of(tmp_path, BAND, place, WEARER)
+    assert clear(band)
+    assert not band.provenance["whole"]
+    assert band.provenance["errors"]["asymmetry_m"] == 0.0
+    x, marks = band.positions, woman.landmarks(pose_named("display"))
+    assert x[:, 1].max() > marks["shoulder_l"][1]  # over the shoulders
+    assert 0.7 < x[:, 1].min() < 1.1  # its ends hang in front
+    assert x[x[:, 1] < 1.1, 2].min() > 0.0
+
+
+def test_a_mark_the_figure_does_not_have_is_named(tmp_path: Path) -> None:
+    with pytest.raises(SimCoreError, match="no landmark 'tail' – landmarks: pelvis"):
+        of(tmp_path, SKIRT, 'way = "wrapped"\nmark = "tail"', WEARER, WELDED + STEPS)
