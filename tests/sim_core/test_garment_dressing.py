@@ -100,7 +100,7 @@ def test_one_front_is_laid_over_the_other(over: str) -> None:
 
 @pytest.fixture(scope="module")
 def coat() -> Garment:
-    (garment,) = dress(outfit("beizi", 0.035))
+    (garment,) = dress(outfit("beizi", 0.026))
     return garment
 
 

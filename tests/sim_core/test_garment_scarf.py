@@ -10,7 +10,7 @@ import pytest
 from sim_core import metrics
 from sim_core.errors import SimCoreError
 from sim_core.garment import Frame, Garment, Layer, Outfit, Pattern, Stand, dress, follow
-from sim_core.garment.outfit import Step, Touch, default_program
+from sim_core.garment.outfit import Step, default_program
 from sim_core.garment.placement import Ground, OverBar
 from sim_core.picture import Camera, Surface, render
 from sim_core.weave import Draft, Weave, Yarn, plain
@@ -69,18 +69,6 @@ def test_it_goes_on_hanging_where_it_was_settled(scarf: Garment, tmp_path: Path)
     scarf.save(tmp_path / "scarf.npz")
     again = follow(Garment.load(tmp_path / "scarf.npz"), seconds=0.4)
     assert again.positions.tobytes() == end.positions.tobytes()
-
-
-@pytest.mark.parametrize(("still", "rested"), [(1.0, True), (1e-9, False)])
-def test_more_room_is_given_only_where_it_does_not_come_to_rest(
-    gauze: Weave, still: float, rested: bool
-) -> None:
-    thinner = Touch(thickness=0.002)
-    steps = (*SHORT, Step("rest", 0.12, still=still), Step("rest", 0.08, still=still, touch=thinner))
-    (garment,) = dress(over(strip(), gauze, steps=steps))
-    assert garment.settled is not None
-    assert garment.settled.contact.thickness == (USUAL.contact.thickness if rested else 0.002)
-    assert (garment.provenance["simulated"] < 0.08 + 0.16 + 0.12) == rested
 
 
 def test_same_seed_same_bits_other_seed_other_folds(gauze: Weave) -> None:

@@ -135,7 +135,7 @@ class _Dressing:
         sheet, runs, gap = self._run(materials, start)
         garment, last = self._garment(materials, sheet, runs), runs[-1]
         end = self.runs[-1].steps[-1].step
-        if self.half and end.do == "rest":
+        if self.half and end.still:
             garment, last = confirmed(garment, last, end)
         clock.lap("drape")
         clock.laps["drape_cpu"] = round(time.process_time() - busy, 2)
