@@ -35,13 +35,12 @@ class Wardrobe:
         """Of each layer: its cloth's maps, and those of panels that have a weave of their own."""
         from sim_core.weave import surface_maps
 
-        drawn: dict[Any, MapsLike] = {}
+        drawn: dict[str, MapsLike] = {}
 
         def of(layer: Layer, panel: str = "") -> MapsLike:
-            weave = layer.weave_of(panel)
-            key = repr(weave.to_dict())
+            key = layer.weave_key(panel)
             if key not in drawn:
-                drawn[key] = surface_maps(weave, layer.yarns(panel), pixels=PIXELS)
+                drawn[key] = surface_maps(layer.weave_of(panel), layer.yarns(panel), pixels=PIXELS)
             return drawn[key]
 
         return tuple(

@@ -13,7 +13,7 @@ from sim_core.cloth import Contact, Drape, Phase, drape, moving_mesh
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import garment_sheet
+from sim_core.garment.garment_sheet import garment_sheet, standing
 from sim_core.garment.outfit.outfit import UNTANGLE
 
 __all__ = ["follow"]
@@ -66,12 +66,7 @@ def follow(
             raise SimCoreError("follow: the wearer stands still – say for how many seconds")
         phase = settled.phase(seconds)
         phase = phase if damping is None else replace(phase, damping=damping)
-        given = {
-            "collider": settled.beneath.solid(),
-            "contact": contact or settled.contact,
-            "holds": settled.holds,
-        }
-        return drape(garment_sheet(garment), garment.positions, [phase], **given, **hooks)
+        return standing(garment)([phase], contact=contact or settled.contact, **hooks)
     wearer = moving_mesh(body, faces, cell=cell)
     usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
     if settled is not None:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import partial
 
 import numpy as np
 
-from sim_core.cloth import Material, Sheet
+from sim_core.cloth import Drape, Material, Sheet, drape
 from sim_core.cloth.sheet import evened
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 
-__all__ = ["APART", "garment_sheet"]
+__all__ = ["APART", "garment_sheet", "standing"]
 
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
 
@@ -35,6 +36,15 @@ def garment_sheet(garment: Garment) -> Sheet:
     if garment.settled is None or not garment.settled.even:
         return sheet
     return evened(sheet, np.array([material.density for material in materials])[kinds])
+
+
+def standing(garment: Garment) -> partial[Drape]:
+    """`drape` of a garment that says what it was settled with, from where it came to rest: to be called with phases and
+    what shall be otherwise."""
+    settled = garment.settled
+    assert settled is not None
+    touching = {"collider": settled.beneath.solid(), "contact": settled.contact, "holds": settled.holds}
+    return partial(drape, garment_sheet(garment), garment.positions, **touching)
 
 
 def _material(garment: Garment, told: object) -> Material:

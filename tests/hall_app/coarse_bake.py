@@ -24,13 +24,18 @@ def coarse(place: Path) -> Path:
     return home
 
 
-def build(
-    folder: Path, *options: str, exhibit: str = STAND, film: bool = False
-) -> subprocess.CompletedProcess[str]:
+def build_command(folder: Path, *options: str, exhibit: str = STAND, film: bool = False) -> list[str]:
     """`hall build` of one exhibit (the room's light would take longer than all of these tests)."""
     where = ("--content", str(folder), "--data", str(folder.parent / "data"))
     what = ("--json", "--exhibit", exhibit, *(() if film else ("--no-film",)))
-    command = [sys.executable, "-m", "hall_app", "build", *where, *what, *options]
+    return [sys.executable, "-m", "hall_app", "build", *where, *what, *options]
+
+
+def build(
+    folder: Path, *options: str, exhibit: str = STAND, film: bool = False
+) -> subprocess.CompletedProcess[str]:
+    """Runs it to its end."""
+    command = build_command(folder, *options, exhibit=exhibit, film=film)
     return subprocess.run(command, capture_output=True, text=True)
 
 

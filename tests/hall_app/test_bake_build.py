@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from coarse_bake import LAYERED, build, coarse, last_line
+from coarse_bake import LAYERED, build, build_command, coarse, last_line
 from content_house import edit
 
 from hall_app.build import SOUND_RATE, TrailLostError, Trails, budget, encode_film, film_possible
@@ -100,21 +100,9 @@ def test_an_interrupted_build_goes_on_to_the_same_bits(folder):
     whole = last_line(build(folder, "--into-data"))
     data = folder.parent / "data"
     shutil.rmtree(data / "bakes")
-    command = [
-        sys.executable,
-        "-m",
-        "hall_app",
-        "build",
-        "--content",
-        folder,
-        "--data",
-        data,
-        "--no-film",
-        "--json",
-    ]
     state = data / "bake-work" / f"pibo-{whole['key']}" / "dress"
     with subprocess.Popen(
-        [*command, "--exhibit", "pibo", "--into-data"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        build_command(folder, "--into-data"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
         end = time.monotonic() + 120
         while not list(state.glob("state.npz*")) and process.poll() is None and time.monotonic() < end:

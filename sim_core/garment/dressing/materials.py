@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,7 +41,7 @@ def materials_of(layer: Layer, cloth: Cloth, hanging: float) -> Materials:
     panels = layer.pattern.panels
     for name, doubled in [(p.name, p.doubled) for p in panels] or [("cloth", False)]:
         weave = layer.weave_of(name)
-        cloth_kind = json.dumps(weave.to_dict(), sort_keys=True)
+        cloth_kind = layer.weave_key(name)
         first = not solved
         if cloth_kind not in solved:
             solved[cloth_kind] = parameters_of(weave, layer.yarns(name))

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from sim_core.cloth import Drape, drape
+from sim_core.cloth import Drape
 from sim_core.cloth.step import FRAME
 from sim_core.garment.dressing.course import Moves
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import garment_sheet
+from sim_core.garment.garment_sheet import standing
 from sim_core.garment.outfit import Layer, Outfit, Step
 from sim_core.garment.pattern import Spot
 
@@ -27,17 +27,11 @@ def confirmed(garment: Garment, last: Drape, rest: Step) -> tuple[Garment, Drape
 
     Stacked folds bear on each other in turn, and the whole takes them in another turn than its half did.
     """
-    settled, sheet = garment.settled, garment_sheet(garment)
-    assert settled is not None
-
-    def let_go(seconds: float, still: float | None) -> Drape:
-        phase = replace(settled.phase(seconds, rest.label), rest=still)
-        touching = {"collider": settled.beneath.solid(), "contact": settled.contact, "holds": settled.holds}
-        return drape(sheet, garment.positions, [phase], **touching)
-
-    if let_go(FRAME, None).rest_p99 <= ALIKE:
+    assert garment.settled is not None
+    let_go, phase = standing(garment), garment.settled.phase(2 * rest.seconds, rest.label)
+    if let_go([replace(phase, seconds=FRAME)]).rest_p99 <= ALIKE:
         return garment, last
-    last = let_go(2 * rest.seconds, rest.still)
+    last = let_go([replace(phase, rest=rest.still)])
     return replace(garment, positions=last.positions), last
 
 

@@ -45,7 +45,7 @@ def detail(
 
 def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
     """The pattern meshed again; every new point where the drape has it, twins at their mean."""
-    cloth = pattern.cloth(edge).mirrored() if pattern.mirror else pattern.cloth(edge)
+    cloth = pattern.whole(pattern.cloth(edge))
     vertices, faces, panel = cloth.vertices, cloth.faces, cloth.panel
     owner, weld = cloth.panel_of, cloth.closed
     worn, out = garment.worn(), np.zeros((len(vertices), 3))

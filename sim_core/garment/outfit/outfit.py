@@ -69,7 +69,11 @@ class Layer:
     @cached_property
     def cloth(self) -> Cloth:
         """The whole of it."""
-        return self.cut.mirrored() if self.pattern.mirror else self.cut
+        return self.pattern.whole(self.cut)
+
+    def weave_key(self, panel: str = "") -> str:
+        """Equal for panels, of this layer or another, that are cut from one weave."""
+        return json.dumps(self.weave_of(panel).to_dict(), sort_keys=True)
 
     @cached_property
     def _solved(self) -> dict[str, Any]:
@@ -77,10 +81,9 @@ class Layer:
 
     def yarns(self, panel: str = "") -> Any:
         """The yarns at rest of what a panel is cut from, as `sim_core.weave.solve` gives them; each weave once."""
-        weave = self.weave_of(panel)
-        key = json.dumps(weave.to_dict(), sort_keys=True)
+        key = self.weave_key(panel)
         if key not in self._solved:
-            self._solved[key] = solve(weave, particles=True)
+            self._solved[key] = solve(self.weave_of(panel), particles=True)
         return self._solved[key]
 
 

@@ -138,6 +138,10 @@ class Pattern:
             return Cloth.of(self.mesh(edge))
         return cut_cloth(self.panels, self.seams, self.step(edge))
 
+    def whole(self, cut: Cloth) -> Cloth:
+        """Its `cloth` with the other half where it is mirrored."""
+        return cut.mirrored() if self.mirror else cut
+
     def coloured(self, dye: str | None, dyes: Mapping[str, str]) -> Pattern:
         """The pattern in another colour '#rrggbb', and single panels in theirs; raises SimCoreError for no panel."""
         for name in dyes:

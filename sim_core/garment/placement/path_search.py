@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from sim_core.cloth.contact import DistanceField
 
-__all__ = ["cleared", "cleared_line"]
+__all__ = ["cleared_line"]
 
 ASIDE = 0.12  # [m] that a knot may be moved, and a line may go out of its way
 NARROW = 20.0  # times as dear is a way along a wall as one with room
@@ -18,7 +18,7 @@ INSIDE = 1000.0  # times as dear is a way through it
 NEIGHBOURS = np.array([n for n in itertools.product((-1, 0, 1), repeat=3) if n > (0, 0, 0)])
 
 
-def cleared(knot: np.ndarray, room: float, field: DistanceField) -> np.ndarray:
+def _cleared(knot: np.ndarray, room: float, field: DistanceField) -> np.ndarray:
     """The knot (3,) [m], or where it lacks room [m] the node near it that has most of it for the least way."""
     if field.at(knot[None])[0] >= room:
         return knot
@@ -31,7 +31,7 @@ def cleared_line(knots: np.ndarray, room: np.ndarray, field: DistanceField) -> t
     """A line (N, 3) [m] past knots (K, 3) that goes round the field's solid where it can, and the room (N,) [m] it
     keeps, between that of two knots, room (K,). Its first point is the first knot; others are moved to where there is
     room."""
-    knots = np.array([knots[0], *(cleared(p, r, field) for p, r in zip(knots[1:], room[1:], strict=True))])
+    knots = np.array([knots[0], *(_cleared(p, r, field) for p, r in zip(knots[1:], room[1:], strict=True))])
     line, kept = [knots[:1]], [room[:1]]
     for k in range(len(knots) - 1):
         leg = _leg(knots[k], knots[k + 1], float(room[k : k + 2].mean()), field)
