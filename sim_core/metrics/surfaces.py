@@ -24,9 +24,8 @@ __all__ = [
     "surface_distance",
 ]
 
-MANY = 30_000_000  # points x faces above which rays are counted
-COLUMN = 0.01  # [m]
 FAR = 0.1  # [m] nobody asks how far beyond this a cloth is from a solid
+TINY = 1e-9  # [m] a solid flatter than this holds nothing
 
 
 @dataclass(frozen=True)
@@ -191,22 +190,31 @@ def _signed(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.n
         low, high = vertices[own].min((0, 1)), vertices[own].max((0, 1))
         boxed = np.flatnonzero(((points >= low) & (points <= high)).all(1))
         if len(boxed):
-            # The winding number costs points x faces; many of both are counted along rays instead.
-            many = len(boxed) * len(own) > MANY
-            count = (
-                crossings(points[boxed], vertices, own, COLUMN)
-                if many
-                else winding(points[boxed], vertices, own)
-            )
-            inside = boxed[count > 0.5]
+            inside = boxed[_turns(points[boxed], vertices, own) > 0.5]
             distance[inside] = -np.abs(distance[inside])
     return distance
+
+
+def _turns(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """How often a mesh goes round each point (N,).
+
+    Where every edge is met by as many faces one way as the other, that is what a ray from the point crosses, a few
+    faces; of an open mesh it is the generalised winding number, to which all faces add.
+    """
+    used, index = np.unique(faces, return_inverse=True)
+    vertices, faces = vertices[used], index.reshape(-1, 3)
+    edges = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2) @ np.array([[len(used), 1], [1, len(used)]])
+    there, back = np.sort(edges, axis=0).T
+    if not np.array_equal(there, back):
+        return winding(points, vertices, faces)
+    wide = float(np.ptp(vertices[:, 1:], axis=0).max())
+    return crossings(points, vertices, faces, max(wide, TINY) / np.sqrt(len(faces)))
 
 
 def penetration(
     vertices: np.ndarray, faces: np.ndarray, solid_vertices: np.ndarray, solid_faces: np.ndarray
 ) -> Penetration:
-    """Checks a cloth (V, 3), (F, 3) against closed solid meshes, by winding number and exact distance.
+    """Checks a cloth (V, 3), (F, 3) against closed solid meshes, by how often they go round a point and exact distance.
 
     Independent of any solver's distance function: it looks at the triangles that a visitor sees.
     """

@@ -63,6 +63,30 @@ def test_penetration_counts_vertices_midpoints_and_centroids() -> None:
     assert away.clearance[0] == metrics.FAR
 
 
+def turned(rng: np.random.Generator, open_at: int) -> tuple[np.ndarray, np.ndarray]:
+    """A dented ball of radius .1 m, without its last `open_at` faces."""
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
+    dents = 1 + 0.1 * rng.standard_normal((len(ball.vertices), 1))
+    return np.asarray(ball.vertices) * dents, np.asarray(ball.faces)[: len(ball.faces) - open_at]
+
+
+@pytest.mark.parametrize("open_at", [0, 3])
+def test_inside_is_where_the_winding_number_says_so(open_at: int) -> None:
+    """Rays through a closed mesh and solid angles of an open one, also where two solids overlap."""
+    rng = np.random.default_rng(5)
+    vertices, faces = turned(rng, open_at)
+    points = rng.uniform(-0.15, 0.2, (900, 3))
+    cloth = np.arange(900).reshape(-1, 3)
+    both = (
+        np.concatenate([vertices, vertices + [0.08, 0.01, 0]]),
+        np.concatenate([faces, faces + len(vertices)]),
+    )
+    found = metrics.penetration(points, cloth, *both)
+    inside = metrics.winding(points, vertices, faces) > 0.5
+    other = metrics.winding(points - [0.08, 0.01, 0], vertices, faces) > 0.5
+    assert found.vertices == (inside | other).sum() > 100
+
+
 def test_area_strain_of_a_scaled_sheet() -> None:
     rest, faces = equilateral_sheet(0.3, 0.2, 0.05)
     bigger = np.column_stack([rest[:, 0] * 1.1, rest[:, 1] * 0.9, np.zeros(len(rest))])
