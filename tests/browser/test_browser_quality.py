@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from bench.browser import enter, soon
+from bench.browser import enter, soon, stand_before
 
 pytestmark = pytest.mark.browser
 
@@ -140,14 +140,8 @@ def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     page = chromium.new_page(viewport={"width": 480, "height": 270})
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     drawn = "() => hall.framesDrawn()"
-
-    def calm() -> bool:
-        before = page.evaluate(drawn)
-        page.wait_for_timeout(2000)
-        return page.evaluate(drawn) == before
-
     page.wait_for_timeout(5000)
-    soon(page, calm, patience=120)  # the first look at the machine's speed is over
+    soon(page, lambda: still(page, drawn, 2000), patience=120)  # the first look at the machine's speed is over
     before = page.evaluate(drawn)
     page.wait_for_timeout(6000)
     assert page.evaluate(drawn) - before <= 1
@@ -155,3 +149,26 @@ def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     soon(page, lambda: page.evaluate(drawn) - before > 5)
     page.keyboard.up("KeyW")
     page.close()
+
+
+def test_a_moving_exhibit_turns_for_those_who_see_it(plain_hall, chromium):
+    """In sight it goes on turning by itself; behind a visitor's back it stands, and nothing is drawn for it."""
+    page = chromium.new_page(viewport={"width": 480, "height": 270})
+    enter(page, f"{plain_hall.url}/?lang=en")
+    turned = "() => window.__viserMutable.nodePoseData['/exhibits/box'].wxyz.join()"
+    stand_before(page, "box")
+    page.wait_for_timeout(500)
+    seen = set()
+    for _ in range(5):
+        seen.add(page.evaluate(turned))
+        page.wait_for_timeout(400)
+    assert len(seen) == 5
+    page.evaluate("() => { const { x, z, yaw } = hall.pose(); hall.goTo(x, z, yaw + Math.PI, 0); }")
+    soon(page, lambda: still(page, turned))
+    page.close()
+
+
+def still(page, what: str, milliseconds: int = 2500) -> bool:
+    before = page.evaluate(what)
+    page.wait_for_timeout(milliseconds)
+    return page.evaluate(what) == before

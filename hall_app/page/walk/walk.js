@@ -83,7 +83,8 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
     };
     socket.onmessage = (event) => {
       const message = JSON.parse(event.data);
-      on.heard();
+      // The clock's ticks wake nobody: who rests looks once in a while whether anything turns in sight.
+      if (message.t !== "turn") on.heard();
       receive[message.t]?.(message);
     };
     socket.onclose = (event) => {
