@@ -150,7 +150,7 @@ def test_a_broken_model_of_a_bake_is_named_and_the_rest_is_checked(name: str, fa
     lines = [str(problem) for problem in check(house) if "0 bytes" not in problem.what]
     assert sum(name in line for line in lines) == 1, lines
     (line,) = [line for line in lines if name in line]
-    assert line.startswith("exhibits/beizi/exhibit.toml: garment: ")
+    assert line.startswith("exhibits/beizi/exhibit.toml: outfit: ")
     assert line.endswith("run: hall build --exhibit beizi")
     assert any("unused.txt" in line for line in lines)
 
