@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Checkpoint, HalfSpace, Material, Phase, Sheet, drape
-from sim_core.cloth.run import drape_run
+from sim_core.cloth.run import RESTED, drape_run
 from sim_core.cloth.scenes import bar, equilateral_sheet, hang_edge, scene
 from sim_core.errors import SimCoreError
 
@@ -153,7 +153,20 @@ def test_phase_ends_early_once_at_rest() -> None:
     sheet = Sheet.of(*equilateral_sheet(0.2, 0.2, 0.1), Material(0.05, 50.0))
     x = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))])
     phases = [Phase(2.0, (0.0, 0.0), rest=1e-9, label="still"), Phase(0.08, (0.0, 0.0))]
-    assert drape(sheet, x, phases).frames == 3
+    assert drape(sheet, x, phases).frames == RESTED + 2
+
+
+def test_a_single_calm_frame_is_no_rest() -> None:
+    """A cloth let go hardly moves at first, and as little where it turns back."""
+    sheet = Sheet.of(*equilateral_sheet(0.2, 0.2, 0.1), Material(0.05, 50.0))
+    x = np.column_stack([sheet.rest[:, 0], np.zeros(len(sheet.rest)), sheet.rest[:, 1]])
+    run = drape(sheet, x, [Phase(3.0, rest=0.009, damping=2.0)], pins=(0, 1, 2))
+    calm = np.array([p99 < 0.009 for p99, _ in run.trace])
+    assert calm[-RESTED:].all()
+    assert len(calm) < 75  # it did come to rest
+    firsts = [k for k in range(len(calm) - RESTED) if calm[k]]
+    assert firsts  # and was calm before, for less than that
+    assert not any(calm[k : k + RESTED].all() for k in range(len(calm) - RESTED))
 
 
 def test_bad_input_is_named() -> None:

@@ -112,7 +112,7 @@ def test_a_coarse_coat_keeps_the_limits(coat: Garment) -> None:
     assert facts["seam_gap_sewn_m"] < 1e-3
     assert facts["area_strain_p95"] <= 0.03
     assert facts["self_intersections"] <= 25
-    assert facts["asymmetry_m"] == 0.0
+    assert facts["asymmetry_m"] <= 1e-3  # its halves were let go as a whole in the end
     assert facts["rest_p99_m"] <= 1e-5
     assert not coat.provenance["whole"]  # pattern, figure and pose are mirror images
     x, left = coat.worn(), np.array([name.endswith("left") for name in coat.panels])
@@ -129,7 +129,7 @@ def test_a_coat_at_rest_stays_at_rest_with_nothing_but_itself_given(coat: Garmen
     frames = [coat.positions]
     end = follow(coat, seconds=1.0, on_frame=lambda index, x: frames.append(x))
     ways = [np.linalg.norm(after - before, axis=1) for before, after in pairwise(frames)]
-    assert max(np.percentile(way, 99) for way in ways) <= 5e-5
+    assert max(np.percentile(way, 99) for way in ways) <= 1e-5
     assert np.linalg.norm(end.positions - coat.positions, axis=1).max() <= 1e-3
     coat.save(tmp_path / "coat.npz")
     again = follow(Garment.load(tmp_path / "coat.npz"), seconds=1.0)

@@ -180,7 +180,7 @@ def test_a_band_lies_along_a_path_over_the_arms(tmp_path: Path, woman: Mannequin
     (band,) = of(tmp_path, BAND, place, WEARER)
     assert clear(band)
     assert not band.provenance["whole"]
-    assert band.provenance["errors"]["asymmetry_m"] == 0.0
+    assert band.provenance["errors"]["asymmetry_m"] <= 1e-6  # let go as a whole in the end
     x, marks = band.positions, woman.landmarks(pose_named("display"))
     assert x[:, 1].max() > marks["shoulder_l"][1]  # over the shoulders
     assert 0.7 < x[:, 1].min() < 1.1  # its ends hang in front

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sim_core.cloth.run.adaptive_run import Run, Setup
 from sim_core.cloth.run.certificate import Certificate
 from sim_core.cloth.run.checkpoint import Checkpoint, RunState, load_checkpoint, save_checkpoint
-from sim_core.cloth.run.drape_run import ENGINE_VERSION, Drape, drape
+from sim_core.cloth.run.drape_run import ENGINE_VERSION, RESTED, Drape, drape
 from sim_core.cloth.run.live import Live
 from sim_core.cloth.run.smoothing import Smoother, smoothed
 
@@ -20,6 +20,7 @@ __all__ = [
     "Checkpoint",
     "Drape",
     "ENGINE_VERSION",
+    "RESTED",
     "Live",
     "Run",
     "RunState",

@@ -28,6 +28,7 @@ from sim_core.validation import optional_callable
 ENGINE_VERSION = (
     5  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
 )
+RESTED = 8  # frames in a row below a phase's rest, after which it ends: one of them alone may be chance
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint
 
 Progress = Callable[[float, str], None]
@@ -152,7 +153,7 @@ def _run_frames(run: Run, state: RunState, hooks: _Hooks) -> None:
             if hooks.progress:
                 hooks.progress(state.frame / len(frames), phase.label)
             run.frame(state)
-            if phase.rest is not None and state.trace[-1][0] < phase.rest:
+            if phase.rest is not None and _rested(state, frames, phase.rest):
                 state.frame = _end_of(frames, state.frame, number)
             hooks.heard(state)
             if hooks.checkpoint and time.perf_counter() - saved > CHECKPOINT_SECONDS:
@@ -184,6 +185,13 @@ def _result(run: Run, state: RunState, seconds: float) -> Drape:
         certificate=found,
         smoothed=state.smoothed,
     )
+
+
+def _rested(state: RunState, frames: list[Frame], rest: float) -> bool:
+    """Whether the last frames of the phase that is on have all moved less than `rest` [m, p99]."""
+    last = frames[state.frame - RESTED : state.frame] if state.frame >= RESTED else []
+    calm = all(p99 < rest for p99, _ in state.trace[-RESTED:])
+    return calm and bool(last) and last[0].phase == last[-1].phase
 
 
 def _end_of(frames: list[Frame], index: int, phase: int) -> int:

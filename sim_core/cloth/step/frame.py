@@ -31,7 +31,7 @@ class Phase:
     friction: float | None = None
     label: str = "draping"
     speed_limit: float | None = None  # [m/s] of this phase (None: the contact's); tames a strained start
-    rest: float | None = None  # [m] leave the phase early once the p99 displacement per frame is below
+    rest: float | None = None  # [m] leave the phase early once p99 of eight frames in a row is below
     pins: tuple[int, ...] = ()  # vertices held still in this phase, beside those of the run
     sewing: tuple[float, float] = (
         0.0,

@@ -19,10 +19,10 @@ from sim_core.garment.dressing.course import Course, courses
 from sim_core.garment.dressing.fitting import check_fits
 from sim_core.garment.dressing.materials import Materials, materials_of
 from sim_core.garment.dressing.places import Places
-from sim_core.garment.dressing.quality import measured
+from sim_core.garment.dressing.quality import measured, unrest
 from sim_core.garment.dressing.records import Clock, versions
 from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
-from sim_core.garment.dressing.symmetry import confirmed, mirrored
+from sim_core.garment.dressing.symmetry import SEWN, let_go_whole, mirrored
 from sim_core.garment.dressing.wearing import Trail, Wearing
 from sim_core.garment.garment import Garment
 from sim_core.garment.outfit import Layer, Outfit
@@ -57,7 +57,7 @@ def dress(
 
     A layer is dressed over those before it, which keep where they came to rest, or move with the wearer as they did.
     A mirrored pattern on a wearer that stands like its own mirror image is dressed as one half against its image and
-    then let go as a whole: where that rests, too, both sides are alike to the bit. Any other garment is dressed whole.
+    then let go as a whole until that rests. Any other garment is dressed whole.
     checkpoint: file to go on from, others are written beside it; an
     interrupted dressing comes to the same bits. Raises SimCoreError, before anything runs, where cloth or ties cannot
     go where they shall.
@@ -133,15 +133,16 @@ class _Dressing:
         start = self._start(ground)
         clock.lap("placing")
         sheet, runs, gap = self._run(materials, start)
-        garment, last = self._garment(materials, sheet, runs), runs[-1]
+        garment = self._garment(materials, sheet, runs)
         end = self.runs[-1].steps[-1].step
         if self.half and end.still:
-            garment, last = confirmed(garment, last, end)
+            garment, last = let_go_whole(garment, end, self.progress)
+            runs = [*runs, last]
         clock.lap("drape")
         clock.laps["drape_cpu"] = round(time.process_time() - busy, 2)
         if self.progress:
             self.progress(0.97, "checking")
-        errors = measured(garment, self.layer) | {"rest_p99_m": last.rest_p99, "rest_max_m": last.rest_max}
+        errors = measured(garment, self.layer) | unrest(runs[-1])
         if gap is not None:
             errors["seam_gap_sewn_m"] = gap
         clock.lap("check")
@@ -268,7 +269,7 @@ class _Dressing:
 
         def told(share: float, label: str) -> None:
             assert self.progress is not None
-            self.progress(0.97 * (before + share * own) / whole, label)
+            self.progress((SEWN if self.half else 0.97) * (before + share * own) / whole, label)
 
         def heard(index: int, x: np.ndarray) -> None:
             key = keys[min(index, len(keys) - 1)]

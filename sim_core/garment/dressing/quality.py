@@ -8,13 +8,21 @@ import numpy as np
 
 from sim_core import metrics
 from sim_core.body import Beneath
+from sim_core.cloth import Drape
+from sim_core.cloth.run import RESTED
 from sim_core.garment.dressing.order import layer_order
 from sim_core.garment.garment import Garment
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Pattern
 from sim_core.garment.placement import Flat
 
-__all__ = ["mass", "measured", "seam_gap"]
+__all__ = ["mass", "measured", "seam_gap", "unrest"]
+
+
+def unrest(run: Drape) -> dict[str, float]:
+    """How far [m] cloth moves in a frame at the end of a run: the worst of the frames that were to be at rest."""
+    p99, most = np.max(run.trace[-RESTED:], axis=0)
+    return {"rest_p99_m": float(p99), "rest_max_m": float(most)}
 
 
 def measured(garment: Garment, layer: Layer) -> dict[str, Any]:

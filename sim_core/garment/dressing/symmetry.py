@@ -8,30 +8,29 @@ from dataclasses import replace
 import numpy as np
 
 from sim_core.cloth import Drape
-from sim_core.cloth.step import FRAME
+from sim_core.cloth.run.drape_run import Progress
 from sim_core.garment.dressing.course import Moves
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import standing
 from sim_core.garment.outfit import Layer, Outfit, Step
 from sim_core.garment.pattern import Spot
 
-__all__ = ["confirmed", "mirrored"]
+__all__ = ["let_go_whole", "mirrored"]
 
 SLACK = 1e-6  # [m]
-ALIKE = 5e-5  # [m] that p99 of a whole garment may move in a frame where its half had come to rest
+SEWN, DONE = 0.9, 0.97  # share of a layer's progress that half of it takes, and the whole's rest after it
 
 
-def confirmed(garment: Garment, last: Drape, rest: Step) -> tuple[Garment, Drape]:
-    """A garment and how its half came to rest, `last`, if the whole rests there, too; else the whole comes to rest
-    itself, in up to twice the time of the step, and its halves differ a little.
+def let_go_whole(garment: Garment, rest: Step, progress: Progress | None) -> tuple[Garment, Drape]:
+    """A garment whose half came to rest, let go as a whole until that rests, in up to twice the time of the step.
 
-    Stacked folds bear on each other in turn, and the whole takes them in another turn than its half did.
+    Stacked folds bear on each other in turn, and the whole takes them in another turn than its half did: its halves
+    differ by a little in the end.
     """
     assert garment.settled is not None
-    let_go, phase = standing(garment), garment.settled.phase(2 * rest.seconds, rest.label)
-    if let_go([replace(phase, seconds=FRAME)]).rest_p99 <= ALIKE:
-        return garment, last
-    last = let_go([replace(phase, rest=rest.still)])
+    phase = replace(garment.settled.phase(2 * rest.seconds, rest.label), rest=rest.still)
+    told = progress and (lambda share, label: progress(SEWN + (DONE - SEWN) * share, label))
+    last = standing(garment)([phase], progress=told)
     return replace(garment, positions=last.positions), last
 
 

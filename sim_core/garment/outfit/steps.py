@@ -43,7 +43,7 @@ class Step:
 
     do: sew – seams are drawn together, weld – they become one cloth, pin, release – `spots` are held and let go,
     close – `ties` are drawn to their length (none named: all), pose – the wearer goes to `pose` (None: the outfit's),
-    settle, rest – time passes, at most until the movement is below `still` [m a frame, p99].
+    settle, rest – time passes, at most until eight frames in a row move less than `still` [m, p99].
     seconds; gravity [m/s2] from..to; damping [1/s]; friction on what lies beneath (None: the cloth's own); speed
     [m/s] that nothing passes; touch: how it touches from here on; label: what the progress says.
     """
