@@ -2,6 +2,7 @@
 angles but the lines' own and few beside a narrow corner."""
 
 from functools import partial
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from crossing_lines import (
 )
 from exact_delaunay import delaunay_faults
 
+from sim_core.mesh.improvement import best
 from sim_core.mesh.measures import mesh_fault
 from sim_core.mesh.outline import clean_lines
 
@@ -48,6 +50,13 @@ def assert_in_measure(panel: Panel, kind: str = "other") -> None:
     assert delaunay_faults(mesh.vertices, mesh.faces, fixed_steps(mesh)) == []
     found = measured(panel, mesh)
     assert found.side >= min(found.feature, EDGE) / FINEST[kind], found
+    if (
+        found.astray
+    ):  # a slit that takes more points than may be put in stays as it was, and nothing else does
+        with mock.patch.object(best, "ADDED_AT_LEAST", 10 * best.ADDED_AT_LEAST):
+            whole = best_mesh(panel)
+        assert len(whole.vertices) > best.ADDED_AT_LEAST, found
+        found = measured(panel, whole)
     assert found.astray == 0, found
     assert found.beside >= 0.5, found
     if kind == "pair":
