@@ -27,7 +27,7 @@ An outfit file:
 
   name = "beizi"
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
-  pose = "display"                    # `simcore figure --poses` lists them; or { name, joints, shift }
+  pose = "display"                    # `simcore figure --list` lists them; or { name, joints, shift }
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -43,7 +43,8 @@ An outfit file:
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label
 
 Files are found beside the folder `outfits` the file lies in, or in --content. What cannot be dressed is refused
-before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result.
+before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result, if it
+writes something: what is kept of it lies beside that.
 """
 
 
@@ -98,6 +99,8 @@ def _check_targets(args: argparse.Namespace) -> None:
         path = getattr(args, name)
         if path is None:
             continue
+        if path.is_dir():
+            raise WrongArgument(f"--{name}: {path} is a folder – name a file in it")
         if path.suffix != suffix:
             raise WrongArgument(f"--{name}: {path} – name a file that ends in {suffix}")
         try:

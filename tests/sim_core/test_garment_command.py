@@ -41,6 +41,15 @@ def test_bad_words_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFi
     assert not (tmp_path / "out.npz").exists()
 
 
+def test_a_folder_is_no_target(outfit: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "dir.npz"
+    folder.mkdir()
+    words = ["dress", str(outfit), "--content", str(ASSETS), "--out", str(folder)]
+    assert main(words) == 2
+    assert f"--out: {folder} is a folder" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["dir.npz", "it.toml", "short.toml"]
+
+
 def test_dress_writes_what_is_asked_for(
     outfit: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -168,6 +168,26 @@ BAD = {
         ROBE + '[[layer.step]]\ndo = "pin"\nat = [{ panel = "body", at = [5000, 0] }]\n',
         "layer.1.step.1.at.1.at: 5000, 0 mm lies 4530 mm outside",
     ),
+    "not a colour": (ROBE + 'dyes = { band = "red" }\n', "layer.1.dyes.band: .*match.*'red'"),
+    "name of no file": (ROBE + 'name = "in/ner"\n', "layer.1.name: .*match.*'in/ner'"),
+    "title in no language of ours": ('title = { fr = "robe" }\n' + ROBE, "title.fr"),
+    "seed that is none": (ROBE + "seed = true\n", "layer.1.seed"),
+    "bar like a barrel": (SCARF.replace("1.5", "1.5\nbar_radius = 0.5"), "stand.bar_radius: .*less than"),
+    "stand like a mast": (SCARF.replace("1.5", "20.0"), "stand.height: .*less than"),
+    "wrapped far off": (ROBE + '[layer.place]\nway = "wrapped"\ngap = 20.0\n', "gap: .*less than"),
+    "fall beyond all": (
+        ROBE + '[[layer.step]]\ndo = "rest"\nseconds = 1.0\ngravity = [1e300, 1.0]\n',
+        "layer.1.step.1.gravity.1: .*less than",
+    ),
+    "pose of no pose step": (
+        ROBE + '[[layer.step]]\ndo = "settle"\nseconds = 1.0\npose = "held"\n',
+        "layer.1.step.1.pose: settle does not read it, only pose",
+    ),
+    "time to weld": (ROBE + '[[layer.step]]\ndo = "weld"\nseconds = 1.0\n', "step.1.seconds: weld does not"),
+    "let go of something else": (
+        ROBE + '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n[[layer.step]]\ndo = "release"\nat = ["top"]\n',
+        "layer.1.step.2.at: it is not pinned",
+    ),
     "twice": (ROBE + ROBE.split("\n", 2)[2], "layer.2.name: 'robe' is there twice"),
     "two on a stand": (SCARF + SCARF.split("\n", 2)[2], "layer.2: a stand bears one layer"),
 }
@@ -181,6 +201,29 @@ def test_what_is_wrong_is_told_with_file_key_and_remedy(tmp_path: Path, case: st
         load_outfit(path, ASSETS)
     assert str(caught.value).startswith(str(tmp_path)) or str(ASSETS) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+STRAIGHT = '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
+WAY = {
+    "another end": ((("held",),), "layer 1 .robe.: its steps leave the wearer in another pose"),
+    "one by way of another": (
+        (("step", "display"), ("display",)),
+        "layer 2 .over.: it is dressed while the wearer moves",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", WAY)
+def test_layers_share_the_way_of_the_wearer_and_its_end(tmp_path: Path, case: str) -> None:
+    layers, words = WAY[case]
+    head, _, robe = ROBE.partition("[[layer]]\n")
+    text = head
+    for number, poses in enumerate(layers):
+        name = 'name = "over"\n' if number else ""
+        steps = "".join(f'[[layer.step]]\ndo = "pose"\nseconds = 0.4\npose = "{pose}"\n' for pose in poses)
+        text += f"[[layer]]\n{name}{robe}{STRAIGHT}{steps}"
+    with pytest.raises(SimCoreError, match=words):
+        check_fits(load_outfit(written(tmp_path, text), ASSETS))
 
 
 NARROW = {

@@ -170,6 +170,28 @@ def test_what_does_not_fit_a_stand_is_refused(tmp_path: Path) -> None:
         of(tmp_path, CLOTH, 'way = "folded"\nfront = 1.6', bar)
 
 
+LED = {
+    "one place": (
+        'along = ["hip_l", "hip_l"]\n',
+        "[0.0, 0.0, 0.0]",
+        "place.along: hip_l and hip_l are one place",
+    ),
+    "out of reach": ("", "[15.0, 0.0, 0.0]", "place.knot: the knots lie up to .* half the strip"),
+    "out of the world": ("", "[1e300, 0.0, 0.0]", "knot.3.by.1: .*less than"),
+}
+
+
+@pytest.mark.parametrize("case", LED)
+def test_a_path_that_leads_nowhere_is_refused(tmp_path: Path, case: str) -> None:
+    along, by, words = LED[case]
+    knots = (
+        '{ near = ["nape"] }, { near = ["shoulder_l"], by = [0.0, 0.05, 0.0] }, { near = ["hip_l"], by = BY }'
+    )
+    place = f'way = "along_path"\n{along}knot = [{knots.replace("BY", by)}]'
+    with pytest.raises(SimCoreError, match=words):
+        of(tmp_path, BAND, place, WEARER)
+
+
 def test_a_band_lies_along_a_path_over_the_arms(tmp_path: Path, woman: Mannequin) -> None:
     knots = (
         '{ near = ["nape"], by = [0.0, -0.02, -0.06] }, { near = ["shoulder_l"], by = [-0.04, 0.06, -0.03] }, '

@@ -58,9 +58,8 @@ def dress(
     A layer is dressed over those before it, which keep where they came to rest, or move with the wearer as they did.
     A mirrored pattern on a wearer that stands like its own mirror image is dressed as one half against its image and
     then let go as a whole until that rests. Any other garment is dressed whole.
-    checkpoint: file to go on from, others are written beside it; an
-    interrupted dressing comes to the same bits. Raises SimCoreError, before anything runs, where cloth or ties cannot
-    go where they shall.
+    checkpoint: file to go on from, others are written beside it; an interrupted dressing comes to the same bits.
+    Raises SimCoreError, before anything runs, where cloth or ties cannot go where they shall.
     """
     check_fits(outfit)
     done: list[Garment] = []
@@ -81,8 +80,9 @@ def dress(
         done.append(garment)
         trails.append(trail)
     if checkpoint is not None:
-        for file in checkpoint.parent.glob(f"{checkpoint.name}.layer*"):
-            file.unlink()
+        for number in range(len(outfit.layers)):
+            for end in ("npz", "trail.npz"):
+                checkpoint.with_name(f"{checkpoint.name}.layer{number}.{end}").unlink(missing_ok=True)
     return tuple(done)
 
 

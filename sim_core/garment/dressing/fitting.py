@@ -7,9 +7,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import ConvexHull
 
-from sim_core.body import Figure
+from sim_core.body import Figure, Pose
 from sim_core.errors import SimCoreError
-from sim_core.garment.dressing.course import courses
+from sim_core.garment.dressing.course import Moves, courses
 from sim_core.garment.dressing.places import nearest
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.pattern import Cloth
@@ -24,25 +24,36 @@ ROOM = 0.01  # [m] more than the girth of what passes an opening
 def check_fits(outfit: Outfit) -> None:
     """Raises SimCoreError where a pose is beyond a joint's limit, layers cannot be dressed one over the other, an
     opening is narrower than the limb that must pass it, or a tie is shorter than the girth it goes round."""
-    begins = []
+    ways = []
     for number, layer in enumerate(outfit.layers, 1):
         key = f"outfit {outfit.name}: layer {number} ({layer.name})"
         _, moves = courses(layer, outfit.pose)
         if outfit.wearer is not None:
             for pose in moves.poses:
                 pose.check()
-        if number > 1 and not moves.still:
-            if any(begin is None or begin != moves.poses[0] for begin in begins):
-                raise SimCoreError(
-                    f"{key}: it is dressed while the wearer moves, over a layer that was not dressed from the same "
-                    "pose – begin both from one pose, or place it along_path or wrapped"
-                )
-        begins.append(None if moves.still else moves.poses[0])
+        way = _way(layer, outfit, moves)
+        if way[-1] != outfit.pose:
+            raise SimCoreError(
+                f"{key}: its steps leave the wearer in another pose than the outfit's, in which everything is shown – "
+                "leave `pose` out of its last pose step, or change the outfit's"
+            )
+        if number > 1 and len(way) > 1 and any(other != way for other in ways):
+            raise SimCoreError(
+                f"{key}: it is dressed while the wearer moves, over a layer that was not dressed on the same way "
+                "from pose to pose – give both the same pose steps, or place it along_path or wrapped"
+            )
+        ways.append(way)
         if isinstance(layer.place, Flat) and outfit.wearer is not None:
             figure = Figure(outfit.wearer)
             body, _ = figure.mesh(moves.poses[0])
             _check_openings(key, layer, body)
             _check_ties(key, layer, body, figure.trunk())
+
+
+def _way(layer: Layer, outfit: Outfit, moves: Moves) -> tuple[Pose, ...]:
+    """The poses a wearer goes through while the layer is dressed, one where the wearer stands."""
+    ends = [step.pose or outfit.pose for step in layer.program.steps if step.do == "pose"]
+    return moves.poses[0], *ends
 
 
 def _check_ties(key: str, layer: Layer, body: np.ndarray, trunk: np.ndarray) -> None:

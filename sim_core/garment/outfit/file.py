@@ -27,6 +27,11 @@ from sim_core.weave import Weave
 __all__ = ["default_program", "load_outfit"]
 
 LOOK = 0.02  # [m] cell of the field by which a figure is tried
+READ_BY = {  # keys that few kinds of steps read
+    "at": ("pin", "release"),
+    "pose": ("pose",),
+    "seconds": ("sew", "close", "pose", "settle", "rest"),
+}
 WAYS: dict[str, type[Placement]] = {
     "flat": Flat,
     "over_bar": OverBar,
@@ -77,7 +82,8 @@ class _Reader:
                     f"layer.{k + 1}.name", f"{layer.name!r} is there twice – name each layer once"
                 )
         name = read.name or self._path.stem
-        return Outfit(name, tuple(layers), wearer, stand, pose, dict(read.title))
+        title = {str(language): words for language, words in read.title.items()}
+        return Outfit(name, tuple(layers), wearer, stand, pose, title)
 
     def _wearer(self, file: Path) -> Mannequin:
         """A figure that cloth can lie on: closed, with hands."""
@@ -154,6 +160,11 @@ class _Reader:
                 )
             except CutProblem as error:
                 raise FileProblem(f"{self._path}: {error}") from error
+        for name, those in READ_BY.items():
+            if name in table.model_fields_set and table.do not in those:
+                raise self._wrong(
+                    f"{key}.{name}", f"{table.do} does not read it, only {', '.join(those)} – leave it out"
+                )
         if table.do == "pin" and not spots:
             raise self._wrong(f"{key}.at", 'say what is pinned: at = ["nape"], or places of panels')
         known = [tie.name for tie in pattern.ties] if pattern is not None else []
@@ -196,7 +207,7 @@ class _Reader:
 
 def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:
     """Steps that cannot follow each other: refused before anything runs."""
-    welded, pinned = False, False
+    welded, pinned = False, []
     sewn = any(seam.kind == "sewn" for seam in pattern.seams)
     for number, step in enumerate(steps, 1):
         where = f"{key}.step.{number}.do"
@@ -211,8 +222,13 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
         if step.do == "release":
             if not pinned:
                 raise reader._wrong(where, "nothing is pinned – leave it out")
-            pinned = False
-        pinned = pinned or step.do == "pin"
+            if any(spot not in pinned for spot in step.spots):
+                raise reader._wrong(
+                    f"{key}.step.{number}.at", "it is not pinned – pin it before, or leave it out"
+                )
+            pinned = [spot for spot in pinned if step.spots and spot not in step.spots]
+        if step.do == "pin":
+            pinned += step.spots
     if sewn and not welded:
         raise reader._wrong(f"{key}.step", "the pattern has sewn seams and no step welds them – add one")
     if not any(step.timed for step in steps):

@@ -11,11 +11,15 @@ from sim_core.garment.pattern.tables import Measure, SpotTable
 
 __all__ = ["LayerTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
 
+NAME = r"^[^/\\\x00-\x1f]+$"  # files are named after it
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[float, Field(strict=True, gt=0, le=20, allow_inf_nan=False)]
 Share = Annotated[float, Field(strict=True, gt=0, le=1, allow_inf_nan=False)]
-Vector = tuple[Number, Number, Number]
-Words = dict[str, str]
+Way = Annotated[float, Field(strict=True, ge=-20, le=20, allow_inf_nan=False)]  # [m]
+Vector = tuple[Way, Way, Way]
+Words = dict[Literal["zh", "en"], str]
+Colour = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
+Fall = Annotated[float, Field(strict=True, ge=-100, le=100, allow_inf_nan=False)]  # [m/s2]
 
 
 class Table(BaseModel):
@@ -42,11 +46,15 @@ PoseTable = str | dict[str, Any]
 class StepTable(Table):
     do: Do = Field(description="sew, weld, pin, release, close, pose, settle or rest")
     seconds: Number = Field(0.0, ge=0, le=600, description="how long")
-    gravity: tuple[Number, Number] = Field((GRAVITY, GRAVITY), description="[m/s2] at its begin and end")
-    damping: Number | None = Field(None, ge=0, description="of the cloth [1/s]; hanging cloth: 2 to 10")
+    gravity: tuple[Fall, Fall] = Field((GRAVITY, GRAVITY), description="[m/s2] at its begin and end")
+    damping: Number | None = Field(
+        None, ge=0, le=1000, description="of the cloth [1/s]; hanging cloth: 2 to 10"
+    )
     friction: Number | None = Field(None, ge=0, le=5, description="on what lies beneath; else the weave's")
-    speed: Number | None = Field(None, gt=0, description="[m/s] that no vertex passes")
-    still: Number | None = Field(None, gt=0, description="[m] a frame (p99) at which the step ends early")
+    speed: Number | None = Field(None, gt=0, le=100, description="[m/s] that no vertex passes")
+    still: Number | None = Field(
+        None, gt=0, le=1, description="[m] a frame (p99) at which the step ends early"
+    )
     at: list[Literal["nape", "top"] | SpotTable] = Field(
         [], description="what is pinned: nape, top or places"
     )
@@ -107,7 +115,7 @@ class AlongPathTable(Table):
     along: tuple[str, str] | None = Field(
         None, description="landmarks whose direction it lies along at the top"
     )
-    stations: list[tuple[Number, Length]] = Field(
+    stations: list[tuple[Way, Length]] = Field(
         [], description="[m] from the path's highest point, [m] of width"
     )
     begin: Length = Field(0.22, description="[m] width at the strip's middle")
@@ -120,9 +128,12 @@ class WrappedTable(Table):
     mark: str = Field("waist", description="landmark of the wearer at whose height the top lies")
     rise: Number = Field(0.0, ge=-1, le=1, description="[m] of the top above it")
     begin: Number = Field(
-        180.0, description="[deg] about +y where the first edge lies; 0 the front, 90 the left"
+        180.0,
+        ge=-360,
+        le=360,
+        description="[deg] about +y where the first edge lies; 0 the front, 90 the left",
     )
-    gap: Length = Field(0.006, description="[m] between layers of the wrap")
+    gap: Number = Field(0.006, gt=0, le=0.2, description="[m] between layers of the wrap")
 
 
 class FoldedTable(Table):
@@ -136,15 +147,17 @@ Place = Annotated[
 
 
 class LayerTable(Table):
-    name: str | None = Field(None, min_length=1, max_length=80, description="else the pattern's")
+    name: str | None = Field(
+        None, pattern=NAME, max_length=80, description="else the pattern's; part of a file's name"
+    )
     pattern: str = Field(min_length=1, description="pattern file, e.g. patterns/robe.toml")
     weave: str = Field(min_length=1, description="weave file, e.g. weaves/juan.toml")
     weaves: dict[str, str] = Field({}, description="weave files of single panels")
-    dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$", description="colour, else the pattern's")
-    dyes: dict[str, str] = Field({}, description="colours of single panels")
+    dye: Colour | None = Field(None, description="colour, else the pattern's")
+    dyes: dict[str, Colour] = Field({}, description="colours of single panels")
     measures: dict[str, Measure] = Field({}, description="measures of the pattern to be changed [mm]")
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
-    seed: int = Field(0, ge=0, le=2**32 - 1, description="of the folds' irregularity")
+    seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
     step: list[StepTable] = Field(
         [], max_length=200, description="dressing steps; else those of its way of placing"
@@ -152,13 +165,13 @@ class LayerTable(Table):
 
 
 class StandTable(Table):
-    height: Length = Field(1.5, description="of the bar [m]")
-    span: Length = Field(0.70, description="between the posts [m]")
-    bar_radius: Length = Field(0.017, description="[m]")
+    height: Number = Field(1.5, gt=0, le=5, description="of the bar [m]")
+    span: Number = Field(0.70, gt=0, le=10, description="between the posts [m]")
+    bar_radius: Number = Field(0.017, ge=0.002, le=0.08, description="[m]")
 
 
 class OutfitTable(Table):
-    name: str | None = Field(None, min_length=1, max_length=80)
+    name: str | None = Field(None, pattern=NAME, max_length=80)
     title: Words = {}
     wearer: str | None = Field(None, description="figure file, e.g. mannequins/woman.npz")
     stand: StandTable | None = None

@@ -55,18 +55,30 @@ class AlongPath:
     def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
         """Positions (P, 3) [m] of the pattern vertices, of a mirrored pattern those of its left half.
 
-        Raises SimCoreError where a landmark is not known or the strip is too short.
+        Raises SimCoreError where a landmark is not known, knots are out of reach or lead nowhere, the strip is short.
         """
         length = float(np.ptp(cloth.vertices[:, 0]))
         points = np.array(
             [np.mean([ground.mark(name) for name in k.near], axis=0) + k.by for k in self.knots]
         )
+        direction = ground.mark(self.along[1]) - ground.mark(self.along[0])
+        if not np.linalg.norm(direction) > STEP:
+            raise SimCoreError(f"place.along: {' and '.join(self.along)} are one place – name two landmarks")
+        reach = np.linalg.norm(points - points[0], axis=1).max()
+        if reach > length:
+            raise SimCoreError(
+                f"place.knot: the knots lie up to {reach:.2f} m from the first, half the strip is {length:.2f} m "
+                "long – bring them nearer"
+            )
         room = np.array([knot.room for knot in self.knots])
         path = arranged_path(points, ground.distance, room, length)
         top = float(np.argmax(path[:, 1])) * STEP
+        if top == 0.0:
+            raise SimCoreError(
+                "place.knot: the strip is highest at its middle – lead it over a shoulder or an arm"
+            )
         stations = (0.0, *(top + away for away, _ in self.stations), length)
         widths = (self.begin, *(width for _, width in self.stations), self.end)
-        direction = ground.mark(self.along[1]) - ground.mark(self.along[0])
         return swept(cloth.vertices, path, direction, Accordion(stations, widths, self.waves), rng)
 
 
