@@ -153,11 +153,13 @@ def _dress(
 
 def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress) -> tuple[Garment, ...]:
     """Dress the outfit, each frame of its outermost layer filmed; goes on from `state` where that is whole."""
+    from sim_core.cloth import Checkpoint
     from sim_core.garment import dress
 
     state.mkdir(parents=True, exist_ok=True)
+    kept = Checkpoint(state / "state.npz", keep=True)  # until models, film and pictures are written, too
     if taken is None:
-        return dress(outfit, progress=progress, checkpoint=state / "state.npz")
+        return dress(outfit, progress=progress, checkpoint=kept)
     last = len(outfit.layers) - 1
 
     def shoot(frame: Frame, trails: Trails) -> None:
@@ -174,7 +176,7 @@ def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress
                 outfit,
                 progress=progress,
                 on_frame=lambda frame, trails=trails: shoot(frame, trails),
-                checkpoint=state / "state.npz",
+                checkpoint=kept,
             )
         except TrailLostError:  # interrupted between two layers: what was not seen cannot be filmed
             shutil.rmtree(state)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -35,10 +34,7 @@ class Figure:
     @property
     def name(self) -> str:
         """Names the figure and its fields, whatever file they came from."""
-        m = self.mannequin
-        arrays = (m.vertices, m.faces, m.weights, m.heads)
-        digest = hashlib.sha256(b"".join(array.tobytes() for array in arrays) + m.skin.encode())
-        return f"{m.name} {digest.hexdigest()[:12]} cell {self.cell}"
+        return f"{self.mannequin.name} {self.mannequin.digest()[:12]} cell {self.cell}"
 
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         """The posed figure: vertices (V, 3) [m], faces (F, 3)."""

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim_core.errors import SimCoreError, WrongArgument
+from sim_core.errors import WrongArgument
 from sim_core.validation.arguments import number
+from sim_core.validation.files import check_target
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment, Outfit
@@ -27,7 +28,7 @@ An outfit file:
 
   name = "beizi"
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
-  pose = "display"                    # `simcore figure --poses` lists them; or { name, joints, shift }
+  pose = "display"                    # `simcore figure --list` lists them; or { name, joints, shift }
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -43,7 +44,8 @@ An outfit file:
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label
 
 Files are found beside the folder `outfits` the file lies in, or in --content. What cannot be dressed is refused
-before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result.
+before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result: with --out,
+--glb or --picture, beside which states are kept until all of them are written. Without any nothing is kept.
 """
 
 
@@ -70,42 +72,49 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Dresses and writes; returns the exit status."""
+    from sim_core.cloth import Checkpoint
     from sim_core.garment import dress, load_outfit
+    from sim_core.garment.dressing import forget
 
-    _check_targets(args)
+    _check_kinds(args)
     outfit = load_outfit(args.outfit, args.content)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
-    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args))
-    files: dict[str, Path] = {}
-    if args.out is not None:
-        for garment in garments[:-1]:
-            files[garment.name] = args.out.with_name(f"{args.out.stem}-{garment.name}.npz")
+    files = _garment_files(args, outfit)
+    for path in (*files.values(), args.glb, args.picture):
+        if path is not None:
+            check_target(path)
+    kept = _checkpoint(args)
+    checkpoint = kept and Checkpoint(kept, keep=True)
+    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=checkpoint)
+    for garment in garments:
+        if garment.name in files:
             garment.save(files[garment.name])
-        files[garments[-1].name] = args.out
-        garments[-1].save(args.out)
     if args.glb is not None:
         _write_model(args.glb, outfit, garments)
     if args.picture is not None:
         _draw(args.picture, outfit, garments)
+    if kept is not None:
+        forget(kept)
     _report(args, garments, files)
     return 0
 
 
-def _check_targets(args: argparse.Namespace) -> None:
-    """Raises WrongArgument for a file of another kind, and makes the folders, before any work is done."""
+def _check_kinds(args: argparse.Namespace) -> None:
+    """Raises WrongArgument for the name of a file of another kind."""
     for name, suffix in (("out", ".npz"), ("glb", ".glb"), ("picture", ".png")):
         path = getattr(args, name)
-        if path is None:
-            continue
-        if path.suffix != suffix:
+        if path is not None and path.suffix != suffix:
             raise WrongArgument(f"--{name}: {path} – name a file that ends in {suffix}")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise SimCoreError(
-                f"--{name}: {path}: {error.strerror} – name a folder that can be written"
-            ) from error
+
+
+def _garment_files(args: argparse.Namespace, outfit: Outfit) -> dict[str, Path]:
+    """Where each layer is saved, by its name."""
+    if args.out is None:
+        return {}
+    *beneath, outermost = (layer.name for layer in outfit.layers)
+    files = {name: args.out.with_name(f"{args.out.stem}-{name}.npz") for name in beneath}
+    return {**files, outermost: args.out}
 
 
 def _checkpoint(args: argparse.Namespace) -> Path | None:
@@ -159,7 +168,6 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     middle = (0.0, 0.825, 0.0)
     eyes = ((0.5, 1.25, 3.6), (2.9, 1.2, 2.0), (-1.4, 1.2, -3.2))
     pictures = [render(surfaces, Camera(eye, middle, 27), (620, 840)) for eye in eyes]
-    path.parent.mkdir(parents=True, exist_ok=True)
     save_png(path, np.concatenate(pictures, axis=1))
 
 

@@ -17,6 +17,7 @@ from sim_core.garment.pattern import unsided
 from sim_core.garment.slub import slub_normal
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals
+from sim_core.validation.files import written_whole
 from sim_core.weave import Weave, solve, surface_maps
 
 Precision = Literal["close", "hall"]
@@ -114,11 +115,8 @@ def write_glb(
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
     data = glb.bytes(outermost.name, ["KHR_materials_sheen", "KHR_texture_transform"])
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(path.name + ".part")
-    beside.write_bytes(data)
-    beside.replace(path)
+    with written_whole(Path(path)) as stream:
+        stream.write(data)
     return len(data)
 
 

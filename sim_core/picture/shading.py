@@ -11,6 +11,7 @@ import numpy as np
 from sim_core.errors import SimCoreError
 from sim_core.picture.raster import LAYERS, compose, depth_map, fragments
 from sim_core.picture.raster import lit as lit_share
+from sim_core.validation.files import written_whole
 
 __all__ = ["Camera", "Light", "Lighting", "Surface", "lighting", "normals", "render", "save_png"]
 
@@ -145,11 +146,11 @@ def _draw(
 
 
 def save_png(path: Path, picture: np.ndarray) -> None:
-    """Writes a picture (h, w, 3) uint8."""
+    """Writes a picture (h, w, 3) uint8; raises FileProblem where it cannot."""
     from PIL import Image
 
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(picture).save(path, optimize=True)
+    with written_whole(path) as stream:
+        Image.fromarray(picture).save(stream, "PNG", optimize=True)
 
 
 def _check(number: int, surface: Surface) -> None:

@@ -141,7 +141,9 @@ def test_an_idle_hall_draws_next_to_nothing(plain_hall, chromium):
     enter(page, f"{plain_hall.url}/?lang=en", quality=None)
     drawn = "() => hall.framesDrawn()"
     page.wait_for_timeout(5000)
-    soon(page, lambda: still(page, drawn, 2000), patience=120)  # the first look at the machine's speed is over
+    soon(
+        page, lambda: still(page, drawn, 2000), patience=120
+    )  # the first look at the machine's speed is over
     before = page.evaluate(drawn)
     page.wait_for_timeout(6000)
     assert page.evaluate(drawn) - before <= 1

@@ -1,7 +1,9 @@
 """Outfit files: what they hold, what they leave to defaults, and what is refused before anything runs."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sim_core.body import Pose, pose_named
@@ -232,3 +234,20 @@ def test_a_layer_dressed_on_the_way_needs_one_beneath_that_came_the_same_way(tmp
     moving = held.rsplit("[[layer.step]]", 1)[0] + '[[layer.step]]\ndo = "pose"\nseconds = 0.4\n'
     with pytest.raises(SimCoreError, match="layer 2 .over.: it is dressed while the wearer moves"):
         check_fits(load_outfit(written(tmp_path, moving), ASSETS))
+
+
+def test_who_wears_it_is_known_by_all_that_decides_how_he_stands(tmp_path: Path) -> None:
+    """A layer kept of an interrupted dressing serves again for the same wearer alone."""
+    outfit = load_outfit(written(tmp_path, ROBE), ASSETS)
+    wearer = outfit.wearer
+    assert wearer is not None
+    others = [
+        replace(wearer, vertices=wearer.vertices[:, [2, 1, 0]]),  # the same numbers on other axes
+        replace(wearer, weights=np.roll(wearer.weights, 1, axis=1)),
+        replace(wearer, heads=wearer.heads + [0.0, 0.01, 0.0]),
+        replace(wearer, marks={**wearer.marks, "waist": wearer.marks["waist"] + [0.0, 0.01, 0.0]}),
+        replace(wearer, skin="dual" if wearer.skin != "dual" else "linear arms"),
+    ]
+    told = [str(replace(outfit, wearer=who).to_dict()) for who in (wearer, replace(wearer), *others)]
+    assert told[0] == told[1]
+    assert len(set(told[1:])) == len(told[1:])

@@ -7,6 +7,7 @@ from sim_core.garment.dressing.fitting import check_fits
 from sim_core.garment.dressing.materials import materials_of, simplified
 from sim_core.garment.dressing.order import layer_order, overlap
 from sim_core.garment.dressing.quality import seam_gap
+from sim_core.garment.dressing.records import forget
 from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
 
 __all__ = [
@@ -16,6 +17,7 @@ __all__ = [
     "check_fits",
     "courses",
     "dress",
+    "forget",
     "layer_order",
     "materials_of",
     "overlap",

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
-
-import numpy as np
 
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import T_POSE, Pose
@@ -18,10 +17,12 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.outfit.steps import Step
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement import Placement
+from sim_core.validation.files import shown
 from sim_core.weave import Weave, solve
 
 __all__ = ["Layer", "Outfit", "Program"]
 
+FILE_NAME = re.compile(r"\w([\w -]{0,78}\w)?")
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
@@ -56,6 +57,12 @@ class Layer:
     edge: float
     weaves: Mapping[str, Weave] = field(default_factory=dict)
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not FILE_NAME.fullmatch(self.name):
+            raise SimCoreError(
+                f"layer {shown(self.name)}: its name names a file, too – use letters, digits, _, - and inner spaces"
+            )
 
     def weave_of(self, panel: str) -> Weave:
         """What a panel is cut from."""
@@ -114,11 +121,12 @@ class Outfit:
         """What decides the result, as plain values."""
         return {
             "name": self.name,
-            "wearer": self.wearer and [self.wearer.name, float(np.abs(self.wearer.vertices).sum())],
+            "wearer": self.wearer and self.wearer.digest(),
             "stand": self.stand and repr(self.stand),
             "pose": self.pose.table(),
             "layers": [
                 {
+                    "name": layer.name,
                     "pattern": layer.pattern.to_dict(),
                     "weave": layer.weave.to_dict(),
                     "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},
