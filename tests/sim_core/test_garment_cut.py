@@ -90,7 +90,10 @@ def test_both_halves_are_mirror_images_joined_in_the_middle(tmp_path: Path) -> N
 
 def test_patterns_survive_the_way_through_a_dictionary(tmp_path: Path) -> None:
     pattern = read(tmp_path, BAG)
-    again = Pattern.from_dict(pattern.to_dict())
+    kept = pattern.to_dict()
+    for panel in kept["panels"]:
+        panel["layer"] = 1  # as garments have it that were saved before that key was gone
+    again = Pattern.from_dict(kept)
     first, second = pattern.cloth(0.04), again.cloth(0.04)
     assert second.vertices.tobytes() == first.vertices.tobytes()
     assert second.closed.tobytes() == first.closed.tobytes()
@@ -135,6 +138,7 @@ def _area(points: np.ndarray) -> float:
         ("edge = 0.05", "edge = true", ["edge", "True"]),
         ("mirror = true", "mirror = false", ["seam.1.middle", "mirror"]),
         ("doubled = true", "folded = true", ["panel.1.folded", "unknown key"]),
+        ("doubled = true", "layer = 1", ["panel.1.layer", "unknown key"]),
         ("at = [30, 0]", 'at = [30, "x"]', ["panel.strap.outline.b.at", "'x'"]),
         ('dye = "#102030"', 'dye = "blue"', ["panel.1.dye", "blue"]),
         ("edge = 0.05", "size = [1.0, 1.0]\nedge = 0.05", ["[[panel]]"]),

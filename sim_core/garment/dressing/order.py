@@ -1,4 +1,4 @@
-"""Whether overlapping cloth lies in the order it is meant to: bands over bodies, one front over the other."""
+"""Whether fronts that overlap lie in the order they are meant to: one over the other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SLIGHT = 0.0005  # [m] by which cloth may lie under what it should lie over: the
 
 
 def layer_order(garment: Garment, over: str = "left") -> int:
-    """How many vertices of a front (or a band's, by `layer` of the panels) lie under what they should lie over.
+    """How many vertices of the outer front lie under the inner one.
 
     Outwards is away from what lies beneath. over: the side of the wearer whose front is outside. 0 of a garment that
     says nothing of its order, or does not say what it lies on.

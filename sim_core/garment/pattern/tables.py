@@ -51,7 +51,6 @@ class PointTable(Table):
 class PanelTable(Table):
     name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
     outline: list[PointTable] = Field(min_length=3, max_length=200)
-    layer: int = Field(0, ge=0, le=9)
     doubled: bool = False
     along: str | None = None
     dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
@@ -188,7 +187,6 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         table.name,
         names,
         tuple(legs),
-        table.layer,
         table.doubled,
         None
         if table.along is None
