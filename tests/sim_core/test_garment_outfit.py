@@ -116,6 +116,11 @@ def test_steps_replace_the_usual_ones(tmp_path: Path) -> None:
     assert layer.program.contact == default_program("flat").contact
 
 
+PATH = 'knot = [{ near = ["hip"] }, { near = ["waist"] }, { near = ["elbow_l"] }]\n'
+ALONG = ROBE.replace("robe.toml", "pibo-long.toml") + '[layer.place]\nway = "along_path"\n' + PATH
+WRAPPED = ROBE + '[layer.place]\nway = "wrapped"\n'
+SEWN = ROBE + '[[layer.step]]\ndo = "weld"\n[[layer.step]]\ndo = "settle"\nseconds = 1.0\n'
+HELD = SEWN + '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n'
 BAD = {
     "neither": (SCARF.replace("[stand]\nheight = 1.5\n", ""), "wearer: give either"),
     "both": ('wearer = "mannequins/woman.npz"\n' + SCARF, "wearer: give either"),
@@ -167,6 +172,36 @@ BAD = {
     "spot outside": (
         ROBE + '[[layer.step]]\ndo = "pin"\nat = [{ panel = "body", at = [5000, 0] }]\n',
         "layer.1.step.1.at.1.at: 5000, 0 mm lies 4530 mm outside",
+    ),
+    "dye of a panel": (ROBE + 'dyes = { band = "red" }\n', "layer.1.dyes.band: write a colour as '#rrggbb'"),
+    "title": ('title = { foo = "x" }\n' + ROBE, "title.foo: .*'zh' or 'en'"),
+    "seed true": (ROBE + "seed = true\n", "layer.1.seed: .*valid integer .found True"),
+    "seed below 0": (ROBE + "seed = -1\n", "layer.1.seed: give 0 to 4294967295 "),
+    "coarse": (ROBE + "edge = 5\n", "layer.1.edge: give 0.002 to 0.2 m .found 5"),
+    "endless": (ROBE + f"edge = 1{'0' * 400}\n", "layer.1.edge: "),
+    "partly a word": (SEWN + 'touch = { partly = "yes" }\n', "layer.1.step.2.touch.partly: .*boolean"),
+    "gravity": (SEWN + "gravity = [0.0, 1e300]\n", "layer.1.step.2.gravity.2: give 0 to 50 m/s2"),
+    "damping": (SEWN + "damping = 1e300\n", "layer.1.step.2.damping: give 0 to 10000 1/s"),
+    "thick bar": (SCARF.replace("1.5", "1.5\nbar_radius = 20"), "stand.bar_radius: give 0.005 to 0.04 m"),
+    "high bar": (SCARF.replace("1.5", "20.0"), "stand.height: give 0.5 to 3 m .found 20"),
+    "gap": (WRAPPED + "gap = 20\n", "layer.1.place.gap: give 0.002 to 0.1 m"),
+    "begin": (WRAPPED + "begin = 1e300\n", "layer.1.place.begin: give -360 to 360 degrees"),
+    "by": (ALONG.replace('["waist"]', '["waist"], by = [1e300, 0, 0]'), "place.knot.2.by.1: give -2 to 2 m"),
+    "one landmark": (ALONG + 'along = ["hip", "hip"]\n', "place.along: one landmark .* name two"),
+    "stations": (ALONG + "stations = [[0.1, 0.1], [0.0, 0.1]]\n", "place.stations: distances must grow"),
+    "pose of a settle": (
+        SEWN + 'pose = "held"\n',
+        "layer.1.step.2.pose: settle does not read it .* seconds,",
+    ),
+    "at of a settle": (SEWN + 'at = ["nape"]\n', "layer.1.step.2.at: settle does not read it"),
+    "ties of a settle": (SEWN + 'ties = ["in"]\n', "layer.1.step.2.ties: settle does not read it"),
+    "seconds of a weld": (
+        SEWN.replace('"weld"', '"weld"\nseconds = 1.0'),
+        "layer.1.step.1.seconds: weld does not read it .* reads touch",
+    ),
+    "let go of another": (
+        HELD + '[[layer.step]]\ndo = "release"\nat = ["top"]\n',
+        "layer.1.step.4.at.1: top is not pinned – pinned: nape",
     ),
     "twice": (ROBE + ROBE.split("\n", 2)[2], "layer.2.name: 'robe' is there twice"),
     "two on a stand": (SCARF + SCARF.split("\n", 2)[2], "layer.2: a stand bears one layer"),

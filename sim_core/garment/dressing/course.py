@@ -134,7 +134,7 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
 
 def _joining(ties: Sequence[Tie], step: Step) -> tuple[Tie, ...]:
     """The ties that a step closes, none where it closes none."""
-    if step.do != "close" and not step.ties:
+    if step.do != "close":
         return ()
     return tuple(tie for tie in ties if not step.ties or tie.name in step.ties)
 

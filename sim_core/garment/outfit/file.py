@@ -16,9 +16,9 @@ from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
-from sim_core.garment.outfit.steps import Step, Touch
+from sim_core.garment.outfit.steps import Do, Step, Touch
 from sim_core.garment.outfit.tables import LayerTable, OutfitTable, Place, PoseTable, ProgramTable, StepTable
-from sim_core.garment.pattern import Pattern
+from sim_core.garment.pattern import Pattern, Spot
 from sim_core.garment.pattern.tables import CutProblem, read_spot
 from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Wrapped
 from sim_core.validation.files import read_toml, shown
@@ -33,6 +33,17 @@ WAYS: dict[str, type[Placement]] = {
     "along_path": AlongPath,
     "wrapped": Wrapped,
     "folded": Folded,
+}
+_TIMED = {"do", "touch", "seconds", "gravity", "damping", "friction", "speed", "label"}
+READ: dict[Do, set[str]] = {  # keys by what is done: the others would be passed over in silence
+    "sew": _TIMED,
+    "weld": {"do", "touch"},
+    "pin": {"do", "touch", "at"},
+    "release": {"do", "touch", "at"},
+    "close": _TIMED | {"ties"},
+    "pose": _TIMED | {"pose"},
+    "settle": _TIMED | {"still"},
+    "rest": _TIMED | {"still"},
 }
 
 
@@ -77,7 +88,7 @@ class _Reader:
                     f"layer.{k + 1}.name", f"{layer.name!r} is there twice – name each layer once"
                 )
         name = read.name or self._path.stem
-        return Outfit(name, tuple(layers), wearer, stand, pose, dict(read.title))
+        return Outfit(name, tuple(layers), wearer, stand, pose, {**read.title})
 
     def _wearer(self, file: Path) -> Mannequin:
         """A figure that cloth can lie on: closed, with hands."""
@@ -142,6 +153,12 @@ class _Reader:
             raise FileProblem(str(error)) from error
 
     def step(self, key: str, table: StepTable, pattern: Pattern | None) -> Step:
+        unread = [name for name in StepTable.model_fields if name in table.model_fields_set - READ[table.do]]
+        if unread:
+            known = ", ".join(name for name in StepTable.model_fields if name in READ[table.do] - {"do"})
+            raise self._wrong(
+                f"{key}.{unread[0]}", f"{table.do} does not read it – leave it out; it reads {known}"
+            )
         spots: list[Any] = []
         for k, spot in enumerate(table.at, 1):
             if isinstance(spot, str) or pattern is None:
@@ -196,7 +213,7 @@ class _Reader:
 
 def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:
     """Steps that cannot follow each other: refused before anything runs."""
-    welded, pinned = False, False
+    welded, pinned = False, set[Spot | str]()
     sewn = any(seam.kind == "sewn" for seam in pattern.seams)
     for number, step in enumerate(steps, 1):
         where = f"{key}.step.{number}.do"
@@ -211,8 +228,14 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
         if step.do == "release":
             if not pinned:
                 raise reader._wrong(where, "nothing is pinned – leave it out")
-            pinned = False
-        pinned = pinned or step.do == "pin"
+            for spot_number, spot in enumerate(step.spots, 1):
+                if spot not in pinned:
+                    held = ", ".join(sorted(str(pin) for pin in pinned))
+                    where = f"{key}.step.{number}.at.{spot_number}"
+                    raise reader._wrong(where, f"{spot} is not pinned – pinned: {held}; leave it out")
+            pinned = pinned - set(step.spots) if step.spots else set()
+        if step.do == "pin":
+            pinned |= set(step.spots)
     if sewn and not welded:
         raise reader._wrong(f"{key}.step", "the pattern has sewn seams and no step welds them – add one")
     if not any(step.timed for step in steps):
@@ -239,7 +262,10 @@ def default_program(way: str) -> Program:
 def _first(error: ValidationError, table: type[BaseModel]) -> str:
     """The first problem of a file in one line: key, what, value."""
     first = error.errors()[0]
-    key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])
+    told = [part for part in first["loc"] if part != "[key]"]
+    if "place" in told:  # which kind of table it is follows as if it were a key
+        told = [part for k, part in enumerate(told) if told[k - 1] != "place" or part not in WAYS]
+    key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in told)
     if first["type"] == "extra_forbidden":
         return f"{key[:80]}: unknown key – remove it or correct its name (see `simcore dress --help`)"
     text = first["msg"].removeprefix("Value error, ")

@@ -16,6 +16,7 @@ from sim_core.garment.pattern.panels import Panel, Seam, Spot, Tie, check_extent
 from sim_core.garment.pattern.panels import Path as Path_
 from sim_core.garment.pattern.tables import (
     CutProblem,
+    Dye,
     Measure,
     Number,
     PanelTable,
@@ -189,7 +190,7 @@ class _PatternFile(BaseModel):
     edge: Number = Field(gt=0, le=0.2, allow_inf_nan=False)
     size: tuple[Number, Number] | None = None
     outline: list[tuple[Number, Number]] | None = Field(None, max_length=MOST_POINTS)
-    dye: str | None = Field(default=None, pattern=r"^#[0-9a-fA-F]{6}$")
+    dye: Dye | None = None
     mirror: bool = False
     measures: dict[str, Measure] = {}
     panel: list[PanelTable] = Field([], max_length=100)

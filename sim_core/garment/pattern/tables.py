@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from sim_core.errors import OutlineError
 from sim_core.garment.pattern.measures import measured
@@ -15,6 +16,8 @@ from sim_core.mesh.outline import clean_contours
 
 __all__ = [
     "CutProblem",
+    "Dye",
+    "Measure",
     "PanelTable",
     "SeamTable",
     "SpotTable",
@@ -27,6 +30,15 @@ __all__ = [
 
 Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
 Measure = Number | str
+
+
+def _dye(text: str) -> str:
+    if not re.fullmatch(r"#[0-9a-fA-F]{6}", text):
+        raise ValueError("write a colour as '#rrggbb', such as '#c39c50'")
+    return text
+
+
+Dye = Annotated[str, AfterValidator(_dye)]
 CURVE_POINTS = 49  # per curved leg
 EASE = 0.02  # sides of a seam may differ by this share
 
@@ -53,7 +65,7 @@ class PanelTable(Table):
     outline: list[PointTable] = Field(min_length=3, max_length=200)
     doubled: bool = False
     along: str | None = None
-    dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
+    dye: Dye | None = None
 
 
 class SeamTable(Table):
