@@ -26,7 +26,16 @@ _ROOMS = {
     ),
     "mesh": ("MeshReport", "PanelMesh", "panel_mesh"),
     "cloth": ("Drape", "Material", "drape"),
-    "garment": ("Garment", "Outfit", "Pattern", "Stand", "detail", "dress", "load_outfit", "write_glb"),
+    "garment": (
+        "Garment",
+        "Outfit",
+        "Pattern",
+        "Stand",
+        "choose_detail",
+        "dress",
+        "load_outfit",
+        "write_glb",
+    ),
     "metrics": ("Distances", "hausdorff"),
     "picture": ("render",),
 }

@@ -61,7 +61,7 @@ def garment() -> None:
     """A scarf on its stand, a robe and a gown on the figure, a few frames each, and what is measured and drawn."""
     from dataclasses import replace
 
-    from sim_core.garment import detail, dress, load_outfit
+    from sim_core.garment import choose_detail, dress, load_outfit
     from sim_core.picture import Camera, Surface, render
 
     for name in ("pibo", "robe", "gown"):
@@ -72,7 +72,7 @@ def garment() -> None:
             layers.append(replace(layer, program=replace(layer.program, steps=steps)))
         (worn,) = dress(replace(outfit, layers=tuple(layers)))
         if name == "pibo":
-            detail(worn, 0.1)
+            choose_detail(worn, 1e-9)  # one level
             render([Surface(worn.positions, worn.faces)], Camera((0, 1, 3), (0, 1, 0)), (8, 6))
 
 

@@ -6,14 +6,27 @@ import sys
 from pathlib import Path
 
 import pytest
-from bench.house import Tree, floors, within
+from bench.house import Arrows, Tree, floors, within
 
 ROOT = Path(__file__).parent.parent
 ROOMS = ("sim_core", "survey", "hall_app")
 ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}
-HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib"}
+HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib", "embreex"}
 DOZEN = 12
 FEW = 8
+# Of sim_core, from the ground up: a room may import those of lower lines, skipping as many as it likes.
+LINES = (
+    ("errors",),
+    ("validation",),
+    ("metrics", "picture"),
+    ("gltf", "weave", "mesh"),
+    ("cloth",),
+    ("body",),
+    ("track",),
+    ("garment",),
+    ("learn",),
+    ("cli",),
+)
 
 
 def modules(room: str) -> list[Path]:
@@ -50,6 +63,47 @@ def house() -> Tree:
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_circle_between_modules(house, room):
     assert floors(house.arrows(room))[1] == 0
+
+
+def turned(arrows: Arrows) -> list[str]:
+    """Arrows between rooms of sim_core that do not lead to a lower line; and rooms that stand on none."""
+    height = {room: number for number, line in enumerate(LINES) for room in line}
+    wrong = set()
+    for module, targets in arrows.items():
+        for target in targets:
+            start, end = (name.split(".")[1:2] for name in (module, target))
+            if (
+                start
+                and end
+                and start != end
+                and not height.get(end[0], len(LINES)) < height.get(start[0], -1)
+            ):
+                wrong.add(f"{module} -> {target}")
+    return sorted(wrong)
+
+
+def test_no_arrow_turns_back_in_sim_core(house):
+    assert turned(house.arrows("sim_core")) == []
+
+
+def test_a_turned_arrow_is_found():
+    tree = {
+        "sim_core/__init__.py": "",
+        "sim_core/weave/__init__.py": "from sim_core.weave.yarn import Yarn\n",
+        "sim_core/weave/yarn.py": "def f():\n    from sim_core.garment.dress import dress\n",
+        "sim_core/mesh/panel.py": "import sim_core.weave.yarn\n",
+        "sim_core/cloth/sheet.py": "from sim_core.errors import SimCoreError\nfrom sim_core.mesh import panel\n",
+        "sim_core/errors.py": "",
+        "sim_core/garment/dress.py": "from sim_core.weave import Yarn\nfrom sim_core.attic import old\n",
+        "sim_core/garment/__init__.py": "from .. import errors\n",
+        "sim_core/mesh/__init__.py": "",
+        "sim_core/attic/old.py": "",
+    }
+    assert turned(Tree("made up", tree).arrows("sim_core")) == [
+        "sim_core.garment.dress -> sim_core.attic.old",  # a room that has no line yet
+        "sim_core.mesh.panel -> sim_core.weave.yarn",  # of one line
+        "sim_core.weave.yarn -> sim_core.garment.dress",
+    ]
 
 
 @pytest.mark.parametrize("room", ROOMS)
@@ -112,7 +166,8 @@ def compiled(node: ast.AST) -> bool:
     ("module", "forbidden"),
     [
         ("sim_core", {"numba", "scipy", "torch", "trimesh", "PIL"}),
-        ("hall_app.cli", {"torch", "viser", "pandas", "factor_analyzer", "numba"}),
+        ("hall_app.cli", {"torch", "viser", "pandas", "factor_analyzer", "numba", "embreex"}),
+        ("hall_app.room", {"numba", "embreex"}),
         ("survey.cli", {"torch", "pandas", "factor_analyzer", "sklearn"}),
         ("sim_core.cli", {"torch", "pandas", "viser", "numba"}),
     ],

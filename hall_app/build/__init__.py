@@ -10,10 +10,19 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
-    from hall_app.build.outfit import bake_outfit, budget
+    from hall_app.build.outfit import bake_outfit, budget, refuse_disorder
     from hall_app.build.trails import TrailLostError, Trails
 
-__all__ = ["SOUND_RATE", "TrailLostError", "Trails", "bake_outfit", "budget", "encode_film", "film_possible"]
+__all__ = [
+    "SOUND_RATE",
+    "TrailLostError",
+    "Trails",
+    "bake_outfit",
+    "budget",
+    "encode_film",
+    "film_possible",
+    "refuse_disorder",
+]
 
 _HOME = {
     "SOUND_RATE": "encoding",
@@ -23,6 +32,7 @@ _HOME = {
     "budget": "outfit",
     "encode_film": "encoding",
     "film_possible": "encoding",
+    "refuse_disorder": "outfit",
 }
 
 

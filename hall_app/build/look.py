@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from hall_app.build.film import Look, Part, Piece
+from hall_app.content.bakes.steps import HALL_BENEATH
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment, Layer, Outfit
     from sim_core.garment.glb import Clothed, MapsLike
 
-__all__ = ["HALL_BENEATH", "Wardrobe"]
+__all__ = ["Wardrobe"]
 
-HALL_BENEATH = 0.004  # [m] by how much what is worn beneath may deviate in the hall, p99
 HALL_FIGURE = 1600  # triangles of a figure in the hall
 THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
 PIXELS = 512  # of the weaves' maps
@@ -33,15 +33,9 @@ class Wardrobe:
     @cached_property
     def maps(self) -> tuple[tuple[MapsLike, dict[str, MapsLike]], ...]:
         """Of each layer: its cloth's maps, and those of panels that have a weave of their own."""
-        from sim_core.weave import surface_maps
-
-        drawn: dict[str, MapsLike] = {}
 
         def of(layer: Layer, panel: str = "") -> MapsLike:
-            key = layer.weave_key(panel)
-            if key not in drawn:
-                drawn[key] = surface_maps(layer.weave_of(panel), layer.yarns(panel), pixels=PIXELS)
-            return drawn[key]
+            return layer.loom.maps(layer.weave_of(panel), PIXELS)
 
         return tuple(
             (of(layer), {panel: of(layer, panel) for panel in layer.weaves}) for layer in self.outfit.layers

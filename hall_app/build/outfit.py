@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import time
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from hall_app.build.look import Wardrobe
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
+from hall_app.content.bakes.steps import Step, budget, chosen_steps, study_of
 from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import read_glb
@@ -25,13 +26,11 @@ from hall_app.content.models.glb import read_glb
 if TYPE_CHECKING:
     from sim_core.garment import Frame, Garment, Outfit
 
-__all__ = ["bake_outfit", "budget"]
+__all__ = ["bake_outfit", "budget", "refuse_disorder"]
 
 Progress = Callable[[float, str], None]
 
 FILM = ("drape.webm", "drape.mp4")
-SCREEN = 1080  # [pixels] height of the picture a pixel's budget is reckoned for
-FIELD_OF_VIEW = math.radians(58)
 
 
 def bake_outfit(
@@ -53,12 +52,14 @@ def bake_outfit(
     Raises what reading, meshing, weaving and dressing raise, each naming file and remedy.
     """
     from sim_core.garment import load_outfit
+    from sim_core.garment.step_study import study_inputs
 
     began = time.perf_counter()
     out = work / "out"
     out.mkdir(parents=True, exist_ok=True)
     assert exhibit.file.outfit is not None
-    wardrobe = Wardrobe(load_outfit(content.folder / exhibit.file.outfit, content.folder))
+    steps = chosen_steps(content, exhibit)
+    wardrobe = Wardrobe(_stepped(load_outfit(content.folder / exhibit.file.outfit, content.folder), steps))
     show = exhibit.file.show
     levels: list[Garment] = []
 
@@ -84,6 +85,10 @@ def bake_outfit(
         seconds["all"] = round(seconds["all"] + took - seconds["models"], 2)
         seconds["models"] = round(took, 2)
     record: dict[str, Any] = {**_record(key, garments, levels, seconds), "dressing": dressing}
+    if steps:
+        study = study_of(content, exhibit)
+        record["steps"] = [step.model_dump() for step in steps]
+        record["study_fits"] = study is not None and study.inputs == study_inputs(wardrobe.outfit)
     record["errors"]["hall_all_triangles"] = read_glb(out / "hall.glb").triangles
     record[FILES] = seal(out, RECORD)
     (out / RECORD).write_text(text_of(record), "utf-8")
@@ -91,6 +96,21 @@ def bake_outfit(
     shutil.rmtree(work, ignore_errors=True)
     progress(1.0, "done")
     return record
+
+
+def _stepped(outfit: Outfit, steps: Sequence[Step]) -> Outfit:
+    """The outfit meshed at the steps its study gives. Raises SimCoreError where that was made of other layers."""
+    from sim_core.errors import SimCoreError
+
+    if not steps:
+        return outfit
+    if len(steps) != len(outfit.layers):
+        raise SimCoreError(
+            f"{outfit.source}: study: of {len(steps)} layers, the outfit has {len(outfit.layers)} – write it anew by "
+            "`simcore dress --study`"
+        )
+    layers = (replace(layer, edge=step.edge) for layer, step in zip(outfit.layers, steps, strict=True))
+    return replace(outfit, layers=tuple(layers))
 
 
 def _kept(
@@ -108,11 +128,6 @@ def _kept(
         if not name.endswith(".glb"):  # models are made anew
             shutil.copyfile(former / name, out / name)
     return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
-
-
-def budget(nearest: float, pixels: float) -> float:
-    """The length [m] that `pixels` of a full-screen picture show at the nearest viewing distance [m]."""
-    return pixels * 2 * nearest * math.tan(FIELD_OF_VIEW / 2) / SCREEN
 
 
 def _dress(
@@ -138,6 +153,7 @@ def _dress(
             wardrobe.outfit, work / "dress", taken, lambda share, label: progress(0.6 * share, label)
         )
         lap("drape")
+        refuse_disorder(garments)
         if taken is not None:
             taken.walk_round(_at_rest(wardrobe.outfit, garments))
         progress(0.6, "models")
@@ -151,13 +167,28 @@ def _dress(
     return garments, seconds
 
 
+def refuse_disorder(garments: Sequence[Garment]) -> None:
+    """Raises SimCoreError where cloth lies under what it should lie over: such a garment is not shown."""
+    from sim_core.errors import SimCoreError
+
+    for garment in garments:
+        wrong = garment.provenance["errors"]["layer_order"]
+        if wrong:
+            raise SimCoreError(
+                f"{garment.name}: {wrong} vertices lie under the front they should lie over – raise the outer one by "
+                "[layer.place] lift, or make the steps slower"
+            )
+
+
 def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress) -> tuple[Garment, ...]:
     """Dress the outfit, each frame of its outermost layer filmed; goes on from `state` where that is whole."""
+    from sim_core.cloth import Checkpoint
     from sim_core.garment import dress
 
     state.mkdir(parents=True, exist_ok=True)
+    kept = Checkpoint(state / "state.npz", keep=True)  # until models, film and pictures are written, too
     if taken is None:
-        return dress(outfit, progress=progress, checkpoint=state / "state.npz")
+        return dress(outfit, progress=progress, checkpoint=kept)
     last = len(outfit.layers) - 1
 
     def shoot(frame: Frame, trails: Trails) -> None:
@@ -174,7 +205,7 @@ def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress
                 outfit,
                 progress=progress,
                 on_frame=lambda frame, trails=trails: shoot(frame, trails),
-                checkpoint=state / "state.npz",
+                checkpoint=kept,
             )
         except TrailLostError:  # interrupted between two layers: what was not seen cannot be filmed
             shutil.rmtree(state)

@@ -12,6 +12,7 @@ from hall_app.content.schema.exhibit import ExhibitFile
 from hall_app.content.schema.hall import HallFile
 
 BAKED = "baked/"  # written by hall build, absent before it
+SHEET = "media/pattern.svg"  # the flat pattern of an exhibit with an outfit, drawn by hall build --pattern
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}
 LEAVES = ("is a link that leaves the content folder", "copy the file itself into the folder")
 PASSING = ("~", ".swp", ".tmp", ".part", ".bak")  # editors' and copiers' temporary files

@@ -18,7 +18,7 @@ from hall_app.light.encode import show
 from hall_app.light.gather import Scene, gather
 from hall_app.light.lamps import lamps_of, spot_rows
 from hall_app.light.model import LightError, LightMap, Sampling, Spot, Surfaces
-from hall_app.light.rays.bvh import build_tree
+from hall_app.light.rays.embree import build_tree
 from hall_app.light.spots import gather_spots
 
 __all__ = ["bake_light", "scene_of"]
@@ -41,7 +41,6 @@ def scene_of(surfaces: Surfaces, atlas: Atlas) -> Scene:
     low = np.zeros(shape, np.int32) if empty else atlas.corner[charted]
     high = low if empty else low + atlas.size[charted] - 1
     return Scene(
-        tree=build_tree(surfaces.vertices, surfaces.faces),
         albedo=np.ascontiguousarray(surfaces.albedo, np.float32),
         emission=np.ascontiguousarray(surfaces.emission, np.float32),
         place=atlas.place.astype(np.float32),
@@ -79,13 +78,13 @@ def bake_light(
     chart = atlas.chart_image()
     places = places_of(surfaces, atlas)
     scene, lamps, rows = scene_of(surfaces, atlas), lamps_of(surfaces), spot_rows(spots)
-    corners = np.ascontiguousarray(surfaces.vertices[surfaces.faces[lamps.face]], np.float32)
+    tree = build_tree(surfaces.vertices, surfaces.faces)
     key = key_of(surfaces, rows, sampling, (fill_light, float(filtered)))
     state = load(checkpoint, key) or State(
         0, _dark(atlas, surfaces), np.zeros((*chart.shape, 3), np.float32), np.zeros(len(places.point), bool),
         np.zeros(4, np.int64), 0.0, 0.0,
     )  # fmt: skip
-    direct = gather_spots(scene.tree, rows, places, seed=sampling.seed)
+    direct = gather_spots(tree, rows, places, seed=sampling.seed)
     total = float(sum(rays))
     for step in range(state.done, len(rays)):
         label, before = f"pass {step + 1} of {len(rays)}", float(sum(rays[:step]))
@@ -93,7 +92,7 @@ def bake_light(
         if 0 < step == len(rays) - 1:
             seen = _charted(seen, atlas)
         halves, backs, tally = gather(
-            scene, lamps, corners, seen, state.light, sampling, step=step,
+            tree, scene, lamps, seen, state.light, sampling, step=step,
             told=lambda share, before=before, step=step, label=label: told(
                 0.03 + 0.92 * (before + share * rays[step]) / total, label
             ),

@@ -16,7 +16,7 @@ from hall_app.light.model import Sampling, Surfaces
 
 __all__ = ["State", "key_of", "load", "save"]
 
-VERSION = 1  # raise it when what is computed changes
+VERSION = 2  # raise it when what is computed changes
 
 Singles = NDArray[np.float32]
 

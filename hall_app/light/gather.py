@@ -18,21 +18,20 @@ from numpy.typing import NDArray
 from hall_app.light.atlas.texels import Places
 from hall_app.light.lamps import Lamps
 from hall_app.light.model import Sampling
-from hall_app.light.rays.bvh import Tree
+from hall_app.light.rays.embree import Tree, cast
 from hall_app.light.rays.sampling import A1, A2, B1, B2, B3, PI, SCALE, SHIFT, frame, in_threads, seeds_of
-from hall_app.light.rays.tracing import FAR, lanes, nearest, occluded, stack
+from hall_app.light.rays.sights import room_for_sights, see
 
 __all__ = ["Scene", "gather"]
 
 
 class Scene(NamedTuple):
-    """What rays meet: the tree; per face albedo (F, 3), emission (F, 3), and where its light is kept.
+    """What rays meet: per face albedo (F, 3), emission (F, 3), and where its light is kept.
 
     place: (F, 3, 2) [texel] in a picture `width` wide, low, high: (F, 2) first and last texel of its chart;
     bare: (F,) slot of a face without chart, −1: it has one; sheet: (F,) seen from both sides.
     """
 
-    tree: Tree
     albedo: NDArray[np.float32]
     emission: NDArray[np.float32]
     place: NDArray[np.float32]
@@ -41,6 +40,17 @@ class Scene(NamedTuple):
     bare: NDArray[np.int32]
     sheet: NDArray[np.bool_]
     width: int
+
+
+class _Rays(NamedTuple):
+    """Room for R rays: origin (R, 3) [m], unit way (R, 3), the point (R,) they start at; row (R,): 2 · place + half,
+    the place counted from the first of the chunk; odds (R,): how likely that way is drawn there [1/sr]."""
+
+    origin: NDArray[np.float32]
+    way: NDArray[np.float32]
+    point: NDArray[np.int32]
+    row: NDArray[np.int32]
+    odds: NDArray[np.float32]
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
@@ -80,27 +90,30 @@ def _chances(lamps, p, n, both, chance):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _shine(tree, lamps, scene, corners, p, n, g, both, chance, r, count, drawn, opened, room, out):
-    """Adds the light of one point on a lamp to out (3,); r: random numbers; count, drawn: rays, lamp points."""
+def _aim(lamps, emission, p, n, g, both, chance, r, count, drawn, sights, a):
+    """Line `a` to one point on a lamp, with the light it brings; False: none, the point shines elsewhere.
+
+    r: random numbers; count, drawn: rays and lamp points of the place.
+    """
     pick, k = r[0], 0
     while k < len(chance) - 1 and pick >= chance[k]:
         pick -= chance[k]
         k += 1
     if chance[k] <= 0:
-        return
+        return False
     pick = min(pick / chance[k], np.float32(0.999999))
-    a, b = lamps.first[k], lamps.first[k + 1] - 1
-    while a < b:
-        middle = (a + b) // 2
+    b, e = lamps.first[k], lamps.first[k + 1] - 1
+    while b < e:
+        middle = (b + e) // 2
         if lamps.share[middle] > pick:
-            b = middle
+            e = middle
         else:
-            a = middle + 1
-    face = lamps.face[a]
+            b = middle + 1
+    face = lamps.face[b]
     root = np.sqrt(r[1])
     u, v = root * (np.float32(1.0) - r[2]), root * r[2]
     w = np.float32(1.0) - root
-    q = corners[a]
+    q = lamps.corners[b]
     x = w * q[0, 0] + u * q[1, 0] + v * q[2, 0] - p[0]
     y = w * q[0, 1] + u * q[1, 1] + v * q[2, 1] - p[1]
     z = w * q[0, 2] + u * q[1, 2] + v * q[2, 2] - p[2]
@@ -112,50 +125,46 @@ def _shine(tree, lamps, scene, corners, p, n, g, both, chance, r, count, drawn, 
     here = n[0] * x + n[1] * y + n[2] * z
     true = g[0] * x + g[1] * y + g[2] * z
     if there <= np.float32(1e-5):
-        return
+        return False
+    lift = np.float32(0.0)
     if both:
         here *= np.float32(0.5) if here > 0 else np.float32(-0.5)
         lift = np.float32(0.0) if true > 0 else np.float32(-4e-4)
-    else:
-        lift = np.float32(0.0)
-        if true <= 0:
-            return
+    elif true <= 0:
+        return False
     if here <= 0:
-        return
+        return False
     toward = here / PI
-    if occluded(
-        tree, p[0] + lift * g[0], p[1] + lift * g[1], p[2] + lift * g[2], x, y, z,
-        far - max(np.float32(1e-3), np.float32(1e-4) * far), opened, room,
-    ):  # fmt: skip
-        return
     chosen = chance[k] / lamps.area[k] * square / there
     weight = toward / (count * toward + drawn * chosen)
+    sights.limit[a] = far - max(np.float32(1e-3), np.float32(1e-4) * far)
+    sights.way[a, 0], sights.way[a, 1], sights.way[a, 2] = x, y, z
     for c in range(3):
-        out[c] += scene.emission[face, c] * weight
+        sights.origin[a, c] = p[c] + lift * g[c]
+        sights.light[a, c] = emission[face, c] * weight
+    return True
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _gather(
-    scene, lamps, corners, slot, first, both, point, normal, plane, start, stop, light, count, drawn, seed,
-    opened, room, chance, out, backs, tally,
+def _send(
+    lamps, emission, first, both, point, normal, plane, start, stop, count, drawn, seed,
+    chance, many, rays, sights,
 ):  # fmt: skip
-    """Places start … stop; see `gather`."""
-    tree = scene.tree
-    hit, r = np.zeros(3, np.float32), np.zeros(3, np.float32)
-    lamp_light = np.zeros((2, 3), np.float32)
-    bounced = np.zeros((2, 3), np.float32)
-    valid = np.zeros(2, np.float32)
+    """Rays and lines to lamps of the places start … stop; returns how many of each.
+
+    chance (P, K), many (P,): how likely each lamp is drawn at a place, and how often one is.
+    """
+    r = np.zeros(3, np.float32)
+    a, b = 0, 0
     for i in range(start, stop):
         points = first[i + 1] - first[i]
         if points == 0:
             continue
-        lamp_light[:], bounced[:], valid[:] = 0.0, 0.0, 0.0
-        sheet = both[i]
+        sheet, odds = both[i], chance[i - start]
         middle = first[i] + points // 2
-        lit = drawn > 0 and _chances(lamps, point[middle], normal[middle], sheet, chance)
-        many = drawn if lit else 0
+        if drawn > 0 and _chances(lamps, point[middle], normal[middle], sheet, odds):
+            many[i - start] = drawn
         for k in range(count):
-            half = 0 if 2 * k < count else 1
             s = first[i] + ((k // 2) % points if sheet else k % points)
             p, n, g = point[s], normal[s], plane[s]
             index = np.uint64(i) * np.uint64(count) + np.uint64(k)
@@ -172,58 +181,65 @@ def _gather(
             true = dx * g[0] + dy * g[1] + dz * g[2]
             if (true <= 0) != (lift < 0):
                 continue
-            ox, oy, oz = p[0] + lift * g[0], p[1] + lift * g[1], p[2] + lift * g[2]
-            face = nearest(tree, ox, oy, oz, dx, dy, dz, FAR, opened, room, hit)
-            tally[0] += 1
-            if face < 0:
-                tally[1] += 1
-                valid[half] += 1
-                continue
-            m = lamps.normal[face]
-            cosine = -(m[0] * dx + m[1] * dy + m[2] * dz)
-            if cosine <= 0 and not scene.sheet[face]:
-                backs[s] += 1
-                tally[2] += 1
-                continue
-            valid[half] += 1
-            kept = _slot(scene, face, hit[1], hit[2], cosine > 0)
+            rays.way[a, 0], rays.way[a, 1], rays.way[a, 2] = dx, dy, dz
             for c in range(3):
-                bounced[half, c] += scene.albedo[face, c] * light[kept, c]
-            lamp = lamps.lamp[face]
-            if lamp >= 0 and cosine > 0:
-                weight = np.float32(1.0) / count
-                if many:
-                    toward = abs(z) / PI * (np.float32(0.5) if sheet else np.float32(1.0))
-                    chosen = chance[lamp] / lamps.area[lamp] * hit[0] * hit[0] / max(cosine, np.float32(1e-5))
-                    weight = toward / (count * toward + many * chosen)
-                for c in range(3):
-                    lamp_light[half, c] += scene.emission[face, c] * weight
-        for k in range(many):
-            half = 0 if 2 * k < many else 1
+                rays.origin[a, c] = p[c] + lift * g[c]
+            rays.point[a], rays.row[a] = s, 2 * (i - start) + (0 if 2 * k < count else 1)
+            rays.odds[a] = abs(z) / PI * (np.float32(0.5) if sheet else np.float32(1.0))
+            a += 1
+        for k in range(many[i - start]):
             s = first[i] + k % points
             index = np.uint64(i) * np.uint64(drawn) + np.uint64(k)
             r[0] = np.float32((seed[2] + index * B1) >> SHIFT) * SCALE
             r[1] = np.float32((seed[3] + index * B2) >> SHIFT) * SCALE
             r[2] = np.float32((seed[4] + index * B3) >> SHIFT) * SCALE
-            _shine(
-                tree, lamps, scene, corners, point[s], normal[s], plane[s], sheet, chance, r, count, many,
-                opened, room, lamp_light[half],
-            )  # fmt: skip
-        tally[3] += many
-        for half in range(2):
+            if _aim(
+                lamps, emission, point[s], normal[s], plane[s], sheet, odds, r, count, drawn, sights, b
+            ):  # fmt: skip
+                sights.row[b] = 2 * (i - start) + (0 if 2 * k < drawn else 1)
+                b += 1
+    return a, b
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _shade(
+    scene, lamps, light, way, point, row, odds, face, distance, u, v, chance, many, count,
+    bounced, valid, lit, backs, tally,
+):  # fmt: skip
+    """What rays bring to the rows of bounced (2 P, 3), of lit (2 P, 3) where they end on a lamp, and valid (2 P,)."""
+    for a in range(len(face)):
+        k, f = row[a], face[a]
+        tally[0] += 1
+        if f < 0:
+            tally[1] += 1
+            valid[k] += 1
+            continue
+        m = lamps.normal[f]
+        cosine = -(m[0] * way[a, 0] + m[1] * way[a, 1] + m[2] * way[a, 2])
+        if cosine <= 0 and not scene.sheet[f]:
+            backs[point[a]] += 1
+            tally[2] += 1
+            continue
+        valid[k] += 1
+        kept = _slot(scene, f, u[a], v[a], cosine > 0)
+        for c in range(3):
+            bounced[k, c] += scene.albedo[f, c] * light[kept, c]
+        lamp = lamps.lamp[f]
+        if lamp >= 0 and cosine > 0:
+            weight = np.float32(1.0) / count
+            drawn = many[k // 2]
+            if drawn:
+                chosen = chance[k // 2, lamp] / lamps.area[lamp] * distance[a] * distance[a]
+                chosen /= max(cosine, np.float32(1e-5))
+                weight = odds[a] / (count * odds[a] + drawn * chosen)
             for c in range(3):
-                mean = bounced[half, c] / valid[half] if valid[half] > 0 else np.float32(0.0)
-                out[i, half, c] = np.float32(2.0) * lamp_light[half, c] + mean
-        if valid[0] == 0 or valid[1] == 0:
-            full = 0 if valid[0] > 0 else 1
-            for c in range(3):
-                out[i, 1 - full, c] = out[i, full, c]
+                lit[k, c] += scene.emission[f, c] * weight
 
 
 def gather(
+    tree: Tree,
     scene: Scene,
     lamps: Lamps,
-    lamp_corners: NDArray[np.float32],
     places: Places,
     light: NDArray[np.float32],
     sampling: Sampling,
@@ -244,14 +260,42 @@ def gather(
     seeds = seeds_of(sampling.seed, step)
 
     def work(start: int, stop: int) -> None:
-        tally = np.zeros(4, np.int64)
-        chance = np.zeros(len(lamps.area), np.float32)
-        _gather(
-            scene, lamps, lamp_corners, places.slot, places.first, places.both, places.point, places.normal,
-            places.plane, start, stop, light, rays, drawn, seeds, stack(scene.tree), lanes(), chance, out, backs,
-            tally,
+        size = stop - start
+        sent, sights = _room_for_rays(size * rays), room_for_sights(size * drawn)
+        chance, many = np.zeros((size, len(lamps.area)), np.float32), np.zeros(size, np.int32)
+        rays_sent, lines = _send(
+            lamps, scene.emission, places.first, places.both, places.point, places.normal,
+            places.plane, start, stop, rays, drawn, seeds, chance, many, sent, sights,
         )  # fmt: skip
+        sent = _Rays._make(array[:rays_sent] for array in sent)
+        bounced, lit = np.zeros((2 * size, 3), np.float32), np.zeros((2 * size, 3), np.float32)
+        valid, tally = np.zeros(2 * size, np.float32), np.zeros(4, np.int64)
+        face, distance, u, v = cast(tree, sent.origin, sent.way)
+        _shade(
+            scene, lamps, light, sent.way, sent.point, sent.row, sent.odds, face, distance, u, v, chance, many,
+            rays, bounced, valid, lit, backs, tally,
+        )  # fmt: skip
+        see(tree, sights, lines, lit)
+        tally[3] = many.sum()
+        out[start:stop] = _halves(bounced, valid, lit)
         tallies.append(tally)
 
-    in_threads(count, work, told)
+    in_threads(count, rays + drawn, work, told)
     return out, backs, np.sum(tallies, axis=0) if tallies else np.zeros(4, np.int64)
+
+
+def _room_for_rays(count: int) -> _Rays:
+    origin, way = (np.zeros((count, 3), np.float32) for _ in range(2))
+    point, row = (np.zeros(count, np.int32) for _ in range(2))
+    return _Rays(origin, way, point, row, np.zeros(count, np.float32))
+
+
+def _halves(
+    bounced: NDArray[np.float32], valid: NDArray[np.float32], lit: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """(P, 2, 3) light of both halves of the rays; where one half has none that count, it takes the other's."""
+    found = (2 * lit + bounced / np.maximum(valid, 1)[:, None]).astype(np.float32).reshape(-1, 2, 3)
+    first, second = valid.reshape(-1, 2).T > 0
+    found[~first, 0] = found[~first, 1]
+    found[first & ~second, 1] = found[first & ~second, 0]
+    return found

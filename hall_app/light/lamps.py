@@ -20,14 +20,16 @@ class Lamps(NamedTuple):
     """K lamps of T triangles.
 
     lamp: (F,) int32 of each face, −1: dark; first: (K + 1,) int32 triangles of a lamp; share: (T,) float32 rising to 1
-    within a lamp; face: (T,) int32; area: (K,) [m²]; power: (K,) area × mean radiosity; middle: (K, 3) [m];
-    radius: (K,) [m]; facing: (K, 3) mean normal, short where a lamp shines all round; normal: (F, 3).
+    within a lamp; face: (T,) int32; corners: (T, 3, 3) [m]; area: (K,) [m²]; power: (K,) area × mean radiosity;
+    middle: (K, 3) [m]; radius: (K,) [m]; facing: (K, 3) mean normal, short where a lamp shines all round;
+    normal: (F, 3).
     """
 
     lamp: NDArray[np.int32]
     first: NDArray[np.int32]
     share: Singles
     face: NDArray[np.int32]
+    corners: Singles
     area: Singles
     power: Singles
     middle: Singles
@@ -78,6 +80,7 @@ def lamps_of(surfaces: Surfaces) -> Lamps:
         first,
         share.astype(single),
         order.astype(np.int32),
+        corners[order].astype(single),
         rows[2, :, 0].astype(single),
         rows[2, :, 1].astype(single),
         rows[0].astype(single),

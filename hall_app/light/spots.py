@@ -8,20 +8,23 @@ from numpy.typing import NDArray
 
 from hall_app.light.atlas.texels import Places
 from hall_app.light.lamps import SpotRows
-from hall_app.light.rays.bvh import Tree
+from hall_app.light.rays.embree import Tree
 from hall_app.light.rays.sampling import A1, A2, PI, SCALE, SHIFT, frame, in_threads, seeds_of
-from hall_app.light.rays.tracing import lanes, occluded, stack
+from hall_app.light.rays.sights import room_for_sights, see
 
 __all__ = ["gather_spots"]
 
+_FEWEST = 4  # rays to a spot from a place of fewer points
+
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def _gather_spots(tree, spots, first, both, point, normal, plane, start, stop, seed, opened, room, out):
-    """Places start … stop; see `gather_spots`."""
+def _aim(spots, first, both, point, normal, plane, start, stop, seed, sights):
+    """Lines from places start … stop to the spots that shine on them, rows counted from `start`; returns how many."""
+    a = 0
     for i in range(start, stop):
         points = first[i + 1] - first[i]
         for k in range(len(spots.inner)):
-            drawn = max(points, 4) if points else 0
+            drawn = max(points, _FEWEST) if points else 0
             for j in range(drawn):
                 s = first[i] + j % points
                 index = (np.uint64(i) * np.uint64(16) + np.uint64(j)) * np.uint64(64) + np.uint64(k)
@@ -49,26 +52,31 @@ def _gather_spots(tree, spots, first, both, point, normal, plane, start, stop, s
                     here = abs(here) * np.float32(0.5)
                 elif true <= 0:
                     continue
-                if here <= 0 or occluded(
-                    tree, point[s, 0] + lift * plane[s, 0], point[s, 1] + lift * plane[s, 1],
-                    point[s, 2] + lift * plane[s, 2], x, y, z, far, opened, room,
-                ):  # fmt: skip
+                if here <= 0:
                     continue
+                sights.limit[a], sights.row[a] = far, i - start
+                sights.way[a, 0], sights.way[a, 1], sights.way[a, 2] = x, y, z
                 for c in range(3):
-                    out[i, c] += spots.light[k, c] * fade * here / (square * drawn)
+                    sights.origin[a, c] = point[s, c] + lift * plane[s, c]
+                    sights.light[a, c] = spots.light[k, c] * fade * here / (square * drawn)
+                a += 1
+    return a
 
 
 def gather_spots(tree: Tree, spots: SpotRows, places: Places, *, seed: int) -> NDArray[np.float32]:
     """Direct light of the spots (N, 3): one ray for every point of a place, four at least."""
     out = np.zeros((len(places.slot), 3), np.float32)
     seeds = seeds_of(seed, 1_000_003)
+    if not len(spots.inner) or not len(out):
+        return out
+    rays = len(spots.inner) * int(np.maximum(np.diff(places.first), _FEWEST).max())
 
     def work(start: int, stop: int) -> None:
-        _gather_spots(
-            tree, spots, places.first, places.both, places.point, places.normal, places.plane, start, stop,
-            seeds, stack(tree), lanes(), out,
+        sights = room_for_sights((stop - start) * rays)
+        count = _aim(
+            spots, places.first, places.both, places.point, places.normal, places.plane, start, stop, seeds, sights
         )  # fmt: skip
+        see(tree, sights, count, out[start:stop])
 
-    if len(spots.inner):
-        in_threads(len(places.slot), work, None)
+    in_threads(len(out), rays, work)
     return out

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hall_app.content.files import exhibit_files
+from hall_app.content.files import SHEET, exhibit_files
 from hall_app.content.loading import read_table
 from hall_app.content.problems import ContentError
 from hall_app.content.schema.exhibit import ExhibitFile
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float, str], None]
 QUALITY = 88  # of JPEG
-# What is made for each exhibit with an outfit that names it, inside its folder; the sheet by `hall build --pattern`.
+# What is made for each exhibit with an outfit that names it, inside its folder.
 LISTENING = ("media/listening.webm", "media/listening.mp3")
-WEAVE, PATTERN, SHEET = "media/weave.jpg", "media/pattern.jpg", "media/pattern.svg"
+WEAVE, PATTERN = "media/weave.jpg", "media/pattern.jpg"
 
 
 def make_media(folder: Path, progress: Progress = lambda fraction, label: None) -> None:

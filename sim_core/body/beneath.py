@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.body.stand import Stand
-from sim_core.cloth import Solid, field_of
+from sim_core.cloth import HalfSpace, Solid, Union, field_of
 from sim_core.cloth.contact import DistanceField, united
 from sim_core.errors import SimCoreError
 
@@ -36,20 +36,24 @@ class Surface:
 class Beneath:
     """What lies beneath: closed surfaces, the first of which is the wearer, or a stand.
 
-    cell [m] of their distance field; box: its lowest and highest corner [m] (None: around the surfaces). Equal nodes
-    make equal values, so a field is kept with where its nodes lie.
+    cell [m] of their distance field; box: its lowest and highest corner [m] (None: around the surfaces); floor: whether
+    the floor y = 0 is there, too. Equal nodes make equal values, so a field is kept with where its nodes lie.
     """
 
     surfaces: tuple[Surface, ...] = ()
     stand: Stand | None = None
     cell: float = 0.008
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    floor: bool = False
 
     def solid(self) -> Solid | None:
         """What cloth is kept out of, made anew from the surfaces: the same values on one machine."""
         if self.stand is not None:
             return self.stand.collider()
-        return self.field().solid() if self.surfaces else None
+        if not self.surfaces:
+            return HalfSpace() if self.floor else None
+        own = self.field().solid()
+        return Union((own, HalfSpace())) if self.floor else own
 
     def field(self) -> DistanceField:
         """min(first, others - thicker) around all of them. Raises SimCoreError where there is no surface."""
@@ -69,7 +73,7 @@ class Beneath:
 
     def digest(self) -> str:
         """A hash of all that decides the field."""
-        hashed = hashlib.sha256(repr((self.stand, self.cell, self.box)).encode())
+        hashed = hashlib.sha256(repr((self.stand, self.cell, self.box, self.floor)).encode())
         for surface in self.surfaces:
             for array in (surface.vertices, surface.faces, *surface.hulls):
                 hashed.update(array.tobytes())

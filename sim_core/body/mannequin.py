@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from sim_core.body.pose import T_POSE, Pose
 from sim_core.body.skeleton import Skeleton
 from sim_core.body.skinning import SKINS
 from sim_core.errors import FileProblem
-from sim_core.validation.files import read_npz
+from sim_core.validation.files import read_npz, written_whole
 
 __all__ = ["Mannequin"]
 
@@ -74,13 +75,18 @@ class Mannequin:
         """The pose with its root raised or lowered until the figure's lowest point is on the floor, y = 0."""
         return pose.shifted(y=-float(self.posed(pose)[:, 1].min()))
 
+    def sized(self, size: float) -> Mannequin:
+        """The same figure `size` times as tall, and as wide."""
+        if size == 1.0:
+            return self
+        marks = {name: place * size for name, place in self.marks.items()}
+        name = f"{self.name} x {size:g}"
+        return replace(self, name=name, vertices=self.vertices * size, heads=self.heads * size, marks=marks)
+
     def save(self, path: Path) -> None:
         """Writes one .npz: coordinates to a hundredth of a millimetre, weights to 1/65535."""
-        path = Path(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
         steps = np.round(self.vertices * 1e5).astype(np.int32)
-        beside = path.with_name(path.name + ".part")
-        with beside.open("wb") as stream:
+        with written_whole(Path(path)) as stream:
             np.savez_compressed(
                 stream,
                 format=np.array(FORMAT),
@@ -93,7 +99,18 @@ class Mannequin:
                 mark_names=np.array(list(self.marks)),
                 marks=np.stack(list(self.marks.values())),
             )
-        beside.replace(path)
+
+    def digest(self) -> str:
+        """A hash of the name and of everything that decides how the figure stands and moves."""
+        hashed = hashlib.sha256(repr((self.name, self.skin)).encode())
+        parts = {name: getattr(self, name) for name in ("vertices", "faces", "heads", "weights")} | {
+            f"mark {name}": place for name, place in sorted(self.marks.items())
+        }
+        for name, array in parts.items():
+            hashed.update(
+                f"{name} {array.shape} {array.dtype}".encode() + np.ascontiguousarray(array).tobytes()
+            )
+        return hashed.hexdigest()
 
     @staticmethod
     def load(path: Path) -> Mannequin:

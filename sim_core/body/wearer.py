@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from sim_core.body.beneath import BAND, MARGIN, Beneath, Surface
 from sim_core.body.joints import JOINTS
@@ -17,6 +17,7 @@ from sim_core.errors import SimCoreError
 
 __all__ = ["Figure"]
 
+NEAR = 0.01  # [m] above and below a height that a section of the trunk is taken from
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
@@ -35,10 +36,7 @@ class Figure:
     @property
     def name(self) -> str:
         """Names the figure and its fields, whatever file they came from."""
-        m = self.mannequin
-        arrays = (m.vertices, m.faces, m.weights, m.heads)
-        digest = hashlib.sha256(b"".join(array.tobytes() for array in arrays) + m.skin.encode())
-        return f"{m.name} {digest.hexdigest()[:12]} cell {self.cell}"
+        return f"{self.mannequin.name} {self.mannequin.digest()[:12]} cell {self.cell}"
 
     def mesh(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         """The posed figure: vertices (V, 3) [m], faces (F, 3)."""
@@ -56,6 +54,22 @@ class Figure:
         """Vertices (T,) that are not of the arms: what a skirt goes round."""
         arms = [k for k, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
         return np.flatnonzero(self.mannequin.weights[:, arms].sum(1) < 0.5)
+
+    def middle(self, pose: Pose, height: float) -> np.ndarray:
+        """x and z (2,) [m] of the trunk's middle at a height [m], or at the next height where it has one."""
+        trunk = self.mesh(pose)[0][self.trunk()]
+        away = np.abs(trunk[:, 1] - height)
+        near = trunk[away <= max(NEAR, float(away.min()))]
+        return 0.5 * (near.min(0) + near.max(0))[[0, 2]]
+
+    def girth(self, pose: Pose, height: float) -> float:
+        """What a tape measure round the trunk says at a height [m]; 0 above and below it."""
+        trunk = self.mesh(pose)[0][self.trunk()]
+        near = trunk[np.abs(trunk[:, 1] - height) <= NEAR][:, [0, 2]]
+        if len(near) < 3:
+            return 0.0
+        ring = near[ConvexHull(near).vertices]
+        return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).sum())
 
     def beneath(self, pose: Pose, *, half: bool = False) -> Beneath:
         """The posed figure as what lies beneath cloth."""

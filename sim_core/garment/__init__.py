@@ -2,12 +2,12 @@
 
 from sim_core.body import Stand
 from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
-from sim_core.garment.follow_body import follow
+from sim_core.garment.follow_body import follow, move
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.glb import Clothed, write_glb
-from sim_core.garment.levels import choose_detail, detail
-from sim_core.garment.outfit import Layer, Outfit, load_outfit
+from sim_core.garment.levels import choose_detail
+from sim_core.garment.outfit import Layer, Outfit, load_motion, load_outfit
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.settled import Settled
 
@@ -22,11 +22,12 @@ __all__ = [
     "Stand",
     "check_fits",
     "choose_detail",
-    "detail",
     "dress",
     "follow",
     "garment_sheet",
     "layer_order",
+    "load_motion",
     "load_outfit",
+    "move",
     "write_glb",
 ]

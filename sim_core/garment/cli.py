@@ -5,16 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim_core.errors import SimCoreError, WrongArgument
+from sim_core.errors import WrongArgument
 from sim_core.validation.arguments import number
+from sim_core.validation.files import check_target, written_whole
 
 if TYPE_CHECKING:
     from sim_core.garment import Garment, Outfit
 
+STEPS = (0.026, 0.013)  # [m] of a study
 DESCRIPTION = """\
 Dresses what OUTFIT.toml says, layer by layer from the skin outwards, and writes what is asked for:
 
@@ -22,12 +24,16 @@ Dresses what OUTFIT.toml says, layer by layer from the skin outwards, and writes
                        (of several layers the others as FILE-NAME.npz beside it)
   --glb FILE.glb       a model of everything, the weaves' maps at true scale
   --picture FILE.png   a drawing from the front, the side and behind
+  --study FILE.json    how far the drape depends on its mesh: dressed at several steps, each against the next finer
+  --motion FILE.npz    how it moves by the outfit's motion, 25 frames a second: wearer and layers, vertices by frame
 
 An outfit file:
 
   name = "beizi"
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
+  size = 1.0                          # how many times as tall the figure is
   pose = "display"                    # `simcore figure --list` lists them; or { name, joints, shift }
+  motion = "motions/bow.toml"         # [[key]] tables of seconds and pose
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -41,10 +47,11 @@ An outfit file:
   [[layer.step]]                      # only where the usual steps do not do
   do = "sew"                          # sew, weld, pin, release, close, pose, settle, rest
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label
+                                      # close: ties, or belt = { length = 0.72, mark = "waist", rise = 0.0 }
 
 Files are found beside the folder `outfits` the file lies in, or in --content. What cannot be dressed is refused
-before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result, if it
-writes something: what is kept of it lies beside that.
+before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result: with --out,
+--glb or --picture, beside which states are kept until all of them are written. Without any nothing is kept.
 """
 
 
@@ -61,59 +68,125 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help="where the garment goes")
     parser.add_argument("--glb", type=Path, metavar="FILE.glb", help="where its model goes")
     parser.add_argument("--picture", type=Path, metavar="FILE.png", help="where its picture goes")
+    parser.add_argument("--motion", type=Path, metavar="FILE.npz", help="where its motion goes")
     parser.add_argument(
         "--edge",
         type=number(0.002, 0.2, " m"),
         help="mesh step of all layers in metres (default: the outfit's)",
+    )
+    parser.add_argument(
+        "--study",
+        type=Path,
+        metavar="FILE.json",
+        help="dress at several mesh steps instead and write how far the drapes lie apart",
+    )
+    parser.add_argument(
+        "--steps",
+        type=_steps,
+        default=STEPS,
+        metavar="M,M,…",
+        help="mesh steps of --study in metres (default: 0.026,0.013)",
     )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 
 def run(args: argparse.Namespace) -> int:
     """Dresses and writes; returns the exit status."""
+    from sim_core.cloth import Checkpoint
     from sim_core.garment import dress, load_outfit
+    from sim_core.garment.dressing import forget
 
-    _check_targets(args)
+    _check_kinds(args)
     outfit = load_outfit(args.outfit, args.content)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
-    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=_checkpoint(args))
-    files: dict[str, Path] = {}
-    if args.out is not None:
-        for garment in garments[:-1]:
-            files[garment.name] = args.out.with_name(f"{args.out.stem}-{garment.name}.npz")
+    if args.study is not None:
+        return _study(args, outfit)
+    files = _garment_files(args, outfit)
+    if args.motion is not None and outfit.motion is None:
+        raise WrongArgument(f'--motion: {args.outfit} names none – add motion = "motions/….toml" to it')
+    for path in (*files.values(), args.glb, args.picture, args.motion):
+        if path is not None:
+            check_target(path)
+    kept = _checkpoint(args)
+    checkpoint = kept and Checkpoint(kept, keep=True)
+    garments = dress(outfit, progress=None if args.json else _progress, checkpoint=checkpoint)
+    for garment in garments:
+        if garment.name in files:
             garment.save(files[garment.name])
-        files[garments[-1].name] = args.out
-        garments[-1].save(args.out)
     if args.glb is not None:
         _write_model(args.glb, outfit, garments)
     if args.picture is not None:
         _draw(args.picture, outfit, garments)
+    if args.motion is not None:
+        _move(args.motion, outfit, garments, progress=None if args.json else _progress)
+    if kept is not None:
+        forget(kept)
     _report(args, garments, files)
     return 0
 
 
-def _check_targets(args: argparse.Namespace) -> None:
-    """Raises WrongArgument for a file of another kind, and makes the folders, before any work is done."""
-    for name, suffix in (("out", ".npz"), ("glb", ".glb"), ("picture", ".png")):
+def _steps(text: str) -> tuple[float, ...]:
+    """Two mesh steps or more, in metres."""
+    step = number(0.002, 0.2, " m")
+    steps = tuple(step(part) for part in text.split(","))
+    if len(set(steps)) < 2:
+        raise argparse.ArgumentTypeError("two steps or more are compared, e.g. 0.026,0.013")
+    return steps
+
+
+def _study(args: argparse.Namespace, outfit: Outfit) -> int:
+    """Dresses at several mesh steps and writes what was found."""
+    from sim_core.garment.step_study import forget_study, step_study
+
+    check_target(args.study)
+    found = step_study(outfit, args.study, args.steps, None if args.json else _progress)
+    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
+    with written_whole(args.study) as stream:
+        stream.write(text.encode())
+    forget_study(args.study, args.steps)
+    if args.json:
+        sys.stdout.write(text)
+        return 0
+    for layer in found["layers"]:
+        scatter, edge = layer["scatter"], layer["edges"][0]
+        lines = [f"{layer['name']}: scatter at {1000 * edge:.1f} mm {_distance(scatter)}"]
+        pairs = zip(layer["edges"], layer["edges"][1:], layer["apart"], strict=False)
+        lines += [f"  {1000 * a:.1f} to {1000 * b:.1f} mm: {_distance(apart)}" for a, b, apart in pairs]
+        sys.stdout.write("\n".join(lines) + "\n")
+    return 0
+
+
+def _distance(apart: dict[str, float]) -> str:
+    return f"mean {1000 * apart['mean_m']:.2f} mm, p99 {1000 * apart['p99_m']:.2f} mm"
+
+
+def _check_kinds(args: argparse.Namespace) -> None:
+    """Raises WrongArgument for the name of a file of another kind."""
+    for name, suffix in (
+        ("out", ".npz"),
+        ("glb", ".glb"),
+        ("picture", ".png"),
+        ("motion", ".npz"),
+        ("study", ".json"),
+    ):
         path = getattr(args, name)
-        if path is None:
-            continue
-        if path.is_dir():
-            raise WrongArgument(f"--{name}: {path} is a folder – name a file in it")
-        if path.suffix != suffix:
+        if path is not None and path.suffix != suffix:
             raise WrongArgument(f"--{name}: {path} – name a file that ends in {suffix}")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise SimCoreError(
-                f"--{name}: {path}: {error.strerror} – name a folder that can be written"
-            ) from error
+
+
+def _garment_files(args: argparse.Namespace, outfit: Outfit) -> dict[str, Path]:
+    """Where each layer is saved, by its name."""
+    if args.out is None:
+        return {}
+    *beneath, outermost = (layer.name for layer in outfit.layers)
+    files = {name: args.out.with_name(f"{args.out.stem}-{name}.npz") for name in beneath}
+    return {**files, outermost: args.out}
 
 
 def _checkpoint(args: argparse.Namespace) -> Path | None:
     """Beside what is written first, so that an interrupted run is found again."""
-    target = args.out or args.glb or args.picture
+    target = args.out or args.glb or args.picture or args.motion
     if target is None:
         return None
     return target.with_name(f"{target.stem}.part")
@@ -133,14 +206,38 @@ def _write_model(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> Non
         worn = garments[-1]
         body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
         figure = shown_figure(*body, worn.positions, worn.faces)
-    write_glb(path, [Clothed.woven(garment) for garment in garments], figure=figure)
+    clothed = [
+        Clothed.woven(garment, loom=layer.loom)
+        for garment, layer in zip(garments, outfit.layers, strict=True)
+    ]
+    write_glb(path, clothed, figure=figure)
+
+
+def _move(
+    path: Path,
+    outfit: Outfit,
+    garments: Sequence[Garment],
+    *,
+    progress: Callable[[float, str], None] | None,
+) -> None:
+    """Frames of the wearer and of every layer, with their faces."""
+    import numpy as np
+
+    from sim_core.garment import move
+
+    assert outfit.wearer is not None
+    body, frames = move(outfit, garments, progress=progress)
+    arrays = {"wearer": body.astype(np.float32), "wearer_faces": outfit.wearer.faces}
+    for garment, positions in zip(garments, frames, strict=True):
+        arrays |= {garment.name: positions, f"{garment.name}_faces": garment.faces}
+    with written_whole(path) as stream:
+        np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]
 
 
 def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     """Everything from the front, from the side and from behind."""
     import numpy as np
 
-    from sim_core.garment import Clothed
     from sim_core.garment.glb import LACQUER, LINEN, SHEER
     from sim_core.picture import Camera, Surface, render, save_png
 
@@ -149,8 +246,8 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
         surfaces.append(Surface(outfit.wearer.posed(outfit.pose), outfit.wearer.faces, LINEN))
     if outfit.stand is not None:
         surfaces.append(Surface(*outfit.stand.mesh(), LACQUER, gloss=0.25))
-    for garment in garments:
-        share = float(Clothed.woven(garment, 64).maps.opacity.mean()) / 255
+    for garment, layer in zip(garments, outfit.layers, strict=True):
+        share = float(layer.loom.maps(layer.weave, 64).opacity.mean()) / 255
         sheer = share < SHEER
         dyes = [garment.dye_of(number) for number in range(len(garment.panels))]
         for dye in dict.fromkeys(dyes):
@@ -162,7 +259,6 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     middle = (0.0, 0.825, 0.0)
     eyes = ((0.5, 1.25, 3.6), (2.9, 1.2, 2.0), (-1.4, 1.2, -3.2))
     pictures = [render(surfaces, Camera(eye, middle, 27), (620, 840)) for eye in eyes]
-    path.parent.mkdir(parents=True, exist_ok=True)
     save_png(path, np.concatenate(pictures, axis=1))
 
 
@@ -190,7 +286,8 @@ def _report(args: argparse.Namespace, garments: Sequence[Garment], files: dict[s
             f"{1000 * e['mass_kg']:.1f} g" + (f" -> {files[garment.name]}" if garment.name in files else ""),
             f"  inside what lies beneath {inside}, area strain p95 {e['area_strain_p95']:.2%}, "
             f"self-intersections {e['self_intersections']}, wrong order {e['layer_order']}, "
-            f"moving {e['rest_p99_m'] * 1e3:.4f} mm per 1/25 s (p99)",
+            f"moving {e['rest_p99_m'] * 1e3:.4f} mm per 1/25 s (p99)"
+            + (f", seams eased up to {e['seam_ease']:.2%}" if "seam_ease" in e else ""),
             "  seconds: " + ", ".join(f"{k} {v:.1f}" for k, v in garment.provenance["seconds"].items()),
         ]
         sys.stdout.write("\n".join(lines) + "\n")

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
-from sim_core.cloth import Contact, Drape, Phase, drape, moving_mesh
+from sim_core.body import Beneath, Surface
+from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Phase, Solid, drape, moving_mesh
+from sim_core.cloth.contact import hull_faces
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet, standing
+from sim_core.garment.outfit import Outfit
 from sim_core.garment.outfit.outfit import UNTANGLE
+from sim_core.validation import numeric_array
 
-__all__ = ["follow"]
+__all__ = ["follow", "move"]
 
-CONTACT = Contact(
-    0.005, 0.0025, 0.004, speed_limit=8.0, untangle=UNTANGLE
-)  # of cloth that does not say its own
 DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
+SAME = 1e-3  # [m] that a layer beneath may be away at first from where the garment was settled on it
 
 
 class Hooks(TypedDict, total=False):
@@ -39,7 +41,8 @@ def follow(
     faces: np.ndarray | None = None,
     *,
     seconds: float | None = None,
-    cell: float = 0.008,
+    beneath: Sequence[np.ndarray] | None = None,
+    beside: Solid | None = None,
     contact: Contact | None = None,
     damping: float | None = None,
     **hooks: Unpack[Hooks],
@@ -50,13 +53,20 @@ def follow(
     settled with: what came to rest stays at rest. body (T, B, 3) [m]: the wearer's vertices at the begin and then at
     the end of every frame, the first as the garment was draped on; faces (F, 3): closed, counter-clockwise from
     outside. T = 1: a wearer who stands still, for `seconds`; otherwise `seconds` more than the motion are stood still
-    at its end. cell [m]: of the distance fields. contact, damping: other than the garment's own.
-    on_frame(index, positions (V, 3) float32) hears every frame; checkpoint: file to go on from.
-    Raises SimCoreError before anything runs where the wearer's mesh is open, not finite, there is no time to run, or
-    the garment does not say what it was settled with and no wearer is given.
+    at its end. The wearer's hands stay the hulls that cloth slides over.
+    beneath: of each garment it was settled over, from the skin outwards, vertices (T, V, 3) [m] as they go with the
+    wearer: `positions`, then what `on_frame` heard as that garment followed; of a wearer who stands still they may be
+    left out. beside: a solid with exact distance that stands still there, such as a floor, HalfSpace().
+    contact, damping: other than the garment's own. on_frame(index, positions (V, 3) float32) hears every frame;
+    checkpoint: file to go on from.
+    Raises SimCoreError before anything runs where the wearer's mesh is open or not finite, layers beneath are missing
+    or others, there is no time to run, or the garment does not say what it was settled with and that is not given.
     """
     settled = garment.settled
     if body is None or faces is None:
+        for name, value in (("body", body), ("faces", faces), ("beneath", beneath), ("beside", beside)):
+            if value is not None:
+                raise SimCoreError(f"follow: {name} without a wearer – give body and faces, or leave it out")
         if settled is None:
             raise SimCoreError(
                 f"follow: garment {garment.name} does not say what it was settled with – give its wearer's vertices "
@@ -67,12 +77,16 @@ def follow(
         phase = settled.phase(seconds)
         phase = phase if damping is None else replace(phase, damping=damping)
         return standing(garment)([phase], contact=contact or settled.contact, **hooks)
-    wearer = moving_mesh(body, faces, cell=cell)
+    wearer = _wearer(garment, body, faces, beneath, beside)
     usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
     if settled is not None:
         usual["friction"] = settled.last.friction
         fastest = max(FASTEST, settled.contact.speed_limit)
         contact = contact or replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE)
+    if contact is None:
+        raise SimCoreError(
+            f"follow: garment {garment.name} does not say how it touches – give contact=Contact(…)"
+        )
     phases: list[Phase] = []
     if wearer.count > 1:
         way = (0.0, float(wearer.count - 1))
@@ -86,7 +100,108 @@ def follow(
         garment.positions,
         phases,
         collider=wearer,
-        contact=contact or CONTACT,
+        contact=contact,
         holds=settled and settled.holds,
         **hooks,
     )
+
+
+def move(
+    outfit: Outfit,
+    garments: Sequence[Garment],
+    *,
+    progress: Callable[[float, str], None] | None = None,
+) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
+    """The outfit's motion: the wearer's vertices (T, B, 3) [m], and of each dressed garment its vertices (T, V, 3)
+    float32 [m], at the begin and at the end of every frame of 1/25 s; layers follow over each other.
+
+    Raises SimCoreError where the outfit has no wearer or no motion, or a joint would be turned beyond its limit.
+    """
+    if outfit.wearer is None or outfit.motion is None:
+        raise SimCoreError(
+            f'outfit {outfit.name}: nobody moves – give it a wearer and motion = "motions/….toml"'
+        )
+    body = np.stack([outfit.wearer.posed(pose) for pose in outfit.motion.poses(outfit.pose)])
+    gone: list[np.ndarray] = []
+    for number, garment in enumerate(garments):
+        frames = [garment.positions.astype(np.float32)]
+
+        def told(share: float, label: str, number: int = number, name: str = garment.name) -> None:
+            assert progress is not None
+            progress((number + share) / len(garments), f"{name}, {label}")
+
+        follow(
+            garment,
+            body,
+            outfit.wearer.faces,
+            beneath=gone or None,
+            progress=told if progress else None,
+            on_frame=lambda _, x, frames=frames: frames.append(x),
+        )
+        gone.append(np.stack(frames))
+    return body, tuple(gone)
+
+
+def _wearer(
+    garment: Garment,
+    body: np.ndarray,
+    faces: np.ndarray,
+    beneath: Sequence[np.ndarray] | None,
+    beside: Solid | None,
+) -> MovingGrid:
+    """The wearer in its frames, with hands as hulls, and the garments it wears under this one."""
+    lain = garment.settled.beneath if garment.settled else Beneath()
+    own, *worn = lain.surfaces or (None,)
+    frames = numeric_array("follow: body", body, "expected (T, B, 3)")
+    hulls: list[np.ndarray] = []
+    if own is not None and own.hulls:
+        if frames.shape[1:] != own.vertices.shape:
+            raise SimCoreError(
+                f"follow: body {frames.shape} – garment {garment.name} was settled on a figure of "
+                f"{len(own.vertices)} vertices, whose hands are known by number: give (T, {len(own.vertices)}, 3)"
+            )
+        hulls = [hull[hull_faces(own.vertices[hull])] for hull in own.hulls]
+    hands = len(hulls)
+    if beneath is None and worn and len(frames) > 1:
+        raise SimCoreError(
+            f"follow: garment {garment.name} was settled over {len(worn)} other(s) – give beneath=[…], the frames of "
+            "each as it follows the wearer"
+        )
+    given = [s.vertices[None] for s in worn] if beneath is None else list(beneath)
+    if len(given) != len(worn):
+        raise SimCoreError(
+            f"follow: beneath holds {len(given)} garment(s), {garment.name} was settled over {len(worn)} – give each"
+        )
+    points = [frames]
+    for number, (surface, vertices) in enumerate(zip(worn, given, strict=True)):
+        hulls.append(surface.faces + sum(part.shape[1] for part in points))
+        points.append(_capped(f"follow: beneath[{number}]", surface, vertices, len(frames)))
+    return moving_mesh(
+        np.concatenate(points, axis=1) if worn else frames,
+        faces,
+        cell=lain.cell,
+        hulls=hulls,
+        beside=HalfSpace() if beside is None and lain.floor else beside,
+        thicker=[0.0] * hands + [surface.thicker for surface in worn],
+    )
+
+
+def _capped(name: str, surface: Surface, vertices: np.ndarray, count: int) -> np.ndarray:
+    """Frames (T, V + L, 3) of a garment beneath from its vertices: its L openings stay closed about their middles."""
+    frames = np.asarray(numeric_array(name, vertices, "expected (T, V, 3)"), float)
+    whole = len(surface.vertices)
+    if frames.ndim != 3 or frames.shape[2] != 3 or len(frames) != count or not 0 < frames.shape[1] <= whole:
+        raise SimCoreError(
+            f"{name}: {frames.shape} – expected ({count}, V, 3), V at most {whole}: as many as the body"
+        )
+    own = frames.shape[1]
+    away = float(np.abs(frames[0] - surface.vertices[:own]).max())
+    if not away <= SAME:
+        raise SimCoreError(
+            f"{name}: begins {1000 * away:.1f} mm from where the garment was settled on it – begin with its positions"
+        )
+    middles = []
+    for cap in range(own, whole):
+        rim = np.unique(surface.faces[(surface.faces == cap).any(1)])
+        middles.append(frames[:, rim[rim < own]].mean(1))
+    return np.concatenate([frames, np.stack(middles, axis=1)], axis=1) if middles else frames

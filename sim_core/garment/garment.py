@@ -12,10 +12,9 @@ import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.settled import Settled
-from sim_core.validation.files import read_npz, shown
+from sim_core.validation.files import read_npz, shown, written_whole
 
 FORMAT = 3
-WITHOUT_SETTLED = 2  # the format before: such a garment does not say what it was settled with
 _ARRAYS: dict[str, tuple[type, int]] = {
     "pattern": (float, 2),
     "pattern_faces": (np.int32, 3),
@@ -106,9 +105,7 @@ class Garment:
         return self.dyes[panel] or self.dye
 
     def save(self, path: Path) -> None:
-        """Writes one .npz: the arrays and a JSON header (text) under `header`."""
-        path = Path(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
+        """Writes one .npz: the arrays and a JSON header (text) under `header`; raises FileProblem where it cannot."""
         header = {
             "format": FORMAT,
             "name": self.name,
@@ -123,12 +120,10 @@ class Garment:
             "settled": self.settled and self.settled.to_header(),
         }
         text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), np.uint8)
-        beside = path.with_name(path.name + ".part")
-        with beside.open("wb") as stream:
-            arrays = {name: getattr(self, name) for name in _ARRAYS}
-            arrays |= self.settled.arrays() if self.settled else {}
+        arrays = {name: getattr(self, name) for name in _ARRAYS}
+        arrays |= self.settled.arrays() if self.settled else {}
+        with written_whole(Path(path)) as stream:
             np.savez_compressed(stream, header=text, **arrays)
-        beside.replace(path)
 
     @staticmethod
     def load(path: Path) -> Garment:
@@ -141,10 +136,10 @@ class Garment:
             raise
         except (ValueError, RecursionError) as error:
             raise FileProblem(f"{path}: not a garment file ({error}) – bake the garment again") from error
-        if not isinstance(header, dict) or header.get("format") not in (WITHOUT_SETTLED, FORMAT):
+        if not isinstance(header, dict) or header.get("format") != FORMAT:
             raise FileProblem(f"{path}: written in another format – bake the garment again")
         try:
-            told = header["settled"] if header["format"] == FORMAT else None
+            told = header["settled"]
             names = Settled.names(told) if told else ()
         except (KeyError, TypeError, ValueError) as error:
             raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
@@ -156,7 +151,7 @@ class Garment:
                 dyes=tuple(_colour(dye) for dye in header["dyes"]),
                 cut=_facts(header, "cut"),
                 weave=_facts(header, "weave"),
-                weaves=_facts(header, "weaves") if "weaves" in header else {},
+                weaves=_facts(header, "weaves"),
                 material=_facts(header, "material"),
                 provenance=_facts(header, "provenance"),
                 dye=_colour(header.get("dye")),

@@ -17,7 +17,8 @@ from sim_core.garment.pattern import unsided
 from sim_core.garment.slub import slub_normal
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals
-from sim_core.weave import Weave, solve, surface_maps
+from sim_core.validation.files import written_whole
+from sim_core.weave import Loom, Weave
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
@@ -63,14 +64,17 @@ class Clothed:
         return self.panels.get(unsided(self.garment.panels[panel]), self.maps)
 
     @staticmethod
-    def woven(garment: Garment, pixels: int = 512) -> Clothed:
-        """With the maps of its own weaves, `pixels` wide; raises SimCoreError where it does not tell its weave."""
+    def woven(garment: Garment, pixels: int = 512, *, loom: Loom | None = None) -> Clothed:
+        """With the maps of its own weaves, `pixels` wide, each drawn once; loom: what was woven for it before.
+
+        Raises SimCoreError where it does not tell its weave.
+        """
         if not garment.weave:
             raise SimCoreError(f"garment {garment.name}: does not tell its weave – bake it again")
+        loom = loom or Loom()
 
         def drawn(told: dict[str, Any]) -> MapsLike:
-            weave = Weave.from_dict(told)
-            return surface_maps(weave, solve(weave, particles=True), pixels=pixels)
+            return loom.maps(Weave.from_dict(told), pixels)
 
         return Clothed(garment, drawn(garment.weave), {name: drawn(w) for name, w in garment.weaves.items()})
 
@@ -114,11 +118,8 @@ def write_glb(
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
     data = glb.bytes(outermost.name, ["KHR_materials_sheen", "KHR_texture_transform"])
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(path.name + ".part")
-    beside.write_bytes(data)
-    beside.replace(path)
+    with written_whole(Path(path)) as stream:
+        stream.write(data)
     return len(data)
 
 

@@ -48,6 +48,7 @@ class Settled:
             "stand": self.beneath.stand and asdict(self.beneath.stand),
             "cell": self.beneath.cell,
             "box": self.beneath.box,
+            "floor": self.beneath.floor,
             "surfaces": [
                 {"thicker": surface.thicker, "hulls": len(surface.hulls)} for surface in self.beneath.surfaces
             ],
@@ -91,7 +92,9 @@ class Settled:
             Contact(**header["contact"]),
             Phase(**last),
             Holds(**kept, limit=(shorter, longer)),
-            Beneath(surfaces, stand, float(header["cell"]), _box(header["box"])),
+            Beneath(
+                surfaces, stand, float(header["cell"]), _box(header["box"]), bool(header.get("floor", False))
+            ),
             bool(header["even"]),
         )
 

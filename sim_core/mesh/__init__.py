@@ -21,7 +21,7 @@ from sim_core.mesh.outline import (
 )
 from sim_core.mesh.panel import PanelMesh, panel_mesh
 from sim_core.mesh.points import inside, keep_points, staggered_points
-from sim_core.mesh.seams import Seam, SeamFit, SeamSide, sewn_meshes
+from sim_core.mesh.seams import Seam, SeamFit, SeamSide, SewnPanel, sewn_meshes
 from sim_core.mesh.triangulation import triangulate
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "Seam",
     "SeamFit",
     "SeamSide",
+    "SewnPanel",
     "SizeField",
     "check_count",
     "check_edge",

@@ -1,7 +1,5 @@
 """A panel mesh written: npz, PLY, OBJ, and a picture of its faces coloured by quality."""
 
-from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -10,6 +8,7 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.measures.triangles import quality
 from sim_core.mesh.panel import PanelMesh
+from sim_core.validation.files import written_whole
 
 __all__ = ["mesh_picture", "write_mesh", "write_picture"]
 
@@ -27,7 +26,8 @@ def write_mesh(path: Path, mesh: PanelMesh) -> None:
     writers = {".npz": _write_npz, ".ply": _write_ply, ".obj": _write_obj}
     if path.suffix.lower() not in writers:
         raise FileProblem(f"{path}: unknown kind of file – end the name with .npz, .ply or .obj")
-    _replaced(path, lambda stream: writers[path.suffix.lower()](stream, mesh))
+    with written_whole(path) as stream:
+        writers[path.suffix.lower()](stream, mesh)
 
 
 def write_picture(path: Path, picture: np.ndarray) -> None:
@@ -35,30 +35,8 @@ def write_picture(path: Path, picture: np.ndarray) -> None:
     from PIL import Image
 
     kind = "jpeg" if path.suffix.lower() == ".jpg" else "png"
-    _replaced(
-        path, lambda stream: Image.fromarray(picture).save(stream, format=kind, quality=88, optimize=True)
-    )
-
-
-def _replaced(path: Path, write: Callable[[IO[bytes]], None]) -> None:
-    """Write beside a path and rename over it; raises FileProblem with the path and a remedy."""
-    beside = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with beside.open("wb") as stream:
-                write(stream)
-            beside.replace(path)
-        finally:
-            with suppress(
-                OSError
-            ):  # what could not be made cannot be removed; the first error is the one to tell
-                beside.unlink(missing_ok=True)
-    except OSError as error:
-        reason = error.strerror or error
-        raise FileProblem(
-            f"{path}: cannot be written ({reason}) – give a file in a folder that can be"
-        ) from error
+    with written_whole(path) as stream:
+        Image.fromarray(picture).save(stream, format=kind, quality=88, optimize=True)
 
 
 def _write_npz(stream: IO[bytes], mesh: PanelMesh) -> None:

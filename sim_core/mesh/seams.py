@@ -1,13 +1,14 @@
 """Seams: the two sides get the same number of steps and their vertices pair one to one; ease and notches are told.
 
-A side is a stretch of a panel's outline from one of its points to another. Both sides are sampled at the same
-fractions of their length: corners and notches of either side are kept, and max(1, round(longer / edge)) steps made
-between each two.
+A side is a stretch of a panel's outline from one of its points to another. Corners that its panel names part it into
+legs, and the legs of both sides meet one by one. They are sampled at the same fractions of their lengths: sharp turns,
+notches and ends of inner lines are kept, and as many equal steps made between them that none is longer than the edge.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from time import perf_counter
 from typing import TypeVar
 
@@ -16,22 +17,42 @@ import numpy as np
 from sim_core.errors import OutlineError
 from sim_core.mesh.measures.report import deviation
 from sim_core.mesh.outline.contours import (
+    CORNER_DEGREES,
     check_edge,
     clean_contour,
     clean_contours,
     cleaned_contours,
+    outline_turning,
     signed_area,
 )
 from sim_core.mesh.outline.inner_lines import clean_lines
-from sim_core.mesh.outline.samples import sampled_rim
+from sim_core.mesh.outline.samples import even_places, sampled_rim
 from sim_core.mesh.outline.size_field import SizeField
 from sim_core.mesh.panel import PanelMesh, check_options, filled_mesh, timed
-from sim_core.mesh.seam_marks import Steps, arc_lengths, at_lengths, seam_steps
+from sim_core.mesh.seam_marks import Leg, Steps, arc_lengths, at_lengths, seam_steps
 from sim_core.metrics.compile_time import compile_clock
 
-__all__ = ["Seam", "SeamFit", "SeamSide", "sewn_meshes"]
+__all__ = ["Seam", "SeamFit", "SeamSide", "SewnPanel", "sewn_meshes"]
 
 Made = TypeVar("Made")
+CLOSE = 1e-3  # of the edge: given points nearer to a sample are left out
+
+
+@dataclass(frozen=True, eq=False)
+class SewnPanel:
+    """A panel of several that are sewn.
+
+    outline: (N, 2) [m], y down.  corners: outline points (indices) at which legs end, whatever their angle; they stay,
+    and those of the two sides of a seam meet.  holes, constraints, sizes: as in `panel_mesh`; holes may touch each
+    other, not the outline.  name: what errors call it, else its number.
+    """
+
+    outline: np.ndarray
+    corners: Sequence[int] = ()
+    holes: Sequence = ()
+    constraints: Sequence = ()
+    sizes: SizeField | None = None
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -47,7 +68,10 @@ class SeamSide:
 
 @dataclass(frozen=True)
 class Seam:
-    """Two sides sewn from their first points to their last. notches: fractions of the length, above 0 and below 1."""
+    """Two sides sewn from their first points to their last, with as many legs each, or one on one of them.
+
+    notches: fractions of the first side's length, above 0 and below 1.
+    """
 
     a: SeamSide
     b: SeamSide
@@ -78,109 +102,114 @@ class _Panel:
     """A panel before its seams are sampled.
 
     outline: (n, 2) [m] in the direction given, with the points where inner lines end.  number: (N,) the place in it
-    of each given point.  holes, lines: checked, [m].  kept: ends of inner lines, as tuples.  given: contours [m] the
-    deviation is told from, `merged` where holes were.
+    of each given point.  corners: places of its corners, in their order.  holes, lines: checked, [m].  kept: ends of
+    inner lines, as tuples.  given: contours [m] the deviation is told from, `merged` where holes were.
     """
 
     outline: np.ndarray
     number: np.ndarray
+    corners: list[int]
     holes: list[np.ndarray]
     lines: tuple[np.ndarray, ...]
     kept: set[tuple[float, float]]
+    sizes: SizeField | None
     given: list[np.ndarray]
     merged: bool
 
 
+Sides = tuple[list[Leg], list[Leg]]
+Pieces = dict[int, tuple[int, np.ndarray]]  # sampled legs by the place they begin at: where they end, points
+
+
 def sewn_meshes(
-    outlines,
-    seams: list[Seam],
+    panels: Sequence[SewnPanel],
+    seams: Sequence[Seam],
     *,
     edge: float,
-    holes=(),
-    constraints=(),
-    sizes: Sequence[SizeField | None] = (),
     threshold: float = 0.7,
     quality: str = "light",
 ) -> tuple[list[PanelMesh], list[SeamFit]]:
     """Mesh panels whose seams match vertex for vertex.
 
-    outlines: (N, 2) [m] each, y down.  seams: see `Seam`; the sides of one outline do not overlap.  edge: [m].
-    holes, constraints, sizes: one entry a panel (a list of contours, a list of lines, a field or None), or none at all;
-    these, threshold and quality as in `panel_mesh`. An inner line that ends on a seam has a vertex there on both
-    sides; both follow the shorter of their size fields. Holes may touch each other, not the outline.
+    panels: see `SewnPanel`.  seams: see `Seam`; the sides of one outline do not overlap.  edge: [m].  threshold,
+    quality: as in `panel_mesh`. An inner line that ends on a seam has a vertex there on both sides; both follow the
+    shorter of their size fields.
     Returns one mesh a panel, its `outline_deviation` from the contours given, and one fit a seam.
     Raises OutlineError naming the panel or seam that cannot be.
     """
     check_options(threshold, quality)
-    count = len(outlines)
-    every = [
-        _one_each(name, given, count, none)
-        for name, given, none in (
-            ("holes", holes, ()),
-            ("constraints", constraints, ()),
-            ("sizes", sizes, None),
-        )
+    names = [panel.name or f"panel {k}" for k, panel in enumerate(panels)]
+    ready = [
+        _of_panel(name, partial(_prepared, panel, edge)) for name, panel in zip(names, panels, strict=True)
     ]
-    panels = [
-        _of_panel(k, partial(_prepared, outline, inner, lines, field, edge))
-        for k, (outline, inner, lines, field) in enumerate(zip(outlines, *every, strict=True))
-    ]
-    chains = [[_chain(side, panels, k) for side in (seam.a, seam.b)] for k, seam in enumerate(seams)]
-    fields = every[2]
-    steps = [
-        _steps(number, seam, pair, panels, fields, edge)
-        for number, (seam, pair) in enumerate(zip(seams, chains, strict=True))
-    ]
+    sides: list[Sides] = [(_legs(seam.a, ready, k), _legs(seam.b, ready, k)) for k, seam in enumerate(seams)]
+    steps = [_seam_steps(k, seam, sides[k], ready, edge) for k, seam in enumerate(seams)]
     points = [
-        [at_lengths(chain, arc_lengths(chain), at) for chain, at in zip(pair, step.at, strict=True)]
-        for pair, step in zip(chains, steps, strict=True)
-    ]
-    meshes, places = [], []
-    for k, panel in enumerate(panels):
-        pieces: dict = {}
-        for seam, pair in zip(seams, points, strict=True):
-            for side, samples in zip((seam.a, seam.b), pair, strict=True):
-                if side.panel == k:
-                    _of_panel(k, partial(_put, pieces, side, panel, samples))
-        work = partial(_meshed, panel, pieces, edge, fields[k], threshold, quality)
-        meshes.append(_of_panel(k, work))
-        loop = meshes[-1].boundary[0]
-        places.append(
-            {tuple(point): int(v) for v, point in zip(loop, meshes[-1].vertices[loop].tolist(), strict=True)}
-        )
-    fits = []
-    for seam, pair, samples, step in zip(seams, chains, points, steps, strict=True):
-        vertices = [
-            [places[side.panel][tuple(point)] for point in sampled.tolist()]
-            for side, sampled in zip((seam.a, seam.b), samples, strict=True)
+        [
+            [leg.sampled(at) for leg, at in zip(legs, along, strict=True)]
+            for legs, along in zip(pair, step.at, strict=True)
         ]
-        a, b = (float(arc_lengths(chain)[-1]) for chain in pair)
-        pairs = np.array(vertices, dtype=np.int32).T
-        mismatch = abs(a - b) / (len(pairs) - 1)
-        fits.append(SeamFit(pairs, step.notches, (a, b), abs(a - b) / min(a, b), mismatch, step.joined))
-    return meshes, fits
+        for pair, step in zip(sides, steps, strict=True)
+    ]
+    pieces: list[Pieces] = [{} for _ in panels]
+    for seam, pair, samples in zip(seams, sides, points, strict=True):
+        for side, legs, rows in zip((seam.a, seam.b), pair, samples, strict=True):
+            own, panel = pieces[side.panel], ready[side.panel]
+            for leg, row in zip(legs, rows, strict=True):
+                _of_panel(names[side.panel], partial(_put, own, leg, panel, row))
+    meshes = [
+        _of_panel(name, partial(_meshed, panel, own, edge, threshold, quality))
+        for name, panel, own in zip(names, ready, pieces, strict=True)
+    ]
+    places = [_places(mesh) for mesh in meshes]
+    rows = [
+        [
+            [places[side.panel][point] for point in _in_a_row(legs)]
+            for side, legs in zip((seam.a, seam.b), samples, strict=True)
+        ]
+        for seam, samples in zip(seams, points, strict=True)
+    ]
+    return meshes, [
+        _fit(pair, step, np.array(row, dtype=np.int32).T)
+        for pair, step, row in zip(sides, steps, rows, strict=True)
+    ]
 
 
-def _one_each(name: str, given, count: int, none) -> list:
-    if len(given) not in (0, count):
-        raise OutlineError(f"{name}: {len(given)} entries for {count} panels – give one a panel")
-    return list(given) if len(given) else [none] * count
+def _fit(sides: Sides, steps: Steps, pairs: np.ndarray) -> SeamFit:
+    a, b = (sum(leg.length for leg in legs) for legs in sides)
+    mismatch = abs(a - b) / (len(pairs) - 1)
+    return SeamFit(pairs, steps.notches, (a, b), abs(a - b) / min(a, b), mismatch, steps.joined)
 
 
-def _of_panel(k: int, work: Callable[[], Made]) -> Made:
+def _of_panel(name: str, work: Callable[[], Made]) -> Made:
     """What `work` returns; its OutlineError names the panel."""
     try:
         return work()
     except OutlineError as error:
-        raise OutlineError(f"panel {k}: {error}") from error
+        raise OutlineError(f"{name}: {error}") from error
 
 
-def _prepared(outline, holes, constraints, sizes: SizeField | None, edge: float) -> _Panel:
+def _places(mesh: PanelMesh) -> dict[tuple[float, ...], int]:
+    """The vertex at each point of a mesh's outline."""
+    loop = mesh.boundary[0]
+    return {tuple(point): int(v) for v, point in zip(loop, mesh.vertices[loop].tolist(), strict=True)}
+
+
+def _in_a_row(rows: list[np.ndarray]) -> list[tuple[float, ...]]:
+    """The points of legs one after the other, where they meet once."""
+    whole = np.concatenate([rows[0][:1], *(row[1:] for row in rows)])
+    return [tuple(point) for point in whole.tolist()]
+
+
+def _prepared(panel: SewnPanel, edge: float) -> _Panel:
     """Check a panel and put the ends of its inner lines into its contours."""
-    contour = clean_contour(outline, "outline")
-    if len(contour) != len(outline):
+    contour = clean_contour(panel.outline, "outline")
+    if len(contour) != len(panel.outline):
         raise OutlineError("outline: holds a point twice – give each once, so that seams can name them")
-    contours, given = cleaned_contours(outline, holes, edge=edge)
+    for corner in panel.corners:
+        if not 0 <= corner < len(contour):
+            raise OutlineError(f"corner {corner} – the outline has {len(contour)} points")
+    contours, given = cleaned_contours(panel.outline, panel.holes, edge=edge)
     turned = signed_area(contour) < 0
     if given is not None:
         if {tuple(point) for point in contours[0].tolist()} != {tuple(point) for point in contour.tolist()}:
@@ -189,45 +218,51 @@ def _prepared(outline, holes, constraints, sizes: SizeField | None, edge: float)
             )
         contours[0] = contour[::-1] if turned else contour
     check_edge(edge, contours)
-    if sizes is not None:
-        sizes.check(edge)
+    if panel.sizes is not None:
+        panel.sizes.check(edge)
     lines, joined, kept = (
-        clean_lines(constraints, contours) if len(constraints) else ((), contours, np.zeros((0, 2)))
+        clean_lines(panel.constraints, contours)
+        if len(panel.constraints)
+        else ((), contours, np.zeros((0, 2)))
     )
     whole = joined[0][::-1] if turned else joined[0]
     place = {tuple(point): k for k, point in enumerate(whole.tolist())}
     number = np.array([place[tuple(point)] for point in contour.tolist()])
+    corners = number[np.asarray(panel.corners, dtype=int)].tolist()
     ends = {(float(x), float(y)) for x, y in kept}
-    return _Panel(whole, number, joined[1:], lines, ends, given or contours, given is not None)
+    merged = given is not None
+    return _Panel(whole, number, corners, joined[1:], lines, ends, panel.sizes, given or contours, merged)
 
 
-def _steps(number: int, seam: Seam, pair, panels: list[_Panel], fields, edge: float) -> Steps:
+def _seam_steps(number: int, seam: Seam, sides: Sides, panels: list[_Panel], edge: float) -> Steps:
     if not all(0 < notch < 1 for notch in seam.notches):
         raise OutlineError(f"seam {number}: notches {seam.notches} – give fractions above 0 and below 1")
-    a, b = seam.a.panel, seam.b.panel
-    kept = panels[a].kept, panels[b].kept
-    return seam_steps((pair[0], pair[1]), kept, seam.notches, edge, (fields[a], fields[b]))
+    sizes = panels[seam.a.panel].sizes, panels[seam.b.panel].sizes
+    try:
+        return seam_steps(sides, seam.notches, edge, sizes)
+    except OutlineError as error:
+        raise OutlineError(f"seam {number}: {error}") from error
 
 
-def _meshed(panel: _Panel, pieces: dict, edge: float, sizes, threshold: float, quality: str) -> PanelMesh:
-    """The mesh of a panel whose seams are sampled: pieces as `_put` notes them."""
+def _meshed(panel: _Panel, pieces: Pieces, edge: float, threshold: float, quality: str) -> PanelMesh:
+    """The mesh of a panel whose seams are sampled."""
     begin = perf_counter()
     with compile_clock() as clock:
-        contour, fixed = _sampled(panel.outline, pieces)
+        contour, fixed, kept = _sampled(panel, pieces, edge)
         if len(clean_contours(contour, panel.holes)[0]) != len(contour):
             raise OutlineError("samples fall together – give a larger seam or a smaller edge")
         if signed_area(contour) < 0:  # steps are named by the point they begin at, which is the other one now
             contour, fixed = contour[::-1], np.roll(fixed[::-1], -1)
-        kept = np.array(sorted(panel.kept)).reshape(-1, 2)
         contours = [contour, *panel.holes]
+        sizes = panel.sizes
         rim = sampled_rim(contours, edge, lines=panel.lines, kept=kept, sizes=sizes, fixed=fixed)
         mesh = filled_mesh(rim, edge=edge, threshold=threshold, quality=quality, sizes=sizes)
         strays = deviation(panel.given, rim.contours, merged=panel.merged)
     return timed(mesh, strays, begin, clock)
 
 
-def _chain(side: SeamSide, panels: list[_Panel], number: int) -> np.ndarray:
-    """The points of a side (n, 2), first to last."""
+def _legs(side: SeamSide, panels: list[_Panel], number: int) -> list[Leg]:
+    """The legs of a side in the seam's direction."""
     if not 0 <= side.panel < len(panels):
         raise OutlineError(f"seam {number}: panel {side.panel} – there are {len(panels)}")
     panel = panels[side.panel]
@@ -237,40 +272,60 @@ def _chain(side: SeamSide, panels: list[_Panel], number: int) -> np.ndarray:
                 f"seam {number}: point {point} – panel {side.panel} has {len(panel.number)} points"
             )
     count = len(panel.outline)
-    first, last = panel.number[side.first], panel.number[side.last]
-    steps = ((first - last if side.backward else last - first) - 1) % count + 1
-    way = -1 if side.backward else 1
-    return panel.outline[(first + way * np.arange(steps + 1)) % count]
+    first, last = panel.number[[side.first, side.last]]
+    begin, end = (last, first) if side.backward else (first, last)
+    run = (begin + np.arange((end - begin - 1) % count + 2)) % count
+    ends = [0, *(k for k in range(1, len(run) - 1) if run[k] in panel.corners), len(run) - 1]
+    legs = [
+        Leg.of(panel.outline, run[a : b + 1], panel.kept, backward=side.backward) for a, b in pairwise(ends)
+    ]
+    return legs[::-1] if side.backward else legs
 
 
-def _put(pieces: dict, side: SeamSide, panel: _Panel, points: np.ndarray) -> None:
-    """Note a side's samples under its first point in the outline's own direction."""
-    first, last = (side.last, side.first) if side.backward else (side.first, side.last)
-    begin = int(panel.number[first])
-    if begin in pieces and not np.array_equal(pieces[begin][1], points):
+def _put(pieces: Pieces, leg: Leg, panel: _Panel, points: np.ndarray) -> None:
+    """Note a leg's samples (n, 2) [m], which run in the seam's direction, in the outline's own."""
+    along = points[::-1] if leg.backward else points
+    if leg.begin in pieces and not np.array_equal(pieces[leg.begin][1], along):
+        first = int(np.flatnonzero(panel.number == leg.begin)[0])
         raise OutlineError(f"two seams begin at point {first} – seams must not overlap")
-    pieces[begin] = (int(panel.number[last]), points[::-1] if side.backward else points)
+    pieces[leg.begin] = leg.end, along
 
 
-def _sampled(contour: np.ndarray, pieces: dict) -> tuple[np.ndarray, np.ndarray]:
-    """The outline with its seams sampled, and which of its steps those are, by the point they begin at."""
-    if not pieces:
-        return contour, np.zeros(len(contour), dtype=bool)
-    count, found, fixed = len(contour), [], []
-    begin = here = min(pieces)
+def _sampled(panel: _Panel, pieces: Pieces, edge: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The outline with its legs sampled, which of its steps are a seam's, by the point they begin at, and points of it
+    (k, 2) [m] that stay. What is not sewn keeps its given points beside its samples, so that finer steps follow it."""
+    outline, count = panel.outline, len(panel.outline)
+    marked = outline_turning(outline) > CORNER_DEGREES
+    marked |= np.array([tuple(point) in panel.kept for point in outline.tolist()])
+    marks = sorted({*np.flatnonzero(marked).tolist(), *panel.corners, *pieces}) or [0]
+    found, fixed, kept = [], [], [outline[panel.corners], np.array(sorted(panel.kept)).reshape(-1, 2)]
+    begin = here = panel.corners[0] if panel.corners else min(pieces, default=marks[0])
     while True:
         if here in pieces:
             last, points = pieces[here]
             passed = {(here + k) % count for k in range(1, ((last - here - 1) % count) + 1)}
             if (passed - {last}) & set(pieces) or begin in passed - {last}:
-                x, y = contour[here]
+                x, y = outline[here]
                 raise OutlineError(f"seams overlap behind ({x:.4f}, {y:.4f}) m – seams must not overlap")
-            found.append(points[:-1])
-            fixed.append(np.ones(len(points) - 1, dtype=bool))
-            here = last
         else:
-            found.append(contour[here : here + 1])
-            fixed.append(np.zeros(1, dtype=bool))
-            here = (here + 1) % count
+            last = next((mark for mark in marks if mark > here), marks[0])
+            points = outline[(here + np.arange((last - here - 1) % count + 2)) % count]
+            if panel.sizes is None:
+                points, samples = _evenly(points, edge, max(1, -(-3 // len(marks))))
+                kept.append(samples)
+        found.append(points[:-1])
+        fixed.append(np.full(len(points) - 1, here in pieces))
+        here = last
         if here == begin:
-            return np.concatenate(found), np.concatenate(fixed)
+            return np.concatenate(found), np.concatenate(fixed), np.concatenate(kept)
+
+
+def _evenly(chain: np.ndarray, edge: float, least: int) -> tuple[np.ndarray, np.ndarray]:
+    """A chain (n, 2) [m] with samples at even steps, at least so many, among its points; and those samples alone."""
+    arc = arc_lengths(chain)
+    at = np.append(even_places(chain, arc, 0.0, float(arc[-1]), edge, None, least), arc[-1])
+    after = np.clip(np.searchsorted(at, arc), 1, len(at) - 1)
+    apart = np.minimum(np.abs(at[after] - arc), np.abs(arc - at[after - 1]))
+    where = np.union1d(at, arc[apart > CLOSE * edge])
+    points = at_lengths(chain, arc, where)
+    return points, points[np.isin(where, at)]

@@ -3,11 +3,34 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 LAYERS = 8  # sheer layers kept per pixel, the nearest ones
+
+
+class Projected(NamedTuple):
+    """A surface before the camera: screen (V, 3) x, y [pixel] and 1 / distance, faces (F, 3) int32, world (V, 3) [m],
+    normals (V, 3), sky (V,): the share of it that each vertex sees."""
+
+    screen: np.ndarray
+    faces: np.ndarray
+    world: np.ndarray
+    normals: np.ndarray
+    sky: np.ndarray
+
+
+class Shadow(NamedTuple):
+    """The key light's shadow: matrix (3, 4) from world to its maps, depths (h, w) of the opaque and of the sheer, the
+    share that the sheer hold back, bias [m] by which a surface lies before its own shadow."""
+
+    matrix: np.ndarray
+    opaque: np.ndarray
+    sheer: np.ndarray
+    veil: float
+    bias: float
 
 
 @njit(cache=True, error_model="numpy")
@@ -158,25 +181,23 @@ def _mixed(rows, i, j, k, u, v, w):
 @njit(cache=True, error_model="numpy")
 def _fragment(p, n, sky, colour, look, scene, shadow):
     """Colour and slant of a fragment at p whose normal n is turned to the eye first."""
-    matrix, shadows, veils, veil, bias = shadow
     size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
     if n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2]) < 0.0:
         size = -size
-    at = _place(matrix, p)
-    seen = _lit_at(at[0], at[1], at[2], shadows, bias, 2)
-    seen *= 1.0 - veil * (1.0 - _lit_at(at[0], at[1], at[2], veils, bias, 3))
+    at = _place(shadow.matrix, p)
+    seen = _lit_at(at[0], at[1], at[2], shadow.opaque, shadow.bias, 2)
+    seen *= 1.0 - shadow.veil * (1.0 - _lit_at(at[0], at[1], at[2], shadow.sheer, shadow.bias, 3))
     return _shade((n[0] / size, n[1] / size, n[2] / size), p, (seen, sky), colour, look, scene)
 
 
 @njit(cache=True, error_model="numpy")
 def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour):
-    """Draws one surface. mesh: (screen (V, 3) with z = 1 / distance, faces, world, normals, sky (V,)).
+    """Draws one surface, mesh: `Projected`, shadow: `Shadow`.
 
-    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. shadow: matrix (3, 4), map of the
-    opaque (h, w), of the sheer (h, w), what these hold back, bias. depth holds -1/distance of the opaque; sheer
-    surfaces (alpha < 1) go to the layers.
+    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. depth holds -1/distance of the opaque;
+    sheer surfaces (alpha < 1) go to the layers.
     """
-    screen, faces, world, normals, sky = mesh
+    screen, faces, sky = mesh.screen, mesh.faces, mesh.sky
     height, width = depth.shape
     for f in range(len(faces)):
         i, j, k = faces[f]
@@ -198,8 +219,8 @@ def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, laye
                 if -near >= depth[py, px]:
                     continue
                 u, v, w = u * a[2] / near, v * b[2] / near, w * c[2] / near
-                p = _mixed(world, i, j, k, u, v, w)
-                n = _mixed(normals, i, j, k, u, v, w)
+                p = _mixed(mesh.world, i, j, k, u, v, w)
+                n = _mixed(mesh.normals, i, j, k, u, v, w)
                 r, facing = _fragment(p, n, u * sky[i] + v * sky[j] + w * sky[k], colour, look, scene, shadow)
                 if look[3] >= 1.0:
                     depth[py, px] = -near

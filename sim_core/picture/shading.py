@@ -9,14 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.picture.raster import LAYERS, compose, depth_map, fragments
+from sim_core.picture.raster import LAYERS, Projected, Shadow, compose, depth_map, fragments
 from sim_core.picture.raster import lit as lit_share
+from sim_core.validation.files import written_whole
 
 __all__ = ["Camera", "Light", "Lighting", "Surface", "lighting", "normals", "render", "save_png"]
 
 _SKY_DIRECTIONS = 40
 _SKY_PIXELS = 320
 _SHADOW_PIXELS = 1400
+_BIAS = 0.006  # [m] a surface lies before its own shadow
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ class Lighting:
     light: Light
     ground: Surface | None
     skies: tuple[np.ndarray, ...]
-    shadow: tuple[np.ndarray, np.ndarray, np.ndarray, float, float]
+    shadow: Shadow
 
 
 def lighting(surfaces: Sequence[Surface], light: Light | None = None, *, floor: bool = True) -> Lighting:
@@ -134,22 +136,22 @@ def _draw(
     sky: np.ndarray,
     ground: bool,
     scene: np.ndarray,
-    shadow: tuple[np.ndarray, np.ndarray, np.ndarray, float, float],
+    shadow: Shadow,
     target: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
 ) -> None:
     """One surface into the target (depth, image, sheer layers' depths and colours)."""
     world, faces = np.ascontiguousarray(surface.vertices, float), surface.faces.astype(np.int32)
-    mesh = (screen, faces, world, normals(world, faces), sky)
+    mesh = Projected(screen, faces, world, normals(world, faces), sky)
     look = np.array([surface.gloss, surface.sheen, surface.through, surface.alpha, float(ground)])
     fragments(mesh, _linear(surface.colour), look, scene, shadow, *target)
 
 
 def save_png(path: Path, picture: np.ndarray) -> None:
-    """Writes a picture (h, w, 3) uint8."""
+    """Writes a picture (h, w, 3) uint8; raises FileProblem where it cannot."""
     from PIL import Image
 
-    path.parent.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(picture).save(path, optimize=True)
+    with written_whole(path) as stream:
+        Image.fromarray(picture).save(stream, "PNG", optimize=True)
 
 
 def _check(number: int, surface: Surface) -> None:
@@ -217,15 +219,13 @@ def _depths(surfaces: Sequence[Surface], matrix: np.ndarray, pixels: int) -> np.
     return depth
 
 
-def _shadow(
-    surfaces: Sequence[Surface], key: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
+def _shadow(surfaces: Sequence[Surface], key: np.ndarray) -> Shadow:
     """The key light's depth maps of the opaque and of the sheer, and how much the sheer holds back."""
     matrix = _light_matrix(np.concatenate([s.vertices for s in surfaces]), key, _SHADOW_PIXELS)
     opaque, sheer = [s for s in surfaces if s.alpha >= 1], [s for s in surfaces if s.alpha < 1]
     veil = 0.7 * max((s.alpha for s in sheer), default=0.0)
-    maps = [_depths(group, matrix, _SHADOW_PIXELS) for group in (opaque, sheer)]
-    return matrix, maps[0], maps[1], veil, 0.006
+    first, second = (_depths(group, matrix, _SHADOW_PIXELS) for group in (opaque, sheer))
+    return Shadow(matrix, first, second, veil, _BIAS)
 
 
 def _sky_visibility(surfaces: Sequence[Surface], casters: int) -> list[np.ndarray]:

@@ -1,4 +1,5 @@
-"""Files from outside: TOML, JSON and npz, every way they fail told as one FileProblem that names the file."""
+"""Files from outside: TOML, JSON and npz, every way they fail told as one FileProblem that names the file; and files
+that are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -6,16 +7,26 @@ import json
 import tomllib
 import zipfile
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from sim_core.errors import FileProblem
 
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["read_bytes", "read_json", "read_npz", "read_text", "read_toml", "shown"]
+__all__ = [
+    "check_target",
+    "read_bytes",
+    "read_json",
+    "read_npz",
+    "read_text",
+    "read_toml",
+    "shown",
+    "written_whole",
+]
 
 LARGEST_TEXT = 16_000_000  # bytes of a TOML or JSON file; an outline of half a million points
 LARGEST_ARRAYS = 2_000_000_000  # bytes of all arrays of an npz once unpacked
@@ -116,3 +127,45 @@ def read_npz(path: Path, names: Iterable[str], what: str, remedy: str) -> dict[s
     except NOT_AN_NPZ as error:
         reason = getattr(error, "strerror", None) or " ".join(str(error).split())
         raise FileProblem(f"{path}: not {what} ({reason or type(error).__name__}) – {remedy}") from error
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[IO[bytes]]:
+    """A stream whose bytes are the file once the block ends without an error; else what was there stays.
+
+    Makes the folder. Raises FileProblem where the file cannot be written, and leaves nothing behind.
+    """
+    beside = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with beside.open("wb") as stream:
+                yield stream
+            beside.replace(path)
+        finally:
+            with suppress(OSError):  # what could not be made cannot be removed; the first error is told
+                beside.unlink(missing_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise FileProblem(
+            f"{path}: cannot be written ({reason}) – give a file in a folder that can be"
+        ) from error
+
+
+def check_target(path: Path) -> None:
+    """Makes the folder and tries whether a file of this name can be written, before work is done for it.
+
+    Raises FileProblem where it cannot; a file that is there keeps what it holds.
+    """
+    if path.is_dir():
+        raise FileProblem(f"{path}: this is a folder – name a file")
+    tried = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        tried.open("ab").close()
+        tried.unlink()
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        reason = getattr(error, "strerror", None) or error
+        raise FileProblem(
+            f"{path}: cannot be written ({reason}) – give a file in a folder that can be"
+        ) from error

@@ -1,8 +1,8 @@
 """Weaving: drafts -> relaxed yarns -> tileable maps and cloth parameters.
 
 `draft` and `yarn` hold what is woven, `model` the `Weave` made of them (`weave_file` reads its TOML). `yarns` relaxes
-it, `maps` draws it, `cloth` says how it behaves. `files` reads and writes drafts of other programs, `chart` draws
-drafts for weavers, `summary` and `command` tell it all to people.
+it, `maps` draws it, `cloth` says how it behaves; `loom` remembers what was made of each weave. `files` reads and writes
+drafts of other programs, `chart` draws drafts for weavers, `summary` and `command` tell it all to people.
 """
 
 from sim_core.errors import WeaveError
@@ -14,6 +14,7 @@ from sim_core.weave.cloth import (
     tensile_compliance,
 )
 from sim_core.weave.draft import Channels, Draft, plain, satin, twill
+from sim_core.weave.loom import Loom
 from sim_core.weave.maps import SurfaceMaps, lit_cloth, surface_maps
 from sim_core.weave.model import Weave, draft_to_dict
 from sim_core.weave.summary import facts_of, summary_of
@@ -24,6 +25,7 @@ __all__ = [
     "Channels",
     "ClothParameters",
     "Draft",
+    "Loom",
     "ParticleCell",
     "SurfaceMaps",
     "Weave",

@@ -1,6 +1,8 @@
 """The `Weave` value: a draft, its two yarns and the sett."""
 
+import json
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +90,11 @@ class Weave:
             return cls(**values)
         except WeaveError as error:
             raise WeaveError(f"{path}: {error}") from error
+
+    @cached_property
+    def key(self) -> str:
+        """Equal for equal weaves."""
+        return json.dumps(self.to_dict(), sort_keys=True)
 
     def to_dict(self) -> dict:
         """A plain dictionary that JSON can hold and `from_dict` reads back."""

@@ -9,7 +9,7 @@ from cloth_cases import EDGES, Case
 from cloth_flags import FINE
 from scipy.stats import nct, norm
 
-from sim_core.cloth.scenes import PILOTS, Asked, law_terms
+from sim_core.cloth.scenes import TRIAL_EDGES, Asked, law_terms
 
 ORDERS = np.arange(1.0, 2.51, 0.05)
 RIDGE = (1e-4, 1e-3, 0.05, 0.3, 0.1)  # mean start and slope, those of the pins beside it, curve: few scenes
@@ -62,7 +62,7 @@ def fitted(kind: str, scenes: list[tuple[Case, dict]]) -> dict:
                 [row | {"error_mm": errors(case, row)} for case, row in scenes],
                 k,
             )
-            for k in range(len(PILOTS) - 2)
+            for k in range(len(TRIAL_EDGES) - 2)
         ],
         "cost": np.round(np.linalg.lstsq(costs, spent, rcond=None)[0], 4).tolist(),
         "measured": {k: [round(f(s[k] for s in seen), 4) for f in (min, max)] for k in seen[0]},
@@ -84,20 +84,20 @@ def calm(rows: list[dict]) -> dict:
 
 
 def law(edges: Sequence[float], pins: list[str], scenes: list[dict], k: int) -> dict:
-    """The law of the k-th three pilots: how errors fall from there, and the margin, mesh by mesh.
+    """The law of the k-th three trial runs: how errors fall from there, and the margin, mesh by mesh.
 
     Left-out scenes are off by a factor whose logarithm has a mean of about 0 and some spread; the margin covers the
-    tolerance limit of such a spread, and all of them. Edges from half the finest pilot's on, as far as measured.
+    tolerance limit of such a spread, and all of them. Edges from half the finest trial run's on, as far as measured.
     """
-    pilot, kinds = PILOTS[k + 2], sorted(set(pins))
-    first = max(1, edges.index(pilot) - 2)
+    trial, kinds = TRIAL_EDGES[k + 2], sorted(set(pins))
+    first = max(1, edges.index(trial) - 2)
     rows, wanted, whose = [], [], []
     for i, (own, row) in enumerate(zip(pins, scenes, strict=True)):
         held = np.array([float(own == p) for p in kinds])
         for edge, error in list(zip(edges[1:], row["error_mm"], strict=True))[first - 1 :]:
-            fine, square = law_terms(edge, pilot)
+            fine, square = law_terms(edge, trial)
             rows.append([1.0, fine, *held, *(fine * held), square])
-            wanted.append(np.log(error / row["pilot_mm"][k]))
+            wanted.append(np.log(error / row["trial_gap_mm"][k]))
             whose.append(i)
     a, b, who = np.array(rows), np.array(wanted), np.array(whose)
     many = len(kinds)
@@ -113,7 +113,7 @@ def law(edges: Sequence[float], pins: list[str], scenes: list[dict], k: int) -> 
     worst = np.maximum(tolerance(len(scenes)) * spread, off.max(0))
     margin = np.exp(np.interp(np.log(offered), np.log(measured), worst))
     return {
-        "pilot_mm": 1e3 * pilot,
+        "trial_edge_mm": 1e3 * trial,
         "edges_mm": np.round(1e3 * offered, 2).tolist(),
         "pins": {
             p: np.round(found[:2] + found[[2 + j, 2 + many + j]], 4).tolist() for j, p in enumerate(kinds)

@@ -22,7 +22,7 @@ from cloth_cases import EDGES, FRAMES, KINDS, Case, Kept, drawn, ran, training
 from cloth_fit import fitted, limit_known, own_error
 from cloth_flags import COARSE, FINE, compared, told
 
-from sim_core.cloth.scenes import FILE, PILOTS, apart, choose, gap
+from sim_core.cloth.scenes import FILE, TRIAL_EDGES, apart, choose, gap
 from sim_core.cloth.step import FRAME
 from sim_core.errors import WrongArgument
 
@@ -45,13 +45,13 @@ def measured(case: Case) -> dict:
     runs = [ran(case, edge, FRAMES[case.name]) for edge in edges]
     gaps = [apart(run.film, runs[0].film) for run in runs[1:]]
     own, order = own_error(np.array(edges), np.array(gaps))
-    pilots = [runs[edges.index(edge)].film for edge in PILOTS]
+    trials = [runs[edges.index(edge)].film for edge in TRIAL_EDGES]
     return {
         "case": asdict(case),
         "told": case.told(),
         "gap_mm": [round(g, 3) for g in gaps],
         "own_mm": round(own, 3),
-        "pilot_mm": [round(gap(pilots[k : k + 3]), 4) for k in range(len(PILOTS) - 2)],
+        "trial_gap_mm": [round(gap(trials[k : k + 3]), 4) for k in range(len(TRIAL_EDGES) - 2)],
         "order": round(order, 2),
         "ms": [round(run.ms, 2) for run in runs],
         "substeps": [round(run.substeps, 1) for run in runs],
@@ -91,7 +91,7 @@ def made_table() -> dict:
             scenes.append((case, row))
         part = fitted(kind, scenes) | {"implicit": rivals, "scenes": [row for _, row in scenes]}
         for law in part["laws"]:
-            print(f"{kind}, tried down to {law['pilot_mm']:.3g} mm: margins {law['margin']}", flush=True)
+            print(f"{kind}, tried down to {law['trial_edge_mm']:.3g} mm: margins {law['margin']}", flush=True)
         out[kind] = {"seconds": round(FRAMES[kind] * FRAME, 3), "reference_mm": 1e3 * EDGES[kind][0], **part}
     return out
 

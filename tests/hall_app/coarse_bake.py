@@ -8,8 +8,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-from content_house import edit
-
 ASSETS = Path(__file__).parents[2] / "assets"
 STAND, LAYERED = "pibo", "pibo-figure"  # the exhibits that are kept: a scarf on a stand, a scarf over a robe
 
@@ -18,9 +16,15 @@ def coarse(place: Path) -> Path:
     """The shipped content with two coarse outfits that have not been baked."""
     home = place / "content"
     shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked", "beizi", "gown"))
-    edit(home / "outfits/pibo.toml", "seed = 3", "seed = 3\nedge = 0.06")
-    edit(home / "outfits/pibo-figure.toml", "edge = 0.018", "edge = 0.05")
-    edit(home / "outfits/pibo-figure.toml", "edge = 0.014", "edge = 0.04")
+    for name, steps in (("pibo", (0.06,)), ("pibo-figure", (0.05, 0.04))):
+        outfit = home / f"outfits/{name}.toml"
+        lines = [
+            line for line in outfit.read_text("utf-8").splitlines() if not line.startswith(("study", "edge"))
+        ]
+        layers = [k for k, line in enumerate(lines) if line == "[[layer]]"]
+        for at, edge in reversed(list(zip(layers, steps, strict=True))):
+            lines.insert(at + 1, f"edge = {edge}")
+        outfit.write_text("\n".join(lines) + "\n", "utf-8")
     return home
 
 

@@ -1,5 +1,6 @@
 """`hall build` as a curator uses it, on a coarse mesh: whole, up to date, interrupted, faulty, filmed."""
 
+import json
 import os
 import shutil
 import signal
@@ -13,13 +14,22 @@ import pytest
 from coarse_bake import LAYERED, build, build_command, coarse, last_line
 from content_house import edit
 
-from hall_app.build import SOUND_RATE, TrailLostError, Trails, budget, encode_film, film_possible
+from hall_app.build import (
+    SOUND_RATE,
+    TrailLostError,
+    Trails,
+    budget,
+    encode_film,
+    film_possible,
+    refuse_disorder,
+)
 from hall_app.check import check
 from hall_app.check.garments import measured_again
 from hall_app.content import load
 from hall_app.content.bakes import bake_folder, bake_key, layer_files, read_record
 from hall_app.content.models import open_glb, read_glb
 from sim_core.body import Pose
+from sim_core.errors import SimCoreError
 from sim_core.garment import Frame, Garment
 
 ASSETS = Path(__file__).parents[2] / "assets"
@@ -193,6 +203,17 @@ def test_pattern_sheets_are_drawn_for_all_or_for_one(folder):
         assert done.returncode == 0, done.stderr
         assert {path.parts[-3] for path in folder.glob("exhibits/*/media/pattern.svg")} == drawn
     assert not list(folder.glob("exhibits/*/baked"))
+    mirror = folder / "exhibits/mirror/media/pattern.svg"  # of an exhibit without an outfit: nobody draws it
+    shutil.copyfile(folder / "exhibits/pibo/media/pattern.svg", mirror)
+    checked = subprocess.run(
+        [sys.executable, "-m", "hall_app", "check", str(folder), "--json"], capture_output=True, text=True
+    )
+    unused = [
+        problem["file"] for problem in json.loads(checked.stdout)["problems"] if "not used" in problem["what"]
+    ]
+    assert unused == ["exhibits/mirror/media/pattern.svg"], (
+        "a sheet belongs to its exhibit, shown by its text or not"
+    )
 
 
 def test_what_is_worn_beneath_is_filmed_as_it_was_in_that_pose(tmp_path):
@@ -219,6 +240,18 @@ def test_budget_is_a_pixel_at_the_nearest_view():
     # 1080 pixels over 58 degrees: 1.03 mm a pixel from one metre.
     assert budget(1.0, 1.0) == pytest.approx(2 * np.tan(np.radians(29)) / 1080)
     assert budget(2.0, 3.0) == pytest.approx(6 * budget(1.0, 1.0))
+
+
+def test_cloth_that_lies_under_what_it_should_lie_over_fails_a_bake(coarse_scarf):
+    baked = coarse_scarf[0] / "exhibits/pibo/baked"
+    (name,) = layer_files(1)
+    scarf = Garment.load(baked / name)
+    refuse_disorder([scarf])
+    errors = {**scarf.provenance["errors"], "layer_order": 3}
+    with pytest.raises(
+        SimCoreError, match="pibo: 3 vertices lie under the front they should lie over – raise"
+    ):
+        refuse_disorder([scarf, scarf.noted(errors=errors)])
 
 
 @pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")

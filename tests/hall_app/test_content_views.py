@@ -141,6 +141,18 @@ def test_scene(house: Path):
     assert scene_json(load(house), nodes=["/room"])["nodes"] == ["/room"]
 
 
+def test_what_moves_of_itself_is_told_from_what_stands_still(house: Path):
+    """A page turns only what the scene calls moving (page/look/turning.js)."""
+
+    def kind() -> str:
+        (entry,) = scene_json(load(house))["exhibits"]
+        return entry["kind"]
+
+    assert kind() == "still"
+    edit(house / "exhibits/chest/exhibit.toml", '"glow_when_near"]', '"glow_when_near", "turn_slowly"]')
+    assert kind() == "moving"
+
+
 def test_music_of_the_shipped_hall():
     scene = scene_json(load(ASSETS))
     assert scene["music"] == scene["music_sources"][0]["url"]

@@ -1,6 +1,9 @@
 """The light baker against analytic light, brute force and itself."""
 
 import dataclasses
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -10,7 +13,7 @@ from light_rooms import box, level, quads
 
 from hall_app.light import SHOULDER, WALL, LightError, Sampling, Spot, bake_light, light_jpeg, show
 from hall_app.light.atlas import atlas_of, pack
-from hall_app.light.rays import build_tree, cast
+from hall_app.light.rays import blocked, build_tree, cast
 
 PLAIN = {"fill_light": 0.0, "filtered": False}
 
@@ -178,12 +181,33 @@ def test_tree_finds_what_brute_force_finds(seed, count):
     origins = rng.uniform(-2, 2, (10_000 // 8, 3)).astype(np.float32)
     toward = rng.normal(size=origins.shape)
     toward = (toward / np.linalg.norm(toward, axis=1)[:, None]).astype(np.float32)
-    face, distance, _ = cast(build_tree(corners.reshape(-1, 3).astype(float), faces), origins, toward)
+    face, distance, *_ = cast(build_tree(corners.reshape(-1, 3).astype(float), faces), origins, toward)
     best, rim = _brute(corners.astype(float), origins.astype(float), toward.astype(float))
     sure = ~rim
     assert ((face >= 0) == np.isfinite(best))[sure].all()
     both = sure & (face >= 0)
     assert np.allclose(distance[both], best[both], rtol=1e-3, atol=1e-4)
+
+
+def test_no_ray_slips_between_neighbours():
+    """Aimed at corners and edges of a closed ball from inside, and past its edges at a hair's breadth."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(3, 1.0)
+    tree = build_tree(ball.vertices, ball.faces)
+    rng = np.random.default_rng(0)
+    ends = ball.vertices[ball.edges_unique]
+    along = rng.random((40, len(ends), 1))
+    edges = (ends[:, 0] * along + ends[:, 1] * (1 - along)).reshape(-1, 3)
+    aims = np.concatenate([ball.vertices, edges, edges + rng.normal(0, 1e-7, edges.shape)])
+    eyes = rng.uniform(-0.5, 0.5, aims.shape)
+    way = (aims - eyes) / np.linalg.norm(aims - eyes, axis=1)[:, None]
+    face, distance, *_ = cast(tree, eyes, way)
+    assert (face >= 0).all()
+    assert np.abs(distance - np.linalg.norm(aims - eyes, axis=1)).max() < 1e-5
+    singles = eyes.astype(np.float32), way.astype(np.float32)
+    assert blocked(tree, *singles, distance + np.float32(1e-3)).all()
+    assert not blocked(tree, *singles, distance - np.float32(1e-3)).any()
 
 
 def _brute(corners, origins, toward):
@@ -283,6 +307,52 @@ def test_resumed_bake_has_the_same_bits(tmp_path):
         whole.image, bake_light(room, sampling=Sampling((9, 9, 16), seed=3), checkpoint=kept).image
     )
     assert not np.array_equal(whole.image, bake_light(room, sampling=Sampling((9, 9, 16), seed=4)).image)
+
+
+def test_light_depends_on_neither_threads_nor_chunks(monkeypatch):
+    room = quads(box((0, 0, 0), (2, 2, 2), inward=True), albedo=0.5, emission=[1, 0, 0, 0, 0, 0], density=8)
+    spot = Spot(np.array([1, 1.9, 1]), np.array([1, 0.0, 1]), np.ones(3), 5.0, 20.0, 10.0)
+    whole = bake_light(room, [spot], sampling=Sampling((9, 16)))
+    for threads, chunk in ((1, 100), (3, 1), (2, 1 << 20)):
+        monkeypatch.setattr("hall_app.light.rays.sampling._threads", lambda threads=threads: threads)
+        monkeypatch.setattr("hall_app.light.rays.sampling._CHUNK", chunk)
+        parts = bake_light(room, [spot], sampling=Sampling((9, 16)))
+        assert np.array_equal(whole.image, parts.image)
+        assert whole.record["rays"] == parts.record["rays"]
+
+
+CORES = """
+import numpy as np
+from hall_app.light.rays import build_tree, cast
+rng = np.random.default_rng(0)
+corners = rng.uniform(-1, 1, (30_000, 1, 3)) + rng.normal(0, 0.05, (30_000, 3, 3))
+faces = np.arange(90_000, dtype=np.int32).reshape(-1, 3)
+twice = np.concatenate([faces, faces[::-1]])  # two faces at every place: nothing but the tree decides which is met
+way = rng.normal(size=(20_000, 3))
+found = cast(build_tree(corners.reshape(-1, 3), twice), np.zeros_like(way), way / np.linalg.norm(way, axis=1)[:, None])
+print(*(hash(array.tobytes()) for array in found))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="needs sched_setaffinity to take cores away")
+def test_rays_meet_the_same_on_one_core():
+    """The tree is made by as many threads as there are cores; which of two equal faces is met must not tell."""
+    environment = {**os.environ, "PYTHONHASHSEED": "0"}
+    whole, alone = (
+        subprocess.run(
+            [sys.executable, "-c", first + CORES], env=environment, capture_output=True, check=True
+        ).stdout
+        for first in ("", "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\n")
+    )
+    assert whole == alone
+
+
+def test_without_embree_one_line_tells_what_to_do(monkeypatch):
+    monkeypatch.setitem(sys.modules, "embreex.rtcore_scene", None)
+    with pytest.raises(
+        LightError, match=r"^light: rays: embreex cannot be loaded .* – `pip install embreex`"
+    ):
+        build_tree(np.eye(3), np.array([[0, 1, 2]]))
 
 
 def test_picture_stays_below_white_except_on_lamps():

@@ -66,7 +66,7 @@ def backs_seen(patches, eyes, count=None) -> list[tuple[str, tuple[float, ...]]]
     way = eye - point
     long = np.linalg.norm(way, axis=1)
     way /= long[:, None]
-    _, distance, _ = cast(tree, point, way)
+    _, distance, *_ = cast(tree, point, way)
     open_to = distance > long
     face, point, way = face[open_to], point[open_to], way[open_to]
     seen = np.unique(face[_room_behind(tree, normals, point, -way) > DEEP])
@@ -79,7 +79,7 @@ def _room_behind(tree, normals, point, way) -> np.ndarray:
     under_way = np.arange(len(point))
     for _ in range(12):
         start = point[under_way] + (gone[under_way, None] + OFF) * way[under_way]
-        hit, distance, _ = cast(tree, start, way[under_way])
+        hit, distance, *_ = cast(tree, start, way[under_way])
         gone[under_way] += np.minimum(distance, 100.0) + OFF
         through = (hit >= 0) & (np.einsum("ij,ij->i", normals[hit], way[under_way]) > 0)
         under_way = under_way[through]

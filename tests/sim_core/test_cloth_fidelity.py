@@ -6,16 +6,16 @@ import pytest
 from sim_core.cloth.scenes import (
     GF_CM,
     GRID,
-    PILOTS,
+    TRIAL_EDGES,
     Asked,
     apart,
     bounds,
     choose,
     gap,
     grid_film,
-    pilot,
     scene,
     table,
+    trial_film,
 )
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError, WrongArgument
@@ -33,7 +33,7 @@ def of_row(kind: str, row: dict) -> Asked:
 def test_bounds_cover_what_was_measured_and_rise_with_the_edge(kind: str) -> None:
     covered, ratios = [], []
     for row in table()[kind]["scenes"]:
-        offered = bounds(of_row(kind, row), row["pilot_mm"])
+        offered = bounds(of_row(kind, row), row["trial_gap_mm"])
         assert np.all(np.diff([b[1] for b in offered]) >= 0)
         assert np.all(np.diff([b[2] for b in offered]) < 0)
         told = np.array([b[1] for b in offered[1::2]])  # the first is what the others were measured against
@@ -74,7 +74,8 @@ def test_an_unseen_sheet_stays_within_its_budget(kind: str, budget: float, more:
     fine = round(np.prod(more["size"]) * 2 / np.sqrt(3) / 0.0113**2)
     assert choice.vertices < fine
     films = [
-        pilot(scene(kind, vertices=count, **more), more["size"], frames) for count in (choice.vertices, fine)
+        trial_film(scene(kind, vertices=count, **more), more["size"], frames)
+        for count in (choice.vertices, fine)
     ]
     assert 0.05 * budget < apart(*films) <= budget
 
@@ -117,7 +118,7 @@ def test_what_cannot_be_kept_or_was_not_measured_is_refused_in_one_line() -> Non
 def test_films_are_read_off_linearly_at_the_same_material_points() -> None:
     size = (0.8, 0.6)
     films = []
-    for edge in PILOTS[:2]:
+    for edge in TRIAL_EDGES[:2]:
         made = scene("hanging", size=size, vertices=round(0.48 * 2 / np.sqrt(3) / edge**2))
         rest = made.sheet.rest
         film = np.stack(

@@ -73,6 +73,27 @@ def test_seams_have_equal_steps_and_twins_meet(tmp_path: Path) -> None:
     assert pattern.panel("strap").dye == pytest.approx((16 / 255, 32 / 255, 48 / 255))
 
 
+def test_notches_of_a_seam_are_vertices_of_both_sides(tmp_path: Path) -> None:
+    """They meet, also on sides with ease, and survive a dictionary."""
+    eased = BAG.replace("\"along('sack: low > corner')\"", "\"1.01 * along('sack: low > corner')\"")
+    text = eased.replace('"strap: b > c"]', '"strap: b > c"]\nnotches = [0.31, 0.77]', 1)
+    pattern = read(tmp_path, text)
+    assert [seam.notches for seam in pattern.seams] == [(), (0.31, 0.77), ()]
+    assert Pattern.from_dict(pattern.to_dict()).seams == pattern.seams
+    cloth, seam = pattern.cloth(0.03), pattern.seams[1]
+    assert [len(fit.notches) for fit in cloth.fits] == [2, 0]
+    fit = cloth.fits[0]
+    assert seam.b is not None
+    a, b = (cloth.along(path, pattern.panel(path.panel)) for path in (seam.a, seam.b))
+    for path, side in ((seam.a, a), (seam.b, b)):
+        length = path.length(pattern.panel(path.panel))
+        steps = np.linalg.norm(np.diff(cloth.vertices[side], axis=0), axis=1)
+        assert [steps[:at].sum() / length for at in fit.notches] == pytest.approx([0.31, 0.77])
+    assert (cloth.closed[a[fit.notches]] == cloth.closed[b[fit.notches]]).all()
+    assert fit.lengths == pytest.approx([0.2, 0.202])
+    assert cloth.mirrored().fits[0].ease == pytest.approx(0.01)
+
+
 def test_both_halves_are_mirror_images_joined_in_the_middle(tmp_path: Path) -> None:
     half = read(tmp_path, BAG).cloth(0.04)
     whole, count = half.mirrored(), len(half.vertices)
@@ -90,7 +111,10 @@ def test_both_halves_are_mirror_images_joined_in_the_middle(tmp_path: Path) -> N
 
 def test_patterns_survive_the_way_through_a_dictionary(tmp_path: Path) -> None:
     pattern = read(tmp_path, BAG)
-    again = Pattern.from_dict(pattern.to_dict())
+    kept = pattern.to_dict()
+    for panel in kept["panels"]:
+        panel["layer"] = 1  # as garments have it that were saved before that key was gone
+    again = Pattern.from_dict(kept)
     first, second = pattern.cloth(0.04), again.cloth(0.04)
     assert second.vertices.tobytes() == first.vertices.tobytes()
     assert second.closed.tobytes() == first.closed.tobytes()
@@ -135,7 +159,10 @@ def _area(points: np.ndarray) -> float:
         ("edge = 0.05", "edge = true", ["edge", "True"]),
         ("mirror = true", "mirror = false", ["seam.1.middle", "mirror"]),
         ("doubled = true", "folded = true", ["panel.1.folded", "unknown key"]),
+        ("doubled = true", "layer = 1", ["panel.1.layer", "unknown key"]),
         ("at = [30, 0]", 'at = [30, "x"]', ["panel.strap.outline.b.at", "'x'"]),
+        ("joined = [", "notches = [1.5]\njoined = [", ["seam.1.notches.0", "less than 1", "1.5"]),
+        ("middle = ", "notches = [0.5]\nmiddle = ", ["seam.1.notches", "leave them out"]),
         ('dye = "#102030"', 'dye = "blue"', ["panel.1.dye", "blue"]),
         ("edge = 0.05", "size = [1.0, 1.0]\nedge = 0.05", ["[[panel]]"]),
     ],

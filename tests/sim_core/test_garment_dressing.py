@@ -16,7 +16,7 @@ from sim_core.garment import (
     Garment,
     Outfit,
     Pattern,
-    detail,
+    choose_detail,
     dress,
     follow,
     load_outfit,
@@ -112,6 +112,7 @@ def test_a_coarse_coat_keeps_the_limits(coat: Garment) -> None:
     assert facts["inside_vertices"] == facts["inside_midpoints"] == facts["inside_centroids"] == 0
     assert facts["seam_gap_m"] == 0.0
     assert facts["seam_gap_sewn_m"] < 1e-3
+    assert 0 <= facts["seam_ease"] <= 0.02
     assert facts["area_strain_p95"] <= 0.03
     assert facts["self_intersections"] <= 25
     assert facts["asymmetry_m"] <= 1e-3  # its halves were let go as a whole in the end
@@ -144,11 +145,11 @@ def test_coat_survives_file_detail_and_model(coat: Garment, tmp_path: Path) -> N
     back = Garment.load(tmp_path / "coat.npz")
     assert back.digest() == coat.digest()
     assert (back.panels, back.dyes, back.cut) == (coat.panels, coat.dyes, coat.cut)
-    coarse = detail(back, 0.06)
+    coarse = choose_detail(back, 0.01)
     assert len(coarse.faces) < 0.5 * len(coat.faces)
     edges = np.sort(coarse.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert np.unique(edges, axis=0, return_counts=True)[1].max() == 2
-    assert coarse.provenance["detail"]["hausdorff"]["max_m"] < 0.06
+    assert coarse.provenance["detail"]["hausdorff"]["p99_m"] <= 0.01
     assert coat.settled is not None
     (body,) = coat.settled.beneath.surfaces
     shown = shown_figure(body.vertices, body.faces, coat.positions, coat.faces, triangles=900)

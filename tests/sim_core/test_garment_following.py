@@ -1,14 +1,29 @@
 """A garment on a wearer who stands, and on one given by vertices frame by frame."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.cloth import Capsule, Contact, Live, Material, Phase, Sheet, drape, moving_mesh
+from sim_core.body import Beneath, Surface
+from sim_core.cloth import (
+    Capsule,
+    Contact,
+    HalfSpace,
+    Holds,
+    Live,
+    Material,
+    Phase,
+    Sheet,
+    drape,
+    moving_mesh,
+)
 from sim_core.cloth.contact import solid_mesh
 from sim_core.cloth.scenes import equilateral_sheet
 from sim_core.errors import SimCoreError
-from sim_core.garment import Garment, follow, garment_sheet
+from sim_core.garment import Garment, Settled, follow, garment_sheet
+from sim_core.garment.dressing import capped
 
 CLOTH = Material(0.05, 50.0, 0.3, 2e-5, 0.5, 1.0)
 CONTACT = Contact(0.004, 0.001, speed_limit=4.0)
@@ -59,7 +74,7 @@ def test_panels_keep_their_materials(veil: Garment) -> None:
 
 
 def test_on_a_wearer_who_stands_it_stays(veil: Garment, ball) -> None:
-    end = follow(veil, ball[0][None], ball[1], seconds=0.4, contact=CONTACT, cell=0.01)
+    end = follow(veil, ball[0][None], ball[1], seconds=0.4, contact=CONTACT)
     assert inside(end.positions, veil, *ball) == 0
     assert np.linalg.norm(end.positions - veil.positions, axis=1).max() < 0.03
     assert end.frames == 10
@@ -75,12 +90,82 @@ def test_it_goes_with_a_wearer_given_frame_by_frame(veil: Garment, ball) -> None
     def heard(index: int, x: np.ndarray) -> None:
         seen.append(inside(x.astype(float), veil, body[min(index + 1, 20)], ball[1]))
 
-    end = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT, cell=0.01, on_frame=heard)
+    end = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT, on_frame=heard)
     assert seen == [0] * 25
     top = body[-1][:, 1].max()
     assert top - 0.015 < end.positions[:, 1].max() < top + 0.015  # carried: its edges are 3 cm, the ball 10
-    again = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT, cell=0.01)
+    again = follow(veil, body, ball[1], seconds=0.2, contact=CONTACT)
     assert again.positions.tobytes() == end.positions.tobytes()
+
+
+@pytest.fixture(scope="module")
+def shawl(veil: Garment, ball) -> Garment:
+    """The veil's cloth once more, laid over the veil on the ball, and told of both."""
+    under = Surface(*capped(veil.positions, veil.faces), thicker=0.004)
+    lain = Beneath((Surface(*ball), under), cell=0.01)
+    start = veil.worn() + [0.0, 0.02, 0.0]
+    phases = [Phase(0.3, (0.0, 9.81), 6.0), Phase(0.5, damping=8.0)]
+    worn = drape(garment_sheet(veil), start, phases, collider=lain.solid(), contact=CONTACT)
+    settled = Settled(CONTACT, phases[-1], Holds.of(len(start)), lain, even=False)
+    return replace(veil, name="shawl", positions=worn.positions, settled=settled)
+
+
+def test_a_cloth_over_a_cloth_goes_with_both(veil: Garment, shawl: Garment, ball) -> None:
+    """Up by 10 cm: the shawl lies on the veil as that goes with the ball, and is never inside of it."""
+    t = np.linspace(0, 1, 16)
+    body = ball[0][None] + (0.1 * t * t * (3 - 2 * t))[:, None, None] * np.array([0.0, 1.0, 0.0])
+    frames = [veil.positions]
+    follow(veil, body, ball[1], contact=CONTACT, on_frame=lambda index, x: frames.append(x.astype(float)))
+    inner, seen = np.stack(frames), []
+
+    def heard(index: int, x: np.ndarray) -> None:
+        seen.append(inside(x.astype(float), shawl, *capped(inner[index + 1], veil.faces)))
+
+    assert inside(shawl.positions, shawl, *capped(veil.positions, veil.faces)) == 0
+    end = follow(shawl, body, ball[1], beneath=[inner], on_frame=heard)
+    assert seen == [0] * 15
+    assert end.positions[:, 1].max() > inner[-1][:, 1].max() + 0.003
+
+    def told(**more) -> str:
+        with pytest.raises(SimCoreError) as caught:
+            follow(shawl, body, ball[1], **more)
+        return str(caught.value)
+
+    assert "was settled over 1 other(s) – give beneath=" in told()
+    assert "beneath holds 2 garment(s)" in told(beneath=[inner, inner])
+    assert "expected (16, V, 3)" in told(beneath=[inner[:3]])
+    assert "100.0 mm from where" in told(beneath=[inner + [0.0, 0.1, 0.0]])
+    still = follow(
+        shawl, ball[0][None], ball[1], seconds=0.12
+    )  # who stands still keeps what he wears where it is
+    assert inside(still.positions, shawl, *capped(veil.positions, veil.faces)) == 0
+
+
+def test_a_floor_stands_beside_the_wearer(veil: Garment, ball) -> None:
+    floor = HalfSpace((0.0, float(veil.positions[:, 1].min()) - 0.01, 0.0))
+    body = ball[0][None] - np.linspace(0, 0.08, 11)[:, None, None] * np.array([0.0, 1.0, 0.0])
+    free, stopped = (follow(veil, body, ball[1], contact=CONTACT, beside=solid) for solid in (None, floor))
+    assert free.positions[:, 1].min() < floor.point[1] - 0.03
+    assert stopped.positions[:, 1].min() > floor.point[1]
+
+
+def test_hands_stay_hulls_where_a_figure_moves(veil: Garment, ball) -> None:
+    """Two balls are one hand: nothing comes between them, as where the garment was settled."""
+    second = ball[0] + [0.0, 0.0, 0.3]
+    vertices, faces = np.concatenate([ball[0], second]), np.concatenate([ball[1], ball[1] + len(second)])
+    hand = Surface(vertices, faces, (np.arange(len(vertices), dtype=np.int32),))
+    settled = Settled(
+        CONTACT, Phase(0.2), Holds.of(len(veil.positions)), Beneath((hand,), cell=0.01), even=False
+    )
+    between = replace(veil, positions=veil.positions + [0.0, 0.12, 0.15], settled=settled)
+    body = np.stack([vertices, vertices])
+    low = [
+        follow(it, body, faces, seconds=0.4, contact=CONTACT).positions[:, 1].min()
+        for it in (between, replace(between, settled=None))
+    ]
+    assert low[0] > low[1] + 0.05
+    with pytest.raises(SimCoreError, match="whose hands are known by number"):
+        follow(between, body[:, :-1], faces)
 
 
 def test_live_mode_follows_a_body_too(veil: Garment, ball) -> None:
@@ -109,7 +194,10 @@ def test_what_cannot_be_followed_is_told_before_anything_runs(veil: Garment, bal
     assert "\n" not in words
     assert "frame 1 has vertices that are not finite" in told(np.stack([vertices, vertices * np.nan]), faces)
     assert "expected (T, V, 3)" in told(vertices, faces)
-    assert "for how many seconds" in told(vertices[None], faces)
+    assert "for how many seconds" in told(vertices[None], faces, contact=CONTACT)
+    assert "does not say how it touches" in told(body, faces)
+    assert "beside without a wearer" in told(None, None, beside=HalfSpace())  # type: ignore[arg-type]
+    assert "faces without a wearer" in told(None, faces)  # type: ignore[arg-type]
     bare = Garment(**{**veil.__dict__, "material": {}})
     with pytest.raises(SimCoreError, match="material is not told"):
         garment_sheet(bare)

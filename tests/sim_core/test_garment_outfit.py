@@ -1,7 +1,9 @@
 """Outfit files: what they hold, what they leave to defaults, and what is refused before anything runs."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sim_core.body import Pose, pose_named
@@ -169,7 +171,10 @@ BAD = {
         "layer.1.step.1.at.1.at: 5000, 0 mm lies 4530 mm outside",
     ),
     "not a colour": (ROBE + 'dyes = { band = "red" }\n', "layer.1.dyes.band: .*match.*'red'"),
-    "name of no file": (ROBE + 'name = "in/ner"\n', "layer.1.name: .*match.*'in/ner'"),
+    "name of no file": (
+        ROBE + 'name = "in/ner"\n',
+        "layer.1.name: names a file, too – use letters.*'in/ner'",
+    ),
     "title in no language of ours": ('title = { fr = "robe" }\n' + ROBE, "title.fr"),
     "seed that is none": (ROBE + "seed = true\n", "layer.1.seed"),
     "bar like a barrel": (SCARF.replace("1.5", "1.5\nbar_radius = 0.5"), "stand.bar_radius: .*less than"),
@@ -205,10 +210,10 @@ def test_what_is_wrong_is_told_with_file_key_and_remedy(tmp_path: Path, case: st
 
 STRAIGHT = '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
 WAY = {
-    "another end": ((("held",),), "layer 1 .robe.: its steps leave the wearer in another pose"),
+    "another end": ((("held",),), r"it\.toml: layer\.1\.step: its steps leave the wearer in another pose"),
     "one by way of another": (
         (("step", "display"), ("display",)),
-        "layer 2 .over.: it is dressed while the wearer moves",
+        r"it\.toml: layer\.2\.step: it is dressed while the wearer moves",
     ),
 }
 
@@ -227,7 +232,18 @@ def test_layers_share_the_way_of_the_wearer_and_its_end(tmp_path: Path, case: st
 
 
 NARROW = {
-    "sleeve": ("measures = { cuff = 60, armhole = 62 }\n", "its sleeve is .* cm round, what must pass it"),
+    "sleeve": (
+        "measures = { cuff = 60, armhole = 62 }\n",
+        r"layer\.1\.measures: its left sleeve, .* cm round, what it must go round or let pass",
+    ),
+    "sleeve at its root": (
+        "measures = { armhole = 40 }\n",
+        r"layer\.1\.measures: its left sleeve, .* cm from the armpit, is .* cm round",
+    ),
+    "body": (
+        "measures = { chest = 120, hem = 150 }\n",
+        r"layer\.1\.measures: its body, .* cm above the floor, is .* cm round",
+    ),
     "neck": (
         "measures = { neck = 30, neck_back = 5, close = 60, band = 5 }\n",
         "its neck hole is .* cm round",
@@ -273,5 +289,22 @@ def test_a_layer_dressed_on_the_way_needs_one_beneath_that_came_the_same_way(tmp
         '[[layer.step]]\ndo = "weld"\n[[layer.step]]\ndo = "rest"\nseconds = 0.4\n[[layer]]\nname = "over"',
     )
     moving = held.rsplit("[[layer.step]]", 1)[0] + '[[layer.step]]\ndo = "pose"\nseconds = 0.4\n'
-    with pytest.raises(SimCoreError, match="layer 2 .over.: it is dressed while the wearer moves"):
+    with pytest.raises(SimCoreError, match=r"it\.toml: layer\.2\.step: it is dressed while the wearer moves"):
         check_fits(load_outfit(written(tmp_path, moving), ASSETS))
+
+
+def test_who_wears_it_is_known_by_all_that_decides_how_he_stands(tmp_path: Path) -> None:
+    """A layer kept of an interrupted dressing serves again for the same wearer alone."""
+    outfit = load_outfit(written(tmp_path, ROBE), ASSETS)
+    wearer = outfit.wearer
+    assert wearer is not None
+    others = [
+        replace(wearer, vertices=wearer.vertices[:, [2, 1, 0]]),  # the same numbers on other axes
+        replace(wearer, weights=np.roll(wearer.weights, 1, axis=1)),
+        replace(wearer, heads=wearer.heads + [0.0, 0.01, 0.0]),
+        replace(wearer, marks={**wearer.marks, "waist": wearer.marks["waist"] + [0.0, 0.01, 0.0]}),
+        replace(wearer, skin="dual" if wearer.skin != "dual" else "linear arms"),
+    ]
+    told = [str(replace(outfit, wearer=who).to_dict()) for who in (wearer, replace(wearer), *others)]
+    assert told[0] == told[1]
+    assert len(set(told[1:])) == len(told[1:])

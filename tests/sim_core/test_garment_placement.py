@@ -1,5 +1,6 @@
 """Each way of placing, proved by a small outfit of its own: wrapped round, folded over a bar, along a path."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,8 @@ import pytest
 from sim_core import metrics
 from sim_core.body import Figure, Mannequin, pose_named
 from sim_core.errors import SimCoreError
-from sim_core.garment import Garment, dress, load_outfit
+from sim_core.garment import Garment, check_fits, dress, layer_order, load_outfit
+from sim_core.garment.dressing import overlap
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.placement import Ground, Wrapped
 
@@ -86,6 +88,9 @@ do = "weld"
 """
 
 
+PINNED = '[[layer.step]]\ndo = "pin"\nat = ["top"]\n'
+
+
 @pytest.fixture(scope="module")
 def woman() -> Mannequin:
     return Mannequin.load(ASSETS / "mannequins/woman.npz")
@@ -137,6 +142,34 @@ def test_wrapped_cloth_is_not_strained_and_keeps_its_layers_apart(
         np.arctan2(x[:, 0], x[:, 2] - middle[2])[np.argsort(cloth.vertices[:, 0], kind="stable")]
     )
     assert np.ptp(ahead) / (2 * np.pi) == pytest.approx(turns, abs=0.1)
+
+
+@pytest.mark.slow
+def test_the_end_of_a_wrap_lies_over_its_begin(tmp_path: Path) -> None:
+    (wrap,) = of(tmp_path, LAPPED, 'way = "wrapped"', WEARER, STEPS.replace("[[", PINNED + "[[", 1))
+    assert wrap.provenance["errors"]["layer_order"] == 0
+    under, over = overlap(wrap, Wrapped())
+    assert under == 0
+    assert over > 50
+    back = replace(wrap, pattern=wrap.pattern * [-1.0, 1.0])  # as if it had been wound the other way
+    assert layer_order(back, Wrapped()) > 50
+
+
+def test_a_skirt_narrower_than_another_beneath_is_refused_before_anything_runs(tmp_path: Path) -> None:
+    for name, text in (("inner", SKIRT), ("outer", SKIRT.replace("1080", "1040"))):
+        (tmp_path / f"{name}.toml").write_text(text, "utf-8")
+    layers = "".join(
+        f'[[layer]]\nname = "{name}"\npattern = "{tmp_path / name}.toml"\nweave = "weaves/juan.toml"\n'
+        f'[layer.place]\nway = "wrapped"\n{WELDED}{STEPS}'
+        for name in ("inner", "outer")
+    )
+    (tmp_path / "it.toml").write_text(f"{WEARER}\n{layers}", "utf-8")
+    it = load_outfit(tmp_path / "it.toml", ASSETS)
+    with pytest.raises(
+        SimCoreError, match=r"it\.toml: layer\.2\.place: pattern skirt: 1\.040 m wide – to go round"
+    ):
+        check_fits(it)
+    check_fits(replace(it, layers=it.layers[:1]))
 
 
 def test_a_skirt_narrower_than_the_hips_is_refused(tmp_path: Path) -> None:

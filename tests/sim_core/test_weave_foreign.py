@@ -222,3 +222,42 @@ def test_damaged_dtx_files_are_answered_or_refused_in_one_line():
             json.dumps(facts_of(source_of_wif(wif, Path("hurt.dtx"))))
     assert 60 < len(refused) < 540
     assert not [line for line in refused if "\n" in line]
+
+
+SHORT = """@@StartDTX
+@@Info
+%%shafts 2
+%%treadles 2
+%%ends 4
+%%picks 2
+@@Threading
+1 2 1 2
+@@Tieup
+01
+10
+@@Treadling
+1 2
+@@Color Palet
+255,255,255
+0,0,0
+@@Warp Colors
+0 1 0 7
+@@Weft Colors
+1 1
+@@EndDTX
+"""
+
+
+def test_a_dtx_counts_its_colours_from_nought_also_in_remarks():
+    wif = parse_dtx(SHORT)
+    assert wif.remarks == ("[WARP COLORS] 4: colour 7 is not among the 2 of [COLOR TABLE] – white was taken",)
+    assert wif.warp_colours.tolist()[:3] == [1, 2, 1]
+    (remark,) = parse_dtx(SHORT.replace("0,0,0", "black").replace("0 7", "0 0")).remarks[:1]
+    assert remark.startswith("[COLOR TABLE] 1: no red,green,blue")
+
+
+@pytest.mark.parametrize("told", ["four", "²", "-4", "4.0"])
+def test_a_dtx_whose_ends_are_no_number_is_counted(told):
+    wif = parse_dtx(SHORT.replace("%%ends 4", f"%%ends {told}").replace("0 7", "0 0"))
+    assert wif.remarks == (f"[WARP] %%ends: '{told}' is no number of threads – there are lines for 4",)
+    assert wif.harness.threading.shape == (4, 2)

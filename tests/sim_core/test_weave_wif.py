@@ -184,7 +184,6 @@ BAD = {
     r"\[LIFTPLAN\]: missing": BASE.replace("[TIEUP]", "[TIE]"),
     r"\[THREADING\] 3: 'x'": BASE.replace("3=1", "3=x"),
     r"\[THREADING\] 99999: line number": BASE.replace("3=1", "99999=1"),
-    r"\[WARP\] Threads: 'many'": BASE.replace("Threads=4", "Threads=many"),
     r"\[WARP\] Threads: 99999999": BASE.replace("Threads=4", "Threads=99999999"),
     r"\[WEAVING\] Rising Shed: 'up'": BASE.replace("Rising Shed=true", "Rising Shed=up"),
     r"\[TIEUP\] line \d+: .*key=value": BASE.replace("[TIEUP]\n", "[TIEUP]\nnonsense\n"),
@@ -234,7 +233,14 @@ REPLACED = {
     "[WIF]: missing – read as version 1.1": BASE.replace("[WIF]\nVersion=1.1\n", ""),
     "[WIF] Version: empty": BASE.replace("1.1", ""),
     "[TIEUP] 1: what follows ; is a comment": BASE.replace("[TIEUP]\n1=1\n", "[TIEUP]\n1=1;\n1=1; 2\n"),
-    "[LIFTPLAN] 2: lifts no shaft": BASE.replace("[TREADLING]", "[LIFTPLAN]\n1=1\n[TREADLING]"),
+    "[LIFTPLAN] 2: lifts no shaft": BASE.replace("[TREADLING]", "[LIFTPLAN]\n1=1\n2=0\n[TREADLING]"),
+    "[LIFTPLAN] 2: no line, though trodden – [TIEUP] and [TREADLING] were taken": BASE.replace(
+        "[TREADLING]", "[LIFTPLAN]\n1=1,2\n[TREADLING]"
+    ),
+    "[WARP] Threads: 'four' is no number of threads – there are lines for 4": BASE.replace(
+        "Threads=4", "Threads=four"
+    ),
+    "[WEFT] Threads: '-2' is no number of threads": BASE.replace("Threads=2", "Threads=-2"),
     "[THREADING]: its threads are numbered from 0": BASE.replace(
         "[THREADING]\n1=1\n2=2\n3=1\n4=2", "[THREADING]\n0=1\n1=2\n2=1\n3=2"
     ),

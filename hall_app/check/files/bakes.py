@@ -11,13 +11,20 @@ from typing import Any
 
 from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import bake_key
+from hall_app.content.bakes.steps import read_study
 from hall_app.content.bakes.store import NEEDED, RECORD, bake_fault
 from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 
-FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz"}
-KINDS = {"pattern": "patterns", "weave": "weaves", "wearer": "mannequins"}  # by what an outfit calls them
+FOLDERS = {"patterns": ".toml", "weaves": ".toml", "mannequins": ".npz", "motions": ".toml"}
+KINDS = {  # by what an outfit calls them
+    "pattern": "patterns",
+    "weave": "weaves",
+    "wearer": "mannequins",
+    "motion": "motions",
+    "study": "studies",
+}
 OUTFITS = "outfits"
 KEY = re.compile(r"(?P<key>[a-z][\w.]*): (?P<what>.+)", re.DOTALL)  # as the engine's messages begin
 
@@ -74,13 +81,27 @@ def _kind(key: str) -> str:
 
 def _readers(folder: Path) -> dict[str, Callable[[Path], Any]]:
     from sim_core.body.mannequin import Mannequin
-    from sim_core.garment import Pattern, check_fits, load_outfit
+    from sim_core.errors import FileProblem
+    from sim_core.garment import Pattern, check_fits, load_motion, load_outfit
     from sim_core.weave import Weave
 
     def outfit(path: Path) -> None:
         check_fits(load_outfit(path, folder))
 
-    return {"patterns": Pattern.load, "weaves": Weave.load, "mannequins": Mannequin.load, OUTFITS: outfit}
+    def study(path: Path) -> None:
+        try:
+            read_study(path)
+        except ValueError as error:
+            raise FileProblem(f"{path}: {error}") from error
+
+    return {
+        "patterns": Pattern.load,
+        "weaves": Weave.load,
+        "mannequins": Mannequin.load,
+        "motions": load_motion,
+        "studies": study,
+        OUTFITS: outfit,
+    }
 
 
 def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 
-from hall_app.content.files import BAKED, TEXTS, exhibit_files, walk_files
+from hall_app.content.files import BAKED, SHEET, TEXTS, exhibit_files, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 from hall_app.content.views.markdown import pictures_in
@@ -19,7 +19,7 @@ def unused_problems(content: Content) -> list[Problem]:
         used = _used(exhibit)
         for path in walk_files(exhibit.folder):
             name = path.relative_to(exhibit.folder).as_posix()
-            if name not in used and not (exhibit.file.outfit and name.startswith(BAKED)):
+            if name not in used and not (exhibit.file.outfit and _built(name)):
                 found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
     media = content.folder / "media"
     if media.is_dir():
@@ -29,6 +29,11 @@ def unused_problems(content: Content) -> list[Problem]:
             if name not in named:
                 found.append(_unused(name, "hall.toml"))
     return found
+
+
+def _built(name: str) -> bool:
+    """Whether `hall build` writes it for an exhibit with an outfit, shown by a text or not."""
+    return name.startswith(BAKED) or name == SHEET
 
 
 def _used(exhibit: Exhibit) -> set[str]:

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from hall_app.content.bakes.steps import PATIENCE, PATIENCE_WHOLE
+
 __all__ = ["Limit", "Worn", "limits_of", "writer"]
 
 ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
-# [s] of processor time that dressing a layer may take; a sewn garment that is no mirror image, dressed whole
-PATIENCE, PATIENCE_WHOLE = 180, 900
 
 
 @dataclass(frozen=True)
@@ -88,10 +88,8 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1) -> list[Limit]:
 
 
 def _crossings(worn: Worn) -> int:
-    """Edges that may pass through faces: stacked folds of a scarf along the arms squeeze each other most."""
-    if worn.on_stand:
-        return 0
-    return 300 if worn.way == ALONG_PATH else 25
+    """Edges that may pass through faces: none, but in the stacked folds of a scarf that arms squeeze together."""
+    return 25 if worn.way == ALONG_PATH else 0
 
 
 def writer(name: str) -> Callable[[float], str]:

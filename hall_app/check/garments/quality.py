@@ -10,6 +10,7 @@ from typing import Any
 
 from hall_app.check.garments.limits import Worn, limits_of, writer
 from hall_app.check.garments.measurement import Measured, measured_again
+from hall_app.content.bakes.steps import HALL_BENEATH, budget
 from hall_app.content.bakes.store import bake_fault, baked_here, key_now, layer_files, read_record
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.loading import load
@@ -110,9 +111,6 @@ def _told(record: Numbers) -> dict[str, Any]:
 
 def _deviation(worn: Worn, show: Show) -> float:
     """How far a garment's hall model may be from the close one [m], p99: what it was thinned to."""
-    from hall_app.build.look import HALL_BENEATH
-    from hall_app.build.outfit import budget
-
     return HALL_BENEATH if worn.beneath else budget(show.nearest, show.hall_error_px)
 
 

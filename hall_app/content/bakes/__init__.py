@@ -1,6 +1,7 @@
 """Baked garments as they lie in folders.
 
-inputs: what an outfit names; key: of inputs; record: digests of the files; store: where a bake lies; models: what an
+inputs: what an outfit names; key: of inputs; steps: of the meshes; record: digests of the files; store:
+where a bake lies; models: what an
 exhibit is drawn with.
 """
 
@@ -8,6 +9,7 @@ from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import BAKE_VERSION, KEY_DIGITS, bake_key
 from hall_app.content.bakes.models import ExhibitModels, models_of
 from hall_app.content.bakes.record import FILES, Fault, publish, seal, seal_fault, seal_record, text_of
+from hall_app.content.bakes.steps import Step, Study, budget, chosen_steps, read_study
 from hall_app.content.bakes.store import (
     bake_fault,
     bake_folder,
@@ -25,11 +27,15 @@ __all__ = [
     "KEY_DIGITS",
     "ExhibitModels",
     "Fault",
+    "Step",
+    "Study",
     "bake_fault",
     "bake_folder",
     "bake_key",
     "bake_work",
     "baked_here",
+    "budget",
+    "chosen_steps",
     "data_bake",
     "key_now",
     "layer_files",
@@ -38,6 +44,7 @@ __all__ = [
     "outfit_problems",
     "publish",
     "read_record",
+    "read_study",
     "seal",
     "seal_fault",
     "seal_record",

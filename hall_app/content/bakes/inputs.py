@@ -13,6 +13,7 @@ from hall_app.content.schema.complaints import toml_problem
 
 __all__ = ["outfit_files", "outfit_problems"]
 
+OUTFIT = ("wearer", "motion", "study")  # keys of an outfit that name a file
 LAYER = ("pattern", "weave")  # keys of a layer that name a file; `weaves` holds those of single panels
 
 
@@ -27,7 +28,8 @@ def outfit_files(folder: Path, outfit: str) -> tuple[tuple[str, str], ...]:
 
 
 def _named(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    yield "wearer", table.get("wearer")
+    for name in OUTFIT:
+        yield name, table.get(name)
     layers = table.get("layer")
     for number, layer in enumerate(layers if isinstance(layers, list) else [], 1):
         if not isinstance(layer, dict):

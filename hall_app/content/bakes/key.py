@@ -6,12 +6,13 @@ import hashlib
 import json
 
 from hall_app.content.bakes.inputs import outfit_files
+from hall_app.content.bakes.steps import chosen_steps
 from hall_app.content.folder import Content, Exhibit
 
 __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key", "dressing_key"]
 
 # Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
-BAKE_VERSION = 8
+BAKE_VERSION = 9
 
 KEY_DIGITS = 16
 
@@ -27,7 +28,8 @@ def bake_key(content: Content, exhibit: Exhibit) -> str:
 
 def dressing_key(content: Content, exhibit: Exhibit) -> str:
     """The same without how it is shown: what decides garments, film and pictures, and costs most of a bake."""
-    return _hash(content, exhibit, f"dressing {BAKE_VERSION}\n")
+    edges = [step.edge for step in chosen_steps(content, exhibit)]  # by how near it is seen, if a study says
+    return _hash(content, exhibit, f"dressing {BAKE_VERSION}\n{edges or ''}")
 
 
 def _hash(content: Content, exhibit: Exhibit, begin: str) -> str:

@@ -1,6 +1,5 @@
-"""Rays: bvh, the tree over the triangles; tracing, the way through it; sampling, where rays are sent."""
+"""Rays: embree, what they meet; sights, lines to points on lamps; sampling, where rays are sent."""
 
-from hall_app.light.rays.bvh import Tree, build_tree
-from hall_app.light.rays.tracing import cast
+from hall_app.light.rays.embree import Tree, blocked, build_tree, cast
 
-__all__ = ["Tree", "build_tree", "cast"]
+__all__ = ["Tree", "blocked", "build_tree", "cast"]

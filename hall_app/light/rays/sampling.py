@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 __all__ = ["A1", "A2", "B1", "B2", "B3", "PI", "SCALE", "SHIFT", "frame", "in_threads", "seeds_of"]
 
-_CHUNK = 2048  # places a thread takes at a time
+_CHUNK = 1 << 16  # rays a thread sends at a time: some megabytes
 PI = np.float32(np.pi)
 # Steps of the lattices in 2 and 3 dimensions as fractions of 2^64.
 A1, A2 = (np.uint64(int(step * 2.0**64)) for step in (0.7548776662466927, 0.5698402909980532))
@@ -38,11 +38,14 @@ def _threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_threads(count: int, work: Callable[[int, int], object], told: Callable[[float], None] | None) -> None:
-    """work(start, stop) over all places, in threads (the kernels let go of the interpreter); told: share done."""
-    starts = range(0, count, _CHUNK)
+def in_threads(
+    count: int, rays: int, work: Callable[[int, int], object], told: Callable[[float], None] | None = None
+) -> None:
+    """work(start, stop) over all places of that many rays each, in threads (kernels and Embree let go of the
+    interpreter); told: share done."""
+    chunk = max(1, _CHUNK // max(rays, 1))
     with ThreadPoolExecutor(_threads()) as pool:
-        jobs = [pool.submit(work, start, min(start + _CHUNK, count)) for start in starts]
+        jobs = [pool.submit(work, start, min(start + chunk, count)) for start in range(0, count, chunk)]
         try:
             for done, job in enumerate(jobs):
                 job.result()

@@ -34,8 +34,7 @@ def environment_jpeg(picture: NDArray[np.float64]) -> bytes:
 
 def seen(plan: PlanFile, walls: Surfaces, light: LightMap) -> NDArray[np.float64]:
     """(256, 512, 3) linear light: the lit room round the middle of its largest bay, four rays a pixel."""
-    from hall_app.light.rays.bvh import build_tree
-    from hall_app.light.rays.tracing import cast
+    from hall_app.light.rays import build_tree, cast
 
     eye = np.array([*_middle(plan)])
     inside = walls.chart >= 0  # the room without the exhibits: none shall mirror itself
@@ -43,10 +42,10 @@ def seen(plan: PlanFile, walls: Surfaces, light: LightMap) -> NDArray[np.float64
     tree = build_tree(walls.vertices, faces)
     fine = _directions(2)
     way = fine.reshape(-1, 3)
-    face, _, bary = cast(tree, np.broadcast_to(eye, way.shape), way)
+    face, _, *bary = cast(tree, np.broadcast_to(eye, way.shape), way)
     met = np.maximum(face, 0)
     corners = light.uv[inside][met]
-    u, v = bary[:, :1], bary[:, 1:]
+    u, v = (coordinate[:, None] for coordinate in bary)
     place = corners[:, 0] * (1 - u - v) + corners[:, 1] * u + corners[:, 2] * v
     high, wide = light.image.shape[:2]
     texel = np.clip((place * [wide, high]).astype(int), 0, [wide - 1, high - 1])

@@ -166,6 +166,7 @@ def moving_mesh(
     hulls: Sequence[np.ndarray] = (),
     box: tuple[Sequence[float], Sequence[float]] | None = None,
     beside: Solid | None = None,
+    thicker: Sequence[float] = (),
 ) -> MovingGrid:
     """A body given by its vertices frame by frame, as what cloth lies on: one key for each frame.
 
@@ -174,8 +175,9 @@ def moving_mesh(
     body = (0, T - 1) that lasts (T - 1) / 25 s plays it; what is thinner than twice the way of one frame may be missed
     in between. hulls: faces (H, 3) of further closed meshes on the same vertices that are united with the body; box:
     lowest and highest corner [m] of the fields, else all frames and the band around; beside: what stands still beside
-    it (a floor: HalfSpace()). Raises SimCoreError at once where the mesh is open, ill-wound or not finite, or is turned
-    inside out in any frame, and says where.
+    it (a floor: HalfSpace()); thicker [m]: by how much each of the hulls reaches beyond its mesh, as a garment worn
+    beneath another does (none given: not at all). Raises SimCoreError at once where the mesh is open, ill-wound or not
+    finite, or is turned inside out in any frame, and says where.
     """
     from sim_core.cloth.contact.distance_field import checked_cell, checked_mesh, field_and_faces, inside_out
 
@@ -201,17 +203,25 @@ def moving_mesh(
     for hull in hulls:
         parts.append(np.array(triangles("moving mesh: hulls", hull, frames.shape[1]), np.int32, order="C"))
     whole_faces = np.concatenate(parts)
-    digest = hashlib.sha256(frames.tobytes() + whole_faces.tobytes()).hexdigest()[:16]
+    beyond = [finite("moving mesh: thicker [m]", reach, least=0, most=FURTHEST) for reach in thicker]
+    beyond = beyond or [0.0] * len(hulls)
+    if len(beyond) != len(hulls):
+        raise SimCoreError(
+            f"moving mesh: thicker has {len(beyond)} lengths – give one for each of {len(hulls)} hulls"
+        )
+    told = frames.tobytes() + whole_faces.tobytes() + repr(([len(part) for part in parts], beyond)).encode()
+    digest = hashlib.sha256(told).hexdigest()[:16]
 
     near: dict[int, np.ndarray] = {}  # the nearest faces of the keys made last
 
     def key(k: int) -> np.ndarray:
         values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
         before = len(faces)
-        for hull in parts[1:]:
+        for hull, reach in zip(parts[1:], beyond, strict=True):
             other, face = field_and_faces(frames[k], hull, cell=cell, band=band, box=(low, high))
+            other, face = other - reach, np.where(face < 0, -1, face + before)
             nearer = other < values
-            values, nearest = np.where(nearer, other, values), np.where(nearer, face + before, nearest)
+            values, nearest = np.where(nearer, other, values), np.where(nearer, face, nearest)
             before += len(hull)
         for old in [j for j in near if abs(j - k) > 1]:
             del near[old]

@@ -14,9 +14,9 @@ from sim_core.cloth.scenes.catalogue import (
 )
 from sim_core.cloth.scenes.fidelity import FILE, Asked, Choice, bounds, choose, law_terms, table
 from sim_core.cloth.scenes.limb import limb_mesh
-from sim_core.cloth.scenes.pilots import GRID, PILOTS, apart, gap, grid_film, pilot
 from sim_core.cloth.scenes.regular_sheets import disc, equilateral_sheet, sheet_of
 from sim_core.cloth.scenes.teapot import teapot_mesh, teapot_solid
+from sim_core.cloth.scenes.trial_runs import GRID, TRIAL_EDGES, apart, gap, grid_film, trial_film
 
 __all__ = [
     "Asked",
@@ -25,9 +25,9 @@ __all__ = [
     "GF_CM",
     "GRID",
     "NAMES",
-    "PILOTS",
     "PINS",
     "Scene",
+    "TRIAL_EDGES",
     "apart",
     "bar",
     "bounds",
@@ -42,10 +42,10 @@ __all__ = [
     "law_terms",
     "limb_mesh",
     "material",
-    "pilot",
     "scene",
     "sheet_of",
     "table",
     "teapot_mesh",
     "teapot_solid",
+    "trial_film",
 ]

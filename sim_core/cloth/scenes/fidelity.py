@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from sim_core.cloth.scenes.catalogue import Scene, case_values, checked_cloth, checked_size, scene
-from sim_core.cloth.scenes.pilots import PILOTS, apart, gap, pilot
+from sim_core.cloth.scenes.trial_runs import TRIAL_EDGES, apart, gap, trial_film
 from sim_core.cloth.sheet.material import Material
 from sim_core.cloth.step.frame import FRAME
 from sim_core.errors import WrongArgument
@@ -100,23 +100,23 @@ def vertices(size: Sequence[float], edge: float) -> int:
     return max(12, round(size[0] * size[1] * 2 / math.sqrt(3) / edge**2))
 
 
-def law_terms(edge: float, pilot: float) -> tuple[float, float]:
-    """log(h / h0) of an edge [m] over the finer pilot's, and its square."""
-    fine = math.log(edge / pilot)
+def law_terms(edge: float, trial: float) -> tuple[float, float]:
+    """log(h / h0) of an edge [m] over the finest trial run's, and its square."""
+    fine = math.log(edge / trial)
     return fine, fine * fine
 
 
 def bounds(asked: Asked, told: Sequence[float]) -> list[tuple[float, float, float]]:
     """Edge [m], bound of the error [mm] and cost [ms a frame] of every mesh on offer, finest first; error monotone.
 
-    told: what the pilots tell [mm], law by law, see `gap`. Of several laws the one with the least margin counts. The
-    finest mesh is the one the others were measured against: from the next it is told by the law's slope, at most 1.
+    told: what the trial runs tell [mm], law by law, see `gap`. Of several laws the one with the least margin counts.
+    The finest mesh is the one the others were measured against: from the next it is told by the law's slope, at most 1.
     """
     part, best = table()[asked.kind], {}
     for law, distance in zip(part["laws"], told, strict=True):
         start, slope = law["pins"][asked.pins]
         for edge_mm, margin in zip(law["edges_mm"], law["margin"], strict=True):
-            fine, square = law_terms(edge_mm, law["pilot_mm"])
+            fine, square = law_terms(edge_mm, law["trial_edge_mm"])
             bound = distance * math.exp(start + slope * fine + law["curve"] * square) * margin
             best[edge_mm] = min(best.get(edge_mm, (math.inf, 0.0)), (margin, bound))
     found, worst, next_mm = [], 0.0, min(best)
@@ -158,8 +158,8 @@ def choose(
     _within(asked)
     part = known[name]
     frames = round(part["seconds"] / FRAME)
-    films = [pilot(asked.on(edge), asked.size, frames) for edge in PILOTS]
-    offered = bounds(asked, [gap(films[k : k + 3]) for k in range(len(PILOTS) - 2)])
+    films = [trial_film(asked.on(edge), asked.size, frames) for edge in TRIAL_EDGES]
+    offered = bounds(asked, [gap(films[k : k + 3]) for k in range(len(TRIAL_EDGES) - 2)])
     calm = 1e-3 * part.get("calm_mm", math.inf)
     kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
     if not kept:
@@ -202,8 +202,9 @@ def _up(value: float) -> str:
 def _why(
     part: dict[str, Any], tried: float, best: tuple[float, ...], coarser: list[tuple[float, ...]]
 ) -> str:
+    first, last = (1e3 * edge for edge in (TRIAL_EDGES[0], TRIAL_EDGES[-1]))
     text = (
-        f"edges of {1e3 * best[0]:.3g} mm, explicit: from {1e3 * PILOTS[0]:.0f} to {1e3 * PILOTS[-1]:.0f} mm this "
+        f"edges of {1e3 * best[0]:.3g} mm, explicit: from {first:.0f} to {last:.0f} mm this "
         f"sheet changes by {tried:.2g} mm, from which {len(part['scenes'])} measured scenes tell an error of at most "
         f"{best[1]:.2g} mm in the first {part['seconds']:g} s; "
     )

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from sim_core.body.motion import eased
 from sim_core.body.pose import Pose
 from sim_core.cloth import Contact, Phase
 from sim_core.cloth.step import FRAME
-from sim_core.garment.outfit import Layer, Step
+from sim_core.garment.outfit import Belt, Layer, Step
 from sim_core.garment.pattern import Spot, Tie
 
-__all__ = ["Course", "Moves", "Timed", "courses", "eased", "frames"]
+__all__ = ["Course", "Moves", "Timed", "courses", "frames"]
 
 Pinned = Spot | str
 
@@ -46,11 +47,12 @@ class Timed:
 
 @dataclass(frozen=True)
 class Course:
-    """One run of the engine. closed: whether seams are welded; ties: those that hold in it."""
+    """One run of the engine. closed: whether seams are welded; ties, belts: those that hold in it."""
 
     closed: bool
     contact: Contact
     ties: tuple[Tie, ...] = ()
+    belts: tuple[Belt, ...] = ()
     steps: tuple[Timed, ...] = ()
 
     def count(self) -> int:
@@ -76,11 +78,6 @@ def frames(step: Step) -> int:
     return max(1, round(step.seconds / FRAME)) if step.timed else 0
 
 
-def eased(t: float) -> float:
-    """Arms start and stop gently."""
-    return 0.35 * t + 0.65 * t * t * (3 - 2 * t)
-
-
 @dataclass
 class _State:
     """Where the reading of the steps is."""
@@ -89,6 +86,7 @@ class _State:
     closed: bool = False
     drawn: bool = False  # whether seams or ties of this run have been drawn together
     ties: tuple[Tie, ...] = ()
+    belts: tuple[Belt, ...] = ()
     pins: tuple[Pinned, ...] = ()
     poses: list[Pose] = field(default_factory=list)
     way: list[int] = field(default_factory=lambda: [0])  # of each key, how many pose steps are behind it
@@ -105,7 +103,7 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
 
     def cut() -> None:
         if timed:
-            runs.append(Course(state.closed, state.contact, state.ties, tuple(timed)))
+            runs.append(Course(state.closed, state.contact, state.ties, state.belts, tuple(timed)))
             timed.clear()
 
     for step in program.steps:
@@ -122,11 +120,16 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
             state.pins = tuple(pin for pin in state.pins if step.spots and pin not in step.spots)
         else:
             joining = _joining(layer.pattern.ties, step)
-            if step.do == "close" and not joining:  # a pattern without ties has nothing to close
+            if (
+                step.do == "close" and not joining and step.belt is None
+            ):  # a pattern without ties has nothing to close
                 continue
             if set(joining) - set(state.ties):
                 cut()
                 state.ties, state.drawn = (*state.ties, *(t for t in joining if t not in state.ties)), False
+            if step.belt is not None:
+                cut()
+                state.belts, state.drawn = (*state.belts, step.belt), False
             timed.append(_timed(step, state, pose))
     cut()
     return tuple(runs), Moves(tuple(state.poses), _shares(state.poses))
@@ -134,7 +137,7 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
 
 def _joining(ties: Sequence[Tie], step: Step) -> tuple[Tie, ...]:
     """The ties that a step closes, none where it closes none."""
-    if step.do != "close" and not step.ties:
+    if step.do != "close" and not step.ties or step.belt is not None and not step.ties:
         return ()
     return tuple(tie for tie in ties if not step.ties or tie.name in step.ties)
 
@@ -144,7 +147,7 @@ def _timed(step: Step, state: _State, pose: Pose) -> Timed:
     if step.do == "pose":
         begin, end, count = state.poses[-1], step.pose or pose, frames(step)
         state.poses += [begin.towards(end, eased(k / count)) for k in range(1, count + 1)]
-    draws = step.do == "sew" or (bool(state.ties) and not state.drawn)
+    draws = step.do == "sew" or (bool(state.ties or state.belts) and not state.drawn)
     sewing = (0.0, 0.0)
     if draws and not state.drawn:
         sewing, state.drawn = (1.0, 0.0), True

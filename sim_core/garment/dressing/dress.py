@@ -13,25 +13,27 @@ from typing import Any
 import numpy as np
 
 from sim_core.body.pose import Pose
-from sim_core.cloth import Checkpoint, Drape, Holds, Phase, drape
+from sim_core.cloth import Checkpoint, Drape, Holds, drape
 from sim_core.cloth.run.drape_run import ENGINE_VERSION
-from sim_core.garment.dressing.course import Course, courses
-from sim_core.garment.dressing.fitting import check_fits
+from sim_core.errors import SimCoreError
+from sim_core.garment.dressing.course import Course, courses, frames
+from sim_core.garment.dressing.fitting import check_fits, first_positions
 from sim_core.garment.dressing.materials import Materials, materials_of
-from sim_core.garment.dressing.places import Places
+from sim_core.garment.dressing.places import Places, belt_pairs
 from sim_core.garment.dressing.quality import measured, unrest
-from sim_core.garment.dressing.records import Clock, versions
+from sim_core.garment.dressing.records import Clock, Kept, forget, versions
 from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
-from sim_core.garment.dressing.symmetry import SEWN, let_go_whole, mirrored
+from sim_core.garment.dressing.symmetry import let_go_whole, mirrored
 from sim_core.garment.dressing.wearing import Trail, Wearing
 from sim_core.garment.garment import Garment
-from sim_core.garment.outfit import Layer, Outfit
+from sim_core.garment.outfit import Belt, Layer, Outfit
 from sim_core.garment.placement import Flat
 from sim_core.garment.settled import Settled
 
 __all__ = ["Frame", "dress"]
 
 GAP = 0.004  # [m] from the middle, which the fronts of one half do not pass: there is nothing beyond to touch
+NEAR_FLOOR = 0.05  # [m] from which on cloth may touch the floor when it has been let go
 
 Progress = Callable[[float, str], None]
 
@@ -51,17 +53,19 @@ def dress(
     *,
     progress: Progress | None = None,
     on_frame: Callable[[Frame], None] | None = None,
-    checkpoint: Path | None = None,
+    checkpoint: Path | Checkpoint | None = None,
 ) -> tuple[Garment, ...]:
     """Dresses the outfit; equal inputs give equal bits on one machine. Returns its garments from the skin outwards.
 
     A layer is dressed over those before it, which keep where they came to rest, or move with the wearer as they did.
     A mirrored pattern on a wearer that stands like its own mirror image is dressed as one half against its image and
     then let go as a whole until that rests. Any other garment is dressed whole.
-    checkpoint: file to go on from, others are written beside it; an interrupted dressing comes to the same bits.
+    checkpoint: a name beside which states are kept to go on from, until all is done; or a `Checkpoint`, with keep until
+    the caller, who has more to do, calls `forget`. An interrupted dressing comes to the same bits.
     Raises SimCoreError, before anything runs, where cloth or ties cannot go where they shall.
     """
     check_fits(outfit)
+    place = checkpoint if isinstance(checkpoint, Checkpoint) or checkpoint is None else Checkpoint(checkpoint)
     done: list[Garment] = []
     trails: list[Trail] = []
     weights = np.cumsum([0.0, *(_work(outfit, layer) for layer in outfit.layers)])
@@ -75,14 +79,12 @@ def dress(
                 f"{layer.name}, {label}" if len(outfit.layers) > 1 else label,
             )
 
-        dressing = _Dressing(outfit, number, tuple(trails), told if progress else None, on_frame, checkpoint)
+        dressing = _Dressing(outfit, number, tuple(trails), told if progress else None, on_frame, place)
         garment, trail = dressing.result()
         done.append(garment)
         trails.append(trail)
-    if checkpoint is not None:
-        for number in range(len(outfit.layers)):
-            for end in ("npz", "trail.npz"):
-                checkpoint.with_name(f"{checkpoint.name}.layer{number}.{end}").unlink(missing_ok=True)
+    if place is not None and not place.keep:
+        forget(Path(place.path))
     return tuple(done)
 
 
@@ -108,35 +110,40 @@ class _Dressing:
         trails: tuple[Trail, ...],
         progress: Progress | None,
         on_frame: Callable[[Frame], None] | None,
-        checkpoint: Path | None,
+        checkpoint: Checkpoint | None,
     ) -> None:
         self.outfit, self.number, self.layer = outfit, number, outfit.layers[number]
         self.runs, self.moves = courses(self.layer, outfit.pose)
         self.wearing = Wearing(outfit, self.moves, trails)
         self.half = mirrored(outfit, number, self.moves)
         self.progress, self.on_frame = progress, on_frame
-        self.checkpoint = checkpoint and checkpoint.with_name(f"{checkpoint.name}.layer{number}")
+        self.kept = checkpoint and Kept(checkpoint, number)
         self.cut = self.layer.cut
         self.cloth = self.cut if self.half else self.layer.cloth
         self.trail: list[tuple[float, np.ndarray]] = []
+        self.belts: dict[Belt, tuple[np.ndarray, np.ndarray]] = {}
 
     def result(self) -> tuple[Garment, Trail]:
         """The garment, and how it moved with the wearer; of an earlier, interrupted dressing if that came so far."""
         inputs = self._inputs()
-        kept = self._kept(inputs)
-        if kept is not None:
-            return kept
+        beneath = self.kept if self._is_beneath() else None
+        if beneath and (finished := beneath.finished(inputs)):
+            return finished
         clock, busy = Clock(), time.process_time()
         materials = materials_of(self.layer, self.cloth, self.layer.place.hanging(self.cloth))
         clock.lap("weave")
         ground = self.wearing.ground(self.layer)
-        start = self._start(ground)
+        # The floor costs a little in every step: it is there for cloth that can reach it.
+        start = first_positions(self.outfit.key(self.number), self.layer, self.cloth, ground)
+        floor = self.outfit.wearer is not None and float(start[:, 1].min()) < NEAR_FLOOR
+        self.wearing = replace(self.wearing, floor=floor)
         clock.lap("placing")
         sheet, runs, gap = self._run(materials, start)
         garment = self._garment(materials, sheet, runs)
         end = self.runs[-1].steps[-1].step
         if self.half and end.still:
-            garment, last = let_go_whole(garment, end, self.progress)
+            hooks = self._hooks(len(self.runs), lambda x: x[garment.weld])
+            garment, last = let_go_whole(garment, end, hooks)
             runs = [*runs, last]
         clock.lap("drape")
         clock.laps["drape_cpu"] = round(time.process_time() - busy, 2)
@@ -164,7 +171,8 @@ class _Dressing:
             **({"stand": asdict(self.outfit.stand)} if self.outfit.stand else {}),
         )
         trail = self._trail(garment)
-        self._keep(garment, trail)
+        if beneath:
+            beneath.finish(garment, trail)
         if self.progress:
             self.progress(1.0, "done")
         return garment, trail
@@ -176,22 +184,12 @@ class _Dressing:
         text = json.dumps([ENGINE_VERSION, told], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
-    def _start(self, ground: Any) -> np.ndarray:
-        """Positions (P, 3) [m] of the pattern vertices before anything is let go."""
-        layer, rng = self.layer, np.random.default_rng(self.layer.seed)
-        if isinstance(layer.place, Flat) and self.cloth is not self.cut:
-            return layer.place.whole(layer.pattern, self.cut, ground)
-        if self.half or not layer.place.halves:
-            return layer.place.start(layer.pattern, self.cloth, ground, rng)
-        own = layer.place.start(layer.pattern, self.cut, ground, rng)
-        return np.concatenate([own, own * [-1.0, 1.0, 1.0]]) if self.cloth is not self.cut else own
-
     def _run(self, materials: Materials, start: np.ndarray) -> tuple[SewnSheet, list[Drape], float | None]:
         """All runs of the engine: the last sheet, what each came to, the gap of the seams before they were welded."""
         panels = self.layer.pattern.panels
         apart = np.array([k if panel.along else 0 for k, panel in enumerate(panels)] or [0])
         kind, apart = materials.of_faces(self.cloth), apart[self.cloth.panel % len(apart)]
-        solid, first, gap = self.wearing.solid(half=self.half), 0, None
+        solid, gap = self.wearing.solid(half=self.half), None
         x, v = start, np.zeros_like(start)
         sheet: SewnSheet | None = None
         done: list[Drape] = []
@@ -206,6 +204,7 @@ class _Dressing:
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
             places = Places(self.layer, self.cut, self.cloth, sheet)
+            self._lay_belts(course, sheet, x)
             moving = self.outfit.wearer is not None
             phases = [timed.phase(places.vertices, moving=moving) for timed in course.steps]
             done.append(
@@ -217,22 +216,20 @@ class _Dressing:
                     collider=solid,
                     contact=self._contact(course),
                     holds=self._holds(sheet, course, places, x),
-                    **self._hooks(sheet, number, first, phases),
+                    **self._hooks(number, lambda x, sheet=sheet: self._both(x[sheet.number])),
                 )
             )
-            x, v, first = done[-1].positions, done[-1].velocities, first + done[-1].frames
+            x, v = done[-1].positions, done[-1].velocities
         assert sheet is not None
-        for number in range(len(self.runs)):
-            if file := self._file(number):
-                file.unlink(missing_ok=True)
         return sheet, done, gap
 
     def _contact(self, course: Course) -> Any:
         """How it touches; over a round bar further off, so that the chords of the mesh keep clear of it, too."""
         if self.outfit.stand is None:
             return course.contact
-        # Centroids lie lower than midpoints: L^2 / 6R against L^2 / 8R.
-        sagitta = self.layer.edge**2 / (6 * self.outfit.stand.bar_radius)
+        # Centroids lie lower than midpoints: L^2 / 6R against L^2 / 8R, and a chord across the bar by R at most.
+        radius = self.outfit.stand.bar_radius
+        sagitta = min(self.layer.edge**2 / (6 * radius), radius)
         return replace(course.contact, clearance=course.contact.clearance + sagitta)
 
     def _holds(self, sheet: SewnSheet, course: Course, places: Places, x: np.ndarray) -> Holds:
@@ -243,6 +240,9 @@ class _Dressing:
         low[sheet.middle] = high[sheet.middle] = 0.0
         bounds = {"low": low, "high": high} if self.half else {}
         pairs, ends = places.pairs(course)
+        for belt in course.belts:
+            pairs = np.concatenate([pairs, self.belts[belt][0]])
+            ends = np.concatenate([ends, self.belts[belt][1]])
         return Holds.of(
             count,
             pairs=pairs,
@@ -253,6 +253,20 @@ class _Dressing:
             **bounds,
         )
 
+    def _lay_belts(self, course: Course, sheet: SewnSheet, x: np.ndarray) -> None:
+        """Belts that join in this run go round the cloth as it lies at x (V, 3) [m]; they stay where they are then."""
+        figure = self.wearing.figure
+        for belt in course.belts:
+            if belt in self.belts or figure is None:
+                continue
+            pose = self.moves.poses[course.steps[0].keys[0]]
+            centre = figure.mannequin.landmarks(pose)[belt.mark] + [0.0, belt.rise, 0.0]
+            centre[[0, 2]] = figure.middle(pose, float(centre[1]))
+            try:
+                self.belts[belt] = belt_pairs(x, sheet.sheet.faces, centre, belt.length, self.layer.edge)
+            except SimCoreError as error:
+                raise SimCoreError(f"{self.outfit.key(self.number)}.step: belt: {error}") from error
+
     def _gap(self, x: np.ndarray) -> float:
         """Largest distance [m] of two pattern vertices at x (P, 3) that are one point of the closed garment."""
         low, high = (np.full((self.cloth.closed.max() + 1, 3), fill) for fill in (np.inf, -np.inf))
@@ -260,30 +274,39 @@ class _Dressing:
         np.maximum.at(high, self.cloth.closed, x)
         return float(np.linalg.norm(high - low, axis=1).max())
 
-    def _hooks(self, sheet: SewnSheet, number: int, first: int, phases: list[Phase]) -> dict[str, Any]:
-        """What one run reports of itself as a part of the whole."""
-        whole = sum(course.count() for course in self.runs)
-        own = self.runs[number].count()
-        before = sum(course.count() for course in self.runs[:number])
-        keys = [key for timed in self.runs[number].steps for key in _keys(timed.keys, timed.step.seconds)]
+    def _hooks(self, number: int, spread: Callable[[np.ndarray], np.ndarray]) -> dict[str, Any]:
+        """What run `number` of the engine reports as a part of the whole, and where its state is kept.
+
+        spread: positions (P, 3) of all pattern vertices from those (V, 3) of the run. The number after the last one is
+        the run in which the whole garment comes to rest that was dressed as one half.
+        """
+        counts, last = [course.count() for course in self.runs], self.runs[-1].steps[-1].step
+        if self.half and last.still:
+            counts.append(2 * frames(last))
+        before, own, whole = sum(counts[:number]), counts[number], sum(counts)
+        steps = self.runs[number].steps if number < len(self.runs) else ()
+        keys = [key for timed in steps for key in _keys(timed.keys, timed.step.seconds)]
+        keys = keys or [len(self.moves.poses) - 1]
+        sewn = number == len(self.runs) or self.runs[number].closed
+        welded = sewn or not any(course.closed for course in self.runs)
 
         def told(share: float, label: str) -> None:
             assert self.progress is not None
-            self.progress((SEWN if self.half else 0.97) * (before + share * own) / whole, label)
+            self.progress(0.97 * (before + share * own) / whole, label)
 
         def heard(index: int, x: np.ndarray) -> None:
             key = keys[min(index, len(keys) - 1)]
-            positions = self._both(x[sheet.number])
-            if self.runs[number].closed or not any(course.closed for course in self.runs):
+            positions = spread(x)
+            if welded:
                 self._follow(key, positions)
             if self.on_frame is not None:
                 self.on_frame(Frame(self.number, positions, self.moves.poses[key]))
 
-        listens, file = self.on_frame is not None or self._is_beneath(), self._file(number)
+        listens = self.on_frame is not None or self._is_beneath()
         return {
             "progress": told if self.progress else None,
             "on_frame": heard if listens else None,
-            "checkpoint": file and Checkpoint(file, keep=True),
+            "checkpoint": self.kept and self.kept.state(number),
         }
 
     def _both(self, x: np.ndarray) -> np.ndarray:
@@ -369,29 +392,6 @@ class _Dressing:
         shares = np.array([share for share, _ in self.trail] + [1.0])
         frames = [np.asarray(x[first], float) for _, x in self.trail]
         return Trail(garment.faces, shares, np.stack([*frames, garment.positions]))
-
-    def _file(self, number: int) -> Path | None:
-        return self.checkpoint and self.checkpoint.with_name(f"{self.checkpoint.name}.{number}")
-
-    def _kept(self, inputs: str) -> tuple[Garment, Trail] | None:
-        """A layer that was finished before the dressing was interrupted."""
-        if self.checkpoint is None or not self._is_beneath():
-            return None
-        file = self.checkpoint.with_name(f"{self.checkpoint.name}.npz")
-        trail = self.checkpoint.with_name(f"{self.checkpoint.name}.trail.npz")
-        if not (file.is_file() and trail.is_file()):
-            return None
-        garment = Garment.load(file)
-        if garment.provenance.get("inputs") != inputs:
-            return None
-        with np.load(trail) as data:
-            return garment, Trail(data["faces"], data["shares"], data["frames"])
-
-    def _keep(self, garment: Garment, trail: Trail) -> None:
-        if self.checkpoint is None or not self._is_beneath():
-            return
-        np.savez(self.checkpoint.with_name(f"{self.checkpoint.name}.trail.npz"), **trail.__dict__)
-        garment.save(self.checkpoint.with_name(f"{self.checkpoint.name}.npz"))
 
 
 def _keys(ends: tuple[int, int], seconds: float) -> list[int]:

@@ -41,7 +41,7 @@ def materials_of(layer: Layer, cloth: Cloth, hanging: float) -> Materials:
     panels = layer.pattern.panels
     for name, doubled in [(p.name, p.doubled) for p in panels] or [("cloth", False)]:
         weave = layer.weave_of(name)
-        cloth_kind = layer.weave_key(name)
+        cloth_kind = weave.key
         first = not solved
         if cloth_kind not in solved:
             solved[cloth_kind] = parameters_of(weave, layer.yarns(name))

@@ -1,4 +1,5 @@
-"""Whether overlapping cloth lies in the order it is meant to: bands over bodies, one front over the other."""
+"""Whether cloth that overlaps itself lies in the order it is meant to: one front over the other, a wrap's end over its
+begin."""
 
 from __future__ import annotations
 
@@ -6,37 +7,39 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from sim_core.garment.garment import Garment
-from sim_core.garment.pattern import SIDES, Pattern
+from sim_core.garment.pattern import Pattern
+from sim_core.garment.placement import Flat, Placement, Wrapped
 
 __all__ = ["layer_order", "overlap"]
 
 REACH = 0.03  # [m] within which cloth lies on other cloth
 FACING = 0.7  # cosine between the way to other cloth and the outward normal of the wearer: it lies over or under it
 SLIGHT = 0.0005  # [m] by which cloth may lie under what it should lie over: the shell's own give
+AHEAD = 0.05  # [m] below the shoulder fold in front: what lies nearer is no front
+ASIDE = 0.03  # [m] from the middle of the wearer to that of a front that is one side's
 
 
-def layer_order(garment: Garment, over: str = "left") -> int:
-    """How many vertices of a front (or a band's, by `layer` of the panels) lie under what they should lie over.
+def layer_order(garment: Garment, place: Placement) -> int:
+    """How many vertices of the outer front, or of a wrap's end, lie under what they should lie over.
 
-    Outwards is away from what lies beneath. over: the side of the wearer whose front is outside. 0 of a garment that
-    says nothing of its order, or does not say what it lies on.
+    Outwards is away from what lies beneath. 0 of a garment that does not say what it lies on, and of ways of placing
+    that give no order.
     """
-    under, _ = overlap(garment, over)
+    under, _ = overlap(garment, place)
     return under
 
 
-def overlap(garment: Garment, over: str = "left") -> tuple[int, int]:
-    """Vertices of the outer front that lie under the inner one, and those that lie over it."""
-    pattern = Pattern.from_dict(garment.cut) if garment.cut.get("panels") else None
-    if (
-        pattern is None
-        or garment.settled is None
-        or not garment.settled.beneath.surfaces
-        or not pattern.mirror
-    ):
+def overlap(garment: Garment, place: Placement) -> tuple[int, int]:
+    """Vertices of what should lie outside that lie under the rest, and those that lie over it."""
+    if garment.settled is None or not garment.settled.beneath.surfaces:
         return 0, 0
-    other = "right" if over == "left" else "left"
-    outer, inner = (_front(garment, pattern, f" {side}") for side in (over, other))
+    if isinstance(place, Flat) and garment.cut.get("panels"):
+        left, right = _fronts(garment)
+        outer, inner = (left, right) if place.over == "left" else (right, left)
+    elif isinstance(place, Wrapped):
+        outer, inner = _wraps(garment)
+    else:
+        return 0, 0
     if not len(outer) or not len(inner):
         return 0, 0
     field = garment.settled.beneath.field()
@@ -52,16 +55,30 @@ def overlap(garment: Garment, over: str = "left") -> tuple[int, int]:
     return int((facing & (height < -SLIGHT)).sum()), int((facing & (height > SLIGHT)).sum())
 
 
-def _front(garment: Garment, pattern: Pattern, side: str) -> np.ndarray:
-    """Draped vertices of the front panels of one side that no seam shares with the other."""
-    assert side in SIDES
-    own: list[np.ndarray] = []
-    rest: list[np.ndarray] = []
+def _fronts(garment: Garment) -> tuple[np.ndarray, np.ndarray]:
+    """Draped vertices of the wearer's left front and of the right one, that no seam shares with anything else.
+
+    A panel is of the side its cloth in front lies on, however far it goes beyond the middle.
+    """
+    count = len(garment.panels) // (2 if Pattern.from_dict(garment.cut).mirror else 1)
+    bands = [panel.get("along") is not None for panel in garment.cut["panels"]]
+    sides: dict[str, list[np.ndarray]] = {"left": [], "right": [], "": []}
     for number, name in enumerate(garment.panels):
-        faces = garment.pattern_faces[garment.panel == number]
-        used = np.unique(faces)
-        ahead = used[garment.pattern[used, 1] > 0.05]
-        (own if name.endswith(side) else rest).append(garment.weld[ahead])
-    mine = np.unique(np.concatenate([np.zeros(0, int), *own]))
-    others = np.unique(np.concatenate([np.zeros(0, int), *rest]))
-    return np.setdiff1d(mine, others)
+        used = np.unique(garment.pattern_faces[garment.panel == number])
+        ahead = used[garment.pattern[used, 1] > AHEAD]
+        middle = float(garment.pattern[ahead, 0].mean()) if len(ahead) else 0.0
+        side = name.rpartition(" ")[2] if count < len(garment.panels) else ""
+        if not side and abs(middle) > ASIDE and not bands[number]:
+            side = "left" if middle > 0 else "right"
+        sides[side if side in sides else ""].append(garment.weld[ahead])
+    left, right, rest = (np.unique(np.concatenate([np.zeros(0, int), *own])) for own in sides.values())
+    mine, others = np.setdiff1d(left, right), np.setdiff1d(right, left)
+    return np.setdiff1d(mine, rest), np.setdiff1d(others, rest)
+
+
+def _wraps(garment: Garment) -> tuple[np.ndarray, np.ndarray]:
+    """Draped vertices of a wrap's second half and of its first: the later cloth lies over the earlier."""
+    x = garment.pattern[:, 0]
+    middle = 0.5 * (x.min() + x.max())
+    later, earlier = (np.unique(garment.weld[side]) for side in (x > middle, x < middle))
+    return np.setdiff1d(later, earlier), np.setdiff1d(earlier, later)

@@ -1,4 +1,4 @@
-"""Which vertices of a sheet are meant by places of a pattern: what is pinned, what seams and ties draw together."""
+"""Which vertices of a sheet are meant: what is pinned, what seams, ties and belts draw together."""
 
 from __future__ import annotations
 
@@ -6,13 +6,22 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
+from sim_core.garment.dressing.sections import hull_girth
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Spot
 
-__all__ = ["Places", "nearest"]
+__all__ = ["Places", "belt_pairs", "nearest"]
+
+OPEN = (
+    np.pi / 2
+)  # [rad] that cloth round the body may leave free; a sleeve beside it leaves more than twice that
+APART = 1.5  # mesh steps between two points of a belt
 
 
 @dataclass(frozen=True)
@@ -80,3 +89,45 @@ def nearest(cloth: Cloth, cut: Cloth, spot: Spot) -> list[int]:
         away = np.hypot(*(cloth.vertices[own] - [x, spot.place[1]]).T)
         found.append(int(own[np.argmin(away)]))
     return found
+
+
+def belt_pairs(
+    x: np.ndarray, faces: np.ndarray, centre: np.ndarray, length: float, edge: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Neighbours (K, 2) on a closed line of vertices of x (V, 3) [m] about centre (3,) [m], at its height, and how far
+    apart (K,) [m] they end, `length` [m] together. In every direction the line takes the outermost cloth.
+
+    A belt longer than the line is as long as that. Raises SimCoreError where no cloth goes round there.
+    """
+    own = _round(x, faces, centre)
+    if not len(own):
+        raise SimCoreError(
+            f"no cloth goes round the wearer {centre[1]:.2f} m above the floor – move the belt"
+        )
+    away = x[own][:, [0, 2]] - centre[[0, 2]]
+    count = max(12, int(hull_girth(away) / (APART * edge)))
+    sector = ((np.arctan2(away[:, 0], away[:, 1]) / (2 * np.pi) + 0.5) * count).astype(int) % count
+    order = np.lexsort((np.linalg.norm(away, axis=1), sector))
+    outermost = order[np.flatnonzero(np.diff(sector[order], append=-1))]
+    ring = own[outermost]
+    pairs = np.column_stack([ring, np.roll(ring, -1)]).astype(np.int32)
+    apart = np.linalg.norm(x[pairs[:, 0]] - x[pairs[:, 1]], axis=1)
+    return pairs, apart * min(1.0, length / float(apart.sum()))
+
+
+def _round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """Vertices (N,) next to the height of `centre` of the cloth that goes round it, without sleeves beside."""
+    above = x[faces, 1] > centre[1]
+    cut = faces[above.any(1) & ~above.all(1)]
+    number = np.arange(3 * len(cut)).reshape(-1, 3) // 3
+    graph = coo_array((np.ones(cut.size), (number.ravel(), len(cut) + cut.ravel())), (len(cut) + len(x),) * 2)
+    part = connected_components(graph, directed=False)[1][: len(cut)]
+    way = x[cut].mean(1) - centre
+    direction = np.arctan2(way[:, 0], way[:, 2])
+    own = [np.zeros((0, 3), np.int32)]
+    for number in range(part.max(initial=-1) + 1):
+        mine = part == number
+        ahead = np.sort(direction[mine])
+        if np.diff(ahead, append=ahead[0] + 2 * np.pi).max() < OPEN:
+            own.append(cut[mine])
+    return np.unique(np.concatenate(own))

@@ -14,7 +14,6 @@ from sim_core.garment.dressing.order import layer_order
 from sim_core.garment.garment import Garment
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Pattern
-from sim_core.garment.placement import Flat
 
 __all__ = ["mass", "measured", "seam_gap", "unrest"]
 
@@ -26,7 +25,8 @@ def unrest(run: Drape) -> dict[str, float]:
 
 
 def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
-    """Inside of what lies beneath, strain, crossings of itself and of the wrong order, seams, how halves differ."""
+    """Inside of what lies beneath, strain, crossings of itself and of the wrong order, seams' gap and greatest ease,
+    how halves differ."""
     assert garment.settled is not None
     found = [
         metrics.penetration(garment.positions, garment.faces, *solid)
@@ -41,11 +41,14 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
         "area_strain_p95": float(np.percentile(strain, 95)),
         "area_strain_max": float(strain.max()),
         "self_intersections": metrics.intersections(garment.positions, garment.faces),
-        "layer_order": layer_order(garment, layer.place.over) if isinstance(layer.place, Flat) else 0,
+        "layer_order": layer_order(garment, layer.place),
     }
+    if garment.settled.beneath.floor:
+        errors["inside_vertices"] += int((garment.positions[:, 1] < 0.0).sum())
     errors["mass_kg"] = mass(garment)
     if layer.pattern.seams:
         errors["seam_gap_m"] = seam_gap(garment, layer.cloth)
+        errors["seam_ease"] = max((fit.ease for fit in layer.cut.fits), default=0.0)
     if layer.pattern.mirror:
         worn = garment.worn()
         half = len(worn) // 2

@@ -4,11 +4,11 @@ and whether the whole garment agrees with what its half came to."""
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from sim_core.cloth import Drape
-from sim_core.cloth.run.drape_run import Progress
 from sim_core.garment.dressing.course import Moves
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import standing
@@ -18,19 +18,17 @@ from sim_core.garment.pattern import Spot
 __all__ = ["let_go_whole", "mirrored"]
 
 SLACK = 1e-6  # [m]
-SEWN, DONE = 0.9, 0.97  # share of a layer's progress that half of it takes, and the whole's rest after it
 
 
-def let_go_whole(garment: Garment, rest: Step, progress: Progress | None) -> tuple[Garment, Drape]:
+def let_go_whole(garment: Garment, rest: Step, hooks: dict[str, Any]) -> tuple[Garment, Drape]:
     """A garment whose half came to rest, let go as a whole until that rests, in up to twice the time of the step.
 
     Stacked folds bear on each other in turn, and the whole takes them in another turn than its half did: its halves
-    differ by a little in the end.
+    differ by a little in the end. hooks: progress, on_frame and checkpoint of `drape`.
     """
     assert garment.settled is not None
     phase = replace(garment.settled.phase(2 * rest.seconds, rest.label), rest=rest.still)
-    told = progress and (lambda share, label: progress(SEWN + (DONE - SEWN) * share, label))
-    last = standing(garment)([phase], progress=told)
+    last = standing(garment)([phase], **hooks)
     return replace(garment, positions=last.positions), last
 
 
@@ -50,6 +48,8 @@ def _alike(layer: Layer) -> bool:
     pattern, steps = layer.pattern, layer.program.steps
     spots = [spot for step in steps for spot in step.spots if isinstance(spot, Spot)]
     if not (pattern.mirror and layer.place.halves) or pattern.ties or any(spot.side for spot in spots):
+        return False
+    if any(step.belt is not None for step in steps):
         return False
     lying = [panel.outline()[:, 0].min() for panel in pattern.panels if panel.along is None]
     return min(lying) > -SLACK

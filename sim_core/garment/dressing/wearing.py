@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from sim_core.body import Beneath, Figure, Surface
-from sim_core.cloth import MovingGrid, Solid
-from sim_core.garment.dressing.capped import capped
+from sim_core.cloth import HalfSpace, MovingGrid, Solid
+from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Moves
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.placement import WORN, Ground
 
-__all__ = ["Trail", "Wearing"]
+__all__ = ["Trail", "Wearing", "capped"]
 
 MARGIN = 0.06  # [m] of the fields around what lies beneath
 SETTLED = 0.2  # share of the way, at its end, on which a garment beneath goes over to where it came to rest
@@ -45,11 +45,12 @@ class Trail:
 
 @dataclass(frozen=True)
 class Wearing:
-    """The wearer and what it wears, in the poses of `moves`."""
+    """The wearer and what it wears, in the poses of `moves`; floor: whether what is dressed may reach it."""
 
     outfit: Outfit
     moves: Moves
     trails: tuple[Trail, ...] = ()
+    floor: bool = False
 
     @cached_property
     def figure(self) -> Figure | None:
@@ -84,7 +85,7 @@ class Wearing:
             return Beneath(stand=self.outfit.stand)
         (body,) = self.figure.beneath(self.moves.poses[key]).surfaces
         surfaces = [body, *(Surface(x, faces, thicker=WORN) for x, faces in self.meshes(key))]
-        return Beneath(tuple(surfaces), cell=self.figure.cell, box=self._box(half=half))
+        return Beneath(tuple(surfaces), cell=self.figure.cell, box=self._box(half=half), floor=self.floor)
 
     def solid(self, *, half: bool) -> Solid | MovingGrid:
         """What the cloth is kept out of; of a wearer that moves, its fields made when they are needed."""
@@ -99,6 +100,7 @@ class Wearing:
             count,
             lambda key: self.beneath(key, half=half).field().values,
             self._name(half),
+            beside=HalfSpace() if self.floor else None,
         )
 
     def _name(self, half: bool) -> str:
@@ -121,3 +123,33 @@ class Wearing:
         reach = cell * float(np.ceil(max(high[0], -low[0]) / cell))
         first = -2 * cell if half else -reach
         return (first, float(low[1]), float(low[2])), (reach, float(high[1]), float(high[2]))
+
+
+def capped(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices (V + L, 3) and faces of a mesh whose L border loops are closed by fans about their middles.
+
+    Raises SimCoreError where the border is no set of loops.
+    """
+    ahead = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64)
+    key = ahead[:, 0] * len(vertices) + ahead[:, 1]
+    free = ahead[~np.isin(key, ahead[:, 1] * len(vertices) + ahead[:, 0])]
+    following = dict(zip(free[:, 0].tolist(), free[:, 1].tolist(), strict=True))
+    if len(following) != len(free):
+        raise SimCoreError("capped: the border touches itself – weld the garment first")
+    middles, fans = [], []
+    while following:
+        first, at = next(iter(following.items()))
+        loop = [first]
+        del following[first]
+        while at != first:
+            loop.append(at)
+            if at not in following:
+                raise SimCoreError("capped: the border ends – the faces are wound unevenly")
+            at = following.pop(at)
+        centre = len(vertices) + len(middles)
+        middles.append(vertices[loop].mean(0))
+        ring = np.array(loop)
+        fans.append(np.column_stack([np.roll(ring, -1), ring, np.full(len(ring), centre)]))
+    if not middles:
+        return vertices, faces
+    return np.concatenate([vertices, middles]), np.concatenate([faces, *fans]).astype(np.int32)

@@ -1,13 +1,11 @@
-"""A garment as fine as it is looked at: levels of its own pattern, thinned meshes of what is worn beneath."""
+"""A garment as fine as it is looked at: its drape thinned, and of who wears it what can be seen."""
 
-from sim_core.garment.levels.coarser import choose_detail, detail, locate
+from sim_core.garment.levels.coarser import choose_detail
 from sim_core.garment.levels.figure import shown_figure
 from sim_core.garment.levels.thinning import Thinning
 
 __all__ = [
     "Thinning",
     "choose_detail",
-    "detail",
-    "locate",
     "shown_figure",
 ]

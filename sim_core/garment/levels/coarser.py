@@ -1,4 +1,4 @@
-"""Levels of detail: the drape thinned where it is flat, or its pattern meshed again, coarser, and sampled."""
+"""Levels of detail: the drape thinned where it is flat, as far as what is seen of it allows."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from sim_core import metrics
 from sim_core.cloth import Solid
 from sim_core.cloth.contact import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet.sheet import face_edge_table
-from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.levels.thinning import Thinning
 from sim_core.garment.pattern.pattern import Pattern
@@ -22,41 +20,6 @@ SHARES = tuple(
 )  # of the triangles, tried in turn
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
 _TRYING = 0.016  # [m] the same while levels are tried; a seventh of the samples
-
-
-def detail(
-    garment: Garment, edge: float, *, solid: Solid | None = None, spacing: float = _SPACING
-) -> Garment:
-    """The garment on a mesh of step `edge` [m]; its distance from the original, measured every `spacing` [m], is noted.
-
-    Texture coordinates and outlines stay exact, and twins on a welded seam stay in one place. Where a chord of the
-    coarser mesh would cut into the stand, or into `solid`, the mesh is moved out. Raises SimCoreError where the
-    garment does not tell how it was cut.
-    """
-    if not garment.cut:
-        raise SimCoreError(f"garment {garment.name}: does not tell how it was cut – bake it again")
-    coarse = _sampled(garment, Pattern.from_dict(garment.cut), edge)
-    if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
-        solid = garment.settled.beneath.solid()
-    if solid is not None:
-        coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
-    return _measured(garment, coarse, spacing, edge=edge)
-
-
-def _sampled(garment: Garment, pattern: Pattern, edge: float) -> Garment:
-    """The pattern meshed again; every new point where the drape has it, twins at their mean."""
-    cloth = pattern.whole(pattern.cloth(edge))
-    vertices, faces, panel = cloth.vertices, cloth.faces, cloth.panel
-    owner, weld = cloth.panel_of, cloth.closed
-    worn, out = garment.worn(), np.zeros((len(vertices), 3))
-    for number in range(len(garment.panels)):
-        own = garment.pattern_faces[garment.panel == number]
-        new = np.flatnonzero(owner == number)
-        face, weight = locate(vertices[new], garment.pattern, own)
-        out[new] = np.einsum("nk,nkc->nc", weight, worn[own[face]])
-    count = np.bincount(weld)
-    mean = np.stack([np.bincount(weld, out[:, c]) / count for c in range(3)], axis=1)
-    return replace(garment, pattern=vertices, pattern_faces=faces, weld=weld, panel=panel, positions=mean)
 
 
 def thinned(
@@ -103,75 +66,39 @@ def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid |
     return coarse
 
 
-def _measured(garment: Garment, coarse: Garment, spacing: float, **facts: float) -> Garment:
+def _measured(garment: Garment, coarse: Garment, spacing: float) -> Garment:
     """The coarse level with its size and its distance from the garment noted."""
     apart = metrics.hausdorff(
         garment.positions, garment.faces, coarse.positions, coarse.faces, spacing=spacing
     )
     errors = {"mean_m": apart.mean, "p99_m": apart.p99, "max_m": apart.max}
-    return coarse.noted(detail={**facts, "triangles": len(coarse.faces), "hausdorff": errors})
+    return coarse.noted(detail={"triangles": len(coarse.faces), "hausdorff": errors})
 
 
-def choose_detail(
-    garment: Garment,
-    budget: float,
-    *,
-    edges: Sequence[float] | None = None,
-    solid: Solid | None = None,
-) -> Garment:
+def choose_detail(garment: Garment, budget: float, *, solid: Solid | None = None) -> Garment:
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
-    The garment is thinned by steps until it fails; with `edges`, mesh steps [m], it is meshed again instead, finest
-    first. Levels are tried on few samples and the chosen one is measured again on many; where it fails then, the
-    level before it is taken. The garment itself is returned when none will do. The choice and all that was tried go
-    into the provenance.
+    The garment is thinned by steps until it fails. Levels are tried on few samples and the chosen one is measured again
+    on many; where it fails then, the level before it is taken. The garment itself is returned when none will do. Where
+    a chord would cut into the stand, or into `solid`, the mesh is moved out. The choice and all that was tried go into
+    the provenance.
     """
-    if edges is None:
-        counts = [round(len(garment.faces) * share) for share in SHARES]
-        levels = thinned(garment, counts, solid=solid, spacing=_TRYING)
-    else:
-        levels = (detail(garment, float(edge), solid=solid, spacing=_TRYING) for edge in sorted(edges))
+    counts = [round(len(garment.faces) * share) for share in SHARES]
     tried: list[dict[str, float]] = []
     fitting: list[Garment] = []
-    for coarse in levels:
+    for coarse in thinned(garment, counts, solid=solid, spacing=_TRYING):
         facts = coarse.provenance["detail"]
         p99 = facts["hausdorff"]["p99_m"]
-        tried.append({**{k: v for k, v in facts.items() if k != "hausdorff"}, "p99_m": p99})
+        tried.append({"triangles": facts["triangles"], "p99_m": p99})
         if p99 > budget:
             break
         fitting.append(coarse)
     for coarse in reversed(fitting):
-        facts = dict(coarse.provenance["detail"])
-        edge = {"edge": facts["edge"]} if "edge" in facts else {}
-        best = _measured(garment, coarse, _SPACING, **edge)
-        if best.provenance["detail"]["hausdorff"]["p99_m"] <= budget:
-            chosen = best.provenance["detail"]
+        best = _measured(garment, coarse, _SPACING)
+        chosen = best.provenance["detail"]
+        if chosen["hausdorff"]["p99_m"] <= budget:
             return best.noted(detail={**chosen, "budget_m": budget, "tried": tried})
     return garment.noted(detail={"triangles": len(garment.faces), "budget_m": budget, "tried": tried})
-
-
-def locate(points: np.ndarray, rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Face (N,) and barycentric weights (N, 3) of points (N, 2) in a flat mesh; nearest face at the border."""
-    corner = rest[faces]
-    tree = KDTree(corner.mean(1))
-    count = min(24, len(faces))
-    _, near = tree.query(points, k=count)
-    near = near.reshape(len(points), count)
-    a, b, c = (corner[near, k] for k in range(3))
-    area = _cross(b - a, c - a)
-    p = points[:, None]
-    weight = (
-        np.stack([_cross(b - p, c - p), _cross(c - p, a - p), _cross(a - p, b - p)], axis=-1)
-        / area[..., None]
-    )
-    best = weight.min(-1).argmax(1)
-    rows = np.arange(len(points))
-    chosen = np.clip(weight[rows, best], 0.0, 1.0)
-    return near[rows, best], chosen / chosen.sum(1, keepdims=True)
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def _cleared(positions: np.ndarray, faces: np.ndarray, solid: Solid) -> np.ndarray:

@@ -9,27 +9,36 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
-from sim_core.body import Figure, Mannequin, Pose, Stand, pose_named
+from sim_core.body import Figure, Mannequin, Motion, Pose, Stand, pose_named
 from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
 from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
-from sim_core.garment.outfit.steps import Step, Touch
-from sim_core.garment.outfit.tables import LayerTable, OutfitTable, Place, PoseTable, ProgramTable, StepTable
+from sim_core.garment.outfit.steps import Belt, Step, Touch
+from sim_core.garment.outfit.tables import (
+    LayerTable,
+    MotionTable,
+    OutfitTable,
+    Place,
+    PoseTable,
+    ProgramTable,
+    StepTable,
+)
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.pattern.tables import CutProblem, read_spot
 from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Wrapped
 from sim_core.validation.files import read_toml, shown
-from sim_core.weave import Weave
+from sim_core.weave import Loom, Weave
 
-__all__ = ["default_program", "load_outfit"]
+__all__ = ["default_program", "load_motion", "load_outfit"]
 
 LOOK = 0.02  # [m] cell of the field by which a figure is tried
 READ_BY = {  # keys that few kinds of steps read
     "at": ("pin", "release"),
     "pose": ("pose",),
+    "belt": ("close",),
     "seconds": ("sew", "close", "pose", "settle", "rest"),
 }
 WAYS: dict[str, type[Placement]] = {
@@ -51,10 +60,23 @@ def load_outfit(path: Path, content: Path | None = None) -> Outfit:
     try:
         read = OutfitTable.model_validate(values)
     except ValidationError as error:
-        raise FileProblem(f"{path}: {_first(error, OutfitTable)}") from error
+        raise FileProblem(f"{path}: {_first(error)}") from error
     folder = content or (path.parent.parent if path.parent.name == "outfits" else path.parent)
     reader = _Reader(path, folder)
     return reader.outfit(read)
+
+
+def load_motion(path: Path) -> Motion:
+    """The motion of a file. Raises FileProblem naming file, key, value and remedy."""
+    values = read_toml(path, "a motion file (TOML); it needs [[key]] tables of seconds and pose")
+    try:
+        read = MotionTable.model_validate(values)
+    except ValidationError as error:
+        raise FileProblem(f"{path}: {_first(error)}") from error
+    reader = _Reader(path, path.parent)
+    return Motion(
+        tuple((key.seconds, reader.pose(f"key.{k}.pose", key.pose)) for k, key in enumerate(read.key, 1))
+    )
 
 
 class _Reader:
@@ -62,18 +84,29 @@ class _Reader:
 
     def __init__(self, path: Path, folder: Path) -> None:
         self._path, self._folder = path, folder
+        self._loom = Loom()
 
     def outfit(self, read: OutfitTable) -> Outfit:
         if (read.wearer is None) == (read.stand is None):
             raise self._wrong(
                 "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
             )
-        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer))
+        wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer), read.size)
         stand = None if read.stand is None else self._of("stand", lambda: Stand(**read.stand.model_dump()))  # type: ignore[union-attr]
-        if stand is not None and read.pose is not None:
-            raise self._wrong("pose", "a stand has none – leave it out")
+        for key in ("pose", "size", "motion"):
+            if stand is not None and key in read.model_fields_set:
+                raise self._wrong(key, "a stand has none – leave it out")
         pose = self.pose("pose", read.pose) if wearer is not None else T_POSE
+        if read.study is not None:
+            self._file("study", read.study)
+            for k, table in enumerate(read.layer, 1):
+                if table.edge is not None:
+                    raise self._wrong(
+                        f"layer.{k}.edge", "mesh steps are chosen by the study – leave out one of both"
+                    )
+        motion = load_motion(self._file("motion", read.motion)) if read.motion is not None else None
         layers = [self.layer(f"layer.{k}", table, wearer is None) for k, table in enumerate(read.layer, 1)]
+        self._check_belts(layers, wearer)
         if stand is not None and len(layers) > 1:
             raise self._wrong("layer.2", "a stand bears one layer – give a wearer")
         for k, layer in enumerate(layers):
@@ -83,11 +116,21 @@ class _Reader:
                 )
         name = read.name or self._path.stem
         title = {str(language): words for language, words in read.title.items()}
-        return Outfit(name, tuple(layers), wearer, stand, pose, title)
+        return Outfit(name, tuple(layers), wearer, stand, pose, motion, title, str(self._path))
 
-    def _wearer(self, file: Path) -> Mannequin:
+    def _check_belts(self, layers: Sequence[Layer], wearer: Mannequin | None) -> None:
+        known = wearer.landmarks() if wearer is not None else {}
+        for number, layer in enumerate(layers, 1):
+            for k, step in enumerate(layer.program.steps, 1):
+                if step.belt is not None and step.belt.mark not in known:
+                    raise self._wrong(
+                        f"layer.{number}.step.{k}.belt.mark",
+                        f"no landmark {shown(step.belt.mark)} – landmarks: {', '.join(known) or 'none on a stand'}",
+                    )
+
+    def _wearer(self, file: Path, size: float) -> Mannequin:
         """A figure that cloth can lie on: closed, with hands."""
-        wearer = Mannequin.load(file)
+        wearer = Mannequin.load(file).sized(size)
         try:
             Figure(wearer, cell=LOOK).field(T_POSE)
         except SimCoreError as error:
@@ -121,7 +164,11 @@ class _Reader:
             program = replace(program, steps=steps)
         _check_order(self, key, program.steps, pattern)
         edge = pattern.edge if table.edge is None else table.edge
-        return Layer(table.name or pattern.name, pattern, weave, place, program, edge, weaves, table.seed)
+        name = table.name or pattern.name
+        return self._of(
+            f"{key}.name",
+            lambda: Layer(name, pattern, weave, place, program, edge, weaves, table.seed, self._loom),
+        )
 
     def _pattern(self, key: str, table: LayerTable) -> Pattern:
         file = self._file(f"{key}.pattern", table.pattern)
@@ -184,6 +231,7 @@ class _Reader:
             spots=tuple(spots),
             ties=tuple(table.ties),
             pose=None if table.pose is None else self.pose(f"{key}.pose", table.pose),
+            belt=None if table.belt is None else Belt(**table.belt.model_dump()),
             touch=Touch(**table.touch.model_dump()),
             label=table.label or table.do,
         )
@@ -252,7 +300,7 @@ def default_program(way: str) -> Program:
     return Program(steps, contact, start, table.sag, table.fold, table.limit, table.even)
 
 
-def _first(error: ValidationError, table: type[BaseModel]) -> str:
+def _first(error: ValidationError) -> str:
     """The first problem of a file in one line: key, what, value."""
     first = error.errors()[0]
     key = ".".join(str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from sim_core.body.mannequin import Mannequin
+from sim_core.body.motion import Motion
 from sim_core.body.pose import T_POSE, Pose
 from sim_core.body.stand import Stand
 from sim_core.cloth import Contact
@@ -18,10 +17,12 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.outfit.steps import Step
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement import Placement
-from sim_core.weave import Weave, solve
+from sim_core.validation.files import shown
+from sim_core.weave import Loom, Weave
 
 __all__ = ["Layer", "Outfit", "Program"]
 
+FILE_NAME = re.compile(r"\w([\w -]{0,78}\w)?")
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
@@ -46,7 +47,7 @@ class Program:
 @dataclass(frozen=True)
 class Layer:
     """One garment of an outfit. weaves: the cloth's first, then those of panels by name; edge [m]: its mesh step;
-    seed: of the folds' irregularity."""
+    seed: of the folds' irregularity; loom: remembers what its weaves are like, one for all layers of an outfit."""
 
     name: str
     pattern: Pattern
@@ -56,6 +57,13 @@ class Layer:
     edge: float
     weaves: Mapping[str, Weave] = field(default_factory=dict)
     seed: int = 0
+    loom: Loom = field(default_factory=Loom, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if not FILE_NAME.fullmatch(self.name):
+            raise SimCoreError(
+                f"layer {shown(self.name)}: its name names a file, too – use letters, digits, _, - and inner spaces"
+            )
 
     def weave_of(self, panel: str) -> Weave:
         """What a panel is cut from."""
@@ -71,38 +79,34 @@ class Layer:
         """The whole of it."""
         return self.pattern.whole(self.cut)
 
-    def weave_key(self, panel: str = "") -> str:
-        """Equal for panels, of this layer or another, that are cut from one weave."""
-        return json.dumps(self.weave_of(panel).to_dict(), sort_keys=True)
-
-    @cached_property
-    def _solved(self) -> dict[str, Any]:
-        return {}
-
     def yarns(self, panel: str = "") -> Any:
         """The yarns at rest of what a panel is cut from, as `sim_core.weave.solve` gives them; each weave once."""
-        key = self.weave_key(panel)
-        if key not in self._solved:
-            self._solved[key] = solve(self.weave_of(panel), particles=True)
-        return self._solved[key]
+        return self.loom.yarns(self.weave_of(panel))
 
 
 @dataclass(frozen=True)
 class Outfit:
-    """Layers from the skin outwards on a wearer in a pose, or on a stand."""
+    """Layers from the skin outwards on a wearer in a pose, or on a stand; motion: how the wearer moves once dressed;
+    source: the file it was read from."""
 
     name: str
     layers: tuple[Layer, ...]
     wearer: Mannequin | None = None
     stand: Stand | None = None
     pose: Pose = T_POSE
+    motion: Motion | None = None
     title: Mapping[str, str] = field(default_factory=dict)
+    source: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
         if not self.layers:
             raise SimCoreError(f"outfit {self.name}: no layer – a [[layer]] names a pattern and a weave")
         if (self.wearer is None) == (self.stand is None):
             raise SimCoreError(f"outfit {self.name}: give a wearer or a stand, one of both")
+
+    def key(self, number: int) -> str:
+        """How errors name a layer, 0 next to the skin: file and key."""
+        return f"{self.source or f'outfit {self.name}'}: layer.{number + 1}"
 
     def coarser(self, edge: float) -> Outfit:
         """The same with every layer meshed at `edge` [m]."""
@@ -114,11 +118,12 @@ class Outfit:
         """What decides the result, as plain values."""
         return {
             "name": self.name,
-            "wearer": self.wearer and [self.wearer.name, float(np.abs(self.wearer.vertices).sum())],
+            "wearer": self.wearer and self.wearer.digest(),
             "stand": self.stand and repr(self.stand),
             "pose": self.pose.table(),
             "layers": [
                 {
+                    "name": layer.name,
                     "pattern": layer.pattern.to_dict(),
                     "weave": layer.weave.to_dict(),
                     "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},

@@ -9,10 +9,20 @@ from sim_core.body.pose import Pose
 from sim_core.cloth import Contact
 from sim_core.garment.pattern import Spot
 
-__all__ = ["GRAVITY", "Do", "Step", "Touch"]
+__all__ = ["GRAVITY", "Belt", "Do", "Step", "Touch"]
 
 GRAVITY = 9.81  # [m/s2]
 Do = Literal["sew", "weld", "pin", "release", "close", "pose", "settle", "rest"]
+
+
+@dataclass(frozen=True)
+class Belt:
+    """A belt round the wearer, over the layer: at the height of the landmark `mark`, rise [m] above it; drawn to its
+    length [m]."""
+
+    length: float
+    mark: str = "waist"
+    rise: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -42,8 +52,8 @@ class Step:
     """One dressing step.
 
     do: sew – seams are drawn together, weld – they become one cloth, pin, release – `spots` are held and let go,
-    close – `ties` are drawn to their length (none named: all), pose – the wearer goes to `pose` (None: the outfit's),
-    settle, rest – time passes, at most until eight frames in a row move less than `still` [m, p99].
+    close – `ties` are drawn to their length (none named: all), or `belt` is, pose – the wearer goes to `pose` (None:
+    the outfit's), settle, rest – time passes, at most until eight frames in a row move less than `still` [m, p99].
     seconds; gravity [m/s2] from..to; damping [1/s]; friction on what lies beneath (None: the cloth's own); speed
     [m/s] that nothing passes; touch: how it touches from here on; label: what the progress says.
     """
@@ -57,6 +67,7 @@ class Step:
     still: float | None = None
     spots: tuple[Spot | Literal["nape", "top"], ...] = ()
     ties: tuple[str, ...] = ()
+    belt: Belt | None = None
     pose: Pose | None = None
     touch: Touch = Touch()
     label: str = ""

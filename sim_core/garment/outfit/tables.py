@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from sim_core.garment.outfit.outfit import FILE_NAME
 from sim_core.garment.outfit.steps import GRAVITY, Do
 from sim_core.garment.pattern.tables import Measure, SpotTable
 
-__all__ = ["LayerTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
+__all__ = ["LayerTable", "MotionTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
 
-NAME = r"^[^/\\\x00-\x1f]+$"  # files are named after it
+
+def _names_a_file(name: str) -> str:
+    if not FILE_NAME.fullmatch(name):
+        raise ValueError("names a file, too – use letters, digits, _, - and inner spaces, 80 at most")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_names_a_file)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[float, Field(strict=True, gt=0, le=20, allow_inf_nan=False)]
 Share = Annotated[float, Field(strict=True, gt=0, le=1, allow_inf_nan=False)]
@@ -43,6 +51,12 @@ class TouchTable(Table):
 PoseTable = str | dict[str, Any]
 
 
+class BeltTable(Table):
+    length: Length = Field(description="[m] it is drawn to")
+    mark: str = Field("waist", description="landmark of the wearer at whose height it goes round")
+    rise: Number = Field(0.0, ge=-1, le=1, description="[m] above it")
+
+
 class StepTable(Table):
     do: Do = Field(description="sew, weld, pin, release, close, pose, settle or rest")
     seconds: Number = Field(0.0, ge=0, le=600, description="how long")
@@ -59,6 +73,7 @@ class StepTable(Table):
         [], description="what is pinned: nape, top or places"
     )
     ties: list[str] = Field([], description="which ties are closed; none named: all")
+    belt: BeltTable | None = Field(None, description="a belt that is drawn to its length")
     pose: PoseTable | None = Field(None, description="pose to go to; else the outfit's")
     touch: TouchTable = Field(TouchTable.model_construct(), description="how it touches from here on")
     label: str = Field("", max_length=40, description="what the progress says")
@@ -147,9 +162,7 @@ Place = Annotated[
 
 
 class LayerTable(Table):
-    name: str | None = Field(
-        None, pattern=NAME, max_length=80, description="else the pattern's; part of a file's name"
-    )
+    name: Name | None = Field(None, description="else the pattern's; part of a file's name")
     pattern: str = Field(min_length=1, description="pattern file, e.g. patterns/robe.toml")
     weave: str = Field(min_length=1, description="weave file, e.g. weaves/juan.toml")
     weaves: dict[str, str] = Field({}, description="weave files of single panels")
@@ -171,9 +184,25 @@ class StandTable(Table):
 
 
 class OutfitTable(Table):
-    name: str | None = Field(None, pattern=NAME, max_length=80)
+    name: Name | None = None
     title: Words = {}
     wearer: str | None = Field(None, description="figure file, e.g. mannequins/woman.npz")
+    size: Number = Field(1.0, ge=0.5, le=2.0, description="how many times as tall the figure is")
     stand: StandTable | None = None
     pose: PoseTable | None = Field(None, description="name of a pose, or { name, joints, shift }")
+    motion: str | None = Field(None, description="motion file, e.g. motions/raised-arms.toml")
+    study: str | None = Field(
+        None, description="what `simcore dress --study` wrote: `hall build` chooses mesh steps by it"
+    )
     layer: list[LayerTable] = Field(min_length=1, max_length=20)
+
+
+class KeyTable(Table):
+    seconds: Number = Field(gt=0, le=60, description="how long it takes to come to the pose")
+    pose: PoseTable = Field(description="name of a pose, or { name, joints, shift }")
+
+
+class MotionTable(Table):
+    name: Name | None = None
+    title: Words = {}
+    key: list[KeyTable] = Field(min_length=1, max_length=1000)

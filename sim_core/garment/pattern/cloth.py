@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from sim_core.errors import OutlineError
-from sim_core.garment.pattern.panels import Panel, Path, Seam, arc_length, at_length
-from sim_core.mesh import PanelMesh, panel_mesh
+from sim_core.garment.pattern.panels import Panel, Path, Seam
+from sim_core.mesh import PanelMesh, SeamFit, SeamSide, SewnPanel, sewn_meshes
+from sim_core.mesh import Seam as SewnSeam
 from sim_core.mesh.outline import check_edge, signed_area
 
 __all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth", "unsided"]
@@ -32,7 +32,8 @@ class Cloth:
 
     vertices (P, 2) [m] in pattern axes, each panel in its own; faces (F, 3) int32, positive area in (x, -y);
     panel (F,) and panel_of (P,) number the panels of `names`; joined (P,): vertices joined flat have one number,
-    closed (P,): once all seams are sewn; pairs (K, 2): what `sewn` draws together; middle (M,): vertices on x = 0.
+    closed (P,): once all seams are sewn; pairs (K, 2): what `sewn` draws together; middle (M,): vertices on x = 0;
+    paths: the vertices along each leg; fits: how each seam of two sides came out, of one half.
     """
 
     names: tuple[str, ...]
@@ -45,6 +46,7 @@ class Cloth:
     pairs: np.ndarray
     middle: np.ndarray
     paths: dict[str, np.ndarray]
+    fits: tuple[SeamFit, ...] = ()
 
     @staticmethod
     def of(mesh: PanelMesh, name: str = "cloth") -> Cloth:
@@ -91,6 +93,7 @@ class Cloth:
             np.concatenate([joined[ends], joined[ends + count]]).astype(np.int32).reshape(-1, 2),
             np.zeros(0, np.int32),
             paths,
+            self.fits,
         )
 
     def _legs(self) -> Iterator[tuple[tuple[str, str], np.ndarray]]:
@@ -105,65 +108,81 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
 
     Raises OutlineError naming the panel where one cannot be meshed.
     """
-    by_name = {panel.name: panel for panel in panels}
     for panel in panels:
-        with _named(panel):
+        try:
             check_edge(edge, [panel.outline()], MOST_VERTICES)
-    marks = _marks(by_name, seams, edge)
-    vertices, faces, panel_of, owner, paths = [], [], [], [], {}
-    start = 0
-    for number, panel in enumerate(panels):
-        samples, index = _samples(panel, marks)
-        with _named(panel):
-            mesh = panel_mesh(samples, edge=edge, sampled=True)
-        for leg, where in enumerate(index):
-            paths[f"{panel.name}/{leg}"] = where + start
-        vertices.append(mesh.vertices)
-        faces.append(mesh.faces + start)
-        owner.append(np.full(len(mesh.faces), number, np.int32))
-        panel_of.append(np.full(len(mesh.vertices), number, np.int32))
-        start += len(mesh.vertices)
-    alone = np.arange(start, dtype=np.int32)
-    cloth = Cloth(
-        names=tuple(by_name),
-        vertices=np.concatenate(vertices),
-        faces=np.concatenate(faces).astype(np.int32),
-        panel=np.concatenate(owner),
-        panel_of=np.concatenate(panel_of),
-        joined=alone,
-        closed=alone,
-        pairs=np.zeros((0, 2), np.int32),
+        except OutlineError as error:
+            raise OutlineError(f"{_named(panel)}: {error}") from error
+    by_name = {panel.name: panel for panel in panels}
+    drawn = [SewnPanel(panel.outline(), _corners(panel), name=_named(panel)) for panel in panels]
+    pairs = [(seam, seam.b) for seam in seams if seam.b is not None]
+    wanted = [SewnSeam(_side(seam.a, by_name), _side(b, by_name), seam.notches) for seam, b in pairs]
+    meshes, fits = sewn_meshes(drawn, wanted, edge=edge)
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    twins: dict[str, list[np.ndarray]] = {"joined": [], "sewn": []}
+    for (seam, _), sewn, fit in zip(pairs, wanted, fits, strict=True):
+        twins[seam.kind].append(fit.pairs + starts[[sewn.a.panel, sewn.b.panel]])
+    cloth = _laid_out(panels, meshes, starts, twins)
+    middle = [cloth.along(seam.a, by_name[seam.a.panel]) for seam in seams if seam.b is None]
+    numbers = np.unique(np.concatenate([np.zeros(0, np.int32), *middle])).astype(np.int32)
+    return replace(cloth, middle=numbers, fits=tuple(fits))
+
+
+def _laid_out(
+    panels: Sequence[Panel], meshes: list[PanelMesh], starts: np.ndarray, twins: dict[str, list[np.ndarray]]
+) -> Cloth:
+    """All meshes in one list of vertices, of which each begins at `starts`; twins: (k, 2) of them that are sewn."""
+    none, count = np.zeros((0, 2), np.int64), int(starts[-1])
+    flat, sewn = (np.concatenate([none, *twins[kind]]) for kind in ("joined", "sewn"))
+    joined = _united(count, flat)
+    pairs = np.unique(np.sort(joined[sewn], axis=1), axis=0)
+    numbers = np.arange(len(panels), dtype=np.int32)
+    parts = list(zip(panels, meshes, starts.tolist(), strict=False))
+    return Cloth(
+        names=tuple(panel.name for panel in panels),
+        vertices=np.concatenate([mesh.vertices for mesh in meshes]),
+        faces=np.concatenate([mesh.faces + start for _, mesh, start in parts]).astype(np.int32),
+        panel=np.repeat(numbers, [len(mesh.faces) for mesh in meshes]),
+        panel_of=np.repeat(numbers, np.diff(starts)),
+        joined=joined,
+        closed=_united(count, np.concatenate([flat, sewn])),
+        pairs=pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32),
         middle=np.zeros(0, np.int32),
-        paths=paths,
+        paths={
+            f"{panel.name}/{leg}": index + start
+            for panel, mesh, start in parts
+            for leg, index in enumerate(_legs(panel, mesh))
+        },
     )
-    return _stitched(cloth, by_name, seams)
 
 
-@contextmanager
-def _named(panel: Panel) -> Iterator[None]:
-    try:
-        yield
-    except OutlineError as error:
-        raise OutlineError(f"panel.{panel.name}: {error}") from error
+def _named(panel: Panel) -> str:
+    """A panel as errors call it."""
+    return f"panel.{panel.name}"
 
 
-def _stitched(cloth: Cloth, panels: dict[str, Panel], seams: Sequence[Seam]) -> Cloth:
-    flat, sewn, middle = [], [], [np.zeros(0, np.int32)]
-    for seam in seams:
-        a = cloth.along(seam.a, panels[seam.a.panel])
-        if seam.b is None:
-            middle.append(a)
-            continue
-        twins = np.column_stack([a, cloth.along(seam.b, panels[seam.b.panel])])
-        (flat if seam.kind == "joined" else sewn).append(twins)
-    none = np.zeros((0, 2), np.int32)
-    joined = _united(len(cloth.vertices), np.concatenate([none, *flat]))
-    closed = _united(len(cloth.vertices), np.concatenate([none, *flat, *sewn]))
-    pairs = np.unique(np.sort(joined[np.concatenate([none, *sewn])], axis=1), axis=0)
-    values = {**cloth.__dict__, "joined": joined, "closed": closed}
-    values["pairs"] = pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32)
-    values["middle"] = np.unique(np.concatenate(middle)).astype(np.int32)
-    return Cloth(**values)
+def _corners(panel: Panel) -> list[int]:
+    """The outline point each leg begins at."""
+    return np.cumsum([0, *(len(leg) - 1 for leg in panel.legs[:-1])]).tolist()
+
+
+def _side(path: Path, panels: dict[str, Panel]) -> SeamSide:
+    """A path as the side of a seam."""
+    panel = panels[path.panel]
+    first, last = (_corners(panel)[panel.corners.index(name)] for name in (path.start, path.end))
+    return SeamSide(list(panels).index(path.panel), first, last, backward=not path.ahead)
+
+
+def _legs(panel: Panel, mesh: PanelMesh) -> list[np.ndarray]:
+    """Per leg the numbers of its vertices in the outline's order, both ends included."""
+    loop = mesh.boundary[0] if signed_area(panel.outline()) > 0 else mesh.boundary[0][::-1]
+    place = {tuple(point): k for k, point in enumerate(mesh.vertices[loop].tolist())}
+    at = [place[tuple(leg[0].tolist())] for leg in panel.legs]
+    count = len(loop)
+    return [
+        loop[np.arange(begin, begin + (end - begin - 1) % count + 2) % count]
+        for begin, end in zip(at, [*at[1:], at[0]], strict=True)
+    ]
 
 
 def _united(count: int, twins: np.ndarray) -> np.ndarray:
@@ -177,59 +196,3 @@ def _united(count: int, twins: np.ndarray) -> np.ndarray:
     rank = np.zeros(len(first), np.int32)
     rank[np.argsort(first)] = np.arange(len(first))
     return rank[label]
-
-
-def _marks(panels: dict[str, Panel], seams: Sequence[Seam], edge: float) -> dict[tuple[str, int], np.ndarray]:
-    """Arc lengths [m] of the samples on every leg, both ends included, in the outline's order."""
-    marks: dict[tuple[str, int], np.ndarray] = {}
-    for panel in panels.values():
-        for k, leg in enumerate(panel.legs):
-            length = arc_length(leg)[-1]
-            marks[panel.name, k] = np.linspace(0, length, _steps(length, edge) + 1)
-    for seam in seams:
-        if seam.b is not None:
-            _match(marks, panels, seam.a, seam.b, edge)
-    return marks
-
-
-def _match(
-    marks: dict[tuple[str, int], np.ndarray], panels: dict[str, Panel], a: Path, b: Path, edge: float
-) -> None:
-    sides = []
-    for path in (a, b):
-        panel = panels[path.panel]
-        numbers = panel.path(path.start, path.end, ahead=path.ahead)
-        sides.append((path, numbers, [arc_length(panel.legs[k])[-1] for k in numbers]))
-    most = max(sides, key=lambda side: len(side[1]))[2]
-    split = [
-        lengths if len(lengths) == len(most) else [lengths[0] * part / sum(most) for part in most]
-        for _, _, lengths in sides
-    ]
-    steps = [_steps(max(pair), edge) for pair in zip(*split, strict=True)]
-    for (path, numbers, lengths), parts in zip(sides, split, strict=True):
-        pieces = [np.linspace(0, part, n + 1) for part, n in zip(parts, steps, strict=True)]
-        if len(numbers) < len(parts):
-            offset = np.r_[0.0, np.cumsum(parts)[:-1]]
-            pieces = [np.concatenate([[0.0], *(p[1:] + o for p, o in zip(pieces, offset, strict=True))])]
-        for leg, piece, length in zip(numbers, pieces, lengths, strict=True):
-            marks[path.panel, leg] = piece if path.ahead else length - piece[::-1]
-
-
-def _steps(length: float, edge: float) -> int:
-    return max(1, int(np.ceil(length / edge - 1e-6)))
-
-
-def _samples(panel: Panel, marks: dict[tuple[str, int], np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Outline samples (n, 2), cloth on their left in (x, -y), and per leg the numbers of its samples in order."""
-    parts, index, count = [], [], 0
-    for k, leg in enumerate(panel.legs):
-        points = at_length(leg, marks[panel.name, k])
-        parts.append(points[:-1])
-        index.append(np.arange(count, count + len(points)))
-        count += len(points) - 1
-    samples = np.concatenate(parts)
-    index = [where % count for where in index]
-    if signed_area(samples) < 0:
-        samples = samples[::-1].copy()
-        index = [count - 1 - where for where in index]
-    return samples, index

@@ -1,6 +1,6 @@
 """A pattern file as a specification of GarmentCode: every half that is cut, legs as edges, seams as stitches.
 
-The file's own tables (corner names, measures, layers, dye) go along under "pattern_file", with a digest of panels and
+The file's own tables (corner names, measures, dye) go along under "pattern_file", with a digest of panels and
 stitches: while those are untouched, the way back gives the same pattern file.
 """
 

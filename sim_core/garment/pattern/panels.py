@@ -22,15 +22,14 @@ class Panel:
     """One piece of cloth.
 
     corners: names in order; legs: leg k runs from corner k to the next one, (n, 2) [m] with both ends, y down along
-    the warp; layer: which lies further out where panels overlap; doubled: cut twice as high and folded along its
-    length; along: the path of another panel that it is laid beside before sewing (None: it lies in the garment's
-    own plane, x outwards from the middle, y = 0 the shoulder fold); dye: sRGB 0..1 (None: the pattern's).
+    the warp; doubled: cut twice as high and folded along its length; along: the path of another panel that it is laid
+    beside before sewing (None: it lies in the garment's own plane, x outwards from the middle, y = 0 the shoulder
+    fold); dye: sRGB 0..1 (None: the pattern's).
     """
 
     name: str
     corners: tuple[str, ...]
     legs: tuple[np.ndarray, ...]
-    layer: int = 0
     doubled: bool = False
     along: Path | None = None
     dye: Colour | None = None
@@ -53,14 +52,15 @@ class Panel:
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Panel:
-        """The panel `to_dict` described."""
-        changed = {
-            "corners": tuple(data["corners"]),
-            "legs": tuple(np.asarray(leg, float) for leg in data["legs"]),
-            "along": Path.read(data["along"]) if data["along"] else None,
-            "dye": tuple(data["dye"]) if data["dye"] else None,
-        }
-        return Panel(**{**data, **changed})
+        """The panel `to_dict` described, also one of a garment saved when panels had a `layer`."""
+        return Panel(
+            data["name"],
+            tuple(data["corners"]),
+            tuple(np.asarray(leg, float) for leg in data["legs"]),
+            data["doubled"],
+            Path.read(data["along"]) if data["along"] else None,
+            tuple(data["dye"]) if data["dye"] else None,
+        )
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,24 @@ class Path:
 class Seam:
     """joined: flat before dressing; sewn: drawn together on the figure; middle: to its own mirror image (b None).
 
-    The first point of a meets the first point of b.
+    The first point of a meets the first point of b. notches: fractions of a's length, above 0 and below 1.
     """
 
     kind: SeamKind
     a: Path
     b: Path | None = None
+    notches: tuple[float, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """A plain dictionary that JSON can hold."""
+        told = {"kind": self.kind, "a": str(self.a), "b": self.b and str(self.b)}
+        return {**told, "notches": list(self.notches)} if self.notches else told
+
+    @staticmethod
+    def from_dict(data: dict[str, Any]) -> Seam:
+        """The seam `to_dict` described."""
+        b = Path.read(data["b"]) if data["b"] else None
+        return Seam(data["kind"], Path.read(data["a"]), b, tuple(data.get("notches", ())))
 
 
 @dataclass(frozen=True)

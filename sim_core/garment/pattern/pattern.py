@@ -13,7 +13,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment.pattern.cloth import MOST_VERTICES, Cloth, cut_cloth
 from sim_core.garment.pattern.panels import Panel, Seam, Spot, Tie, check_extent
-from sim_core.garment.pattern.panels import Path as Path_
 from sim_core.garment.pattern.tables import (
     CutProblem,
     Measure,
@@ -26,7 +25,7 @@ from sim_core.garment.pattern.tables import (
     read_measures,
 )
 from sim_core.mesh import PanelMesh, panel_mesh
-from sim_core.mesh.outline import check_count
+from sim_core.mesh.outline import check_count, check_edge, clean_contours
 from sim_core.validation.files import read_toml, shown
 
 MOST_POINTS = 5000  # of an outline
@@ -74,25 +73,16 @@ class Pattern:
         return pattern
 
     def check(self) -> None:
-        """Raises OutlineError where the outline cannot be cut: it crosses itself, has no area, …"""
+        """Raises OutlineError where an outline cannot be cut: it crosses itself, has no area, … Nothing is meshed."""
         outlines = [panel.outline() for panel in self.panels] or [self.outline]
         names = [f"panel.{panel.name}: " for panel in self.panels] or [""]
         for name, outline in zip(names, outlines, strict=True):
             try:
                 check_extent(outline)
-                check_count(self.edge, [outline], MOST_VERTICES)
+                clean_contours(outline, ())
+                check_edge(self.edge, [outline], MOST_VERTICES)
             except OutlineError as error:
                 raise OutlineError(f"{name}{error}") from error
-        if self.panels:
-            smallest = min(float(np.ptp(outline, axis=0).max()) for outline in outlines)
-            self.cloth(max(min(0.04, smallest), self.edge))
-            return
-        try:
-            panel_mesh(self.outline, edge=float(np.ptp(self.outline, axis=0).min()) / 4)
-        except OutlineError as error:
-            raise OutlineError(
-                str(error) if str(error).startswith("outline") else f"outline: {error}"
-            ) from error
 
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold: what is needed to mesh the pattern again."""
@@ -102,7 +92,7 @@ class Pattern:
             "edge": self.edge,
             "dye": self.dye and list(self.dye),
             "panels": [panel.to_dict() for panel in self.panels],
-            "seams": [{"kind": s.kind, "a": str(s.a), "b": s.b and str(s.b)} for s in self.seams],
+            "seams": [seam.to_dict() for seam in self.seams],
             "mirror": self.mirror,
             "ties": [asdict(tie) for tie in self.ties],
         }
@@ -159,9 +149,6 @@ class Pattern:
 
 
 def _restored(data: dict[str, Any]) -> Pattern:
-    seams = [
-        Seam(s["kind"], Path_.read(s["a"]), Path_.read(s["b"]) if s["b"] else None) for s in data["seams"]
-    ]
     return Pattern(
         data["name"],
         np.asarray(data["outline"], float),
@@ -169,7 +156,7 @@ def _restored(data: dict[str, Any]) -> Pattern:
         {},
         tuple(data["dye"]) if data["dye"] else None,  # type: ignore[arg-type]
         tuple(Panel.from_dict(panel) for panel in data["panels"]),
-        tuple(seams),
+        tuple(Seam.from_dict(seam) for seam in data["seams"]),
         data["mirror"],
         tuple(_tie(told) for told in data.get("ties", ())),
     )

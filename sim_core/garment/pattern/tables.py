@@ -27,6 +27,7 @@ __all__ = [
 
 Number = Annotated[float, Field(strict=True)]  # neither true nor "1"
 Measure = Number | str
+Share = Annotated[Number, Field(gt=0, lt=1)]  # of a length
 CURVE_POINTS = 49  # per curved leg
 EASE = 0.02  # sides of a seam may differ by this share
 
@@ -51,7 +52,6 @@ class PointTable(Table):
 class PanelTable(Table):
     name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
     outline: list[PointTable] = Field(min_length=3, max_length=200)
-    layer: int = Field(0, ge=0, le=9)
     doubled: bool = False
     along: str | None = None
     dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
@@ -61,6 +61,7 @@ class SeamTable(Table):
     joined: tuple[str, str] | None = None
     sewn: tuple[str, str] | None = None
     middle: str | None = None
+    notches: list[Share] = Field([], max_length=50)
 
 
 class SpotTable(Table):
@@ -188,7 +189,6 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         table.name,
         names,
         tuple(legs),
-        table.layer,
         table.doubled,
         None
         if table.along is None
@@ -234,7 +234,8 @@ def _known(path: Path, made: Mapping[str, Panel]) -> Path:
 
 def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bool) -> Seam:
     key = f"seam.{number + 1}"
-    given = [(kind, value) for kind, value in table.model_dump().items() if value is not None]
+    ways = {"joined": table.joined, "sewn": table.sewn, "middle": table.middle}
+    given = [(kind, value) for kind, value in ways.items() if value is not None]
     if len(given) != 1:
         raise CutProblem(key, "give one of joined = [a, b], sewn = [a, b] or middle = a")
     kind, value = given[0]
@@ -243,6 +244,8 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
     if kind == "middle":
         if not mirrored:
             raise CutProblem(f"{key}.middle", "only a pattern with mirror = true has a middle")
+        if table.notches:
+            raise CutProblem(f"{key}.notches", "a middle meets its own image everywhere – leave them out")
         off = max(float(np.abs(leg[:, 0]).max()) for leg in paths[0].legs(made[paths[0].panel]))
         if off > 1e-6 and made[paths[0].panel].along is None:
             raise CutProblem(
@@ -258,7 +261,7 @@ def _seam(number: int, table: SeamTable, made: Mapping[str, Panel], mirrored: bo
         raise CutProblem(
             f"{key}.{kind}", f"{counts[0]} legs meet {counts[1]} – as many on both sides, or one"
         )
-    return Seam(kind, paths[0], paths[1])  # type: ignore[arg-type]
+    return Seam(kind, paths[0], paths[1], tuple(table.notches))  # type: ignore[arg-type]
 
 
 def _check_once(seams: tuple[Seam, ...], made: Mapping[str, Panel]) -> None:

@@ -16,6 +16,8 @@ from sim_core.garment.placement.ground import Ground
 __all__ = ["Flat", "Laying", "laid"]
 
 OVER = 0.012  # [m] of the laid cloth above shoulders and arms
+ON_FLOOR = 0.002  # [m] more than it keeps from it that cloth lies above the floor
+TRAIL = 0.02  # [m] radius of the bend where it comes to lie there
 RISING = 0.07  # [m] of the shoulder fold over which a front that lies outside is raised to its height
 
 
@@ -58,16 +60,16 @@ class Flat:
         """Over the highest point of arms and shoulders, the neck left out."""
         points = ground.points()
         top = float(points[np.abs(points[:, 0]) > 0.1, 1].max()) + OVER
-        return Laying(top=top, front=self.front, back=-self.back)
+        return Laying(top=top, front=self.front, back=-self.back, floor=ground.clearance + ON_FLOOR)
 
 
 @dataclass(frozen=True)
 class Laying:
-    """Lengths in metres, y up, +z the figure's front.
+    """Lengths in metres, y up, +z the figure's front. Cloth that is longer than the way down trails on the floor.
 
     top: height of the cloth over shoulders and arms; fold: z of the shoulder fold; front, back: z of the sheets;
     bend: radius of the two bends; turn: where, along the edge before the shoulder fold, a band begins to turn upright
-    and where it has, before it meets the neck.
+    and where it has, before it meets the neck; floor: height of cloth that lies on it.
     """
 
     top: float
@@ -76,6 +78,7 @@ class Laying:
     back: float = -0.15
     bend: float = 0.04
     turn: tuple[float, float] = (0.17, 0.075)
+    floor: float = -np.inf
 
     def place(self, points: np.ndarray) -> np.ndarray:
         """Positions (N, 3) of points (N, 2) of the garment's plane: x outwards, y down in front, up in the back."""
@@ -85,7 +88,11 @@ class Laying:
         flat, quarter = reach - self.bend, self.bend * np.pi / 2
         angle = np.clip((along - flat) / self.bend, 0, np.pi / 2)
         out = np.minimum(along, flat) + self.bend * np.sin(angle)
-        down = self.bend * (1 - np.cos(angle)) + np.maximum(along - flat - quarter, 0)
+        straight = np.maximum(along - flat - quarter, 0)
+        fall = self.top - self.bend - self.floor - TRAIL
+        trail = np.clip((straight - fall) / TRAIL, 0, np.pi / 2)
+        down = self.bend * (1 - np.cos(angle)) + np.minimum(straight, fall) + TRAIL * np.sin(trail)
+        out += TRAIL * (1 - np.cos(trail)) + np.maximum(straight - fall - TRAIL * np.pi / 2, 0)
         z = self.fold + np.where(ahead, out, -out)
         return np.stack([points[:, 0], self.top - down, z], axis=1)
 

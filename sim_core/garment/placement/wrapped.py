@@ -42,6 +42,12 @@ class Wrapped:
         hull = _section(ground, top - float(high[1] - low[1]), top)
         width, room = float(high[0] - low[0]), ground.clearance + 0.002
         begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
+        lowest = top - float(high[1] - low[1])
+        if lowest < 0.0:
+            raise SimCoreError(
+                f"pattern {pattern.name}: {high[1] - low[1]:.2f} m long, {-lowest:.2f} m more than there is from "
+                f"{self.mark!r} to the floor – cut it shorter or raise it"
+            )
         closed = len(np.intersect1d(begin, end)) > 0  # sewn to itself: a tube
         need = girth(hull) + 2 * np.pi * room
         if width < need:

@@ -63,14 +63,14 @@ def _worst_spot(places, faces, movable, tried) -> np.ndarray | None:
     valence = np.bincount(faces.ravel(), minlength=len(places))
     odd = movable & ((valence < 5) | (valence > 7))
     badness = np.where(odd[faces].any(axis=1), np.maximum(cosines, ENOUGH + 1e-9), cosines)
-    for f in np.argsort(-badness)[: 4 * len(tried) + 8]:
-        if badness[f] <= ENOUGH:
-            return None
-        corners = places[faces[f]]
-        side = np.hypot(*(corners - np.roll(corners, 1, axis=0)).T).max()
-        if all(np.hypot(*(corners.mean(axis=0) - place)) > side for place in tried):
-            return faces[f]
-    return None
+    worst = np.argsort(-badness)[: 4 * len(tried) + 8]
+    worst = worst[badness[worst] > ENOUGH]
+    corners = places[faces[worst]]
+    steps = corners - np.roll(corners, 1, axis=1)
+    side = np.hypot(steps[..., 0], steps[..., 1]).max(axis=1)
+    away = corners.mean(axis=1)[:, None] - np.array(tried).reshape(-1, 2)
+    fresh = (np.hypot(away[..., 0], away[..., 1]) > side[:, None]).all(axis=1)
+    return faces[worst[fresh.argmax()]] if fresh.any() else None
 
 
 def _patch(places, faces, movable, spot) -> Patch:

@@ -9,7 +9,7 @@ from sim_core.mesh.outline.contours import CORNER_DEGREES, outline_turning
 from sim_core.mesh.outline.crossings import crossed_steps
 from sim_core.mesh.outline.size_field import SizeField
 
-__all__ = ["Rim", "sampled_contours", "sampled_rim"]
+__all__ = ["Rim", "even_places", "sampled_contours", "sampled_rim"]
 
 SPLITTING_PASSES = 12
 FINEST = 32
@@ -192,16 +192,20 @@ def _chain(
     least = max(1, -(-3 // (len(marks) - 1))) if closed else 1
     whole = set() if fixed is None else set(arc[:-1][fixed].tolist())
     at = [
-        np.array([a]) if a in whole else _even(points, arc, a, b, edge, sizes, least)
+        np.array([a]) if a in whole else even_places(points, arc, a, b, edge, sizes, least)
         for a, b in zip(marks[:-1], marks[1:], strict=True)
     ]
     return _Chain(points, arc, np.concatenate([*at, marks[-1:]]), closed, np.array(sorted(whole)))
 
 
-def _even(
+def even_places(
     points, arc, begin: float, end: float, edge: float, sizes: SizeField | None, least: int
 ) -> np.ndarray:
-    """Sample positions from begin to before end: equal steps, or steps in proportion to the size field."""
+    """Lengths [m] of samples from begin to before end: equal steps, or steps in proportion to the size field.
+
+    points: (n, 2) [m] of a chain, `arc` (n,) [m] the lengths along it; begin and end are among these.  edge: [m].
+    least: how many steps there are at least.
+    """
     if sizes is None:
         fewest = max(least, int(np.ceil((end - begin) / edge - 1e-9)))
         first, last = np.searchsorted(arc, (begin, end))

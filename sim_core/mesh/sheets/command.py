@@ -112,13 +112,18 @@ def _wide(text: str) -> int:
     return sum(0 if combining(c) else 2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
+def _plain(text: str) -> str:
+    """A text on one line, without signs that command a terminal."""
+    return "".join(sign if sign.isprintable() else "?" for sign in text)
+
+
 def _table(path: Path, rows: list[dict]) -> str:
     """The list for people."""
     head = ("piece", "layer", "width", "height", "lines", "holes", "inner", "notches", "grain", "fold")
     cells = [
         (
-            row["piece"],
-            row["layer"] or "-",
+            _plain(row["piece"]),
+            _plain(row["layer"]) or "-",
             f"{row['width_mm']:.1f} mm",
             f"{row['height_mm']:.1f} mm",
             "+".join(row["lines"]),

@@ -32,6 +32,7 @@ __all__ = [
 ]
 
 REMEDY = "give a specification as GarmentCode writes it"
+KINDS = {dict: "table", list: "list", str: "text", int: "whole number"}
 Curve = Literal["line", "quadratic", "cubic", "circle"]
 
 
@@ -150,54 +151,69 @@ def is_garment_code(path: Path) -> bool:
 def read_garment_code(path: Path, values: Any) -> GarmentCode:
     """The specification that a JSON file holds; raises FileProblem naming panel, edge or stitch and the remedy."""
     try:
-        pattern = dict(values["pattern"])
+        pattern = dict(_told("the file", values, "pattern", dict))
         properties = values.get("properties") or {}
-        per_metre = float(properties.get("units_in_meter", 100))
-        if not 1e-3 <= per_metre <= 1e6:
-            raise ValueError(f"properties.units_in_meter: {per_metre:g} – 100 for centimetres")
+        if not isinstance(properties, dict):
+            raise ValueError(f"properties: {shown(properties)} – give units_in_meter in it, or leave it out")
+        per_metre = properties.get("units_in_meter", 100)
+        if type(per_metre) not in (int, float) or not 1e-3 <= per_metre <= 1e6:
+            raise ValueError(f"properties.units_in_meter: {shown(per_metre)} – 100 for centimetres")
         coords = properties.get("curvature_coords", "relative")
         if coords not in ("relative", "absolute"):
             raise ValueError(f"properties.curvature_coords: {shown(coords)} – 'relative' or 'absolute'")
-        given = pattern.pop("panels").items()
+        given = _told("pattern", pattern, "panels", dict).items()
         panels = {str(name): _panel(str(name), panel, coords == "absolute") for name, panel in given}
-        stitches = tuple(_stitch(k, stitch, panels) for k, stitch in enumerate(pattern.pop("stitches", [])))
+        sewn = _told("pattern", {"stitches": [], **pattern}, "stitches", list)
+        stitches = tuple(_stitch(k, stitch, panels) for k, stitch in enumerate(sewn))
         rest = {key: value for key, value in values.items() if key != "pattern"}
-        return GarmentCode(panels, stitches, per_metre, rest, pattern)
-    except (KeyError, TypeError, AttributeError, IndexError) as error:
-        raise FileProblem(f"{path}: not a pattern of GarmentCode ({shown(error)}) – {REMEDY}") from error
+        others = {key: value for key, value in pattern.items() if key not in ("panels", "stitches")}
+        return GarmentCode(panels, stitches, float(per_metre), rest, others)
     except ValueError as error:
-        text = str(error)
-        raise FileProblem(f"{path}: {text}" + ("" if "–" in text else f" – {REMEDY}")) from error
+        raise FileProblem(f"{path}: {error}") from error
 
 
-def _panel(name: str, values: dict[str, Any], absolute: bool) -> CodePanel:
-    vertices = tuple(_pair(f"panel {name}: vertex {k}", v) for k, v in enumerate(values["vertices"]))
+def _told(what: str, values: Any, key: str, kind: type) -> Any:
+    """What a table says under a key; raises ValueError naming what it is of."""
+    if not isinstance(values, dict):
+        raise ValueError(f"{what}: {shown(values)} is no table – {REMEDY}")
+    if key not in values:
+        raise ValueError(f"{what}: {key}: missing – {REMEDY}")
+    if not isinstance(values[key], kind):
+        raise ValueError(f"{what}: {key}: {shown(values[key])} is no {KINDS[kind]} – {REMEDY}")
+    return values[key]
+
+
+def _panel(name: str, values: Any, absolute: bool) -> CodePanel:
+    what = f"panel {shown(name)[1:-1]}"
+    places = _told(what, values, "vertices", list)
+    vertices = tuple(_pair(f"{what}: vertex {k}", v) for k, v in enumerate(places))
     if len(set(vertices)) < 2:
-        raise ValueError(f"panel {name}: its vertices all lie in one place – give it a size")
+        raise ValueError(f"{what}: its vertices all lie in one place – give it a size")
     edges = tuple(
-        _edge(f"panel {name}: edge {k}", edge, vertices, absolute) for k, edge in enumerate(values["edges"])
+        _edge(f"{what}: edge {k}", edge, vertices, absolute)
+        for k, edge in enumerate(_told(what, values, "edges", list))
     )
     if len({edge.start for edge in edges}) < len(edges):
-        raise ValueError(f"panel {name}: its edges come twice through a vertex – go around once")
+        raise ValueError(f"{what}: its edges come twice through a vertex – go around once")
     ends = [(edge.end, edges[(k + 1) % len(edges)].start) for k, edge in enumerate(edges)]
     if len(edges) < 2 or any(end != start for end, start in ends):
-        raise ValueError(f"panel {name}: its edges do not follow each other around – order them end to start")
+        raise ValueError(f"{what}: its edges do not follow each other around – order them end to start")
     return CodePanel(vertices, edges, {k: v for k, v in values.items() if k not in ("vertices", "edges")})
 
 
 def _pair(what: str, values: Any) -> tuple[float, float]:
-    if len(values) != 2 or not all(type(v) in (int, float) and abs(v) < 1e9 for v in values):
+    numbers = isinstance(values, list) and all(type(v) in (int, float) and abs(v) < 1e9 for v in values)
+    if not numbers or len(values) != 2:
         raise ValueError(f"{what}: {shown(values)} – give two numbers")
     return values[0], values[1]
 
 
-def _edge(
-    what: str, values: dict[str, Any], vertices: tuple[tuple[float, float], ...], absolute: bool
-) -> CodeEdge:
-    start, end = values["endpoints"]
+def _edge(what: str, values: Any, vertices: tuple[tuple[float, float], ...], absolute: bool) -> CodeEdge:
+    ends = _told(what, values, "endpoints", list)
     count = len(vertices)
-    if not all(type(v) is int and 0 <= v < count for v in (start, end)) or start == end:
-        raise ValueError(f"{what}: endpoints {shown([start, end])} – two different numbers below {count}")
+    if len(ends) != 2 or not all(type(v) is int and 0 <= v < count for v in ends) or ends[0] == ends[1]:
+        raise ValueError(f"{what}: endpoints {shown(ends)} – two different numbers below {count}")
+    start, end = ends
     rest = {key: value for key, value in values.items() if key not in ("endpoints", "curvature")}
     bent = values.get("curvature")
     if bent is None:
@@ -211,10 +227,12 @@ def _edge(
         return CodeEdge(start, end, "quadratic", (point,), {**rest, "curvature": bent})
     if absolute:
         raise ValueError(f"{what}: curvature {shown(bent)} of absolute coordinates – give one control point")
-    kind, params = bent["type"], bent["params"]
+    kind, params = (
+        _told(f"{what}: curvature", bent, key, of) for key, of in (("type", str), ("params", list))
+    )
     if kind == "circle":
-        radius = params[0]
-        if len(params) != 3 or type(radius) not in (int, float) or not 0 < radius < 1e9:
+        radius = params[0] if len(params) == 3 else 0
+        if type(radius) not in (int, float) or not 0 < radius < 1e9:
             raise ValueError(f"{what}: circle {shown(params)} – give radius, large arc and direction")
         return CodeEdge(start, end, "circle", tuple(params), rest)
     if (kind, len(params)) not in (("quadratic", 1), ("cubic", 2)):
@@ -235,19 +253,20 @@ def _relative(
     return share.real, share.imag
 
 
-def _stitch(number: int, values: list[Any], panels: dict[str, CodePanel]) -> Stitch:
+def _stitch(number: int, values: Any, panels: dict[str, CodePanel]) -> Stitch:
+    what = f"stitch {number}"
+    if not isinstance(values, list):
+        raise ValueError(f"{what}: {shown(values)} – two sides in a list")
     sides = []
     for side in values[:2]:
-        name, edge = side["panel"], side["edge"]
+        name, edge = _told(what, side, "panel", str), _told(what, side, "edge", int)
         if name not in panels or type(edge) is not int or not 0 <= edge < len(panels[name].edges):
-            raise ValueError(f"stitch {number}: {shown(side)} – no such panel or edge")
+            raise ValueError(f"{what}: {shown(side)} – no such panel or edge")
         sides.append((name, edge))
     if values[2:] not in ([], ["right_wrong"]) or len(sides) != 2:
-        raise ValueError(
-            f"stitch {number}: {shown(values[2:])} – two sides, and 'right_wrong' or nothing after them"
-        )
+        raise ValueError(f"{what}: {shown(values)} – two sides, and 'right_wrong' or nothing after them")
     if sides[0] == sides[1]:
-        raise ValueError(f"stitch {number}: {shown(values[0])} to itself – name two edges")
+        raise ValueError(f"{what}: {shown(values[0])} to itself – name two edges")
     return Stitch(sides[0], sides[1], bool(values[2:]))
 
 

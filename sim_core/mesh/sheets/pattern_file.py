@@ -99,7 +99,7 @@ def pattern_text(name: str, code: GarmentCode, edge: float) -> tuple[str, list[s
     """The text of a pattern file, panels in millimetres as the paper has them and stitches as seams; and remarks."""
     remarks: list[str] = []
     names = _keys(list(code.panels))
-    parts = [f"name = {json.dumps(name, ensure_ascii=False)}\nedge = {edge:.6g}"]
+    parts = [f"name = {_text(name)}\nedge = {edge:.6g}"]
     scale = 1000 / code.per_metre
     for panel, key in names.items():
         held = code.panels[panel]
@@ -108,7 +108,7 @@ def pattern_text(name: str, code: GarmentCode, edge: float) -> tuple[str, list[s
                 f"{name}: panel {panel} has {len(held.edges)} edges – a pattern file bears {MOST_LEGS}"
             )
         rows = [f"  {{ {_row(code, panel, k, scale)} }}," for k in range(len(held.edges))]
-        title = f"# {panel}\n" if panel != key else ""
+        title = f"# {_text(panel)[1:-1]}\n" if panel != key else ""
         parts.append(f'{title}[[panel]]\nname = "{key}"\noutline = [\n' + "\n".join(rows) + "\n]")
     for number, stitch in enumerate(code.stitches):
         sides = (
@@ -215,7 +215,9 @@ def _key(key: Any) -> str:
 
 
 def _text(value: str) -> str:
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    """A text in quotation marks; halves of signs beyond 16 bits, which no file can hold, become question marks."""
+    whole = value.encode("utf-8", "replace").decode()
+    return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _value(value: Any) -> str:

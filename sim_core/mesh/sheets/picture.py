@@ -57,12 +57,7 @@ def sheet_picture(sheet: Sheet) -> np.ndarray:
 def apart(pieces: tuple[Piece, ...]) -> list[Piece]:
     """Pieces as they lie, or in rows where some lie on each other, as sizes of one piece do."""
     shapes = [shapely.make_valid(shapely.Polygon(piece.outline)) for piece in pieces]
-    tree = shapely.STRtree(shapes)
-    first, second = tree.query(shapes, predicate="intersects")
-    a, b = (np.array([shapes[k] for k in side.tolist()], object) for side in (first, second))
-    least = np.minimum(shapely.area(a), shapely.area(b))
-    covered = (first < second) & (least > 0)
-    if not (shapely.area(shapely.intersection(a[covered], b[covered])) > OVERLAP * least[covered]).any():
+    if not _lie_on_each_other(shapes):
         return list(pieces)
     sizes = np.array([np.ptp(piece.outline, axis=0) for piece in pieces]) + GAP
     across = max(float(sizes[:, 0].max()), 1.4 * float(np.sqrt(sizes.prod(axis=1).sum())))
@@ -74,6 +69,20 @@ def apart(pieces: tuple[Piece, ...]) -> list[Piece]:
         laid.append(_scaled(piece, piece.outline.min(axis=0) - (x, y), 1.0))
         x, tall = x + wide, max(tall, high)
     return laid
+
+
+def _lie_on_each_other(shapes: list) -> bool:
+    """Whether two areas share more than a little; looked at one by one, since the first such pair decides."""
+    every = np.array(shapes, object)
+    areas = shapely.area(every)
+    tree = shapely.STRtree(every)
+    for k, shape in enumerate(shapes):
+        others = tree.query(shape, predicate="intersects")
+        others = others[(others > k) & (np.minimum(areas[others], areas[k]) > 0)]
+        shared = shapely.area(shapely.intersection(shape, every[others]))
+        if (shared > OVERLAP * np.minimum(areas[others], areas[k])).any():
+            return True
+    return False
 
 
 def _scaled(piece: Piece, low: np.ndarray, scale: float) -> Piece:

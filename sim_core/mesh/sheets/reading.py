@@ -13,9 +13,10 @@ import shapely
 
 from sim_core.errors import FileProblem, OutlineError, OutlineWarning
 from sim_core.mesh.outline.contours import LARGEST
+from sim_core.mesh.sheets.allowance import moved_outline
 from sim_core.mesh.sheets.garment_code import GarmentCode, code_sheet, is_garment_code, read_garment_code
 from sim_core.mesh.sheets.model import Piece, Sheet, Which
-from sim_core.mesh.sheets.sorting import sorted_sheet
+from sim_core.mesh.sheets.pieces import SCRIBBLES, sorted_sheet
 from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
 from sim_core.mesh.sheets.strokes.svg import svg_strokes
 from sim_core.validation.files import read_json
@@ -60,20 +61,31 @@ def read_sheet(path: Path, units: str | None = None, layer: str | None = None) -
                 f"{path}: a line leaves the range of {LARGEST:g} m – draw it nearer to the origin, or say --units"
             )
     try:
-        sheet = sorted_sheet(drawn.strokes)
+        sheet = sorted_sheet(drawn.strokes, apparel=drawn.apparel, layer=layer or "")
+        if layer and not _lying_on(sheet, layer):
+            sheet = sorted_sheet(drawn.strokes, apparel=drawn.apparel)  # names the layers that there are
+    except OutlineError as error:
+        raise FileProblem(f"{path}: {error}") from error
     except (shapely.errors.ShapelyError, ValueError) as error:
         raise FileProblem(
             f"{path}: its lines cannot be sorted ({error}) – draw plain closed outlines"
         ) from error
     if not sheet.pieces:
-        small = "closed lines of less than 2 mm" in sheet.left_out
-        remedy = "say what a drawing unit is, such as --units in" if small else "close the outline"
-        what = "only closed lines of less than 2 mm" if small else "no closed line in it that may be a piece"
+        what, remedy = _lacking(sheet)
         raise FileProblem(f"{path}: {what} – {remedy}")
     left_out = +(drawn.left_out + Counter(sheet.left_out))
     _warn_left_out(path, left_out)
     remarks, notes = (*drawn.remarks, *sheet.remarks), (*drawn.notes, *_noted(sheet))
     return _on(path, replace(sheet, left_out=dict(left_out), remarks=remarks, notes=notes), layer)
+
+
+def _lacking(sheet: Sheet) -> tuple[str, str]:
+    """What a sheet without pieces has instead of them, and what to do about it."""
+    if "closed lines of less than 2 mm" in sheet.left_out:
+        return "only closed lines of less than 2 mm", "say what a drawing unit is, such as --units in"
+    if SCRIBBLES in sheet.left_out:
+        return f"only {SCRIBBLES}", "draw outlines that go around once"
+    return "no closed line in it that may be a piece", "close the outline"
 
 
 def _noted(sheet: Sheet) -> list[str]:
@@ -101,11 +113,15 @@ def _on(path: Path, sheet: Sheet, layer: str | None) -> Sheet:
     """The pieces on one layer; raises FileProblem where there are none."""
     if layer is None:
         return sheet
-    found = tuple(piece for piece in sheet.pieces if piece.layer.lower() == layer.lower())
+    found = _lying_on(sheet, layer)
     if not found:
         known = sorted({piece.layer or "none" for piece in sheet.pieces})
         raise FileProblem(f"{path}: layer {layer!r}: no piece on it – layers: {', '.join(known[:SHOWN])}")
     return replace(sheet, pieces=found)
+
+
+def _lying_on(sheet: Sheet, layer: str) -> tuple[Piece, ...]:
+    return tuple(piece for piece in sheet.pieces if piece.layer.lower() == layer.lower())
 
 
 def panel_of(path: Path, sheet: Sheet, choice: Choice) -> tuple[Piece, str]:
@@ -152,13 +168,10 @@ def outline_along(piece: Piece, line: Which, allowance: float) -> tuple[np.ndarr
             piece.outline,
             f"piece {piece.name}: only its {other} line is drawn, taken for its {line} line too",
         )
-    away = allowance if line == "cut" else -allowance
-    moved = shapely.buffer(shapely.Polygon(piece.outline), away, join_style="mitre", mitre_limit=3)
-    if not isinstance(moved, shapely.Polygon) or moved.is_empty:
-        raise OutlineError(
-            f"piece {piece.name}: an allowance of {1000 * allowance:g} mm leaves no piece – give less"
-        )
-    return np.array(moved.exterior.coords)[:-1], ""
+    try:
+        return moved_outline(piece.outline, allowance if line == "cut" else -allowance), ""
+    except OutlineError as error:
+        raise OutlineError(f"piece {piece.name}: {error}") from error
 
 
 def _clipped(

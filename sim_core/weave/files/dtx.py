@@ -57,18 +57,19 @@ def parse_dtx(text: str) -> Wif:
     remarks += _lacking(blocks)
     table = blocks.get("color palet", blocks.get("color palette"))
     if table:
-        sections["COLOR TABLE"] = _numbered(table[1])
+        sections["COLOR TABLE"] = _numbered(table[1], first=0)
     for side, told in (("WARP", "ends"), ("WEFT", "picks")):
-        sections[side] = _side(info.get(told, ""))
-        colours = [_one_more(colour) for colour in _words(blocks, f"{side.lower()} colors")]
+        sections[side] = _side(told, info.get(told, ""))
+        colours = _words(blocks, f"{side.lower()} colors")
         sections[f"{side} COLORS"] = _numbered(colours)
-        if colours and info.get(told, "").isdigit() and len(colours) < int(info[told]):
+        announced = info.get(told, "")
+        if colours and re.fullmatch(r"\d{1,9}", announced, re.ASCII) and len(colours) < int(announced):
             remarks.append(
                 f"@@{side.title()} Colors: {len(colours)} of {info[told]} {told} – the others have the first"
             )
         # threads beyond the list have the first colour of it, as in the WIF that Fiberworks writes
         if f"{side.lower()} colors" in blocks:
-            usual = colours[0] if colours else "1" if side == "WARP" else "2"
+            usual = colours[0] if colours else "0" if side == "WARP" else "1"
             sections[side]["color"] = ("Color", usual)
         steps = _words(blocks, f"{side.lower()} spacing")
         if steps:
@@ -76,7 +77,7 @@ def parse_dtx(text: str) -> Wif:
     title = " ".join(blocks.get("description", ({}, []))[1])
     sections["TEXT"] = _keyed({"Title": title}) if title else {}
     sections["NOTES"] = _numbered(blocks.get("notes", ({}, []))[1])
-    return wif_of_sections(sections, remarks)
+    return wif_of_sections(sections, remarks, first_colour=0)
 
 
 def _blocks(text: str, remarks: list[str]) -> dict[str, Block]:
@@ -149,23 +150,18 @@ def _ones(row: str) -> str:
     return ",".join(str(k + 1) for k, place in enumerate(row) if place == "1")
 
 
-def _one_more(colour: str) -> str:
-    """The number of a colour as WIF counts; what is no number is left for the reader of colours to judge."""
-    return str(int(colour) + 1) if re.fullmatch(r"\d{1,6}", colour, re.ASCII) else colour
-
-
 def _centimetres(steps: str) -> str:
     return f"{int(steps) * SPACE:.3f}" if re.fullmatch(r"\d{1,6}", steps, re.ASCII) else steps
 
 
-def _side(threads: str) -> Section:
-    values = {"Units": "centimeters", "Spacing": f"{USUAL * SPACE:.3f}"}
-    return _keyed(values | ({"Threads": threads} if threads else {}))
+def _side(told: str, threads: str) -> Section:
+    values = _keyed({"Units": "centimeters", "Spacing": f"{USUAL * SPACE:.3f}"})
+    return values | ({"threads": (f"%%{told}", threads)} if threads else {})
 
 
 def _keyed(values: dict[str, str]) -> Section:
     return {key.lower(): (key, value) for key, value in values.items()}
 
 
-def _numbered(values: list[str]) -> Section:
-    return {str(k): (str(k), value) for k, value in enumerate(values, 1)}
+def _numbered(values: list[str], first: int = 1) -> Section:
+    return {str(k): (str(k), value) for k, value in enumerate(values, first)}

@@ -4,7 +4,8 @@
 """
 
 from sim_core.mesh.sheets.strokes.dxf import dxf_strokes
-from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke, joined
+from sim_core.mesh.sheets.strokes.joining import joined
+from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
 from sim_core.mesh.sheets.strokes.svg import svg_strokes
 
 __all__ = ["Drawn", "Stroke", "dxf_strokes", "joined", "svg_strokes"]

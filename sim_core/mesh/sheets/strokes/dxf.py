@@ -12,6 +12,7 @@ import re
 import struct
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,7 @@ import numpy as np
 from sim_core.errors import FileProblem
 from sim_core.mesh.outline.contours import LARGEST
 from sim_core.mesh.sheets.strokes.stroke import MOST_VISITED, Drawn, Stroke, visited
-from sim_core.mesh.sheets.strokes.words import spoken
+from sim_core.mesh.sheets.strokes.words import furnishes, spoken
 from sim_core.validation.files import read_bytes
 
 __all__ = ["dxf_strokes"]
@@ -30,6 +31,9 @@ METRES = {0: 1e-3, 1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 10: 0.9144, 1
 DRAWN = ("LWPOLYLINE", "POLYLINE", "LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE")
 BINARY = b"AutoCAD Binary DXF"
 SAID = re.compile(r"\s*units?\s*[:=]\s*([a-z]+)\b", re.IGNORECASE)  # AAMA-292 and ASTM D6673 say it in a text
+APPAREL = re.compile(r"\s*(piece|style|sample|pattern)\s*(name|size)\s*[:=：]", re.IGNORECASE)
+NAMED = re.compile(r"\s*(?:piece\s*name|裁片名称?|部件名称?|衣片名称?)\s*[:=：]\s*(\S[^\n]*)", re.IGNORECASE)
+SIZED = re.compile(r"\s*(?:size|尺码|号型)\s*[:=：]\s*(\S[^\n]*)", re.IGNORECASE)
 SAYING = {
     "METRIC": 1e-3,
     "ENGLISH": 0.0254,
@@ -59,10 +63,11 @@ def dxf_strokes(path: Path, metres: float | None = None) -> Drawn:
         raise FileProblem(f"{path}: not a DXF file (no section in it) – give {WHAT}")
     document, lost = _document(path, text)
     unit = document.header.get("$INSUNITS", 0)
-    scale = metres or _said(document) or METRES.get(unit)
+    texts = {block.name: list(_texts(block)) for block in (document.modelspace(), *_pieces_of(document))}
+    scale = metres or _said(texts) or METRES.get(unit)
     if scale is None:
         raise FileProblem(f"{path}: $INSUNITS {unit} – say the unit with --units, such as --units mm")
-    walk = _Walk(document, scale)
+    walk = _Walk(document, scale, _titles(texts))
     walk.left_out["INSERT of no block"] += lost
     try:
         with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
@@ -82,17 +87,42 @@ def dxf_strokes(path: Path, metres: float | None = None) -> Drawn:
     )
     with np.errstate(all="ignore"):
         turned = np.array([scale, -scale])
-        strokes = [Stroke(points * turned, closed, *rest) for points, closed, *rest in found]
-    return Drawn(strokes, walk.left_out, remarks)
+        strokes = [walk.named(Stroke(points * turned, closed, *rest)) for points, closed, *rest in found]
+    apparel = any(APPAREL.match(text) for some in texts.values() for text in some)
+    return Drawn(strokes, walk.left_out, remarks, apparel=apparel)
 
 
-def _said(document: Any) -> float | None:
+def _texts(block: Any) -> Iterator[str]:
+    """What is written in a block."""
+    for entity in block:
+        kind = entity.dxftype()
+        if kind in ("TEXT", "MTEXT", "ATTDEF"):
+            text = entity.plain_text() if kind == "MTEXT" else str(entity.dxf.get("text", ""))
+            yield text.encode("utf-8", "replace").decode()
+
+
+def _said(texts: dict[str, list[str]]) -> float | None:
     """Metres of a drawing unit, from the text in which an AAMA or ASTM file says its units."""
-    blocks = [document.modelspace(), *_pieces_of(document)]
-    for entity in (e for block in blocks for e in block if e.dxftype() == "TEXT"):
-        if (found := SAID.match(str(entity.dxf.get("text", "")))) is not None:
+    for text in (text for some in texts.values() for text in some):
+        if (found := SAID.match(text)) is not None:
             return SAYING.get(found[1].upper())
     return None
+
+
+def _titles(texts: dict[str, list[str]]) -> dict[str, str]:
+    """Names of the blocks in which an AAMA or ASTM file says a piece's name; its size where several have that name."""
+    said = {
+        block: tuple(
+            " ".join(next((m[1] for m in map(key.match, some) if m), "").split()) for key in (NAMED, SIZED)
+        )
+        for block, some in texts.items()
+    }
+    often = Counter(name for name, _ in said.values())
+    return {
+        block: f"{name}-{size}" if often[name] > 1 and size else name
+        for block, (name, size) in said.items()
+        if name
+    }
 
 
 def _pieces_of(document: Any) -> list[Any]:
@@ -136,7 +166,9 @@ def _document(path: Path, text: bytes) -> tuple[Any, int]:
 class _Walk:
     """A way through a drawing, inserts followed into their blocks."""
 
-    def __init__(self, document: Any, scale: float) -> None:
+    def __init__(self, document: Any, scale: float, titles: dict[str, str]) -> None:
+        """titles: of blocks whose texts name a piece."""
+        self.titles = titles
         self.document, self.sag, self.far = document, SAG * 1e-3 / scale, LARGEST / scale
         self.visits = self.points = 0
         self.left_out: Counter[str] = Counter()
@@ -162,6 +194,14 @@ class _Walk:
                 yield from self._drawn(entity, own, within)
             else:
                 self.left_out[kind] += 1
+
+    def named(self, stroke: Stroke) -> Stroke:
+        """A line with its blocks called as their texts say, and as a part of the sheet where a block is that."""
+        blocks = [spoken(name) for name in stroke.groups]
+        words = [word for said in blocks if furnishes(said) for word in said]
+        told = tuple(self.titles[name] for name in stroke.groups if name in self.titles)
+        groups = tuple(self.titles.get(name, name) for name in stroke.groups)
+        return replace(stroke, groups=groups, told=told, words=(*stroke.words, *words))
 
     def _drawn(self, entity, layer: str, within: tuple[str, ...]) -> Iterator[tuple]:
         from ezdxf import path as curves

@@ -5,9 +5,13 @@ AAMA-292 and ASTM D6673 number the layers of a pattern DXF; FreeSewing, Valentin
 
 import re
 from functools import cache
+from itertools import pairwise
 from typing import Literal
 
-__all__ = ["MATERIALS", "Role", "layer_name", "material_of", "role_of", "speaks", "spoken"]
+__all__ = [
+    "MATERIALS", "NEVER_CLOSED", "Role", "furnishes", "layer_name", "material_of", "names_piece", "role_of", "speaks",
+    "spoken",
+]  # fmt: skip
 
 Role = Literal["cut", "sew", "hole", "inner", "notch", "grain", "fold", "mark", "hidden", ""]
 
@@ -21,6 +25,7 @@ AAMA_MARKS = {
     "13": "drill holes", "15": "annotation", "84": "quality curves",
     "85": "quality curves", "86": "quality curves", "87": "quality curves",
 }  # fmt: skip
+NEVER_CLOSED = {"2", "3", "4", "7"}  # of those, layers that hold points and open lines
 MATERIALS = ("lining", "interfacing", "canvas", "interlining", "fabric", "various")
 SAID: tuple[tuple[Role, str], ...] = (
     ("hidden", "hidden invisible"),
@@ -31,7 +36,10 @@ SAID: tuple[tuple[Role, str], ...] = (
         "mark",
         "note notes mark marks help logo scalebox grid title text label labels annotation annotations dimension",
     ),
-    ("mark", "dimensions contrast guide guides hint button snap eyelet paperless gridline measurement arrow"),
+    (
+        "mark",
+        "dimensions contrast guide guides hint button snap eyelet paperless gridline measurement arrow",
+    ),
     ("hole", "hole holes cutout cutouts buttonhole drill"),
     ("inner", "inner internal dart darts pleat pleats fold placement pocketplacement quilting"),
     ("cut", "cut cutting cutline sa allowance seamallowance boundary"),
@@ -48,7 +56,33 @@ CHINESE: tuple[tuple[Role, str], ...] = (  # parts of words, since nothing stand
     ("sew", "净样 净缝 净边 缝线 缝合 缝纫"),
 )
 
-BESIDES = {"line", "lines", "layer", "ebene", "calque", "and", "the", "of", "pieces", "piece", "all", "main"}
+BESIDES = set(
+    "line lines layer ebene calque and the of pieces piece all main dashed dotted lashed solid thin thick stroke fill "
+    "black white red blue green grey gray mm cm".split()
+)
+# What belongs to the sheet and to no piece, two words or run together.
+FURNITURE = frozenset(
+    first + second
+    for firsts, seconds in (
+        (
+            "scale test gauge calibration control check print printing",
+            "box boxes square squares rectangle rect bar ruler",
+        ),
+        (
+            "page sheet paper drawing print",
+            "border borders frame frames edge edges margin margins area outline",
+        ),
+        ("title", "block box"),
+        ("crop registration", "mark marks"),
+        ("water", "mark marks"),
+        ("copy", "right"),
+        ("art", "board"),
+    )
+    for first in firsts.split()
+    for second in seconds.split()
+) | {"legend"}
+SHEETS = ("图框", "边框", "水印", "图例", "比例", "测试方", "标题栏")
+SHORTEST = 3  # letters of a word that may be a piece's
 
 
 def spoken(*names: str) -> tuple[str, ...]:
@@ -66,6 +100,8 @@ def role_of(layer: str, words: tuple[str, ...], *, numbered: bool) -> Role:
     Of FreeSewing's classes "fabric" (lining, …) is the sewing line, "fabric sa" the cutting line; a dashed one lies
     inside the piece.
     """
+    if furnishes(words):
+        return "mark"
     if numbered and layer.strip() in AAMA:
         return AAMA[layer.strip()]
     for role, known in SAID:
@@ -101,8 +137,24 @@ def _kinds() -> frozenset[str]:
 
 def speaks(name: str) -> bool:
     """Whether a name says what kind of line it is and nothing else, so it is no piece's: "Cut lines", "layer 2"."""
-    parts = {part for part in spoken(name) if not part.isdigit()}
+    words = spoken(name)
+    if furnishes(words):
+        return True
+    parts = {part for part in words if not part.isdigit()}
     return all(part in _kinds() or _chinese_kind(part) for part in parts)
+
+
+def furnishes(words: tuple[str, ...]) -> bool:
+    """Whether `spoken` words name what belongs to the sheet: a test square, a page's border, a watermark."""
+    if any(word in FURNITURE for word in words) or any(a + b in FURNITURE for a, b in pairwise(words)):
+        return True
+    return any(part in word for part in SHEETS for word in words)
+
+
+def names_piece(layer: str) -> bool:
+    """Whether the word that a layer ends with is none for a kind of line: "BUTTON PLACKET" is a placket, no button."""
+    parts = [part.lower() for part in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", layer)]
+    return bool(parts) and len(parts[-1]) >= SHORTEST and parts[-1] not in _kinds()
 
 
 def _chinese_kind(part: str) -> bool:

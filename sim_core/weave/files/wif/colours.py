@@ -19,8 +19,8 @@ Table = tuple[
 ]  # first colour, how many, which is taken where none is named, no line
 
 
-def palette_of(sections: Sections, remarks: list[str]) -> Palette:
-    """The colour table, its highest value, and the number that its first colour has.
+def palette_of(sections: Sections, remarks: list[str], first: int | None = None) -> Palette:
+    """The colour table, its highest value, and the number that its first colour has (None: as the table tells).
 
     A table that is missing, or lines of it that are no colour, leave white, as does what no line names.
     """
@@ -41,9 +41,10 @@ def palette_of(sections: Sections, remarks: list[str]) -> Palette:
         )
     if clipped:
         remarks.append(f"[COLOR TABLE] {listed(clipped)}: outside the range {low},{high} – cut off at it")
-    first = 0 if 0 in colours else 1
-    if first == 0:
-        remarks.append("[COLOR TABLE]: its colours are numbered from 0, and so are those of the threads")
+    if first is None:
+        first = 0 if 0 in colours else 1
+        if first == 0:
+            remarks.append("[COLOR TABLE]: its colours are numbered from 0, and so are those of the threads")
     top = high - low
     palette = np.full((max(colours, default=first + 1) + 1 - first, 3), top)
     for number, colour in colours.items():
@@ -51,7 +52,7 @@ def palette_of(sections: Sections, remarks: list[str]) -> Palette:
     if not colours:
         palette[1] = 0
         if sections.get("WARP COLORS") or sections.get("WEFT COLORS"):
-            remarks.append("[COLOR TABLE]: missing – colour 1 is white and colour 2 black")
+            remarks.append(f"[COLOR TABLE]: missing – colour {first} is white and colour {first + 1} black")
     told = {number + 1 - first for number in colours}
     return palette, top, first, frozenset(range(1, len(palette) + 1)) - told if told else frozenset()
 

@@ -74,15 +74,18 @@ def parse_wif(text: str) -> Wif:
     return wif_of_sections(sections, remarks + unfit_sections(sections))
 
 
-def wif_of_sections(sections: dict[str, Section], remarks: list[str]) -> Wif:
-    """The value of the sections of a WIF file, or of a file that says the same in another form."""
+def wif_of_sections(sections: dict[str, Section], remarks: list[str], first_colour: int | None = None) -> Wif:
+    """The value of the sections of a WIF file, or of a file that says the same in another form.
+
+    first_colour: the number that such a form gives to its first colour; WIF's tables tell theirs.
+    """
     threading, shed = shed_of(sections, remarks)
     _, treadled, planned = shed
     counts = (
         count_of(sections, "WARP", threading, remarks),
         count_of(sections, "WEFT", (planned if planned is not None else treadled) or {}, remarks),
     )
-    table = palette_of(sections, remarks)
+    table = palette_of(sections, remarks, first_colour)
     palette, colours = thread_colours(sections, table, counts, remarks)
     harness, plan = harness_of(sections, threading, shed, counts, remarks)
     text_lines = [(key, value) for key, value in sections.get("TEXT", {}).values()]

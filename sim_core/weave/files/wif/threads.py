@@ -16,6 +16,7 @@ __all__ = ["Shed", "announced", "count_of", "harness_of", "shed_of", "truth"]
 MOST_THREADS = 65_536  # of a file
 MOST_SHAFTS = 4096  # shafts or treadles; a jacquard has a hook an end
 MOST_CELLS = 400_000_000  # of threading or treadling
+NUMBER = re.compile(r"\d{1,9}", re.ASCII)
 NUMBERS = re.compile(r"[\d,\s]*", re.ASCII)
 Lists = dict[int, list[int]]  # number of a thread or treadle -> shafts or treadles
 Shed = tuple[Lists | None, Lists | None, Lists | None]  # tie-up, treadling, lift plan
@@ -38,11 +39,24 @@ def shed_of(sections: Sections, remarks: list[str]) -> tuple[Lists, Shed]:
         for name, what in (("TIEUP", "shaft"), ("TREADLING", "treadle"), ("LIFTPLAN", "shaft"))
     )
     use_plan = planned is not None and any(planned.values())
+    if use_plan and tied and treadled and (lacking := _lacking(tied, treadled, planned or {})):
+        remarks.append(
+            f"[LIFTPLAN] {listed(lacking)}: no line, though trodden – [TIEUP] and [TREADLING] were taken"
+        )
+        use_plan = False
     if not use_plan and not (tied and treadled):
         raise WeaveError(
             "[LIFTPLAN]: missing, and so are [TIEUP] and [TREADLING] together – add one or the other"
         )
     return threading, (tied, treadled, planned if use_plan else None)
+
+
+def _lacking(tied: Lists, treadled: Lists, planned: Lists) -> list[int]:
+    """Picks that lift shafts by treadles and have no line in the lift plan, if the treadling has all that it has."""
+    if any(shafts and not treadled.get(pick) for pick, shafts in planned.items()):
+        return []
+    lifting = (pick for pick, treadles in treadled.items() if any(tied.get(t) for t in treadles))
+    return sorted(pick for pick in lifting if pick not in planned)
 
 
 def _threads(sections: Sections, side: str, name: str) -> int:
@@ -56,8 +70,12 @@ def count_of(sections: Sections, side: str, lists: Lists, remarks: list[str]) ->
     lines = max(lists, default=0)
     found = lines
     key, value = sections.get(side, {}).get("threads", ("Threads", ""))
-    if value:
-        told = whole(value, side, key, "give the number of threads")
+    if value and not NUMBER.fullmatch(value.strip()):
+        remarks.append(
+            f"[{side}] {key}: {shown(value, 30)} is no number of threads – there are lines for {lines}"
+        )
+    elif value:
+        told = int(value)
         found = max(lines, told)
         if lines > told:
             remarks.append(f"[{side}] {key}: {told}, but there are lines for {lines} – {lines} were taken")
@@ -65,7 +83,7 @@ def count_of(sections: Sections, side: str, lists: Lists, remarks: list[str]) ->
         what = "empty" if "threads" in sections.get(side, {}) else "missing"
         remarks.append(f"[{side}] {key}: {what} – there are lines for {lines}")
     if not 1 <= found <= MOST_THREADS:
-        raise WeaveError(f"[{side}] Threads: {found} – 1 to {MOST_THREADS} threads can be read")
+        raise WeaveError(f"[{side}] {key}: {found} – 1 to {MOST_THREADS} threads can be read")
     return found
 
 

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import shapely
 
+from sim_core.errors import OutlineError
+from sim_core.mesh.sheets.pieces.boxes import Boxes
 from sim_core.mesh.sheets.strokes.stroke import Stroke
-from sim_core.mesh.sheets.strokes.words import Role, material_of, speaks
+from sim_core.mesh.sheets.strokes.words import Role, material_of, names_piece, speaks, spoken
 
-__all__ = ["Contour", "contours", "owner_of", "piece_name", "seam_inside"]
+__all__ = ["GENERIC", "Contour", "contours", "owner_of", "piece_name", "seam_inside"]
 
 NARROWEST = 0.002  # [m] of a piece both ways
 SLACK = 5e-4  # [m] by which a line inside may leave its outline
@@ -20,12 +22,16 @@ LOOPS = 0.02  # most of the area in loops
 WIDEST = 0.06  # [m] most of a seam allowance
 TWIN = 0.98  # least share of the area in a line drawn twice
 MOST_STEPS = 4000  # along what sticks out of an outline
+FEW = 10  # corners that are tried before all that sticks out
+MOST_TRIED = 40  # outlines that may lie around one, on average over a sheet of as many and more
+FRAMES = {"border", "borders", "frame", "page", "paper", "sheet", "rahmen", "cadre", "background"}
 GENERIC = {"pieces", "piece", "pattern", "patterns", "sheet", "drawing", "main", "model", "parts", "outline"}
 
 
 @dataclass
 class Contour:
-    """A closed line and what it turned out to be: inside: contours right inside it; within: how deep it lies."""
+    """A closed line and what it turned out to be: inside: contours right inside it; within: how deep it lies;
+    size: of the sizes of one piece that lie on each other, which one it is."""
 
     stroke: Stroke
     role: Role
@@ -35,11 +41,14 @@ class Contour:
     owner: tuple[str, ...]
     inside: list[Contour] = field(default_factory=list)
     within: int = 0
+    size: str = ""
 
 
 def owner_of(stroke: Stroke) -> tuple[str, ...]:
     """Names around a line that may be a piece's: not those that say what kind of lines they hold."""
-    return tuple(name for name in stroke.groups if not speaks(name) and name.lower() not in GENERIC)
+    return tuple(
+        name for name in stroke.groups if name in stroke.told or not (speaks(name) or name.lower() in GENERIC)
+    )
 
 
 def piece_name(owner: tuple[str, ...]) -> str:
@@ -47,8 +56,16 @@ def piece_name(owner: tuple[str, ...]) -> str:
     return owner[-1].rsplit("-part-", 1)[-1] if owner else ""
 
 
-def contours(strokes: list[tuple[Stroke, Role]], remarks: list[str], left_out: Counter[str]) -> list[Contour]:
-    """The outermost contours, each with what lies inside; open cutting lines are closed, which a remark says."""
+def contours(
+    strokes: list[tuple[Stroke, Role]],
+    remarks: list[str],
+    left_out: Counter[str],
+    sizes: dict[str, str],
+) -> list[Contour]:
+    """The outermost contours, each with what lies inside; open cutting lines are closed, which a remark says.
+
+    sizes: of layers that are named after one.
+    """
     found = []
     for stroke, role in strokes:
         if not stroke.closed:
@@ -61,10 +78,37 @@ def contours(strokes: list[tuple[Stroke, Role]], remarks: list[str], left_out: C
         if np.ptp(stroke.points, axis=0).min() >= NARROWEST and shape.area > 0:
             owner = owner_of(stroke)
             material = material_of(stroke.words)
-            found.append(Contour(stroke, role, float(shape.area), shape, material, owner))
+            found.append(
+                Contour(
+                    stroke, role, float(shape.area), shape, material, owner, size=sizes.get(stroke.layer, "")
+                )
+            )
         else:
             left_out["closed lines of less than 2 mm"] += 1
-    return _nested(found, left_out)
+    return _pieces(_nested(found, left_out), left_out)
+
+
+def _pieces(outermost: list[Contour], left_out: Counter[str]) -> list[Contour]:
+    """Outermost contours that are pieces. One whose layer names a kind of line and a piece ("BUTTON PLACKET") is a
+    piece where it lies in none, and else what the kind says."""
+    kept = []
+    for contour in outermost:
+        if contour.role in ("hole", "inner", "mark"):
+            if not names_piece(contour.stroke.layer):
+                left_out[f"{contour.stroke.layer or contour.role} outside every piece"] += 1
+                continue
+            contour.role = ""
+        kept.append(contour)
+        for inner in contour.inside:
+            inner.inside = _unmarked(inner.inside, left_out)
+        contour.inside = _unmarked(contour.inside, left_out)
+    return kept
+
+
+def _unmarked(inside: list[Contour], left_out: Counter[str]) -> list[Contour]:
+    for contour in inside:
+        left_out[contour.stroke.layer] += contour.role == "mark"
+    return [contour for contour in inside if contour.role != "mark"]
 
 
 def _without_loops(stroke: Stroke, remarks: list[str]) -> tuple[Stroke, Any]:
@@ -94,30 +138,43 @@ def _nested(found: list[Contour], left_out: Counter[str]) -> list[Contour]:
     found = sorted(found, key=lambda contour: (-contour.area, contour.role != "cut"))
     for each in found:
         shapely.prepare(each.shape)
-    tree = shapely.STRtree([contour.shape for contour in found])
-    outermost, twins = [], set()
+    boxes = Boxes(np.array([contour.shape.bounds for contour in found]).reshape(-1, 4))
+    outermost: list[Contour] = []
+    first: dict[int, int] = {}  # of a line drawn twice, the one it is
+    patience = MOST_TRIED * (len(found) + MOST_TRIED)
     for k, contour in enumerate(found):
-        around = tree.query(contour.shape, predicate="intersects")
-        holders = [
-            m
-            for m in sorted(around.tolist(), reverse=True)
-            if m < k and m not in twins and _may_hold(found[m], contour)
-        ]
-        holder = next((m for m in holders if _holds(found[m].shape, contour.shape)), None)
+        holder, tried = _holder(found, boxes, k, first)
+        patience -= tried
+        if patience < 0:
+            raise OutlineError(
+                "too many outlines lie on each other – give each size or layer a sheet of its own"
+            )
         if holder is None:
             outermost.append(contour)
         elif _twin(found[holder], contour):
             found[holder].role = found[holder].role or contour.role
             left_out["outlines drawn twice"] += 1
-            twins.add(k)
+            first[k] = holder
         else:
             found[holder].inside.append(contour)
             contour.within = found[holder].within + 1
-    kept = [c for c in outermost if not _frame(c)]
-    for frame in (c for c in outermost if _frame(c)):
+    frames = {id(contour) for contour in outermost if _frame(contour)}
+    kept = [contour for contour in outermost if id(contour) not in frames]
+    for frame in (contour for contour in outermost if id(contour) in frames):
         kept += frame.inside
         left_out["frame around pieces"] += 1
     return sorted(kept, key=lambda contour: order[id(contour)])
+
+
+def _holder(found: list[Contour], boxes: Boxes, number: int, first: dict[int, int]) -> tuple[int | None, int]:
+    """The number of the least contour around one of them, and how many were tried."""
+    contour, tried, failed = found[number], 0, set()
+    for tried, last in enumerate(boxes.around(number, SLACK), 1):  # noqa: B007 - told to whoever counts
+        k = first.get(last, last)
+        if k not in failed and _may_hold(found[k], contour) and _holds(found[k].shape, contour.shape):
+            return k, tried
+        failed.add(k)
+    return None, tried
 
 
 def _holds(outer: Any, inner: Any) -> bool:
@@ -125,9 +182,8 @@ def _holds(outer: Any, inner: Any) -> bool:
     by SLACK in bounded time, so what sticks out of it is measured instead.)"""
     if outer.covers(inner):
         return True
-    low, high = np.array(outer.bounds).reshape(2, 2)
-    least, most = np.array(inner.bounds).reshape(2, 2)
-    if (least < low - SLACK).any() or (most > high + SLACK).any():
+    corners = shapely.get_coordinates(inner)
+    if not shapely.dwithin(outer, shapely.points(corners[:: 1 + len(corners) // FEW]), SLACK).all():
         return False
     out = shapely.difference(inner, outer)
     step = max(SLACK, out.length / MOST_STEPS)
@@ -143,8 +199,10 @@ def _twin(outer: Contour, inner: Contour) -> bool:
 
 
 def _may_hold(outer: Contour, inner: Contour) -> bool:
-    """Lines of two materials, or of two named groups side by side, are two pieces even where one lies on the other."""
+    """Lines of two materials, sizes, or named groups side by side are two pieces even where one lies on the other."""
     if outer.material and inner.material and outer.material != inner.material:
+        return False
+    if outer.size and inner.size and outer.size != inner.size:
         return False
     least = min(len(outer.owner), len(inner.owner))
     return outer.owner[:least] == inner.owner[:least]
@@ -152,7 +210,12 @@ def _may_hold(outer: Contour, inner: Contour) -> bool:
 
 def _frame(contour: Contour) -> bool:
     """Whether it is a rectangle around pieces: a page, a title block."""
-    if contour.role or len(contour.stroke.points) != 4 or len(contour.inside) < 2:
+    if contour.role or len(contour.stroke.points) != 4 or not contour.inside:
+        return False
+    said = spoken(contour.stroke.name, contour.stroke.layer)
+    if any(word in FRAMES for word in said):
+        return True
+    if len(contour.inside) < 2:
         return False
     told = sum(inner.role in ("cut", "sew") for inner in contour.inside)
     if told > 1 or len({inner.owner for inner in contour.inside}) > 1:

@@ -1,4 +1,4 @@
-"""A scene tried on coarse meshes: what they differ by says what finer ones will err by."""
+"""Trial runs of a scene on coarse meshes: how they converge says what finer ones will err by."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sim_core.cloth.sheet.sheet import Sheet
 
 GRID = 32  # material points a side at which runs are compared
 NEAR = 12  # faces whose middle is nearest, among which a point's own is
-PILOTS = (0.064, 0.0453, 0.032, 0.0226, 0.016)  # [m] edges
+TRIAL_EDGES = (0.064, 0.0453, 0.032, 0.0226, 0.016)  # [m]
 
 
 def grid_film(sheet: Sheet, size: Sequence[float], film: np.ndarray) -> np.ndarray:
@@ -42,7 +42,7 @@ def gap(films: Sequence[np.ndarray]) -> float:
     return float(np.sqrt(apart(far, finest) * apart(near, finest)))
 
 
-def pilot(made: Scene, size: Sequence[float], frames: int) -> np.ndarray:
+def trial_film(made: Scene, size: Sequence[float], frames: int) -> np.ndarray:
     """Film (T, P, 3) float32 [m] of the grid's points in the first frames of a scene on a coarse mesh."""
     film: list[np.ndarray] = []
     made.lasting(frames).drape(on_frame=lambda _, x: film.append(x))
