@@ -154,13 +154,12 @@ def main() -> int:
     logs = (args.logs or Path(tempfile.mkdtemp(prefix="machines-"))).resolve()
     logs.mkdir(parents=True, exist_ok=True)
     runs = []
-    # Each machine compiles for itself; what it compiled serves all its rounds.
-    with tempfile.TemporaryDirectory() as caches, spinning() if args.beside else contextlib.nullcontext():
+    # numba keeps machine code by the processor it is for: one cache serves all machines, rounds and later runs.
+    with spinning() if args.beside else contextlib.nullcontext():
         for number in range(1, args.times + 1):
             for name in args.only:
                 print(f"{name}, round {number} of {args.times} …", file=sys.stderr, flush=True)
-                env = {**able[name], "NUMBA_CACHE_DIR": str(Path(caches) / name)}
-                runs.append(run(name, env, number, args.pytest, logs))
+                runs.append(run(name, able[name], number, args.pytest, logs))
     print(table(runs))
     print(f"output: {logs}")
     return 0 if all(run.good for run in runs) else 1

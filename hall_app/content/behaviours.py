@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any, Protocol, TypeVar
+from collections.abc import Callable, Iterable
+from typing import Any, Literal, Protocol, TypeVar
 
-__all__ = ["BEHAVIOURS", "MOVING", "Behaviour", "Stage", "behaviour"]
+__all__ = ["BEHAVIOURS", "LIVE", "MOVING", "Behaviour", "Kind", "Stage", "behaviour", "kind_of"]
 
 
 V = TypeVar("V")  # a visitor, whom a behaviour only hands on
@@ -21,6 +21,7 @@ class Stage(Protocol[V]):
     def on_tick(self, exhibit: str, act: Callable[[V, float], None]) -> None: ...
     def notice(self, visitor: V, exhibit: str, on: bool, *, glow: bool) -> None: ...
     def turn(self, visitor: V, exhibit: str, angle: float, rate: float) -> None: ...
+    def bearing(self, visitor: V, exhibit: str) -> float: ...
     def open(self, visitor: V, exhibit: str) -> None: ...
 
 
@@ -30,7 +31,16 @@ BEHAVIOURS: dict[str, Behaviour] = {}
 
 NEAR = 3.0  # [m] from which an exhibit notices its visitor
 TURN = 0.25  # [rad/s] of what turns on its stand
-MOVING = frozenset({"turn_slowly"})  # behaviours that make an exhibit a moving one
+MOVING = frozenset({"turn_slowly"})  # behaviours that go by the hall's clock, alike for all
+LIVE = frozenset({"turn_to_visitor"})  # behaviours that answer, tick by tick, what a visitor does
+
+Kind = Literal["still", "moving", "live"]
+
+
+def kind_of(behaviours: Iterable[str]) -> Kind:
+    """What an exhibit is by what it does: where nothing answers a visitor or goes by the clock, it stands still."""
+    names = frozenset(behaviours)
+    return "live" if names & LIVE else "moving" if names & MOVING else "still"
 
 
 def behaviour(act: Behaviour) -> Behaviour:
@@ -60,6 +70,16 @@ def turn_slowly(stage: Stage[Any], exhibit: str) -> None:
 
     def turned(visitor: Any, clock: float) -> None:
         stage.turn(visitor, exhibit, TURN * clock % math.tau, TURN)
+
+    stage.on_tick(exhibit, turned)
+
+
+@behaviour
+def turn_to_visitor(stage: Stage[Any], exhibit: str) -> None:
+    """The model turns its front to whoever stands before it, to each visitor on his own page."""
+
+    def turned(visitor: Any, clock: float) -> None:
+        stage.turn(visitor, exhibit, stage.bearing(visitor, exhibit), 0.0)
 
     stage.on_tick(exhibit, turned)
 

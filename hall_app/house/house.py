@@ -270,9 +270,7 @@ class House:
         self.scene.show(drawn.figures, frozenset(e.id for e in shown if "open_on_click" in e.file.behaviours))
         start = self.start
         self.scene.place_camera(start.x, start.z, start.yaw, start.eye)
-        self.stage.play(
-            tuple(Actor(e.id, e.file.place.x, e.file.place.z, tuple(e.file.behaviours)) for e in shown)
-        )
+        self.stage.play(tuple(_actor(exhibit) for exhibit in shown))
 
     # Visitors.
 
@@ -293,6 +291,11 @@ class House:
         body = self.grid.body
         grid = {"url": f"/grid.bin?v={self._grid_name}", **self.grid.meta()}
         return {"mode": self.walk_mode, **walk_constants(body.radius, body.skin), "grid": grid}
+
+
+def _actor(exhibit: Exhibit) -> Actor:
+    place = exhibit.file.place
+    return Actor(exhibit.id, place.x, place.z, place.facing, tuple(exhibit.file.behaviours))
 
 
 def walk_constants(radius: float, skin: float) -> dict[str, float]:

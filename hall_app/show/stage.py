@@ -15,15 +15,18 @@ __all__ = ["Actor", "Figures", "Stage"]
 
 FORGET = 1.15  # leave at this multiple of the near distance: no flicker on the edge
 SIGHT = 10.0  # [m] from which a visitor is told what moves
+AGAIN = 1.0  # [s] after which a page that turns a model on by itself is told anew
+SAME = math.radians(0.5)  # turned by less nobody sees it
 
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """An exhibit as the stage knows it: where it stands [m] and what it does."""
+    """An exhibit as the stage knows it: where it stands [m], where to it faces [deg], and what it does."""
 
     id: str
     x: float
     z: float
+    facing: float
     behaviours: tuple[str, ...]
 
 
@@ -44,6 +47,7 @@ class Stage:
     actors: dict[str, Actor] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._clock = 0.0
         self._clear()
 
     def _clear(self) -> None:
@@ -58,6 +62,7 @@ class Stage:
             for exhibit, index in tuple(visitor.near):
                 self._near[exhibit][index][1](visitor, False)
             visitor.near.clear()
+            visitor.turns.clear()
         self._clear()
         self.actors = {actor.id: actor for actor in actors}
         for actor in actors:
@@ -81,8 +86,22 @@ class Stage:
         self._ticks[exhibit].append(act)
 
     def turn(self, visitor: Visitor, exhibit: str, angle: float, rate: float) -> None:
-        """Tell a page by how much [rad] the model is turned from its front now, and how fast it goes on [rad/s]."""
+        """Tell a page by how much [rad] the model is turned from where it faces, and how fast it goes on [rad/s].
+
+        A page that shows it so already is not told.
+        """
+        before, pace, at = visitor.turns.get(exhibit, (math.nan, math.nan, 0.0))
+        since = self._clock - at
+        shown = abs(math.remainder(angle - before - pace * since, math.tau)) < SAME and pace == rate
+        if shown and (rate == 0 or since < AGAIN):
+            return
+        visitor.turns[exhibit] = (angle, rate, self._clock)
         visitor.say({"t": "turn", "id": exhibit, "angle": round(angle, 4), "rate": rate})
+
+    def bearing(self, visitor: Visitor, exhibit: str) -> float:
+        """By how much [rad] the exhibit would have to turn from where it faces to face the visitor."""
+        actor, pose = self.actors[exhibit], visitor.walk.pose
+        return math.atan2(pose.x - actor.x, pose.z - actor.z) - math.radians(actor.facing)
 
     def notice(self, visitor: Visitor, exhibit: str, on: bool, *, glow: bool) -> None:
         node = self.figures.node(exhibit)
@@ -105,6 +124,7 @@ class Stage:
 
     def tick(self, clock: float) -> None:
         """The hall's clock says so many seconds; who has entered and stands within SIGHT is told what moves."""
+        self._clock = clock
         for exhibit, acts in self._ticks.items():
             actor = self.actors[exhibit]
             for visitor in self.visitors:

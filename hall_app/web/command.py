@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 __all__ = ["add_parser", "run"]
 
 _POLL = 1.0  # [s] between two looks at the content folder, and at what is being baked
-_TICK = 1.0  # [s] between two ticks of the hall's clock
+_TICK = 0.25  # [s] between two ticks of the hall's clock
 
 OFFERS: frozenset[str] = frozenset()  # pages of the platform beside the hall: what needs one is not asked yet
 

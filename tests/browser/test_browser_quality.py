@@ -1,13 +1,18 @@
 """The picture's quality: the judge's verdicts on fed frame times, the visitor's choice, an idle hall at rest."""
 
+import math
 from pathlib import Path
 
 import pytest
 from bench.browser import enter, soon, stand_before
+from bench.track import place
+from plain_hall import write_plain_hall
+from running_hall import running_hall
 
 pytestmark = pytest.mark.browser
 
 JUDGE = Path(__file__).parents[2] / "hall_app" / "page" / "picture" / "judge.js"
+TURNED = "window.__viserMutable.nodePoseData['/exhibits/box'].wxyz.join()"
 FEED = """
 async ([source, level, runs, cautious]) => {
   const url = URL.createObjectURL(new Blob([source], {type: "text/javascript"}));
@@ -157,7 +162,7 @@ def test_a_moving_exhibit_turns_for_those_who_see_it(plain_hall, chromium):
     """In sight it goes on turning by itself; behind a visitor's back it stands, and nothing is drawn for it."""
     page = chromium.new_page(viewport={"width": 480, "height": 270})
     enter(page, f"{plain_hall.url}/?lang=en")
-    turned = "() => window.__viserMutable.nodePoseData['/exhibits/box'].wxyz.join()"
+    turned = f"() => {TURNED}"
     stand_before(page, "box")
     page.wait_for_timeout(500)
     seen = set()
@@ -168,6 +173,41 @@ def test_a_moving_exhibit_turns_for_those_who_see_it(plain_hall, chromium):
     page.evaluate("() => { const { x, z, yaw } = hall.pose(); hall.goTo(x, z, yaw + Math.PI, 0); }")
     soon(page, lambda: still(page, turned))
     page.close()
+
+
+def test_a_live_exhibit_turns_to_its_visitor(tmp_path, chromium):
+    """Wherever one stands its front is seen, on every page for itself; once it faces one it stands."""
+    content = write_plain_hall(tmp_path / "content")
+    file = content / "exhibits/box/exhibit.toml"
+    file.write_text(file.read_text("utf-8").replace("turn_slowly", "turn_to_visitor"), "utf-8")
+    with running_hall(content, tmp_path) as hall:
+        pages = []
+        for x, z in [(2.5, 5.0), (0.5, 3.0)]:
+            page = chromium.new_page(viewport={"width": 480, "height": 270})
+            enter(page, f"{hall.url}/?lang=en")
+            place(page, x, z, math.atan2(x - 2.5, z - 3.0))
+            page.mouse.move(100, 100)
+            soon(page, lambda page=page: abs(math.remainder(faced(page) - bearing(page), math.tau)) < 0.02)
+            soon(page, lambda page=page: still(page, f"() => {TURNED}"))
+            pages.append(page)
+        first, second = map(faced, pages)
+        assert (
+            abs(math.remainder(first - second, math.tau)) > 1.4
+        )  # the second has not turned it for the first
+        for page in pages:
+            page.close()
+
+
+def bearing(page) -> float:
+    """Where the visitor of this page stands, from the box [rad about +y]."""
+    pose = page.evaluate("() => hall.pose()")
+    return math.atan2(pose["x"] - 2.5, pose["z"] - 3.0)
+
+
+def faced(page) -> float:
+    """Where the box faces on this page [rad about +y]."""
+    w, _, y, _ = page.evaluate("() => window.__viserMutable.nodePoseData['/exhibits/box'].wxyz")
+    return math.remainder(2 * math.atan2(y, w), math.tau)
 
 
 def still(page, what: str, milliseconds: int = 2500) -> bool:

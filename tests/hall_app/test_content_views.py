@@ -151,6 +151,8 @@ def test_what_moves_of_itself_is_told_from_what_stands_still(house: Path):
     assert kind() == "still"
     edit(house / "exhibits/chest/exhibit.toml", '"glow_when_near"]', '"glow_when_near", "turn_slowly"]')
     assert kind() == "moving"
+    edit(house / "exhibits/chest/exhibit.toml", '"turn_slowly"', '"turn_to_visitor"')
+    assert kind() == "live"
 
 
 def test_music_of_the_shipped_hall():

@@ -32,6 +32,7 @@ class Guest:
     z: float
     heard: list[dict[str, Any]] = field(default_factory=list)
     near: set[tuple[str, int]] = field(default_factory=set)
+    turns: dict[str, Any] = field(default_factory=dict)
     opened: str | None = None
 
     @property
@@ -48,7 +49,9 @@ class Guest:
 @pytest.fixture
 def stage() -> Stage:
     made = Stage(Shown(), Visitors())
-    made.play((Actor("mirror", 0.0, 0.0, tuple(BEHAVIOURS)), Actor("coat", 4.0, 0.0, ("glow_when_near",))))
+    shared = tuple(name for name in BEHAVIOURS if name != "turn_to_visitor")
+    coat = Actor("coat", 4.0, 0.0, 0.0, ("glow_when_near",))
+    made.play((Actor("mirror", 0.0, 0.0, 90.0, shared), coat))
     return made
 
 
@@ -71,9 +74,30 @@ def test_the_clock_turns_what_moves_for_those_who_see_it_and_alike(stage: Stage)
     assert 0 <= first["angle"] <= math.tau
 
 
+def test_what_a_page_goes_on_with_by_itself_is_not_told_at_every_tick(stage: Stage) -> None:
+    guest = come(stage, 0, 2)
+    for tick in range(9):
+        stage.tick(100 + tick / 4)
+    assert len(guest.told("turn")) == 3
+
+
+def test_a_live_exhibit_faces_each_visitor_and_speaks_when_he_moves(stage: Stage) -> None:
+    stage.play((Actor("mirror", 1.0, 1.0, 90.0, ("turn_to_visitor",)),))
+    ahead, behind = come(stage, 1 + 2, 1), come(stage, 1, 1 - 3)
+    for tick in range(8):
+        stage.tick(tick / 4)
+    assert [(m["id"], m["angle"], m["rate"]) for m in ahead.told("turn")] == [("mirror", 0.0, 0.0)]
+    (first,) = behind.told("turn")
+    assert first["angle"] == pytest.approx(math.pi / 2, abs=1e-3)  # from +x round to -z
+    behind.x, behind.z = 1 - 2.0, 1.0
+    stage.tick(3.0)
+    assert behind.told("turn")[-1]["angle"] == pytest.approx(-math.pi, abs=1e-3)
+    assert len(ahead.told("turn")) == 1
+
+
 def test_nothing_that_stands_still_hears_the_clock(stage: Stage) -> None:
     guest = come(stage, 4, 1)
-    stage.play((Actor("coat", 4.0, 0.0, ("glow_when_near", "open_on_click", "play_clip")),))
+    stage.play((Actor("coat", 4.0, 0.0, 0.0, ("glow_when_near", "open_on_click", "play_clip")),))
     stage.tick(5.0)
     assert guest.told("turn") == []
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from hall_app.content.behaviours import MOVING
+from hall_app.content.behaviours import kind_of
 from hall_app.content.floor.placement import overlapping_bodies
 from hall_app.content.floor.walkable import facing_spots, reached_spots
 from hall_app.content.folder import Content, Exhibit
@@ -35,8 +35,8 @@ def _unreached(content: Content, exhibit: Exhibit, spots: np.ndarray) -> list[Pr
         what = f"cannot be reached on foot: nobody comes within {WITHIN:g} m and sees it (behind a wall?)"
         fix = "move place.x, place.z to the open side, or open a way of 0.75 m in plan.toml"
         return [Problem(exhibit.toml, "place", what, fix)]
-    if MOVING.intersection(exhibit.file.behaviours):
-        return []  # it shows every side by itself
+    if kind_of(exhibit.file.behaviours) != "still":
+        return []  # it shows every side, or its front to everybody, by itself
     place = exhibit.file.place
     front = np.array([math.sin(math.radians(place.facing)), math.cos(math.radians(place.facing))])
     to_visitor = seen - [place.x, place.z]

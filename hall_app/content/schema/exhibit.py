@@ -131,7 +131,7 @@ class ExhibitFile(Table):
     body: Body = Field(description="rigid body")
     behaviours: tuple[Behaviour, ...] = Field(
         ("open_on_click", "glow_when_near"),
-        description="what it does: open_on_click, glow_when_near, turn_slowly, play_clip",
+        description="what it does: open_on_click, glow_when_near, turn_slowly or turn_to_visitor, play_clip",
     )
     media: tuple[Media, ...] = Field((), description="pictures, films, sounds, one [[media]] each")
     record: Record = Field(Record.model_construct(), description="catalogue record")
@@ -149,5 +149,13 @@ class ExhibitFile(Table):
         if self.outfit is None and "show" in self.model_fields_set:
             raise PydanticCustomError(
                 "show_alone", "[show] is for an outfit; ready-made models stay as they are"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _one_turning(self) -> ExhibitFile:
+        if {"turn_slowly", "turn_to_visitor"} <= set(self.behaviours):
+            raise PydanticCustomError(
+                "one_turning", "behaviours: turn_slowly and turn_to_visitor exclude each other – keep one"
             )
         return self

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from hall_app.content.behaviours import MOVING
+from hall_app.content.behaviours import kind_of
 from hall_app.content.files import BAKED, digest, is_there
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
@@ -124,7 +124,7 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "z": file.place.z,
         "facing": file.place.facing,
         "thumbnail": thumbnail(exhibit, baked),
-        "kind": "moving" if MOVING.intersection(file.behaviours) else "still",
+        "kind": kind_of(file.behaviours),
         "caption": file.caption.as_json() if file.caption else None,
     }
 

@@ -1,5 +1,6 @@
-// Moving exhibits turn on their stand: the hall's clock says how far, and a page turns them on between two ticks of it; only
-// in sight of a visitor who is there, and who has not asked the system for less motion. An idle hall stands still.
+// Exhibits turn on their stand: moving ones by the hall's clock, on which a page turns them on between two ticks, live ones
+// to their visitor. Only in sight of a visitor who is there, and who has not asked the system for less motion. An idle hall
+// stands still.
 
 import { requestRender, turnNode } from "../viser/viser_adapter.js";
 
@@ -7,6 +8,7 @@ const SIGHT = 9; // [m]
 const ASIDE = Math.cos((50 * Math.PI) / 180); // farther from the middle of the picture nobody sees it turn
 const PRESENT = 60e3; // [ms] after the last sign of life
 const CATCH_UP = 2; // [1/s] share of what it lags behind that is made up, so that no tick shows
+const SETTLED = 0.004; // [rad] of what stands: nearer to where it should be nobody sees it turn
 const LIFE = ["pointermove", "pointerdown", "keydown", "wheel", "touchstart"];
 
 const TURN = 2 * Math.PI;
@@ -31,6 +33,7 @@ export function createTurning(wake) {
   function turn({ id, facing }, { angle, rate, at }, dt) {
     const wanted = angle + (rate * (performance.now() - at)) / 1000;
     const before = shown.get(id);
+    if (rate === 0 && Math.abs(shortest(wanted - before)) < SETTLED) return;
     const next = before === undefined
       ? wanted
       : before + rate * dt + shortest(wanted - before - rate * dt) * Math.min(1, CATCH_UP * dt);
@@ -47,7 +50,7 @@ export function createTurning(wake) {
       if (calm.matches || performance.now() - seenAt > PRESENT) return;
       for (const exhibit of scene.exhibits) {
         const tick = told.get(exhibit.id);
-        if (tick && exhibit.kind === "moving" && inSight(exhibit, from)) turn(exhibit, tick, dt);
+        if (tick && exhibit.kind !== "still" && inSight(exhibit, from)) turn(exhibit, tick, dt);
       }
     },
   };
