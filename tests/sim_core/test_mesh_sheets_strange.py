@@ -54,6 +54,51 @@ def test_ends_a_tenth_of_a_millimetre_apart_are_a_gap(tmp_path):
     assert not any("apart were joined" in remark for remark in sheet.remarks)
 
 
+CIRCLES = ['<circle cx="50" cy="70" r="20"/>', '<path d="M30 70a20 20 0 0 1 40 0a20 20 0 0 1 -40 0z"/>']
+AFFINE = [
+    (1, 0, 0.3, 1, 400, 0),  # skewed
+    (2, 0, 1, 1.5, 0, 0),
+    (1.5, 0.4, -0.8, 1.1, 300, 300),
+    (-1, 0.2, 0.5, 1, 400, 0),  # turned over as well
+    (1.4, 0.35, -1.4, 0.35, 400, 200),  # stretched after it was turned
+]
+
+
+@pytest.mark.parametrize("matrix", AFFINE)
+@pytest.mark.parametrize("circle", CIRCLES)
+def test_a_round_piece_in_a_leaning_group_is_the_ellipse_it_is_drawn_as(tmp_path, circle, matrix):
+    a, b, c, d, e, f = matrix
+    sheet = svg(tmp_path, f'<g transform="matrix({a} {b} {c} {d} {e} {f})">{circle}</g>')
+    (piece,) = sheet.pieces
+    given = np.linalg.solve(np.array([[a, c], [b, d]]), (1000 * piece.outline - (e, f)).T).T
+    np.testing.assert_allclose(np.hypot(*(given - (50, 70)).T), 20, atol=1e-6)
+    assert len(piece.outline) >= 100
+    assert sheet.remarks == ()
+
+
+@pytest.mark.parametrize("bulge", [0, 0.5])
+def test_a_turned_block_in_a_stretched_one_is_skewed(tmp_path, bulge):
+    drawing = ezdxf.filemanagement.new("R2018", units=4)
+    part = drawing.blocks.new("part")
+    part.add_lwpolyline([(0, 0, 0), (300, 0, bulge), (300, 500, 0), (0, 500, 0)], format="xyb", close=True)
+    part.add_circle((150, 250), 40)
+    drawing.blocks.new("turned").add_blockref("part", (70, 0), dxfattribs={"rotation": 30})
+    drawing.modelspace().add_blockref("turned", (4000, 100), dxfattribs={"xscale": 2, "yscale": -0.5})
+    drawing.saveas(tmp_path / "sheet.dxf")
+    (piece,) = read_sheet(tmp_path / "sheet.dxf").pieces
+    turn = np.radians(30)
+    across, down = (2 * np.cos(turn), -0.5 * np.sin(turn)), (-2 * np.sin(turn), -0.5 * np.cos(turn))
+    matrix = np.column_stack([across, down])
+    given = [
+        np.linalg.solve(matrix, (1000 * line * (1, -1) - (4000 + 140, 100)).T).T
+        for line in (piece.outline, *piece.holes)
+    ]
+    np.testing.assert_allclose(np.hypot(*(given[1] - (150, 250)).T), 40, atol=0.05)
+    corners = np.array([(0, 0), (300, 0), (300, 500), (0, 500)], float)
+    assert max(np.linalg.norm(given[0] - corner, axis=1).min() for corner in corners) < 1e-6
+    np.testing.assert_allclose(given[0].max(axis=0), (300 + 250 * bulge, 500), atol=0.05)
+
+
 SIGNS = [
     *map(chr, range(0x20)),
     "\x7f",

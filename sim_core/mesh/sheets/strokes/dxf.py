@@ -174,8 +174,12 @@ class _Walk:
         self.left_out: Counter[str] = Counter()
         self.dark = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
 
-    def strokes(self, entities, within: tuple[str, ...], layer: str = "0") -> Iterator[tuple]:
-        """(points, closed, layer, groups, words) of entities. within: blocks around.  layer: the insert's."""
+    def strokes(self, entities, within: tuple[str, ...], layer: str = "0", placed=None) -> Iterator[tuple]:
+        """(points, closed, layer, groups, words) of entities. within: blocks around.  layer: the insert's.
+
+        placed: the matrix from the block to the drawing; ezdxf's own way through inserts within inserts loses the skew
+        of a turned one in one of two scales.
+        """
         for entity in entities:
             self.visits = visited(self.visits)
             kind, own = entity.dxftype(), str(entity.dxf.get("layer", "0"))
@@ -186,13 +190,13 @@ class _Walk:
             elif own in self.dark:
                 self.left_out[f"on layer {own}, off or frozen"] += 1
             elif kind == "INSERT":
-                yield from self._inserted(entity, within, own)
+                yield from self._inserted(entity, within, own, placed)
             elif kind == "POINT":
-                place = entity.dxf.location
+                place = placed.transform(entity.dxf.location) if placed else entity.dxf.location
                 yield np.array([[place.x, place.y]]), False, own, within, spoken(own)
             elif kind in DRAWN:
-                yield from self._drawn(entity, own, within)
-            else:
+                yield from self._drawn(entity, own, within, placed)
+            elif kind != "ATTDEF" or not placed:
                 self.left_out[kind] += 1
 
     def named(self, stroke: Stroke) -> Stroke:
@@ -203,13 +207,14 @@ class _Walk:
         groups = tuple(self.titles.get(name, name) for name in stroke.groups)
         return replace(stroke, groups=groups, told=told, words=(*stroke.words, *words))
 
-    def _drawn(self, entity, layer: str, within: tuple[str, ...]) -> Iterator[tuple]:
+    def _drawn(self, entity, layer: str, within: tuple[str, ...], placed) -> Iterator[tuple]:
         from ezdxf import path as curves
 
         if entity.dxftype() == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
             self.left_out["POLYLINE mesh"] += 1
             return
         curve = curves.make_path(entity)
+        curve = curve.transform(placed) if placed else curve
         corners = [c for v in curve.control_vertices() for c in (v.x, v.y)]
         if not all(
             abs(c) <= self.far for c in corners
@@ -227,9 +232,10 @@ class _Walk:
         if len(points) > 1:
             yield points, closed, layer, within, spoken(layer)
 
-    def _inserted(self, insert, within: tuple[str, ...], layer: str) -> Iterator[tuple]:
+    def _inserted(self, insert, within: tuple[str, ...], layer: str, placed) -> Iterator[tuple]:
         name = str(insert.dxf.get("name", ""))
-        if self.document.blocks.get(name) is None:
+        block = self.document.blocks.get(name)
+        if block is None:
             self.left_out[f"INSERT of {name or 'nothing'}"] += 1
             return
         if name in within:
@@ -238,7 +244,8 @@ class _Walk:
         if rows * columns > MOST_VISITED:
             visited(MOST_VISITED)
         for one in [insert] if rows * columns == 1 else insert.multi_insert():
-            yield from self.strokes(one.virtual_entities(), (*within, name), layer)
+            own = one.matrix44()  # what is multiplied from the right is done after it
+            yield from self.strokes(block, (*within, name), layer, own @ placed if placed else own)
 
 
 def spelled_out(text: bytes) -> bytes:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from io import StringIO
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -40,6 +41,7 @@ NAMING = ("class", "id", "label", "href", "marker", "text")
 LETTERS = ("id", "href", "xlink:href", "data-symbol")
 SAME = 0.01  # most by which width and height of one scale differ, as sizes are rounded
 STEPS, TURN = 24, 0.05  # of a curve piece; [rad] most of an arc in one step
+RIGHT = 1e-9  # [rad] by which the axes of an arc may miss their right angle
 Shape = tuple[np.ndarray, bool]
 
 
@@ -93,7 +95,7 @@ def _drawing(root: ElementTree.Element, metres: float | None) -> tuple[Any, bool
     root.set("width", repr(box[2] * unit))
     root.set("height", repr(box[3] * tall))
     root.set("preserveAspectRatio", "none")
-    return SVG.parse(StringIO(ElementTree.tostring(root, "unicode")), reify=True, ppi=96), guessed
+    return SVG.parse(StringIO(ElementTree.tostring(root, "unicode")), reify=False, ppi=96), guessed
 
 
 def _scales(width: str, height: str, box: list[float], aspect: str) -> tuple[float, float]:
@@ -123,7 +125,6 @@ def _pixels(text: str) -> float:
 
 def _strokes(drawing: Any) -> Iterator[Stroke]:
     """Lines of every shape, with the names and the paint of the groups around."""
-    from svgelements import Path as Curves
     from svgelements import Shape as Drawn
     from svgelements import Use
 
@@ -134,7 +135,7 @@ def _strokes(drawing: Any) -> Iterator[Stroke]:
         if _lettering(element):
             said = (*said, "text")
         if isinstance(element, Drawn):
-            yield from _shape(element, Curves(element).reify(), groups, said, paint)
+            yield from _shape(element, _curves(element), groups, said, paint)
         elif isinstance(element, list):
             if isinstance(element, Use):
                 said = (*said, *_names(element))
@@ -202,6 +203,38 @@ def _shape(element: Any, curves: Any, groups, said, paint: dict[str, str]) -> It
     filled = paint.get("fill", "none") not in ("none", "transparent") and not _sheer(paint)
     for points, closed in _lines(curves):
         yield Stroke(points * PIXEL, closed, str(layer), groups, words, filled, dashed, own)
+
+
+def _curves(element: Any) -> Any:
+    """The path of a shape in CSS pixels.
+
+    svgelements keeps the axes of an ellipse at right angles, also where a transform leans them (a skew, a scale of two
+    sizes around a rotation): such arcs are cut into steps before they are transformed.
+    """
+    from svgelements import Arc, Line
+    from svgelements import Path as Curves
+
+    matrix = element.transform
+    if not any(isinstance(piece, Arc) and _leans(piece, matrix) for piece in Curves(element)):
+        element.reify()
+        return Curves(element).reify()
+    pieces: list[Any] = []
+    for piece in Curves(element):
+        if isinstance(piece, Arc):
+            places = np.asarray(piece.npoint(np.linspace(0, 1, _steps(piece) + 1)), float).tolist()
+            pieces += [Line(start, end) for start, end in pairwise(places)]
+        else:
+            pieces.append(piece)
+    return (Curves(pieces) * matrix).reify()
+
+
+def _leans(arc: Any, matrix: Any) -> bool:
+    """Whether a transform takes the right angle between the axes of an arc."""
+    across, down = (
+        np.array([matrix.a * x + matrix.c * y, matrix.b * x + matrix.d * y])
+        for x, y in ((point.x - arc.center.x, point.y - arc.center.y) for point in (arc.prx, arc.pry))
+    )
+    return bool(abs(across @ down) > RIGHT * np.linalg.norm(across) * np.linalg.norm(down))
 
 
 def _sheer(paint: dict[str, str]) -> bool:
