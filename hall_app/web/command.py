@@ -21,6 +21,7 @@ from hall_app.house.signals import at_once
 from hall_app.visit.places import Places
 from hall_app.web.limits.addresses import Addresses
 from hall_app.web.limits.descriptors import connections, raise_limit, shortage
+from hall_app.web.limits.threads import few_threads
 from hall_app.web.memory import settle
 from hall_app.web.port import add_limits, check_port, port, server
 from hall_app.web.progress_line import ProgressLine
@@ -173,6 +174,7 @@ async def _living(
     loop.add_signal_handler(signal.SIGHUP, signal.raise_signal, signal.SIGTERM)
     house.attach(loop)
     settle()
+    few_threads()
     queue = BakingQueue(
         lambda bake: Preparation(house.content.folder, house.data, bake),
         lambda bake: forsake(bake, house.data),

@@ -17,13 +17,18 @@ import re
 import struct
 import sys
 import time
+from collections.abc import Sequence
 
 import msgspec
 from crowd_load import VISER, camera
 
 LINES = 32  # connections at a time where connections are the attack
 IDLE = 1500  # connections that say nothing
+KEPT = 300  # connections that are kept and ask on
+INSIDE = 60  # visitors of one address who do all that their budgets allow
+AHEAD = 3000  # requests sent ahead of any answer
 GET = ("/catalogue", "/api/scene")
+FORM = ("/questionnaires/platform-user", "/privacy")
 CHUNK = 512  # messages handed to the socket at once
 
 HELLO = {"t": "hello", "client": None, "display": "page", "able": "predict", "at": None}
@@ -41,7 +46,7 @@ WALK = {
 }
 KINDS = (
     *WALK, "in", "unreadable", "large", "ping", "silent", "reconnect", "hello", "camera", "click", "viser",
-    "idle", "get",
+    "idle", "get", "kept", "form", "ahead", "within",
 )  # fmt: skip
 
 
@@ -167,7 +172,47 @@ class Attacker:
         for writer in held:
             writer.transport.abort()
 
-    async def get(self) -> None:
+    async def within(self) -> None:
+        """A visitor who walks, leaps and opens exhibits as often as his budget allows, and is never thrown out."""
+        joined = await self.join("/walk")
+        if joined is None:
+            return
+        reader, writer = joined
+        swallowing = asyncio.create_task(swallow(reader))
+        writer.write(text(HELLO))
+        number = count = 0
+        while self.going and not swallowing.done():
+            inputs = [
+                [number + k + 1, 0.002, (-1) ** (count // 40), 1, count * 0.05 % 6, 1.6] for k in range(14)
+            ]
+            number, count = number + len(inputs), count + 1
+            writer.write(text({"t": "in", "in": inputs}))
+            if count % 9 == 0:
+                writer.write(text(WALK["goto"][count % 2]))
+            if count % 36 == 0:
+                writer.write(text(WALK["open"][count % 2]))
+            await asyncio.sleep(1 / 35)
+        swallowing.cancel()
+        writer.transport.abort()
+
+    async def ahead(self) -> None:
+        """Requests of which no answer is waited for, on one connection after the other."""
+        asks = f"GET /catalogue HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n\r\n".encode() * AHEAD
+        while self.going:
+            with contextlib.suppress(OSError):
+                _, writer = await asyncio.open_connection(
+                    "127.0.0.1", self.port, local_addr=(self.address, 0)
+                )
+                self.connected += 1
+                try:
+                    while self.going:
+                        writer.write(asks)
+                        await asyncio.wait_for(writer.drain(), max(0.1, self.until - time.perf_counter()))
+                        self.written += len(asks)
+                finally:
+                    writer.transport.abort()
+
+    async def get(self, paths: Sequence[str] = GET) -> None:
         """One plain request after the other over a connection that is kept."""
         while self.going:
             with contextlib.suppress(OSError, ValueError, asyncio.IncompleteReadError, asyncio.TimeoutError):
@@ -178,7 +223,7 @@ class Attacker:
                     self.connected += 1
                     try:
                         while self.going:
-                            for path in GET:
+                            for path in paths:
                                 await self._ask(reader, writer, path)
                     finally:
                         writer.transport.abort()
@@ -198,8 +243,16 @@ class Attacker:
         if self.kind == "idle":
             await self.idle()
             return
-        if self.kind == "get":
-            await asyncio.gather(*(self.get() for _ in range(LINES)))
+        asking = {"get": (LINES, GET), "kept": (KEPT, GET), "form": (KEPT, FORM)}
+        if self.kind in asking:
+            lines, paths = asking[self.kind]
+            await asyncio.gather(*(self.get(paths) for _ in range(lines)))
+            return
+        if self.kind == "within":
+            await asyncio.gather(*(self.within() for _ in range(INSIDE)))
+            return
+        if self.kind == "ahead":
+            await self.ahead()
             return
         if self.kind == "silent":
             await self.come_and_go("/walk", hello=False, stay=True)

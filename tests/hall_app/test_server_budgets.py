@@ -1,5 +1,6 @@
 """Budgets and places: values with a clock in the hand, no server."""
 
+import asyncio
 import random
 
 import event_loop
@@ -23,6 +24,7 @@ from hall_app.web.limits import (
     OpenLines,
     Portions,
     Rate,
+    Shares,
     address_of,
     descriptors,
     name_of,
@@ -194,13 +196,13 @@ def test_requests_beyond_an_addresss_budget_are_refused_and_no_others():
     async def app(scope, receive, send):
         await send({"type": "http.response.start", "status": 200, "headers": []})
 
-    def asked(keeper: Doorkeeper, address: str, kind: str) -> object:
+    async def asked(keeper: Doorkeeper, address: str, kind: str) -> object:
         said = []
 
         async def send(message):
             said.append(message)
 
-        event_loop.run(keeper({"type": kind, "client": (address, 1)}, None, send))
+        await keeper({"type": kind, "client": (address, 1)}, None, send)
         return said[0].get("status", said[0]["type"])
 
     keeper = Doorkeeper(app, addresses := Addresses(Clock()))
@@ -208,9 +210,66 @@ def test_requests_beyond_an_addresss_budget_are_refused_and_no_others():
         pass
     while addresses.take("request", "10.0.0.7"):
         pass
-    assert asked(keeper, "10.0.0.7", "http") == 429
-    assert asked(keeper, "10.0.0.8", "websocket") == "websocket.close"
-    assert asked(keeper, "10.0.0.9", "http") == asked(keeper, "10.0.0.9", "websocket") == 200
+
+    async def run() -> None:
+        assert await asked(keeper, "10.0.0.7", "http") == 429
+        assert await asked(keeper, "10.0.0.8", "websocket") == "websocket.close"
+        assert await asked(keeper, "10.0.0.9", "http") == 200
+        assert await asked(keeper, "10.0.0.9", "websocket") == 200
+
+    event_loop.run(run())
+
+
+def work(shares: Shares, clock: Clock, done: list[str], name: str, seconds: float):
+    """A piece of work of an address that takes its time."""
+
+    async def piece() -> None:
+        await shares.turn(name)
+        clock.now += seconds
+        done.append(name)
+
+    return piece()
+
+
+def test_whoever_asks_for_little_waits_for_a_few_pieces_of_whoever_asks_for_much():
+    async def run() -> None:
+        shares, done = Shares(clock := Clock()), []
+        flood = [asyncio.ensure_future(work(shares, clock, done, "much", 0.002)) for _ in range(300)]
+        while len(done) < 20:
+            await asyncio.sleep(0)
+        before = len(done)
+        await work(shares, clock, done, "little", 0.0002)
+        assert len(done) - before <= 4
+        await asyncio.gather(*flood)
+        assert done.count("much") == 300
+
+    event_loop.run(run())
+
+
+def test_time_is_shared_and_not_pieces():
+    async def run() -> None:
+        shares, done = Shares(clock := Clock()), []
+        pieces = [work(shares, clock, done, "slow", 0.004) for _ in range(100)]
+        pieces += [work(shares, clock, done, "quick", 0.001) for _ in range(100)]
+        await asyncio.gather(*pieces)
+        last = max(n for n, name in enumerate(done) if name == "quick")
+        assert done[:last].count("slow") <= 40  # a quarter as many, and where it begins
+
+    event_loop.run(run())
+
+
+def test_whoever_gives_up_waiting_holds_nobody_up():
+    async def run() -> None:
+        shares, done = Shares(clock := Clock()), []
+        pieces = [asyncio.ensure_future(work(shares, clock, done, "here", 0.001)) for _ in range(10)]
+        await asyncio.sleep(0)
+        for piece in pieces[3:]:
+            piece.cancel()
+        await asyncio.gather(*pieces, return_exceptions=True)
+        await work(shares, clock, done, "here", 0.001)
+        assert 1 <= len(done) <= 4
+
+    event_loop.run(run())
 
 
 def test_penalties_outlive_any_number_of_other_addresses():

@@ -148,6 +148,95 @@ def test_a_flood_of_any_kind_is_shown_out_with_a_reason(plain_hall, kind):
     event_loop.run(run())
 
 
+async def ask(hall, address: str) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+    return await asyncio.open_connection("127.0.0.1", hall.port, local_addr=(address, 0))
+
+
+async def answered(reader: asyncio.StreamReader) -> bytes:
+    """The whole answer of a connection that ends with it."""
+    async with asyncio.timeout(PATIENCE):
+        return await reader.read(-1)
+
+
+def test_one_address_asking_on_hundreds_of_lines_does_not_make_another_wait_for_all(own_hall):
+    """Counted, not timed: how many of the others' answers come before the one to whoever asked last."""
+    get = f"GET /catalogue HTTP/1.1\r\nHost: 127.0.0.1:{own_hall.port}\r\nConnection: close\r\n\r\n".encode()
+
+    async def place() -> int:
+        many = [await ask(own_hall, "127.0.0.2") for _ in range(200)]
+        reader, writer = await ask(own_hall, "127.0.0.3")
+        order: list[str] = []
+
+        async def told(name: str, reader: asyncio.StreamReader) -> None:
+            assert b" 200 " in (await answered(reader))[:20]
+            order.append(name)
+
+        for _, line in many:
+            line.write(get)
+        writer.write(get)
+        await asyncio.gather(*(told("many", line) for line, _ in many), told("one", reader))
+        for _, line in [*many, (reader, writer)]:
+            line.close()
+        return order.index("one")
+
+    async def run() -> None:
+        assert sorted([await place() for _ in range(5)])[2] < 100
+
+    event_loop.run(run())
+
+
+def test_visitors_of_one_address_within_their_budgets_leave_another_his_turn(own_hall):
+    """Counted: how many of their messages are answered between his and its answer."""
+    batches = [
+        json.dumps({"t": "in", "in": [[64 * n + k, 0.002, 1, 1, 0.1, 1.6] for k in range(1, 65)]})
+        for n in range(30)
+    ]
+
+    async def run() -> None:
+        async with contextlib.AsyncExitStack() as stack:
+            other = await stack.enter_async_context(door(own_hall, "127.0.0.3"))
+            many = [await stack.enter_async_context(door(own_hall, "127.0.0.2")) for _ in range(40)]
+            await asyncio.gather(*map(enter, [other, *many]))
+            served = dict.fromkeys(range(len(many)), 0)
+
+            async def follow(n: int, socket) -> None:
+                while served[n] < 64 * len(batches):
+                    served[n] = (await hear(socket, "pose"))["seq"]
+
+            following = [asyncio.ensure_future(follow(n, socket)) for n, socket in enumerate(many)]
+            for batch in batches:
+                for socket in many:
+                    await socket.send(batch)
+            passed = []
+            for number in range(1, 6):
+                before = sum(served.values())
+                await walks(other, number)
+                passed.append((sum(served.values()) - before) / 64)
+            assert sorted(passed)[2] < 40, passed  # less than a message of each
+            await asyncio.gather(*following)  # and none of theirs is lost
+
+    event_loop.run(run())
+
+
+def test_a_line_that_asks_ahead_without_end_is_cut(own_hall):
+    get = f"GET /api/texts HTTP/1.1\r\nHost: 127.0.0.1:{own_hall.port}\r\n\r\n".encode()
+
+    async def run() -> None:
+        reader, writer = await ask(own_hall, "127.0.0.2")
+        writer.write(get * 2000)
+        said = b""
+        with contextlib.suppress(ConnectionError):
+            said = await answered(reader)
+        assert said.count(b"HTTP/1.1 200") < 50
+        writer.close()
+        reader, writer = await ask(own_hall, "127.0.0.2")
+        writer.write(get * 7 + get.replace(b"\r\n\r\n", b"\r\nConnection: close\r\n\r\n"))
+        assert (await answered(reader)).count(b"HTTP/1.1 200") == 8  # a few are no offence
+        writer.close()
+
+    event_loop.run(run())
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("opcode", [9, 10, 0])  # pings, pongs, a message in endless pieces
 def test_floods_below_the_messages_are_cut(plain_hall, opcode):

@@ -11,6 +11,8 @@ from hall_app.web.limits.descriptors import connections, raise_limit, shortage
 from hall_app.web.limits.doorkeeper import Doorkeeper, address_of
 from hall_app.web.limits.open_lines import ASKS_WITHIN, MOST_OF_ONE_ADDRESS, TAKES_WITHIN, OpenLines
 from hall_app.web.limits.portions import PORTION, Portions
+from hall_app.web.limits.shares import Shares
+from hall_app.web.limits.threads import few_threads
 
 __all__ = [
     "ASKS_WITHIN",
@@ -29,8 +31,10 @@ __all__ = [
     "OpenLines",
     "Portions",
     "Rate",
+    "Shares",
     "address_of",
     "connections",
+    "few_threads",
     "name_of",
     "raise_limit",
     "shortage",

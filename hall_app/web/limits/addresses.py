@@ -11,6 +11,7 @@ from collections.abc import Callable
 from time import monotonic
 
 from hall_app.web.limits.budgets import Bucket, Rate
+from hall_app.web.limits.shares import Shares
 
 __all__ = ["Addresses", "Silent", "name_of"]
 
@@ -28,10 +29,14 @@ _REMEMBERED = 4096  # addresses
 
 
 class Addresses:
-    """A bucket of each kind per address; IPv6 by its /64, which is one customer's. clock: seconds, monotonic."""
+    """A bucket of each kind per address; IPv6 by its /64, which is one customer's. clock: seconds, monotonic.
+
+    shares: in what order the work that they ask for is done.
+    """
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
+        self.shares = Shares()
         self._buckets: dict[tuple[str, str], Bucket] = {}
         self._silent: dict[str, dict[Silent, None]] = {}  # in the order of coming
 

@@ -19,14 +19,20 @@ _HEADERS = [
 
 
 class Doorkeeper:
-    """ASGI middleware: 429 for requests beyond the address's budget, no handshake for sockets beyond it."""
+    """ASGI middleware: 429 for requests beyond the address's budget, no handshake for sockets beyond it.
+
+    What it lets through begins when it is its address's turn.
+    """
 
     def __init__(self, app: ASGIApp, addresses: Addresses) -> None:
         self.app, self.addresses = app, addresses
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         kind = {"http": "request", "websocket": "attempt"}.get(scope["type"])
-        if kind is None or self.addresses.take(kind, address_of(scope)):
+        address = address_of(scope)
+        if kind is not None:
+            await self.addresses.shares.turn(address)
+        if kind is None or self.addresses.take(kind, address):
             await self.app(scope, receive, send)
         elif kind == "request":
             await send({"type": "http.response.start", "status": 429, "headers": _HEADERS})

@@ -31,6 +31,9 @@ _WAITING = 2048  # that the system keeps for us meanwhile
 _SWEEP = 50  # of uvicorn's ticks, ten a second
 
 
+_PIPELINED = 16  # requests of one connection that wait for the one before; browsers send none ahead
+
+
 class Socket(WebSocketsSansIOProtocol, asyncio.BufferedProtocol):
     """A WebSocket that reads little at a time, and nothing more once it has been thrown out."""
 
@@ -89,11 +92,18 @@ def line_class(addresses: Addresses, lines: OpenLines, proxies: Collection[str])
     """The protocol of a TCP connection: cut at once where its address opens too many. Proxies open any number."""
     trusted = {name_of(proxy) for proxy in proxies}
 
-    class Line(HttpToolsProtocol):
+    class Line(HttpToolsProtocol, asyncio.BufferedProtocol):
         line: OpenLine | None = None
+
+        def get_buffer(self, sizehint: int) -> bytearray:
+            return self._bite
+
+        def buffer_updated(self, nbytes: int) -> None:
+            self.data_received(bytes(self._bite[:nbytes]))
 
         def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
             super().connection_made(transport)
+            self._bite = bytearray(_BITE)
             address = self.client[0] if self.client else ""
             proxy = name_of(address) in trusted
             if not proxy and not addresses.take("line", address):
@@ -105,6 +115,11 @@ def line_class(addresses: Addresses, lines: OpenLines, proxies: Collection[str])
             super().connection_lost(exc)
             if self.line is not None:
                 self.line.end()
+
+        def on_headers_complete(self) -> None:
+            if len(self.pipeline) >= _PIPELINED:
+                raise BufferError("too many requests ahead")  # ends the parser: a bad request, and the line
+            super().on_headers_complete()
 
         def on_message_complete(self) -> None:
             super().on_message_complete()

@@ -208,6 +208,7 @@ class _View:
                 message = await self._socket.receive()
                 if message["type"] == "websocket.disconnect":
                     return
+                await self._addresses.shares.turn(self._address)
                 data, now = message.get("bytes") or b"", time.monotonic()
                 kind = message_kind(data)
                 asked = ["messages"]

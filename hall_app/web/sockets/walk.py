@@ -123,6 +123,7 @@ class _Line:
             if text is None:
                 await self._socket.close(_UNSUPPORTED, "text only")
                 raise WebSocketDisconnect(_UNSUPPORTED)
+            await self._addresses.shares.turn(self._address)
             now = time.monotonic()
             if await self._served("messages", now) and await self._served("bytes", now, len(text)):
                 message = _read(text)
