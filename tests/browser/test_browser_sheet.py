@@ -1,7 +1,7 @@
 """Small windows: phones upright and lying down, and a desk at 200 % zoom. Exhibit and text share what there is."""
 
 import pytest
-from bench.browser import CHOOSE, PATIENCE, at_rest, displayed, soon
+from bench.browser import CHOOSE, PATIENCE, at_rest, displayed, enter, soon
 from bench.readable import CROWDED, TARGETS
 from full_matrix import by_day
 
@@ -28,6 +28,14 @@ REACHED = """
 (selector) => {
   const e = document.querySelector(selector), b = e.getBoundingClientRect();
   return e.contains(document.elementFromPoint(b.left + b.width / 2, b.top + b.height / 2));
+}
+"""
+# How much of its height is seen [px].
+SEEN = """
+(e) => {
+  const b = e.getBoundingClientRect(), middle = b.left + b.width / 2;
+  return Array.from({ length: innerHeight }, (_, y) => document.elementFromPoint(middle, y + 0.5))
+    .filter((over) => e.contains(over)).length;
 }
 """
 # The exhibit's box on the screen [px]: left, top, right, bottom.
@@ -285,3 +293,21 @@ def test_enlarged_picture_is_large(page):
     for name in ("viewer-close", "viewer-previous", "viewer-next"):
         assert page.evaluate(REACHED, f"[data-testid={name}]"), name
     page.tap("[data-testid=viewer-close]")
+
+
+@pytest.mark.nightly
+def test_at_400_per_cent_zoom_the_text_is_read_and_feedback_reached(shipped_hall, chromium):
+    """1280 × 1024 at 400 %: head and foot of the sheet leave no room between them, so all of it scrolls."""
+    context = chromium.new_context(viewport={"width": 320, "height": 256}, reduced_motion="reduce")
+    page = context.new_page()
+    enter(page, f"{shipped_hall.url}/?exhibit=pibo&lang=en")
+    page.locator(PANEL).wait_for()
+    text = page.locator("[data-testid=exhibit-text]")
+    ends = (text.locator("p").first, text.locator(":scope > *").last, page.locator(".panel-foot .primary"))
+    for element in ends:
+        element.evaluate("(element) => element.scrollIntoView({ block: 'center' })")
+        assert element.evaluate(SEEN) >= min(element.bounding_box()["height"], READ_AT_ONCE) - 2
+    assert page.evaluate(REACHED, ".panel-foot .primary")
+    page.click(FOLD)
+    assert page.evaluate(FREE) >= LEAST_FREE["folded"]
+    context.close()
