@@ -94,9 +94,9 @@ def cutting_plan(patterns: Sequence[Pattern], title: tuple[str, str]) -> Plan:
             words += [own[path.panel].mark(path, name, line) for path in (seam.a, seam.b) if path]
             legend.append(_seam_words(name, seam, own))
         for (panel, place), ties in _tied(pattern).items():
-            stroke, mark = own[panel].spot(place, ", ".join(ties), line)
+            stroke, marks = own[panel].spot(place, ties, line)
             strokes.append(stroke)
-            words.append(mark)
+            words += marks
         legend += [_tie_words(tie) for tie in pattern.ties]
         words.append(Words(0.0, below, heading[0], 1.1 * line, "", "start"))
         words.append(Words(0.0, below + 1.5 * line, heading[1], 1.1 * line, anchor="start"))
@@ -202,14 +202,21 @@ class _Laid:
         x, y = here + 0.55 * line * side
         return Words(float(x), float(y) + 0.3 * line, name, 0.8 * line, colour=ACCENT)
 
-    def spot(self, place: tuple[float, float], names: str, line: float) -> tuple[Stroke, Words]:
-        """A place [m] where ties are fastened, and their names beside it."""
+    def spot(
+        self, place: tuple[float, float], names: Sequence[str], line: float
+    ) -> tuple[Stroke, list[Words]]:
+        """A place [m] where ties are fastened, their names one under the other: inside, or beside its right edge."""
         (here,) = self.on_sheet(np.array([place]))
         turn = np.linspace(0, 2 * np.pi, 17)
         ring = here + 0.25 * line * np.column_stack([np.cos(turn), np.sin(turn)])
-        return Stroke(ring, "tie"), Words(
-            here[0] + 0.4 * line, here[1] - 0.3 * line, names, 0.6 * line, anchor="start"
-        )
+        low, high = (self.outline + self.shift).min(0), (self.outline + self.shift).max(0)
+        upwards = here[1] > (low + high)[1] / 2 or here[0] > high[0] - line
+        first = here[1] - line * (0.3 + 0.75 * (len(names) - 1)) if upwards else here[1] + 0.75 * line
+        rows = [
+            Words(here[0] + 0.4 * line, first + 0.75 * k * line, name, 0.6 * line, anchor="start")
+            for k, name in enumerate(names)
+        ]
+        return Stroke(ring, "tie"), rows
 
 
 def _line(laid: Sequence[_Laid]) -> float:

@@ -184,6 +184,21 @@ def test_panels_of_a_sheet_lie_apart():
             assert (high < other_low).any() or (other_high < low).any()
 
 
+def test_no_tie_of_a_shipped_sheet_is_written_over_other_words():
+    plan = outfit_plan(ASSETS, "outfits/gown.toml")
+    boxes = []
+    for word in plan.words:
+        wide, left = 0.5 * word.size * len(word.text), 0.0 if word.anchor == "start" else 0.5
+        size = np.array([wide, 0.8 * word.size])[:: -1 if word.upright else 1]
+        low = np.array([word.x - left * size[0], word.y - (0.5 if word.upright else 1.0) * size[1]])
+        boxes.append((word.text, low, low + size))
+    ties = [box for box in boxes if box[0].endswith((" (L)", " (R)"))]
+    assert len(ties) == 8
+    for name, low, high in ties:
+        over = [text for text, a, b in boxes if (a < high).all() and (b > low).all() and text != name]
+        assert not over, (name, over)
+
+
 def test_the_picture_of_a_sheet_measures_what_it_is_given():
     small, other = (plan_picture(cutting_plan([strip(length)], ("帔", "Scarf"))) for length in (2.4, 2.3))
     assert max(small.size) == max(other.size) == 1500
