@@ -42,6 +42,7 @@ An outfit file:
   dye = "#c39c50"                     # dyes = { band = "#2c4464" } of single panels
   measures = { length = 1180 }        # of the pattern, in millimetres
   edge = 0.013                        # mesh step in metres
+  start = "t"                         # pose the wearer begins in (wrapped, along_path), which a pose step leaves
   [layer.place]
   way = "flat"                        # flat, wrapped, over_bar, along_path or folded; each has keys of its own
   [[layer.step]]                      # only where the usual steps do not do

@@ -124,6 +124,10 @@ def test_a_belt_shorter_than_the_wearer_is_refused(tmp_path: Path) -> None:
     ):
         check_fits(of(tmp_path, close=BELT.replace("0.80", "0.60")))
     with pytest.raises(
+        SimCoreError, match=r"layer\.1\.step\.5\.belt\.rise: 90\.0 cm from the waist there is nothing"
+    ):
+        check_fits(of(tmp_path, close=BELT.replace("0.80", "0.80, rise = 0.9")))
+    with pytest.raises(
         FileProblem, match=r"layer\.1\.step\.5\.belt\.mark: no landmark 'wasit' – landmarks: "
     ):
         of(tmp_path, close=BELT.replace("length", 'mark = "wasit", length'))

@@ -93,6 +93,9 @@ do = "sew"
 seconds = 0.04
 [[layer.step]]
 do = "weld"
+[[layer.step]]
+do = "settle"
+seconds = 0.04
 """
 
 

@@ -30,6 +30,8 @@ weave = "weaves/gauze.toml"
 """
 GOWN = ROBE.replace("robe.toml", "gown.toml").replace("juan", "gauze")
 
+STRAIGHT = '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
+
 
 def written(folder: Path, text: str) -> Path:
     path = folder / "it.toml"
@@ -189,6 +191,21 @@ BAD = {
         "layer.1.step.1.pose: settle does not read it, only pose",
     ),
     "time to weld": (ROBE + '[[layer.step]]\ndo = "weld"\nseconds = 1.0\n', "step.1.seconds: weld does not"),
+    "welded at the very end": (ROBE + STRAIGHT, r"layer.1.step.2.do: weld comes last, and no time passes"),
+    "let go at the very end": (
+        ROBE
+        + STRAIGHT
+        + '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n'
+        + '[[layer.step]]\ndo = "settle"\nseconds = 0.2\n[[layer.step]]\ndo = "release"\n',
+        r"layer.1.step.5.do: release comes last",
+    ),
+    "fronts far off": (ROBE + '[layer.place]\nway = "flat"\nlift = 5.0\n', "lift: .*less than"),
+    "sheets far off": (ROBE + '[layer.place]\nway = "flat"\nfront = 15.0\n', "front: .*less than"),
+    "another begin of flat": (ROBE + 'start = "held"\n', "layer.1.start: flat has its own begin"),
+    "a begin that nothing leaves": (
+        ROBE + 'start = "t"\n[layer.place]\nway = "wrapped"\n',
+        "layer.1.start: no step leaves that pose",
+    ),
     "let go of something else": (
         ROBE + '[[layer.step]]\ndo = "pin"\nat = ["nape"]\n[[layer.step]]\ndo = "release"\nat = ["top"]\n',
         "layer.1.step.2.at: it is not pinned",
@@ -208,7 +225,6 @@ def test_what_is_wrong_is_told_with_file_key_and_remedy(tmp_path: Path, case: st
     assert "\n" not in str(caught.value)
 
 
-STRAIGHT = '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
 WAY = {
     "another end": ((("held",),), r"it\.toml: layer\.1\.step: its steps leave the wearer in another pose"),
     "one by way of another": (

@@ -172,6 +172,38 @@ def test_a_skirt_narrower_than_another_beneath_is_refused_before_anything_runs(t
     check_fits(replace(it, layers=it.layers[:1]))
 
 
+BENEATH = """
+[[layer.step]]
+do = "settle"
+seconds = 0.4
+damping = 6.0
+friction = 0.3
+[[layer.step]]
+do = "pose"
+seconds = 0.6
+damping = 4.0
+"""
+
+
+@pytest.mark.nightly
+def test_a_skirt_lies_beneath_a_robe_that_is_dressed_flat(tmp_path: Path) -> None:
+    (tmp_path / "skirt.toml").write_text(SKIRT.replace("500", "800"), "utf-8")
+    head = f'{WEARER}\n[[layer]]\npattern = "{tmp_path / "skirt.toml"}"\nweave = "weaves/juan.toml"\n'
+    robe = '[[layer]]\npattern = "patterns/beizi.toml"\nweave = "weaves/ling.toml"\nedge = 0.03\n'
+    begun = head + 'start = "t"\n[layer.place]\nway = "wrapped"\n' + WELDED + BENEATH
+    path = tmp_path / "it.toml"
+    path.write_text(begun.replace('start = "t"\n', "") + robe, "utf-8")
+    with pytest.raises(
+        SimCoreError, match=r"layer\.2\.step: .*beneath one that is dressed flat, start = \"t\""
+    ):
+        check_fits(load_outfit(path, ASSETS))
+    path.write_text(begun + robe, "utf-8")
+    skirt, over = dress(load_outfit(path, ASSETS))
+    assert clear(skirt)
+    assert clear(over)
+    assert over.provenance["errors"]["rest_p99_m"] < 1e-4
+
+
 def test_a_skirt_narrower_than_the_hips_is_refused(tmp_path: Path) -> None:
     with pytest.raises(
         SimCoreError, match=r"0\.700 m wide – to go round the wearer below 'waist' it needs 0\.9"

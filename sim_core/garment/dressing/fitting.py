@@ -95,7 +95,8 @@ def _checked_way(
     if len(way) > 1 and any(other != way for other in ways):
         raise SimCoreError(
             f"{key}.step: it is dressed while the wearer moves, over a layer that was not dressed on the same way "
-            "from pose to pose – give both the same pose steps, or place it along_path or wrapped"
+            'from pose to pose – give both the same pose steps (beneath one that is dressed flat, start = "t"), or '
+            "place it along_path or wrapped"
         )
     return way
 
@@ -107,6 +108,11 @@ def _check_belts(key: str, layer: Layer, pose: Pose, figure: Figure) -> None:
             continue
         height = float(figure.mannequin.landmarks(pose)[step.belt.mark][1]) + step.belt.rise
         girth = figure.girth(pose, height)
+        if not girth:
+            raise SimCoreError(
+                f"{key}.step.{number}.belt.rise: {100 * step.belt.rise:.1f} cm from the {step.belt.mark} there is "
+                "nothing of the wearer to go round – bring it nearer"
+            )
         if step.belt.length < girth + ROOM:
             raise SimCoreError(
                 f"{key}.step.{number}.belt.length: {100 * step.belt.length:.1f} cm, the wearer is {100 * girth:.1f} cm "

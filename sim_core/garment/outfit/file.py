@@ -162,6 +162,8 @@ class _Reader:
         if table.step:
             steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
             program = replace(program, steps=steps)
+        if table.start is not None:
+            program = self._begun(f"{key}.start", table.start, way, program)
         _check_order(self, key, program.steps, pattern)
         edge = pattern.edge if table.edge is None else table.edge
         name = table.name or pattern.name
@@ -169,6 +171,14 @@ class _Reader:
             f"{key}.name",
             lambda: Layer(name, pattern, weave, place, program, edge, weaves, table.seed, self._loom),
         )
+
+    def _begun(self, key: str, start: PoseTable, way: str, program: Program) -> Program:
+        """The program from another pose on than is usual for its way of placing."""
+        if way not in ("wrapped", "along_path"):
+            raise self._wrong(key, f"{way} has its own begin – leave it out")
+        if not any(step.do == "pose" for step in program.steps):
+            raise self._wrong(key, 'no step leaves that pose – add a step with do = "pose", or leave it out')
+        return replace(program, start=self.pose(key, start))
 
     def _pattern(self, key: str, table: LayerTable) -> Pattern:
         file = self._file(f"{key}.pattern", table.pattern)
@@ -279,8 +289,11 @@ def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Patt
             pinned += step.spots
     if sewn and not welded:
         raise reader._wrong(f"{key}.step", "the pattern has sewn seams and no step welds them – add one")
-    if not any(step.timed for step in steps):
-        raise reader._wrong(f"{key}.step", "no step takes time – add settle or rest")
+    if not steps[-1].timed:
+        raise reader._wrong(
+            f"{key}.step.{len(steps)}.do",
+            f"{steps[-1].do} comes last, and no time passes in which it could do anything – add settle or rest",
+        )
 
 
 @cache

@@ -105,9 +105,9 @@ class FlatTable(Table):
     over: Literal["left", "right"] = Field(
         "left", description="the outer front where fronts overlap (右衽: left)"
     )
-    lift: Length = Field(0.012, description="[m] by which it is held off the other")
-    front: Length = Field(0.17, description="[m] of the front sheet before the middle")
-    back: Length = Field(0.15, description="[m] of the back sheet behind it")
+    lift: Number = Field(0.012, gt=0, le=0.1, description="[m] by which it is held off the other")
+    front: Number = Field(0.17, gt=0, le=1, description="[m] of the front sheet before the middle")
+    back: Number = Field(0.15, gt=0, le=1, description="[m] of the back sheet behind it")
 
 
 class OverBarTable(Table):
@@ -172,6 +172,9 @@ class LayerTable(Table):
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
     seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
+    start: PoseTable | None = Field(
+        None, description="pose its wearer begins in, of wrapped and along_path; left out: the outfit's"
+    )
     step: list[StepTable] = Field(
         [], max_length=200, description="dressing steps; else those of its way of placing"
     )
