@@ -1,6 +1,7 @@
 """The one place where a published number is computed: distances between surfaces, strain, penetration, crossings."""
 
 from sim_core.metrics.compile_time import CompileClock, compile_clock
+from sim_core.metrics.components import components
 from sim_core.metrics.surfaces import (
     FAR,
     Distances,
@@ -21,6 +22,7 @@ __all__ = [
     "Penetration",
     "area_strain",
     "compile_clock",
+    "components",
     "hausdorff",
     "intersections",
     "penetration",

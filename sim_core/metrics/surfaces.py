@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
+from sim_core.metrics.components import components
 from sim_core.metrics.triangles import crossings, nearest, winding
 
 __all__ = [
@@ -181,9 +180,7 @@ def area_strain(rest: np.ndarray, positions: np.ndarray, faces: np.ndarray) -> n
 def _signed(points: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Signed distance to closed meshes, which may overlap; negative inside any."""
     distance = surface_distance(points, vertices, faces, limit=FAR)
-    ones = np.ones(3 * len(faces))
-    joined = coo_matrix((ones, (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (len(vertices),) * 2)
-    _, part = connected_components(joined, directed=False)
+    part = components(len(vertices), faces.ravel(), np.roll(faces, 1, axis=1).ravel())
     part_of_face = part[faces[:, 0]]
     for number in np.unique(part_of_face):
         own = faces[part_of_face == number]

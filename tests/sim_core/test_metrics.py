@@ -112,3 +112,10 @@ def test_bad_meshes_are_named() -> None:
         metrics.intersections(np.full_like(a, np.nan), f)
     with pytest.raises(SimCoreError, match="name no vertex"):
         metrics.intersections(a, f + len(a))
+
+
+def test_components_are_numbered_in_the_order_of_their_first():
+    found = metrics.components(6, np.array([4, 2, 5]), np.array([1, 5, 5]))
+    assert found.tolist() == [0, 1, 2, 3, 1, 2]
+    assert found.dtype == np.int32
+    assert metrics.components(2, np.zeros(0, int), np.zeros(0, int)).tolist() == [0, 1]

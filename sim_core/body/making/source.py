@@ -8,11 +8,10 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from sim_core.body.joints import JOINTS
 from sim_core.errors import SimCoreError
+from sim_core.metrics import components
 
 LEGS_IN = 3.5  # [degrees] the legs are brought together: a figure that stands, not one that is measured
 # Which of the rig's bones hang on a joint, by how their names begin, and the bone that begins at it.
@@ -81,9 +80,7 @@ def t_posed(
     vertices: np.ndarray, faces: np.ndarray, joints: np.ndarray, weights: np.ndarray, names: Sequence[str]
 ) -> Body:
     """Largest component, arms level, legs together, soles at 0; weights (V, B) to the bones `names` (B)."""
-    ones = np.ones(faces.size)
-    joined = coo_matrix((ones, (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (len(vertices),) * 2)
-    part = connected_components(joined, directed=False)[1]
+    part = components(len(vertices), faces.ravel(), np.roll(faces, 1, axis=1).ravel())
     keep = part == np.bincount(part).argmax()
     number = np.cumsum(keep) - 1
     faces = number[faces[keep[faces[:, 0]]]].astype(np.int32)

@@ -19,11 +19,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
 from sim_core.cloth.contact.pairs import Finder, Mesh, hash_points
+from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
 NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met on the way
@@ -251,8 +250,7 @@ def _together_with(left: np.ndarray, pairs: np.ndarray, edges: np.ndarray, moved
     both = edges[moved[edges].all(1)]
     first = np.concatenate([both[:, 0], np.repeat(pairs[:, 0], 4)])
     second = np.concatenate([both[:, 1], pairs[:, 1:].ravel()])
-    graph = sparse.coo_array((np.ones(len(first)), (first, second)), (len(moved), len(moved)))
-    tangle = connected_components(graph, directed=False)[1]
+    tangle = components(len(moved), first, second)
     return np.isin(tangle, tangle[left.ravel()])
 
 

@@ -18,11 +18,9 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from sim_core.errors import SimCoreError
-from sim_core.metrics import intersections
+from sim_core.metrics import components, intersections
 from sim_core.validation import excerpt, points, triangles
 
 ROUNDS = 40  # in which zones may grow before a part is given up
@@ -123,8 +121,7 @@ class Certifier:
 def zones_of(stencils: np.ndarray, count: int) -> np.ndarray:
     """The zone (count,) each vertex belongs to, -1: none. stencils (K, 4): the vertices of pairs that would cross."""
     first = np.repeat(stencils[:, 0], stencils.shape[1])
-    links = coo_array((np.ones(stencils.size), (first, stencils.ravel())), shape=(count, count))
-    _, zone = connected_components(links, directed=False)
+    zone = components(count, first, stencils.ravel())
     inside = np.zeros(count, bool)
     inside[stencils.ravel()] = True
     zone[~inside] = -1

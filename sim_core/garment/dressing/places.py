@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
@@ -15,6 +13,7 @@ from sim_core.garment.dressing.sections import hull_girth
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Spot
+from sim_core.metrics import components
 
 __all__ = ["Places", "belt_pairs", "nearest"]
 
@@ -120,8 +119,7 @@ def _round(x: np.ndarray, faces: np.ndarray, centre: np.ndarray) -> np.ndarray:
     above = x[faces, 1] > centre[1]
     cut = faces[above.any(1) & ~above.all(1)]
     number = np.arange(3 * len(cut)).reshape(-1, 3) // 3
-    graph = coo_array((np.ones(cut.size), (number.ravel(), len(cut) + cut.ravel())), (len(cut) + len(x),) * 2)
-    part = connected_components(graph, directed=False)[1][: len(cut)]
+    part = components(len(cut) + len(x), number.ravel(), len(cut) + cut.ravel())[: len(cut)]
     way = x[cut].mean(1) - centre
     direction = np.arctan2(way[:, 0], way[:, 2])
     own = [np.zeros((0, 3), np.int32)]

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
 from sim_core.garment.pattern import Cloth
+from sim_core.metrics import components
 
 __all__ = ["Section", "hull_girth", "sections"]
 
@@ -51,8 +50,7 @@ def sections(cloth: Cloth, laid: np.ndarray, axis: int, at: float) -> list[Secti
     sides = np.sort(ends[rows], axis=1)
     _, number, shared = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
     number = number.reshape(-1, 2)  # the two sides each face is entered and left by
-    graph = coo_array((np.ones(len(number)), (number[:, 0], number[:, 1])), (len(shared),) * 2)
-    of_side = connected_components(graph, directed=False)[1]
+    of_side = components(len(shared), number[:, 0], number[:, 1])
     of_face = of_side[number[:, 0]]
     open_ = np.unique(of_side[shared != 2])
     corners = place[rows].reshape(-1, 2, 3)

@@ -12,6 +12,7 @@ from sim_core.garment.pattern.panels import Panel, Path, Seam
 from sim_core.mesh import PanelMesh, SeamFit, SeamSide, SewnPanel, sewn_meshes
 from sim_core.mesh import Seam as SewnSeam
 from sim_core.mesh.outline import check_edge, signed_area
+from sim_core.metrics import components
 
 __all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth", "unsided"]
 
@@ -134,7 +135,7 @@ def _laid_out(
     """All meshes in one list of vertices, of which each begins at `starts`; twins: (k, 2) of them that are sewn."""
     none, count = np.zeros((0, 2), np.int64), int(starts[-1])
     flat, sewn = (np.concatenate([none, *twins[kind]]) for kind in ("joined", "sewn"))
-    joined = _united(count, flat)
+    joined = components(count, *flat.T)
     pairs = np.unique(np.sort(joined[sewn], axis=1), axis=0)
     numbers = np.arange(len(panels), dtype=np.int32)
     parts = list(zip(panels, meshes, starts.tolist(), strict=False))
@@ -145,7 +146,7 @@ def _laid_out(
         panel=np.repeat(numbers, [len(mesh.faces) for mesh in meshes]),
         panel_of=np.repeat(numbers, np.diff(starts)),
         joined=joined,
-        closed=_united(count, np.concatenate([flat, sewn])),
+        closed=components(count, *np.concatenate([flat, sewn]).T),
         pairs=pairs[pairs[:, 0] != pairs[:, 1]].astype(np.int32),
         middle=np.zeros(0, np.int32),
         paths={
@@ -183,16 +184,3 @@ def _legs(panel: Panel, mesh: PanelMesh) -> list[np.ndarray]:
         loop[np.arange(begin, begin + (end - begin - 1) % count + 2) % count]
         for begin, end in zip(at, [*at[1:], at[0]], strict=True)
     ]
-
-
-def _united(count: int, twins: np.ndarray) -> np.ndarray:
-    """Number of the point (count,) each vertex belongs to when twins (K, 2) are one, in order of first mention."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    graph = coo_array((np.ones(len(twins)), (twins[:, 0], twins[:, 1])), (count, count))
-    label = connected_components(graph, directed=False)[1]
-    _, first = np.unique(label, return_index=True)
-    rank = np.zeros(len(first), np.int32)
-    rank[np.argsort(first)] = np.arange(len(first))
-    return rank[label]

@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import sparse
-from scipy.sparse.csgraph import connected_components
 
 from sim_core.cloth.sheet.sheet import Sheet
+from sim_core.metrics import components
 
 GROUP = 6  # neighbours that are handled in one go; an inner vertex of a regular mesh has as many
 
@@ -50,8 +49,7 @@ def _panels(sheet: Sheet) -> np.ndarray:
     count = int(name.max()) + 1
     name = name.reshape(-1, 3)
     ends = np.concatenate([name[:, [0, 1]], name[:, [1, 2]]])
-    graph = sparse.coo_array((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), (count, count))
-    piece = connected_components(graph, directed=False)[1][name]
+    piece = components(count, ends[:, 0], ends[:, 1])[name]
     panel = np.zeros(len(sheet.rest), np.int64)
     panel[sheet.faces.ravel()[::-1]] = piece.ravel()[::-1]
     return panel

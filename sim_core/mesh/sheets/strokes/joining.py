@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from sim_core.mesh.outline.crossings import crossed_steps
 from sim_core.mesh.sheets.strokes.stroke import Stroke
+from sim_core.metrics import components
 
 __all__ = ["joined"]
 
@@ -129,14 +128,8 @@ def _places(ends: np.ndarray, near: float) -> tuple[int, np.ndarray]:
         return len(places), place.ravel()
     cells, cell = np.unique(np.rint(ends * (CELLS / near)), axis=0, return_inverse=True)
     pairs = KDTree(cells).query_pairs(CELLS, output_type="ndarray")
-    count, place = _parts(len(cells), pairs)
-    return count, place[cell.ravel()]
-
-
-def _parts(count: int, pairs: np.ndarray) -> tuple[int, np.ndarray]:
-    """How many parts so many things make that hang together in pairs, and the part of each."""
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
-    return connected_components(graph, directed=False)
+    place = components(len(cells), *pairs.T)
+    return int(place.max(initial=-1)) + 1, place[cell.ravel()]
 
 
 def _around(chains: list[_Chain], near: float) -> list[_Chain]:
@@ -148,7 +141,7 @@ def _around(chains: list[_Chain], near: float) -> list[_Chain]:
     joints, joint = _places(ends, near)
     if np.bincount(joint).max() < 3:
         return chains
-    _, net = _parts(joints, joint.reshape(-1, 2))
+    net = components(joints, *joint.reshape(-1, 2).T)
     _, first = np.unique(joint, return_index=True)
     nets: dict[int, list[_Chain]] = {}
     for k, chain in enumerate(open_ones):
