@@ -5,6 +5,7 @@ What the page knows of it stands in page/viser/, what is known of its client's f
 
 from __future__ import annotations
 
+import logging
 import socket
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,8 @@ def open_viser() -> viser.ViserServer:
     # viser announces its beginning and, from a thread of its own, its end, whatever `verbose` says.
     # Nobody else in a serving process prints through rich's own console.
     rich.get_console().quiet = True
+    # Only the relay comes to this port: whoever leaves while it is let in would be told with a traceback.
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
     server = viser.ViserServer("127.0.0.1", _free_port(), verbose=False)
     server._websock_server.get_message_buffer().max_window_size = _NODES_A_MESSAGE
     return server

@@ -1,5 +1,6 @@
 """What the scene uses of viser beyond its public API: an update that changes it fails here."""
 
+import socket
 from dataclasses import fields
 
 from lit_room import environment
@@ -39,3 +40,18 @@ def test_environment_is_queued_for_every_visitor():
     assert first.hdri_data == environment()
     assert not first.background
     assert second.hdri_data is None
+
+
+def test_who_leaves_while_he_is_let_in_is_no_traceback(caplog):
+    """The relay hangs up in the midst of viser's handshake where its visitor has gone."""
+    scene = HallScene()
+    try:
+        for said in (b"", b"GET / HTTP/1.1\r\nHost: hall\r\n"):
+            with socket.create_connection(("127.0.0.1", scene.port), timeout=10) as line:
+                line.sendall(said)
+                line.shutdown(socket.SHUT_WR)
+                while line.recv(4096):  # until viser has dealt with it
+                    pass
+    finally:
+        scene.stop()
+    assert not [record for record in caplog.records if record.exc_info]

@@ -379,15 +379,19 @@ def test_the_thrown_out_find_the_door_shut(own_hall):
     event_loop.run(run())
 
 
-async def opened(hall, address: str, forwarded: str) -> bool:
-    """Whether 500 sockets in a row that claim to come from `forwarded` all open."""
-    for _ in range(500):
+async def opened(hall, address: str, forwarded: str) -> int:
+    """How many sockets in a row that claim to come from `forwarded` open before one is refused; 500 at most."""
+    for number in range(500):
         try:
             async with door(hall, address, additional_headers={"X-Forwarded-For": forwarded}):
                 pass
         except InvalidStatus:
-            return False
-    return True
+            return number
+    return 500
+
+
+# What a budget of 400 gets back while a slow machine asks, ten a second, and no second budget.
+GOT_BACK = 100
 
 
 @pytest.mark.nightly
@@ -395,11 +399,9 @@ def test_forwarded_addresses_count_from_the_named_proxy_alone(small_hall):
     """Whoever exhausts his own budget cannot go on under another name; behind the proxy names are believed."""
 
     async def run() -> None:
-        assert not await opened(small_hall, "127.0.0.6", "203.0.113.1")
-        with pytest.raises(InvalidStatus):
-            async with door(small_hall, "127.0.0.6", additional_headers={"X-Forwarded-For": "203.0.113.2"}):
-                pass
-        assert not await opened(small_hall, "127.0.0.9", "203.0.113.3")
+        assert await opened(small_hall, "127.0.0.6", "203.0.113.1") < 500
+        assert await opened(small_hall, "127.0.0.6", "203.0.113.2") < GOT_BACK
+        assert await opened(small_hall, "127.0.0.9", "203.0.113.3") < 500
         async with door(
             small_hall, "127.0.0.9", additional_headers={"X-Forwarded-For": "203.0.113.4"}
         ) as socket:
@@ -412,10 +414,8 @@ def test_forwarded_addresses_count_from_the_named_proxy_alone(small_hall):
 @pytest.mark.nightly
 def test_this_machine_is_no_proxy_unless_named(own_hall):
     async def run() -> None:
-        assert not await opened(own_hall, "127.0.0.1", "203.0.113.1")
-        with pytest.raises(InvalidStatus):
-            async with door(own_hall, "127.0.0.1", additional_headers={"X-Forwarded-For": "203.0.113.2"}):
-                pass
+        assert await opened(own_hall, "127.0.0.1", "203.0.113.1") < 500
+        assert await opened(own_hall, "127.0.0.1", "203.0.113.2") < GOT_BACK
 
     event_loop.run(run())
 
@@ -698,7 +698,7 @@ def test_connections_that_say_nothing_leave_room_for_others(tight_hall):
                 await walks(socket)
 
         event_loop.run(run())
-    assert "Traceback" not in tight_hall.said()
+    assert "Traceback" not in tight_hall.said(), tight_hall.said()
 
 
 @pytest.mark.nightly
@@ -717,7 +717,7 @@ def test_connections_that_neither_ask_nor_read_are_cut(tight_hall):
             while data := unread.recv(1 << 20):
                 got += len(data)
         assert 0 < got < 20 * whole
-    assert "Traceback" not in tight_hall.said()
+    assert "Traceback" not in tight_hall.said(), tight_hall.said()
 
 
 def test_the_page_brings_the_key_of_both_sockets(plain_hall):
