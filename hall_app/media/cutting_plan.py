@@ -209,7 +209,8 @@ class _Laid:
         (here,) = self.on_sheet(np.array([place]))
         turn = np.linspace(0, 2 * np.pi, 17)
         ring = here + 0.25 * line * np.column_stack([np.cos(turn), np.sin(turn)])
-        low, high = (self.outline + self.shift).min(0), (self.outline + self.shift).max(0)
+        outline = self.outline + self.shift
+        low, high = outline.min(0), outline.max(0)
         upwards = here[1] > (low + high)[1] / 2 or here[0] > high[0] - line
         first = here[1] - line * (0.3 + 0.75 * (len(names) - 1)) if upwards else here[1] + 0.75 * line
         rows = [

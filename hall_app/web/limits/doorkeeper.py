@@ -29,10 +29,12 @@ class Doorkeeper:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         kind = {"http": "request", "websocket": "attempt"}.get(scope["type"])
+        if kind is None:
+            await self.app(scope, receive, send)
+            return
         address = address_of(scope)
-        if kind is not None:
-            await self.addresses.shares.turn(address)
-        if kind is None or self.addresses.take(kind, address):
+        await self.addresses.shares.turn(address)
+        if self.addresses.take(kind, address):
             await self.app(scope, receive, send)
         elif kind == "request":
             await send({"type": "http.response.start", "status": 429, "headers": _HEADERS})

@@ -29,17 +29,28 @@ _POLICY_VIOLATION = 1008
 AT_A_TIME = 16  # connections accepted before the first is counted: asyncio's loop takes a whole backlog
 _WAITING = 2048  # that the system keeps for us meanwhile
 _SWEEP = 50  # of uvicorn's ticks, ten a second
-
-
 _PIPELINED = 16  # requests of one connection that wait for the one before; browsers send none ahead
 
 
-class Socket(WebSocketsSansIOProtocol, asyncio.BufferedProtocol):
-    """A WebSocket that reads little at a time, and nothing more once it has been thrown out."""
+class _InBites(asyncio.BufferedProtocol):
+    """Reads little at a time, whatever the protocol makes of it."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self._bite = bytearray(_BITE)
+
+    def get_buffer(self, sizehint: int) -> bytearray:
+        return self._bite
+
+    def buffer_updated(self, nbytes: int) -> None:
+        self.data_received(bytes(self._bite[:nbytes]))  # type: ignore[attr-defined]
+
+
+class Socket(_InBites, WebSocketsSansIOProtocol):
+    """A WebSocket that reads nothing more once it has been thrown out."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
         self._thrown_out = False
         self.line: OpenLine | None = None
         self._control = Bucket(_CONTROL.burst, self.loop.time())
@@ -49,12 +60,9 @@ class Socket(WebSocketsSansIOProtocol, asyncio.BufferedProtocol):
         if self.line is not None:
             self.line.end()
 
-    def get_buffer(self, sizehint: int) -> bytearray:
-        return self._bite
-
     def buffer_updated(self, nbytes: int) -> None:
         if not self._thrown_out:
-            self.data_received(bytes(self._bite[:nbytes]))
+            super().buffer_updated(nbytes)
             return
         # Read on, or the close frame would be lost with what is unread; but look at nothing, and leave others the loop.
         self.transport.pause_reading()
@@ -92,18 +100,11 @@ def line_class(addresses: Addresses, lines: OpenLines, proxies: Collection[str])
     """The protocol of a TCP connection: cut at once where its address opens too many. Proxies open any number."""
     trusted = {name_of(proxy) for proxy in proxies}
 
-    class Line(HttpToolsProtocol, asyncio.BufferedProtocol):
+    class Line(_InBites, HttpToolsProtocol):
         line: OpenLine | None = None
-
-        def get_buffer(self, sizehint: int) -> bytearray:
-            return self._bite
-
-        def buffer_updated(self, nbytes: int) -> None:
-            self.data_received(bytes(self._bite[:nbytes]))
 
         def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
             super().connection_made(transport)
-            self._bite = bytearray(_BITE)
             address = self.client[0] if self.client else ""
             proxy = name_of(address) in trusted
             if not proxy and not addresses.take("line", address):
