@@ -10,11 +10,10 @@ from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
 from sim_core.cloth.contact.pairs import (
     Mesh,
-    edge_edge_pairs,
+    near_pairs,
     finder_of,
     hash_points,
     pairs_of,
-    vertex_face_pairs,
 )
 from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
 from sim_core.cloth.contact.solid_meshes import solid_mesh
@@ -54,7 +53,7 @@ __all__ = [
     "contact_samples",
     "crossings_of",
     "distances",
-    "edge_edge_pairs",
+    "near_pairs",
     "faces_at_edges",
     "field_of",
     "finder_of",
@@ -68,7 +67,6 @@ __all__ = [
     "repel",
     "united",
     "untangle",
-    "vertex_face_pairs",
 ]
 
 _LATE = {

@@ -15,10 +15,9 @@ from numba import njit
 
 from sim_core.cloth.contact.distance import carried, fields_of, signed_distance
 from sim_core.cloth.contact.packed import FASTEST, MOVING
+from sim_core.cloth.contact.sleep import SOON, asleep
 
-LONGEST_SLEEP = 40  # substeps
 SETTLE = 6  # more looks at samples inside, at the end of a frame
-SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
 class Push(NamedTuple):
@@ -98,15 +97,7 @@ def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
         if inverse_mass[i] == 0.0:
             continue
         room = _meet(packed, fields, x, v, i, push)
-        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, push.dt)
-
-
-@njit(cache=True, error_model="numpy")
-def _sleep(room, speed2, drift, dt):
-    """Substeps that `room` [m] lasts at twice the speed, that of the body's surface and a little more."""
-    if room <= 0.0:
-        return 0
-    return int(min(LONGEST_SLEEP, room / (dt * (2.0 * math.sqrt(speed2) + SLEEP_SPEED + drift))))
+        wake[s] = step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, push.dt)
 
 
 @njit(cache=True, error_model="numpy")
@@ -188,17 +179,17 @@ def settle_samples(packed, inverse_mass, x, v, watch, step, push):
 
 @njit(cache=True, error_model="numpy")
 def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
-    """As `collide_samples`, for those who are due, or for all where they are `awake`."""
+    """As `collide_samples`, for those who are due, or all that would be SOON where they are `awake`."""
     drift, fields, samples, wake = drift_of(packed), fields_of(packed), watch.samples, watch.wake
     for s in range(len(samples)):
-        if wake[s] > step and not awake:
+        if wake[s] > (step + SOON if awake else step):
             continue
         room = _meet_middle(fields, inverse_mass, x, v, samples[s], push)
         fast = 0.0
         for a in range(3):
             u = samples[s, a]
             fast = max(fast, v[u, 0] ** 2 + v[u, 1] ** 2 + v[u, 2] ** 2)
-        wake[s] = step + 1 + _sleep(room, fast, drift, push.dt)
+        wake[s] = step + 1 + asleep(room, fast, drift, push.dt)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

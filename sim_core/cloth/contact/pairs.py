@@ -8,8 +8,16 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.contact.patches import patch_pairs, place_patches
+
 CELLS = 8  # of the hash grid, at most, for each thing that is looked for
 FAR = 1e6  # [m] beyond it, or not a number, nothing is looked for
+
+
+@njit(error_model="numpy", inline="always")
+def at(x, i):
+    """Row i of x (V, 3) as three numbers: a view would be counted, in loops that do little else."""
+    return x[i, 0], x[i, 1], x[i, 2]
 
 
 @njit(cache=True, error_model="numpy")
@@ -108,9 +116,13 @@ def finder_of(vertices: int, edges: int, faces: int) -> Finder:
     )
 
 
-def pairs_of(vertices: int) -> np.ndarray:
-    """An empty list of pairs (K, 2) int32, long enough for most cloths of so many vertices."""
-    return np.zeros((4 * vertices + 64, 2), np.int32)
+def pairs_of(vertices: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Empty lists of pairs, (K, 3), (K, 3) and (K, 2) int32, long enough for most cloths of so many vertices.
+
+    Of vertices and faces, and of edges, the third number being the step until which they sleep; and of patches.
+    """
+    many = 4 * vertices + 64
+    return np.zeros((many, 3), np.int32), np.zeros((many, 3), np.int32), np.zeros((many, 2), np.int32)
 
 
 @njit(cache=True, error_model="numpy")
@@ -152,43 +164,22 @@ def hash_points(points, cell, finder):
 def _grown(pairs, count):
     if count < len(pairs):
         return pairs
-    wider = np.zeros((2 * len(pairs), 2), np.int32)
+    wider = np.zeros((2 * len(pairs), 3), np.int32)
     wider[:count] = pairs
     return wider
 
 
-@njit(cache=True, error_model="numpy")
-def normals_of(x, faces, face, vertex):
-    """Unit normals of faces (F, 3) and vertices (V, 3), into `face` and `vertex`."""
-    vertex[:] = 0.0
-    for f in range(len(faces)):
-        i, j, k = faces[f]
-        ax, ay, az = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
-        bx, by, bz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
-        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-        for c in (i, j, k):
-            vertex[c, 0] += nx
-            vertex[c, 1] += ny
-            vertex[c, 2] += nz
-        size = math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-30
-        face[f, 0], face[f, 1], face[f, 2] = nx / size, ny / size, nz / size
-    for i in range(len(x)):
-        size = math.sqrt(vertex[i, 0] ** 2 + vertex[i, 1] ** 2 + vertex[i, 2] ** 2) + 1e-30
-        for axis in range(3):
-            vertex[i, axis] /= size
-
-
-@njit(cache=True, error_model="numpy")
-def _one_sheet(x, rest, i, j, near2, n, m):
+@njit(error_model="numpy", inline="always")
+def _one_sheet(x, rest, i, j, near2, alike):
     """Neighbours on a stretch that is neither folded nor crushed: close at rest, still at least half as far apart as
-    there, normals within 60 degrees. (The outer layers of a Z-fold have equal normals.)
+    there, normals within 60 degrees, alike being their cosine. (The outer layers of a Z-fold have equal normals.)
     """
+    if not alike > 0.5:
+        return False
     flat2 = (rest[i, 0] - rest[j, 0]) ** 2 + (rest[i, 1] - rest[j, 1]) ** 2
     if flat2 > near2:
         return False
-    if (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2 < 0.25 * flat2:
-        return False
-    return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0.5
+    return (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2 >= 0.25 * flat2
 
 
 @njit(cache=True, error_model="numpy")
@@ -206,11 +197,11 @@ def _folded(rest, first, second, thickness):
 
 
 @njit(cache=True, error_model="numpy")
-def _vertex_near_face(x, i, face, same, reach):
-    a, b, c = face
+def _vertex_near_face(x, i, faces, f, same, reach):
+    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
     if same[i] == same[a] or same[i] == same[b] or same[i] == same[c]:
         return False
-    u, v, w = triangle_weights(x[i], x[a], x[b], x[c])
+    u, v, w = triangle_weights(at(x, i), at(x, a), at(x, b), at(x, c))
     gap = 0.0
     for k in range(3):
         gap += (x[i, k] - u * x[a, k] - v * x[b, k] - w * x[c, k]) ** 2
@@ -218,125 +209,134 @@ def _vertex_near_face(x, i, face, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def vertex_face_pairs(x, mesh, thickness, reach, near, finder, pairs):
-    """(vertex, face) pairs nearer than `reach`, without the faces around the vertex, into pairs (K, 2) int32.
-
-    thickness [m]: below it they touch; near [m]: pairs closer than this at rest count as one sheet while their normals
-    agree, and are left out until they are so near that only a fold brings them there: did a pair that touches come and
-    go with the angle of its fold, the fold would never rest. Returns the list, a longer one where it was full, and how
-    many there are.
-    """
-    rest, faces, same = mesh.rest, mesh.faces, mesh.same
-    centre, sorted_x = finder.centre, finder.by_cell
-    normals_of(x, faces, finder.face_normal, finder.vertex_normal)
-    size2 = 0.0
-    for f in range(len(faces)):
-        a, b, c = faces[f]
-        for axis in range(3):
-            centre[f, axis] = (x[a, axis] + x[b, axis] + x[c, axis]) / 3.0
-        for k in range(3):
-            j = faces[f, k]
-            gap = (
-                (x[j, 0] - centre[f, 0]) ** 2 + (x[j, 1] - centre[f, 1]) ** 2 + (x[j, 2] - centre[f, 2]) ** 2
-            )
-            size2 = max(size2, gap)
-    span = math.sqrt(size2) + reach
-    dims, low, cell = hash_points(x, span, finder)
-    order, start = finder.order, finder.start
-    for q in range(len(x)):
-        for axis in range(3):
-            sorted_x[q, axis] = x[order[q], axis]
-    count = 0
-    for f in range(len(faces)):
-        px, py, pz = centre[f, 0], centre[f, 1], centre[f, 2]
-        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
-        for cx in range(max(ax - 1, 0), min(ax + 2, dims[0])):
-            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
-                row = (cx * dims[1] + cy) * dims[2]
-                for q in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
-                    gap = (sorted_x[q, 0] - px) ** 2 + (sorted_x[q, 1] - py) ** 2 + (sorted_x[q, 2] - pz) ** 2
-                    i = order[q]
-                    if gap > span * span:
-                        continue
-                    n, m, far = finder.vertex_normal[i], finder.face_normal[f], reach
-                    if _one_sheet(x, rest, i, faces[f, 0], near * near, n, m):
-                        corners = faces[f, 0], faces[f, 1], faces[f, 2]
-                        far = min(reach, _folded(rest, (i,), corners, thickness))
-                        if gap > (span - reach + far) ** 2:
-                            continue
-                    if _vertex_near_face(x, i, faces[f], same, far):
-                        pairs = _grown(pairs, count)
-                        pairs[count, 0], pairs[count, 1] = i, f
-                        count += 1
-    return pairs, count
-
-
-@njit(cache=True, error_model="numpy")
-def _edges_near(x, first, second, same, reach):
-    a, b = first
-    c, d = second
+def _edges_near(x, edges, e, g, same, reach):
+    a, b, c, d = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
     if same[a] == same[c] or same[a] == same[d] or same[b] == same[c] or same[b] == same[d]:
         return False
-    s, t = segment_parameters(x[a], x[b], x[c], x[d])
+    s, t = segment_parameters(at(x, a), at(x, b), at(x, c), at(x, d))
     gap = 0.0
     for k in range(3):
         gap += (x[a, k] + s * (x[b, k] - x[a, k]) - x[c, k] - t * (x[d, k] - x[c, k])) ** 2
     return gap < reach * reach
 
 
-@njit(cache=True, error_model="numpy")
-def _balls(x, faces, edges, finder):
-    """Midpoint, half length and mean normal of every edge in columns, into finder.balls; returns the largest half."""
-    face, normal, out = finder.face_normal, finder.vertex_normal, finder.balls
-    normals_of(x, faces, face, normal)
-    most = 0.0
-    for e in range(len(edges)):
-        i, j = edges[e]
-        length2 = 0.0
-        for c in range(3):
-            out[e, c] = 0.5 * (x[i, c] + x[j, c])
-            out[e, 4 + c] = 0.5 * (normal[i, c] + normal[j, c])
-            length2 += (x[i, c] - x[j, c]) ** 2
-        out[e, 3] = 0.5 * math.sqrt(length2)
-        most = max(most, out[e, 3])
-    return most
+class Search(NamedTuple):
+    """What pairs are looked for.
 
-
-@njit(cache=True, error_model="numpy")
-def edge_edge_pairs(x, mesh, thickness, reach, near, finder, pairs):
-    """(edge, edge) pairs nearer than `reach` that share no vertex, into pairs (K, 2) int32.
-
-    All else as for vertices and faces.
+    thickness [m]: below it they touch; reach [m]: up to where they are pairs; near [m]: pairs closer than this at rest
+    count as one sheet while their normals agree, and are left out until they are so near that only a fold brings them
+    there: did a pair that touches come and go with the angle of its fold, the fold would never rest.
     """
-    rest, edges, same = mesh.rest, mesh.edges, mesh.same
-    cell = 2.0 * _balls(x, mesh.faces, edges, finder) + reach
-    dims, low, cell = hash_points(finder.balls, cell, finder)
-    order, start, balls = finder.order, finder.start, finder.by_cell
-    for s in range(len(edges)):
-        for c in range(7):
-            balls[s, c] = finder.balls[order[s], c]
+
+    thickness: float
+    reach: float
+    near: float
+
+
+@njit(cache=True, error_model="numpy")
+def _within_box(parts, first, last, box, p, reach, out):
+    """Which of the balls parts[first:last] come within `reach` of box[p], into out; how many."""
     count = 0
-    for s in range(len(edges)):
-        px, py, pz, half = balls[s, 0], balls[s, 1], balls[s, 2], balls[s, 3] + reach
-        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
-        e = order[s]
-        for cx in range(ax, min(ax + 2, dims[0])):
-            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
-                row = (cx * dims[1] + cy) * dims[2]
-                # Only what comes later in the order, so that every pair is met once.
-                for q in range(max(start[row + max(az - 1, 0)], s + 1), start[row + min(az + 2, dims[2])]):
-                    gap = (balls[q, 0] - px) ** 2 + (balls[q, 1] - py) ** 2 + (balls[q, 2] - pz) ** 2
-                    span = half + balls[q, 3]
-                    if gap > span * span:
-                        continue
-                    g, far = order[q], reach
-                    (a, b), (c, d) = edges[e], edges[g]
-                    if _one_sheet(x, rest, a, c, near * near, balls[s, 4:], balls[q, 4:]):
-                        far = min(reach, _folded(rest, (a, b), (c, d), thickness))
-                        if gap > (span - reach + far) ** 2:
-                            continue
-                    if _edges_near(x, edges[e], edges[g], same, far):
-                        pairs = _grown(pairs, count)
-                        pairs[count, 0], pairs[count, 1] = e, g
-                        count += 1
-    return pairs, count
+    lx, ly, lz = box[p, 0] - reach, box[p, 1] - reach, box[p, 2] - reach
+    hx, hy, hz = box[p, 3] + reach, box[p, 4] + reach, box[p, 5] + reach
+    for n in range(first, last):
+        px, py, pz, r = parts[n, 0], parts[n, 1], parts[n, 2], parts[n, 3]
+        if px > lx - r and px < hx + r and py > ly - r and py < hy + r and pz > lz - r and pz < hz + r:
+            out[count] = n
+            count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _points_near_faces(points, these, sides, those, vertex, face, reach, out):
+    """Pairs (places of a vertex and of a face, in out (K, 2)) whose balls are within reach; how many."""
+    count = 0
+    for a in range(these):
+        n = points[a]
+        px, py, pz = vertex[n, 0], vertex[n, 1], vertex[n, 2]
+        for b in range(those):
+            m = sides[b]
+            dx, dy, dz, span = face[m, 0] - px, face[m, 1] - py, face[m, 2] - pz, face[m, 3] + reach
+            if dx * dx + dy * dy + dz * dz <= span * span:
+                out[count, 0], out[count, 1] = n, m
+                count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _edges_near_edges(first, these, second, those, edge, same, reach, out):
+    """Pairs (places of two edges, in out (K, 2)) whose balls are within reach; same: of one patch. How many."""
+    count = 0
+    for a in range(these):
+        n = first[a]
+        px, py, pz, half = edge[n, 0], edge[n, 1], edge[n, 2], edge[n, 3] + reach
+        for b in range(a + 1 if same else 0, those):
+            m = second[b]
+            dx, dy, dz, span = edge[m, 0] - px, edge[m, 1] - py, edge[m, 2] - pz, half + edge[m, 3]
+            if dx * dx + dy * dy + dz * dz <= span * span:
+                out[count, 0], out[count, 1] = n, m
+                count += 1
+    return count
+
+
+@njit(error_model="numpy", inline="always")
+def _square(a, n, b, m):
+    return (a[n, 0] - b[m, 0]) ** 2 + (a[n, 1] - b[m, 1]) ** 2 + (a[n, 2] - b[m, 2]) ** 2
+
+
+@njit(error_model="numpy", inline="always")
+def _alike(a, n, b, m):
+    """The cosine between the normals of two parts."""
+    return a[n, 4] * b[m, 4] + a[n, 5] * b[m, 5] + a[n, 6] * b[m, 6]
+
+
+@njit(cache=True, error_model="numpy")
+def near_pairs(x, mesh, patches, shapes, how, lists):
+    """(vertex, face) and (edge, edge) pairs nearer than the reach that share no vertex, two lists (K, 3) int32.
+
+    lists: the two, and one (K, 2) for pairs of patches; all are written over and returned, longer ones where they were
+    full, with how many are in each. Where x (V, 3) is not finite there are none: whoever checks the frame tells.
+    """
+    points, crossings, near = lists
+    finite, along = place_patches(x, mesh, patches, shapes)
+    if not finite:
+        return lists, (0, 0, 0)
+    near, total = patch_pairs(patches, shapes, along, how.reach, near)
+    rest, faces, edges, same, near2, reach = mesh.rest, mesh.faces, mesh.edges, mesh.same, how.near**2, how.reach
+    vertex, face, edge, box, out = shapes.vertex, shapes.face, shapes.edge, shapes.box, shapes.close
+    mine, yours = shapes.some[0], shapes.some[1]
+    first = second = 0
+    for k in range(2 * total):
+        p, q = near[k // 2, k % 2], near[k // 2, 1 - k % 2]
+        if k % 2 == 1 and p == q:
+            continue
+        these = _within_box(vertex, patches.vertex_start[p], patches.vertex_start[p + 1], box, q, reach, mine)
+        those = _within_box(face, patches.face_start[q], patches.face_start[q + 1], box, p, reach, yours)
+        for b in range(_points_near_faces(mine, these, yours, those, vertex, face, reach, out)):
+            n, m = out[b, 0], out[b, 1]
+            i, f, far = patches.vertices[n], patches.faces[m], reach
+            if _one_sheet(x, rest, i, faces[f, 0], near2, _alike(vertex, n, face, m)):
+                far = min(reach, _folded(rest, (i,), (faces[f, 0], faces[f, 1], faces[f, 2]), how.thickness))
+                if _square(vertex, n, face, m) > (face[m, 3] + far) ** 2:
+                    continue
+            if _vertex_near_face(x, i, faces, f, same, far):
+                points = _grown(points, first)
+                points[first, 0], points[first, 1], points[first, 2] = i, f, 0
+                first += 1
+        if k % 2 == 1:
+            continue
+        these = _within_box(edge, patches.edge_start[p], patches.edge_start[p + 1], box, q, reach, mine)
+        those = _within_box(edge, patches.edge_start[q], patches.edge_start[q + 1], box, p, reach, yours)
+        for b in range(_edges_near_edges(mine, these, yours, those, edge, p == q, reach, out)):
+            n, m = out[b, 0], out[b, 1]
+            e, g, far = patches.edges[n], patches.edges[m], reach
+            i, j, u, v = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+            if _one_sheet(x, rest, i, u, near2, _alike(edge, n, edge, m)):
+                far = min(reach, _folded(rest, (i, j), (u, v), how.thickness))
+                if _square(edge, n, edge, m) > (edge[n, 3] + edge[m, 3] + far) ** 2:
+                    continue
+            if _edges_near(x, edges, e, g, same, far):
+                crossings = _grown(crossings, second)
+                crossings[second, 0], crossings[second, 1], crossings[second, 2] = e, g, 0
+                second += 1
+    return (points, crossings, near), (first, second, total)

@@ -18,6 +18,7 @@ from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.packed import Packed
 from sim_core.cloth.contact.pairs import Mesh, finder_of, pairs_of
+from sim_core.cloth.contact.patches import patches_of, shapes_of
 from sim_core.cloth.contact.solids import Solid
 from sim_core.cloth.contact.untangling import Memory, Untangling, faces_at_edges, no_crossings, untangle
 from sim_core.cloth.sheet.sheet import Sheet
@@ -88,14 +89,17 @@ class Engine:
             same=self.holds.same,
         )
         layers = (count, len(s.edges), len(s.faces)) if self.shell.thickness else (0, 0, 0)
-        self.pairs = pairs_of(layers[0]), pairs_of(layers[0])
+        self.pairs = pairs_of(layers[0])
+        patches = patches_of(s.edges, s.faces if self.shell.thickness else s.faces[:0], self.holds.same)
+        self.finder = finder_of(*layers)
         vertices, middles = self._samples()
         self.touch = Touch(
             solid=self.packed,
             vertices=Watch(vertices, np.zeros(len(vertices), np.int32)),
             middles=Watch(middles, np.zeros(len(middles), np.int32)),
             shell=self.shell,
-            finder=finder_of(*layers),
+            patches=patches,
+            shapes=shapes_of(patches),
             holds=self.holds,
         )
         self.third, self.crossed = faces_at_edges(s.edges, s.faces), no_crossings()
@@ -261,7 +265,7 @@ class Engine:
             return 0, 0
         there, speed = (np.ascontiguousarray(array.T) for array in state)
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(pins))
-        memory = Memory(self.touch.finder, self.crossed)
+        memory = Memory(self.finder, self.crossed)
         before, after, self.crossed = untangle(there, speed, mesh, self.third, self.holds, memory, how)
         if before:
             state.x[:], state.v[:] = there.T, speed.T

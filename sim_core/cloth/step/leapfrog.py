@@ -16,7 +16,7 @@ from sim_core.cloth.contact.collisions import (
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
 from sim_core.cloth.contact.packed import MOVING, Packed
-from sim_core.cloth.contact.pairs import Finder
+from sim_core.cloth.contact.patches import Patches, Shapes
 from sim_core.cloth.contact.repulsion import Shell, candidate_pairs, repel
 from sim_core.cloth.step.frame import FREE, State
 from sim_core.cloth.step.kernels.banded import axes, band_limit
@@ -47,7 +47,8 @@ class Touch(NamedTuple):
     vertices: Watch
     middles: Watch  # edge midpoints and centroids
     shell: Shell
-    finder: Finder
+    patches: Patches
+    shapes: Shapes
     holds: Holds
 
 
@@ -149,7 +150,7 @@ def _sew(holds, inverse, frame, steps, x, v, k):
 def advance(layout, mesh, touch, frame, steps, room, state, pairs):
     """Simulates a frame's steps over `Bands` or `Lanes`; the state's x, v (3, V) change in place.
 
-    frame: its vertices and its body in the numbers of this loop. pairs: two lists (K, 2), written over; returned,
+    frame: its vertices and its body in the numbers of this loop. pairs: lists as `pairs.near_pairs` takes them, written over; returned,
     longer where they were full. v lives half a step behind x. Lists of pairs are renewed before the cloth has moved
     half their margin off its mean.
     """
@@ -159,7 +160,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, counts = -1, (0, 0)
+    look_layer, counts = -1, (0, 0, 0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
@@ -169,12 +170,12 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
             if k >= look_layer:
                 far, fast = travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
                 if far > 0.3 * shell.skin:
-                    pairs, counts = candidate_pairs(x, mesh, shell, touch.finder, pairs)
+                    pairs, counts = candidate_pairs(x, mesh, shell, touch.patches, touch.shapes, pairs)
                     room.mark[:] = here.x
                     far, fast = travel(x, v, mark)
                 look_layer = k + 1 + patience(0.5 * shell.skin - far, fast, steps.dt, push)
             if counts[0] + counts[1] > 0:
-                repel(x, v, mesh, pairs, counts, shell, steps.dt * shell.every)
+                repel(x, v, mesh, pairs, counts, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         if late:

@@ -1,0 +1,306 @@
+"""Patches: a cloth cut into small connected groups of faces, and which of them may touch.
+
+A patch whose normals lie in a narrow cone, and whose edges are not crushed, is a graph over a plane and cannot meet
+itself, nor a neighbour with which it shares the cone (Volino & Magnenat-Thalmann 1994; Provot 1997). Of cloth that
+hangs in folds nearly all is such; what is left are pairs of patches whose boxes overlap: layers, and sharp folds.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from sim_core.cloth.sheet.sheet import face_edge_table
+
+FACES = 16  # of a patch; larger ones are flat less often, smaller ones are more to look at
+CONE = math.cos(math.radians(60.0))  # of the widest angle between two normals of what counts as flat
+CRUSHED = 0.5  # of its squared length at rest, below which an edge may lie in a fold that normals do not show
+CAST = 64  # pairs of patches there is room for at first
+
+
+class Patches(NamedTuple):
+    """P patches of a cloth of V vertices, E edges, F faces; each vertex and edge belongs to the first patch with it."""
+
+    faces: np.ndarray  # (F,) int32, patch by patch
+    edges: np.ndarray  # (E,)
+    vertices: np.ndarray  # (V,)
+    face_start: np.ndarray  # (P + 1,) int32 into them
+    edge_start: np.ndarray
+    vertex_start: np.ndarray
+    beside: np.ndarray  # (N,) int32 the patches that share a vertex with each, without itself
+    beside_start: np.ndarray  # (P + 1,)
+
+
+class Shapes(NamedTuple):
+    """Working memory: where the patches and their parts are at a time."""
+
+    face_normal: np.ndarray  # (F, 3)
+    vertex_normal: np.ndarray  # (V, 3)
+    face: np.ndarray  # (F, 8) in the order of Patches.faces: centre, radius of the ball around it, normal, size
+    edge: np.ndarray  # (E, 8) of Patches.edges: midpoint, half length, mean normal
+    vertex: np.ndarray  # (V, 8) of Patches.vertices: place, 0, normal
+    box: np.ndarray  # (P, 6) lowest and highest corner
+    cone: np.ndarray  # (P, 5) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed)
+    order: np.ndarray  # (P,) by the low end along the longest way
+    some: np.ndarray  # (2, K) int32 which of two patches' parts are near each other
+    close: np.ndarray  # (K * K, 2) int32 and which pairs of them
+
+
+@njit(cache=True)
+def _grown(beside, size):
+    """Numbers (F,) of connected groups of about `size` faces; beside (F, 3): the faces at each one's sides, or -1."""
+    count = len(beside)
+    patch = np.full(count, -1, np.int32)
+    queue = np.zeros(count, np.int32)
+    number = 0
+    for seed in range(count):
+        if patch[seed] >= 0:
+            continue
+        head, tail = 0, 1
+        queue[0], patch[seed] = seed, number
+        while head < tail and tail < size:
+            for side in range(3):
+                f = beside[queue[head], side]
+                if f >= 0 and patch[f] < 0 and tail < size:
+                    patch[f] = number
+                    queue[tail] = f
+                    tail += 1
+            head += 1
+        if tail < size // 4:  # a remnant between others goes to one of these
+            for n in range(tail):
+                for side in range(3):
+                    f = beside[queue[n], side]
+                    if f >= 0 and patch[f] != number:
+                        for m in range(tail):
+                            patch[queue[m]] = patch[f]
+                        tail = 0
+                        break
+                if tail == 0:
+                    break
+            if tail == 0:
+                continue
+        number += 1
+    return patch
+
+
+def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int = FACES) -> Patches:
+    """Patches of a mesh: edges (E, 2), faces (F, 3) int32, same (V,) int32, one number for vertices that are sewn."""
+    count = len(same)
+    if not len(faces):
+        none, start = np.zeros(0, np.int32), np.zeros(1, np.int32)
+        return Patches(none, none, none, start, start, start, none, start)
+    _, face_edges = face_edge_table(faces)
+    flat = face_edges.ravel()
+    by_edge = np.argsort(flat, kind="stable")
+    beside = np.full(len(flat), -1, np.int32)
+    twin = flat[by_edge][1:] == flat[by_edge][:-1]
+    first, second = by_edge[:-1][twin], by_edge[1:][twin]
+    beside[first], beside[second] = second // 3, first // 3
+    patch = _grown(beside.reshape(-1, 3), size)
+    number = int(patch.max()) + 1
+    of_vertex = np.full(count, number, np.int32)
+    np.minimum.at(of_vertex, faces.ravel(), np.repeat(patch, 3))
+    of_edge = np.full(len(edges), number, np.int32)
+    key = np.sort(edges, axis=1).astype(np.int64) @ [count, 1]
+    where = np.argsort(key)
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        ends = np.sort(faces[:, [a, b]], axis=1).astype(np.int64) @ [count, 1]
+        np.minimum.at(of_edge, where[np.searchsorted(key[where], ends)], patch)
+
+    def sorted_by(owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        start = np.searchsorted(np.sort(owner), np.arange(number + 1))
+        return np.argsort(owner, kind="stable").astype(np.int32), start.astype(np.int32)
+
+    (own_faces, face_start), (own_edges, edge_start) = sorted_by(patch), sorted_by(of_edge)
+    own_vertices, vertex_start = sorted_by(of_vertex)
+    near, near_start = _neighbours(same[faces], patch, number)
+    return Patches(
+        own_faces, own_edges, own_vertices, face_start, edge_start, vertex_start, near, near_start
+    )
+
+
+def _neighbours(corners: np.ndarray, patch: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """Which patches share one of the points that corners (F, 3) name, patch by patch: a list (N,) and its begins."""
+    touches = np.unique(np.column_stack([corners.ravel(), np.repeat(patch, 3)]).astype(np.int64), axis=0)
+    point, of = touches[:, 0], touches[:, 1]
+    pairs = [np.zeros((0, 2), np.int64)]
+    for shift in range(1, int(np.bincount(point).max())):  # of those that meet in a point, each with each
+        both = point[shift:] == point[:-shift]
+        pairs.append(np.column_stack([of[:-shift][both], of[shift:][both]]))
+    found = np.concatenate(pairs)
+    found = np.unique(np.concatenate([found, found[:, ::-1]]), axis=0)
+    start = np.searchsorted(found[:, 0], np.arange(number + 1))
+    return found[:, 1].astype(np.int32), start.astype(np.int32)
+
+
+def shapes_of(patches: Patches) -> Shapes:
+    """Memory for a search among these patches."""
+    vertices, edges, faces = len(patches.vertices), len(patches.edges), len(patches.faces)
+    count = len(patches.face_start) - 1
+    starts = patches.face_start, patches.edge_start, patches.vertex_start
+    most = max(int(np.diff(start).max(initial=0)) for start in starts)
+    return Shapes(
+        face_normal=np.zeros((faces, 3)),
+        vertex_normal=np.zeros((vertices, 3)),
+        face=np.zeros((faces, 8)),
+        edge=np.zeros((edges, 8)),
+        vertex=np.zeros((vertices, 8)),
+        box=np.zeros((count, 6)),
+        cone=np.zeros((count, 5)),
+        order=np.zeros(count, np.int64),
+        some=np.zeros((2, most), np.int32),
+        close=np.zeros((most * most, 2), np.int32),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def normals_of(x, faces, face, vertex):
+    """Unit normals of faces (F, 3) and vertices (V, 3), into `face` and `vertex`."""
+    vertex[:] = 0.0
+    for f in range(len(faces)):
+        i, j, k = faces[f]
+        ax, ay, az = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+        bx, by, bz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
+        nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        for c in (i, j, k):
+            vertex[c, 0] += nx
+            vertex[c, 1] += ny
+            vertex[c, 2] += nz
+        size = math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-30
+        face[f, 0], face[f, 1], face[f, 2] = nx / size, ny / size, nz / size
+    for i in range(len(x)):
+        size = math.sqrt(vertex[i, 0] ** 2 + vertex[i, 1] ** 2 + vertex[i, 2] ** 2) + 1e-30
+        for axis in range(3):
+            vertex[i, axis] /= size
+
+
+@njit(cache=True, error_model="numpy")
+def _place_parts(x, mesh, patches, shapes):
+    """Places faces, edges and vertices in the order of their patches."""
+    faces, edges, normal = mesh.faces, mesh.edges, shapes.vertex_normal
+    for n in range(len(patches.faces)):
+        f = patches.faces[n]
+        out = shapes.face[n]
+        size2 = 0.0
+        for c in range(3):
+            out[c] = (x[faces[f, 0], c] + x[faces[f, 1], c] + x[faces[f, 2], c]) / 3.0
+            out[4 + c] = shapes.face_normal[f, c]
+        for k in range(3):
+            j = faces[f, k]
+            gap2 = (x[j, 0] - out[0]) ** 2 + (x[j, 1] - out[1]) ** 2 + (x[j, 2] - out[2]) ** 2
+            size2 = max(size2, gap2)
+        out[3] = math.sqrt(size2)
+    for n in range(len(patches.edges)):
+        i, j = edges[patches.edges[n]]
+        out = shapes.edge[n]
+        length2 = 0.0
+        for c in range(3):
+            out[c] = 0.5 * (x[i, c] + x[j, c])
+            out[4 + c] = 0.5 * (normal[i, c] + normal[j, c])
+            length2 += (x[i, c] - x[j, c]) ** 2
+        out[3], out[7] = 0.5 * math.sqrt(length2), length2
+    for n in range(len(patches.vertices)):
+        i = patches.vertices[n]
+        for c in range(3):
+            shapes.vertex[n, c], shapes.vertex[n, 4 + c] = x[i, c], normal[i, c]
+
+
+@njit(cache=True, error_model="numpy")
+def place_patches(x, mesh, patches, shapes):
+    """Where the patches are at x (V, 3): boxes, cones and the parts of each; False where x is not finite."""
+    normals_of(x, mesh.faces, shapes.face_normal, shapes.vertex_normal)
+    _place_parts(x, mesh, patches, shapes)
+    low, high, total = np.full(3, np.inf), np.full(3, -np.inf), 0.0
+    for p in range(len(patches.face_start) - 1):
+        box, cone = shapes.box[p], shapes.cone[p]
+        box[:3], box[3:], cone[:3] = np.inf, -np.inf, 0.0
+        for n in range(patches.face_start[p], patches.face_start[p + 1]):
+            f = patches.faces[n]
+            for c in range(3):
+                cone[c] += shapes.face_normal[f, c]
+                for k in range(3):
+                    place = x[mesh.faces[f, k], c]
+                    total += place  # NaN shows in a sum; min and max pass it over
+                    box[c], box[3 + c] = min(box[c], place), max(box[3 + c], place)
+        for c in range(3):
+            low[c], high[c] = min(low[c], box[c]), max(high[c], box[3 + c])
+        size = math.sqrt(cone[0] * cone[0] + cone[1] * cone[1] + cone[2] * cone[2]) + 1e-30
+        least = 1.0
+        for c in range(3):
+            cone[c] /= size
+        for n in range(patches.face_start[p], patches.face_start[p + 1]):
+            m = shapes.face_normal[patches.faces[n]]
+            least = min(least, m[0] * cone[0] + m[1] * cone[1] + m[2] * cone[2])
+        for n in range(patches.edge_start[p], patches.edge_start[p + 1]):
+            if shapes.edge[n, 7] < CRUSHED * mesh.length2[patches.edges[n]]:
+                least = -1.0
+        cone[3], cone[4] = least, math.sqrt(max(0.0, 1.0 - least * least))
+    along = np.argmax(high - low)
+    shapes.order[:] = np.argsort(shapes.box[:, along])
+    return math.isfinite(total), along
+
+
+@njit(cache=True, error_model="numpy")
+def flat_together(a, b):
+    """Whether all normals of two cones (see Shapes.cone) are within the widest angle of what counts as flat."""
+    if a[3] < CONE or b[3] < CONE:
+        return False
+    between = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    beside = math.sqrt(max(0.0, 1.0 - between * between))
+    if between < CONE:
+        return False
+    cosine, sine = a[3] * b[3] - a[4] * b[4], a[4] * b[3] + a[3] * b[4]  # of both half angles
+    if cosine <= 0.0:
+        return False
+    return cosine * between - sine * beside >= CONE
+
+
+@njit(cache=True, error_model="numpy")
+def _joined(patches, cone, p, q):
+    """Whether two patches share a vertex, or one with a third that is flat together with both."""
+    start, beside = patches.beside_start, patches.beside
+    for k in range(start[p], start[p + 1]):
+        r = beside[k]
+        if r == q:
+            return True
+        for m in range(start[q], start[q + 1]):
+            if beside[m] == r and flat_together(cone[p], cone[r]) and flat_together(cone[q], cone[r]):
+                return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def patch_pairs(patches, shapes, along, reach, pairs):
+    """Pairs (K, 2) of patches, of which parts may be nearer than `reach` [m]; one with itself where it is not flat.
+
+    along: the axis that shapes.order goes by. Returns the list, a longer one where it was full, and how many there are.
+    """
+    box, cone, order, count = shapes.box, shapes.cone, shapes.order, 0
+    for n in range(len(order)):
+        p = order[n]
+        if count + len(order) - n > len(pairs):
+            wider = np.zeros((2 * (count + len(order)), 2), np.int32)
+            wider[:count] = pairs[:count]
+            pairs = wider
+        if not flat_together(cone[p], cone[p]):
+            pairs[count, 0], pairs[count, 1] = p, p
+            count += 1
+        end = box[p, 3 + along] + reach
+        for m in range(n + 1, len(order)):
+            q = order[m]
+            if box[q, along] > end:
+                break
+            apart = False
+            for c in range(3):
+                if box[q, c] > box[p, 3 + c] + reach or box[p, c] > box[q, 3 + c] + reach:
+                    apart = True
+            if apart:
+                continue
+            if flat_together(cone[p], cone[q]) and _joined(patches, cone, p, q):
+                continue
+            pairs[count, 0], pairs[count, 1] = p, q
+            count += 1
+    return pairs, count
