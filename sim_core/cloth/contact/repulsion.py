@@ -117,13 +117,13 @@ def repel(x, v, mesh, pairs, counts, shell, dt, step):
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, mesh, shell, patches, shapes, lists):
-    """Vertex-face and edge-edge candidates within thickness + skin: see `pairs.near_pairs`."""
-    reach = shell.thickness + shell.skin
+def candidate_pairs(x, mesh, reaches, patches, shapes, lists):
+    """Vertex-face and edge-edge candidates: see `pairs.near_pairs`. reaches: thickness [m], and how far to look [m]."""
+    thickness, reach = reaches
     edges, length2 = mesh.edges, mesh.length2
     side = 0.0
     for e in range(len(edges)):
         side += math.sqrt(length2[e])
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
     near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
-    return near_pairs(x, mesh, patches, shapes, Search(shell.thickness, reach, near), lists)
+    return near_pairs(x, mesh, patches, shapes, Search(thickness, reach, near), lists)

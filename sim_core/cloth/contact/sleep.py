@@ -11,12 +11,13 @@ HASTE = 100.0  # [m/s2] at which it may fly off on the spot, ten times as fast a
 SOON = 40  # substeps: who sleeps longer is not asked at the end of a frame either
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy", inline="always")
 def asleep(room, fast2, drift, dt):
-    """Substeps of dt [s] that `room` [m] lasts at twice the speed, squared fast2 [m2/s2], and at that of a surface
-    beside, drift [m/s]; 0 where there is none.
+    """Substeps of dt [s] that `room` [m] lasts at twice the speed, squared fast2 [m2/s2], while a surface comes nearer at
+    `drift` [m/s]; 0 where there is none.
+
+    Between two keys a body's distance at a place changes evenly, so what it loses now it loses until the frame's end.
     """
-    if not room > 0.0:
-        return 0
-    at_speed = room / (2.0 * math.sqrt(fast2) + GAINED + drift)
-    return int(min(at_speed, math.sqrt(2.0 * room / HASTE)) / dt)
+    left = max(room, 0.0)
+    at_speed = left / (2.0 * math.sqrt(fast2) + GAINED + drift)
+    return int(min(at_speed, math.sqrt(2.0 * left / HASTE)) / dt)

@@ -26,6 +26,8 @@ SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and 
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
+PUSHED = 2e-5  # [m] that a solid may push a vertex at once, where none has pushed lately
+LEAST_SKIN = 0.2  # of a skin, that is looked through however slow the cloth is
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 
 
@@ -113,16 +115,28 @@ def travel(x, v, mark):
 
 
 @njit(cache=True, error_model="numpy")
-def patience(left, fast, dt, cap):
-    """Substeps until `left` [m] may be used up at twice the speed `fast`, with pushes of `cap` each."""
+def patience(left, fast, pushed, dt):
+    """Substeps of dt [s] until `left` [m] may be used up, at twice the speed `fast` and twice what solids `pushed` in
+    one since the last look [m], and a little.
+    """
     if not left > 0.0:
         return 0
-    return int(min(LOOK_EVERY, left / (2.0 * fast * dt + cap + 1e-12)))
+    return int(min(LOOK_EVERY, left / (2.0 * fast * dt + 2.0 * pushed + PUSHED)))
+
+
+@njit(cache=True, error_model="numpy")
+def margin(fast, time, skin):
+    """How much further than they touch pairs are looked for [m]: as far as the cloth goes in what is left of a frame,
+    time [s], at the speed `fast`, within the skin: a search costs as much as many pairs that sleep.
+    """
+    return min(skin, max(4.0 * fast * time, LEAST_SKIN * skin))
 
 
 @njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
 def _against_solids(touch, inverse, frame, steps, x, v, k):
-    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
+    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end; returns the
+    furthest that a vertex was pushed [m].
+    """
     solid, shell, last, cap, dt = touch.solid, touch.shell, k == steps.count - 1, touch.shell.cap, steps.dt
     if solid.kind[0] == MOVING:
         early, late = frame.body
@@ -133,9 +147,8 @@ def _against_solids(touch, inverse, frame, steps, x, v, k):
         collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, cap, 0.0, dt))
         if last:
             settle_samples(solid, inverse, x, v, middles, k, Push(SETTLED * r, cap, 0.0, dt))
-    collide_due_vertices(
-        solid, inverse, x, v, touch.vertices, k, Push(shell.clearance, cap, frame.friction, dt)
-    )
+    push = Push(shell.clearance, cap, frame.friction, dt)
+    return collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
 
 
 @njit(error_model="numpy", inline="always")
@@ -156,7 +169,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
     """
     here, there, mark = state, State(room.spare, state.v), room.mark.T
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
-    layers, push = shell.thickness > 0.0, shell.cap if solids else 0.0
+    layers, skin, pushed = shell.thickness > 0.0, 0.0, shell.cap if solids else 0.0
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
@@ -169,11 +182,14 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
         if layers and k % shell.every == 0:
             if k >= look_layer:
                 far, fast = travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
-                if far > 0.3 * shell.skin:
-                    pairs, counts = candidate_pairs(x, mesh, shell, touch.patches, touch.shapes, pairs)
+                if far > 0.3 * skin:
                     room.mark[:] = here.x
                     far, fast = travel(x, v, mark)
-                look_layer = k + 1 + patience(0.5 * shell.skin - far, fast, steps.dt, push)
+                    skin = margin(fast, (steps.count - k) * steps.dt, shell.skin)
+                    reaches = shell.thickness, shell.thickness + skin
+                    pairs, counts = candidate_pairs(x, mesh, reaches, touch.patches, touch.shapes, pairs)
+                look_layer = k + 1 + patience(0.5 * skin - far, fast, pushed, steps.dt)
+                pushed = 0.0
             if counts[0] + counts[1] > 0:
                 repel(x, v, mesh, pairs, counts, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
@@ -183,7 +199,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
         if len(holds.pairs) > 0:
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
-            _against_solids(touch, inverse, frame, steps, x, v, k)
+            pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
         if bounded:
             bound(holds, x, v)
             mirror(holds, x, v)
