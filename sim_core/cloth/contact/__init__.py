@@ -8,13 +8,9 @@ from typing import TYPE_CHECKING
 from sim_core.cloth.contact.collisions import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
-from sim_core.cloth.contact.pairs import (
-    Mesh,
-    near_pairs,
-    finder_of,
-    hash_points,
-    pairs_of,
-)
+from sim_core.cloth.contact.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
+from sim_core.cloth.contact.pairs import Mesh, Search, finder_of, hash_points
+from sim_core.cloth.contact.patches import Patches, patches_of, shapes_of
 from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
@@ -43,17 +39,21 @@ __all__ = [
     "Memory",
     "Mesh",
     "MovingGrid",
+    "Near",
+    "NearPairs",
+    "Patches",
     "Push",
+    "Search",
     "Shell",
     "Solid",
     "Union",
     "Untangling",
+    "begin_pairs",
     "collide_samples",
     "collide_vertices",
     "contact_samples",
     "crossings_of",
     "distances",
-    "near_pairs",
     "faces_at_edges",
     "field_of",
     "finder_of",
@@ -61,10 +61,13 @@ __all__ = [
     "hull_faces",
     "hull_mesh",
     "moving_mesh",
+    "near_pairs_of",
     "no_crossings",
-    "pairs_of",
-    "solid_mesh",
+    "patches_of",
+    "renew_pairs",
     "repel",
+    "shapes_of",
+    "solid_mesh",
     "united",
     "untangle",
 ]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.patches import patch_pairs, place_patches
+from sim_core.cloth.contact.patches import grown
 
 CELLS = 8  # of the hash grid, at most, for each thing that is looked for
 FAR = 1e6  # [m] beyond it, or not a number, nothing is looked for
@@ -116,15 +116,6 @@ def finder_of(vertices: int, edges: int, faces: int) -> Finder:
     )
 
 
-def pairs_of(vertices: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Empty lists of pairs, (K, 3), (K, 3) and (K, 2) int32, long enough for most cloths of so many vertices.
-
-    Of vertices and faces, and of edges, the third number being the step until which they sleep; and of patches.
-    """
-    many = 4 * vertices + 64
-    return np.zeros((many, 3), np.int32), np.zeros((many, 3), np.int32), np.zeros((many, 2), np.int32)
-
-
 @njit(cache=True, error_model="numpy")
 def hash_points(points, cell, finder):
     """Sorts points (N, 3 or more) into cells of `cell` [m] or, where they lie far apart, larger ones.
@@ -158,15 +149,6 @@ def hash_points(points, cell, finder):
         order[fill[key[i]]] = i
         fill[key[i]] += 1
     return (nx, ny, nz), (lx, ly, lz), cell
-
-
-@njit(cache=True, error_model="numpy")
-def _grown(pairs, count):
-    if count < len(pairs):
-        return pairs
-    wider = np.zeros((2 * len(pairs), 3), np.int32)
-    wider[:count] = pairs
-    return wider
 
 
 @njit(error_model="numpy", inline="always")
@@ -231,10 +213,11 @@ class Search(NamedTuple):
     thickness: float
     reach: float
     near: float
+    edge: float  # [m] length of the edges at rest, on average
 
 
 @njit(cache=True, error_model="numpy")
-def _within_box(parts, first, last, box, p, reach, out):
+def within_box(parts, first, last, box, p, reach, out):
     """Which of the balls parts[first:last] come within `reach` of box[p], into out; how many."""
     count = 0
     lx, ly, lz = box[p, 0] - reach, box[p, 1] - reach, box[p, 2] - reach
@@ -248,31 +231,17 @@ def _within_box(parts, first, last, box, p, reach, out):
 
 
 @njit(cache=True, error_model="numpy")
-def _points_near_faces(points, these, sides, those, vertex, face, reach, out):
-    """Pairs (places of a vertex and of a face, in out (K, 2)) whose balls are within reach; how many."""
-    count = 0
-    for a in range(these):
-        n = points[a]
-        px, py, pz = vertex[n, 0], vertex[n, 1], vertex[n, 2]
-        for b in range(those):
-            m = sides[b]
-            dx, dy, dz, span = face[m, 0] - px, face[m, 1] - py, face[m, 2] - pz, face[m, 3] + reach
-            if dx * dx + dy * dy + dz * dz <= span * span:
-                out[count, 0], out[count, 1] = n, m
-                count += 1
-    return count
-
-
-@njit(cache=True, error_model="numpy")
-def _edges_near_edges(first, these, second, those, edge, same, reach, out):
-    """Pairs (places of two edges, in out (K, 2)) whose balls are within reach; same: of one patch. How many."""
+def near_balls(first, these, second, those, one, other, reach, out):
+    """Pairs (n, m) whose balls one[n] and other[m] come within reach, of n in first[:these] and m in second[:those], into
+    out (K, 2); how many.
+    """
     count = 0
     for a in range(these):
         n = first[a]
-        px, py, pz, half = edge[n, 0], edge[n, 1], edge[n, 2], edge[n, 3] + reach
-        for b in range(a + 1 if same else 0, those):
+        px, py, pz, half = one[n, 0], one[n, 1], one[n, 2], one[n, 3] + reach
+        for b in range(those):
             m = second[b]
-            dx, dy, dz, span = edge[m, 0] - px, edge[m, 1] - py, edge[m, 2] - pz, half + edge[m, 3]
+            dx, dy, dz, span = other[m, 0] - px, other[m, 1] - py, other[m, 2] - pz, half + other[m, 3]
             if dx * dx + dy * dy + dz * dz <= span * span:
                 out[count, 0], out[count, 1] = n, m
                 count += 1
@@ -291,52 +260,50 @@ def _alike(a, n, b, m):
 
 
 @njit(cache=True, error_model="numpy")
-def near_pairs(x, mesh, patches, shapes, how, lists):
-    """(vertex, face) and (edge, edge) pairs nearer than the reach that share no vertex, two lists (K, 3) int32.
-
-    lists: the two, and one (K, 2) for pairs of patches; all are written over and returned, longer ones where they were
-    full, with how many are in each. Where x (V, 3) is not finite there are none: whoever checks the frame tells.
+def points_on_faces(x, mesh, patches, shapes, how, parts, found):
+    """Adds the (vertex, face) pairs of the vertices of patch p and the faces of patch q, parts = (p, q), to a list (K, 3)
+    that holds some; returns it, a longer one where it was full, and how many there are.
     """
-    points, crossings, near = lists
-    finite, along = place_patches(x, mesh, patches, shapes)
-    if not finite:
-        return lists, (0, 0, 0)
-    near, total = patch_pairs(patches, shapes, along, how.reach, near)
-    rest, faces, edges, same, near2, reach = mesh.rest, mesh.faces, mesh.edges, mesh.same, how.near**2, how.reach
-    vertex, face, edge, box, out = shapes.vertex, shapes.face, shapes.edge, shapes.box, shapes.close
+    (p, q), (pairs, count) = parts, found
+    rest, faces, same, near2, reach = mesh.rest, mesh.faces, mesh.same, how.near**2, how.reach
+    vertex, face, box, out = shapes.vertex, shapes.face, shapes.box, shapes.close
     mine, yours = shapes.some[0], shapes.some[1]
-    first = second = 0
-    for k in range(2 * total):
-        p, q = near[k // 2, k % 2], near[k // 2, 1 - k % 2]
-        if k % 2 == 1 and p == q:
+    these = within_box(vertex, patches.vertex_start[p], patches.vertex_start[p + 1], box, q, reach, mine)
+    those = within_box(face, patches.face_start[q], patches.face_start[q + 1], box, p, reach, yours)
+    for b in range(near_balls(mine, these, yours, those, vertex, face, reach, out)):
+        n, m = out[b, 0], out[b, 1]
+        i, f, far = patches.vertices[n], patches.faces[m], reach
+        if _one_sheet(x, rest, i, faces[f, 0], near2, _alike(vertex, n, face, m)):
+            far = min(reach, _folded(rest, (i,), (faces[f, 0], faces[f, 1], faces[f, 2]), how.thickness))
+            if _square(vertex, n, face, m) > (face[m, 3] + far) ** 2:
+                continue
+        if _vertex_near_face(x, i, faces, f, same, far):
+            pairs = grown(pairs, count)
+            pairs[count, 0], pairs[count, 1], pairs[count, 2] = i, f, 0
+            count += 1
+    return pairs, count
+
+
+@njit(cache=True, error_model="numpy")
+def edges_on_edges(x, mesh, patches, shapes, how, parts, found):
+    """Likewise the (edge, edge) pairs of two patches, which may be one."""
+    (p, q), (pairs, count) = parts, found
+    rest, edges, same, near2, reach = mesh.rest, mesh.edges, mesh.same, how.near**2, how.reach
+    edge, box, out, mine, yours = shapes.edge, shapes.box, shapes.close, shapes.some[0], shapes.some[1]
+    these = within_box(edge, patches.edge_start[p], patches.edge_start[p + 1], box, q, reach, mine)
+    those = within_box(edge, patches.edge_start[q], patches.edge_start[q + 1], box, p, reach, yours)
+    for b in range(near_balls(mine, these, yours, those, edge, edge, reach, out)):
+        n, m = out[b, 0], out[b, 1]
+        if p == q and m <= n:
             continue
-        these = _within_box(vertex, patches.vertex_start[p], patches.vertex_start[p + 1], box, q, reach, mine)
-        those = _within_box(face, patches.face_start[q], patches.face_start[q + 1], box, p, reach, yours)
-        for b in range(_points_near_faces(mine, these, yours, those, vertex, face, reach, out)):
-            n, m = out[b, 0], out[b, 1]
-            i, f, far = patches.vertices[n], patches.faces[m], reach
-            if _one_sheet(x, rest, i, faces[f, 0], near2, _alike(vertex, n, face, m)):
-                far = min(reach, _folded(rest, (i,), (faces[f, 0], faces[f, 1], faces[f, 2]), how.thickness))
-                if _square(vertex, n, face, m) > (face[m, 3] + far) ** 2:
-                    continue
-            if _vertex_near_face(x, i, faces, f, same, far):
-                points = _grown(points, first)
-                points[first, 0], points[first, 1], points[first, 2] = i, f, 0
-                first += 1
-        if k % 2 == 1:
-            continue
-        these = _within_box(edge, patches.edge_start[p], patches.edge_start[p + 1], box, q, reach, mine)
-        those = _within_box(edge, patches.edge_start[q], patches.edge_start[q + 1], box, p, reach, yours)
-        for b in range(_edges_near_edges(mine, these, yours, those, edge, p == q, reach, out)):
-            n, m = out[b, 0], out[b, 1]
-            e, g, far = patches.edges[n], patches.edges[m], reach
-            i, j, u, v = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
-            if _one_sheet(x, rest, i, u, near2, _alike(edge, n, edge, m)):
-                far = min(reach, _folded(rest, (i, j), (u, v), how.thickness))
-                if _square(edge, n, edge, m) > (edge[n, 3] + edge[m, 3] + far) ** 2:
-                    continue
-            if _edges_near(x, edges, e, g, same, far):
-                crossings = _grown(crossings, second)
-                crossings[second, 0], crossings[second, 1], crossings[second, 2] = e, g, 0
-                second += 1
-    return (points, crossings, near), (first, second, total)
+        e, g, far = patches.edges[n], patches.edges[m], reach
+        i, j, u, v = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+        if _one_sheet(x, rest, i, u, near2, _alike(edge, n, edge, m)):
+            far = min(reach, _folded(rest, (i, j), (u, v), how.thickness))
+            if _square(edge, n, edge, m) > (edge[n, 3] + edge[m, 3] + far) ** 2:
+                continue
+        if _edges_near(x, edges, e, g, same, far):
+            pairs = grown(pairs, count)
+            pairs[count, 0], pairs[count, 1], pairs[count, 2] = e, g, 0
+            count += 1
+    return pairs, count

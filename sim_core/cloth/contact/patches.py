@@ -18,7 +18,6 @@ from sim_core.cloth.sheet.sheet import face_edge_table
 FACES = 16  # of a patch; larger ones are flat less often, smaller ones are more to look at
 CONE = math.cos(math.radians(60.0))  # of the widest angle between two normals of what counts as flat
 CRUSHED = 0.5  # of its squared length at rest, below which an edge may lie in a fold that normals do not show
-CAST = 64  # pairs of patches there is room for at first
 
 
 class Patches(NamedTuple):
@@ -30,6 +29,8 @@ class Patches(NamedTuple):
     face_start: np.ndarray  # (P + 1,) int32 into them
     edge_start: np.ndarray
     vertex_start: np.ndarray
+    corners: np.ndarray  # (N,) int32 all vertices that a patch's faces name, each once
+    corner_start: np.ndarray  # (P + 1,)
     beside: np.ndarray  # (N,) int32 the patches that share a vertex with each, without itself
     beside_start: np.ndarray  # (P + 1,)
 
@@ -45,6 +46,9 @@ class Shapes(NamedTuple):
     box: np.ndarray  # (P, 6) lowest and highest corner
     cone: np.ndarray  # (P, 5) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed)
     order: np.ndarray  # (P,) by the low end along the longest way
+    moved: np.ndarray  # (P, 8) mean way since the mark, furthest from it; mean velocity, furthest from that
+    start: np.ndarray  # (P + 2,) int64
+    ends: np.ndarray  # (2, 3) lowest and highest corner of all
     some: np.ndarray  # (2, K) int32 which of two patches' parts are near each other
     close: np.ndarray  # (K * K, 2) int32 and which pairs of them
 
@@ -91,7 +95,7 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
     count = len(same)
     if not len(faces):
         none, start = np.zeros(0, np.int32), np.zeros(1, np.int32)
-        return Patches(none, none, none, start, start, start, none, start)
+        return Patches(none, none, none, start, start, start, none, start, none, start)
     _, face_edges = face_edge_table(faces)
     flat = face_edges.ravel()
     by_edge = np.argsort(flat, kind="stable")
@@ -116,9 +120,20 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
 
     (own_faces, face_start), (own_edges, edge_start) = sorted_by(patch), sorted_by(of_edge)
     own_vertices, vertex_start = sorted_by(of_vertex)
+    named = np.unique(np.column_stack([np.repeat(patch, 3), faces.ravel()]), axis=0)
+    corner_start = np.searchsorted(named[:, 0], np.arange(number + 1)).astype(np.int32)
     near, near_start = _neighbours(same[faces], patch, number)
     return Patches(
-        own_faces, own_edges, own_vertices, face_start, edge_start, vertex_start, near, near_start
+        faces=own_faces,
+        edges=own_edges,
+        vertices=own_vertices,
+        face_start=face_start,
+        edge_start=edge_start,
+        vertex_start=vertex_start,
+        corners=named[:, 1].astype(np.int32),
+        corner_start=corner_start,
+        beside=near,
+        beside_start=near_start,
     )
 
 
@@ -150,7 +165,10 @@ def shapes_of(patches: Patches) -> Shapes:
         vertex=np.zeros((vertices, 8)),
         box=np.zeros((count, 6)),
         cone=np.zeros((count, 5)),
-        order=np.zeros(count, np.int64),
+        order=np.arange(count),
+        moved=np.zeros((count, 8)),
+        start=np.zeros(count + 2, np.int64),
+        ends=np.zeros((2, 3)),
         some=np.zeros((2, most), np.int32),
         close=np.zeros((most * most, 2), np.int32),
     )
@@ -175,6 +193,16 @@ def normals_of(x, faces, face, vertex):
         size = math.sqrt(vertex[i, 0] ** 2 + vertex[i, 1] ** 2 + vertex[i, 2] ** 2) + 1e-30
         for axis in range(3):
             vertex[i, axis] /= size
+
+
+@njit(cache=True, error_model="numpy")
+def grown(pairs, count):
+    """A list (K, N) with room for more than `count`."""
+    if count < len(pairs):
+        return pairs
+    wider = np.zeros((2 * count + 64, pairs.shape[1]), np.int32)
+    wider[: len(pairs)] = pairs
+    return wider
 
 
 @njit(cache=True, error_model="numpy")
@@ -209,11 +237,32 @@ def _place_parts(x, mesh, patches, shapes):
 
 
 @njit(cache=True, error_model="numpy")
+def _sort_along(box, along, order):
+    """Puts order (P,), which holds each patch once, in order of box[:, along], equal ones by number (Shell 1959).
+
+    From one time to the next it hardly changes.
+    """
+    gap = len(order) // 2
+    while gap > 0:
+        for n in range(gap, len(order)):
+            p, m = order[n], n
+            while m >= gap:
+                q = order[m - gap]
+                if box[q, along] < box[p, along] or (box[q, along] == box[p, along] and q < p):
+                    break
+                order[m] = q
+                m -= gap
+            order[m] = p
+        gap //= 2
+
+
+@njit(cache=True, error_model="numpy")
 def place_patches(x, mesh, patches, shapes):
     """Where the patches are at x (V, 3): boxes, cones and the parts of each; False where x is not finite."""
     normals_of(x, mesh.faces, shapes.face_normal, shapes.vertex_normal)
     _place_parts(x, mesh, patches, shapes)
-    low, high, total = np.full(3, np.inf), np.full(3, -np.inf), 0.0
+    low, high, total = shapes.ends[0], shapes.ends[1], 0.0
+    low[:], high[:] = np.inf, -np.inf
     for p in range(len(patches.face_start) - 1):
         box, cone = shapes.box[p], shapes.cone[p]
         box[:3], box[3:], cone[:3] = np.inf, -np.inf, 0.0
@@ -238,8 +287,11 @@ def place_patches(x, mesh, patches, shapes):
             if shapes.edge[n, 7] < CRUSHED * mesh.length2[patches.edges[n]]:
                 least = -1.0
         cone[3], cone[4] = least, math.sqrt(max(0.0, 1.0 - least * least))
-    along = np.argmax(high - low)
-    shapes.order[:] = np.argsort(shapes.box[:, along])
+    along = 0
+    for c in range(1, 3):
+        if high[c] - low[c] > high[along] - low[along]:
+            along = c
+    _sort_along(shapes.box, along, shapes.order)
     return math.isfinite(total), along
 
 
@@ -273,34 +325,64 @@ def _joined(patches, cone, p, q):
 
 
 @njit(cache=True, error_model="numpy")
+def move_patches(x, v, mark, patches, moved):
+    """How far patches have come from the mark (V, 3), and how fast they go, into Shapes.moved."""
+    corners, start = patches.corners, patches.corner_start
+    for p in range(len(start) - 1):
+        ax = ay = az = bx = by = bz = 0.0
+        for n in range(start[p], start[p + 1]):
+            i = corners[n]
+            ax, ay, az = ax + x[i, 0] - mark[i, 0], ay + x[i, 1] - mark[i, 1], az + x[i, 2] - mark[i, 2]
+            bx, by, bz = bx + v[i, 0], by + v[i, 1], bz + v[i, 2]
+        share = 1.0 / (start[p + 1] - start[p])
+        ax, ay, az, bx, by, bz = share * ax, share * ay, share * az, share * bx, share * by, share * bz
+        far = fast = 0.0
+        for n in range(start[p], start[p + 1]):
+            i = corners[n]
+            dx, dy, dz = x[i, 0] - mark[i, 0] - ax, x[i, 1] - mark[i, 1] - ay, x[i, 2] - mark[i, 2] - az
+            far = max(far, dx * dx + dy * dy + dz * dz)
+            dx, dy, dz = v[i, 0] - bx, v[i, 1] - by, v[i, 2] - bz
+            fast = max(fast, dx * dx + dy * dy + dz * dz)
+        moved[p, 0], moved[p, 1], moved[p, 2], moved[p, 3] = ax, ay, az, math.sqrt(far)
+        moved[p, 4], moved[p, 5], moved[p, 6], moved[p, 7] = bx, by, bz, math.sqrt(fast)
+
+
+@njit(error_model="numpy", inline="always")
+def apart(moved, p, q, c):
+    """The most by which parts of two patches have moved against each other [m] (c = 0), or do [m/s] (c = 4)."""
+    dx, dy, dz = moved[p, c] - moved[q, c], moved[p, c + 1] - moved[q, c + 1], moved[p, c + 2] - moved[q, c + 2]
+    within = moved[p, c + 3] + (moved[q, c + 3] if p != q else moved[p, c + 3])
+    return math.sqrt(dx * dx + dy * dy + dz * dz) + within
+
+
+@njit(cache=True, error_model="numpy")
 def patch_pairs(patches, shapes, along, reach, pairs):
-    """Pairs (K, 2) of patches, of which parts may be nearer than `reach` [m]; one with itself where it is not flat.
+    """Pairs (K, 4) of patches p <= q, of which parts may come nearer than `reach` [m]; each is one with itself, too.
 
     along: the axis that shapes.order goes by. Returns the list, a longer one where it was full, and how many there are.
     """
-    box, cone, order, count = shapes.box, shapes.cone, shapes.order, 0
+    box, order, count = shapes.box, shapes.order, 0
     for n in range(len(order)):
         p = order[n]
-        if count + len(order) - n > len(pairs):
-            wider = np.zeros((2 * (count + len(order)), 2), np.int32)
-            wider[:count] = pairs[:count]
-            pairs = wider
-        if not flat_together(cone[p], cone[p]):
-            pairs[count, 0], pairs[count, 1] = p, p
-            count += 1
+        pairs = grown(pairs, count + len(order) - n)
+        pairs[count, 0], pairs[count, 1] = p, p
+        count += 1
         end = box[p, 3 + along] + reach
         for m in range(n + 1, len(order)):
             q = order[m]
             if box[q, along] > end:
                 break
-            apart = False
+            away = False
             for c in range(3):
                 if box[q, c] > box[p, 3 + c] + reach or box[p, c] > box[q, 3 + c] + reach:
-                    apart = True
-            if apart:
-                continue
-            if flat_together(cone[p], cone[q]) and _joined(patches, cone, p, q):
-                continue
-            pairs[count, 0], pairs[count, 1] = p, q
-            count += 1
+                    away = True
+            if not away:
+                pairs[count, 0], pairs[count, 1] = min(p, q), max(p, q)
+                count += 1
     return pairs, count
+
+
+@njit(cache=True, error_model="numpy")
+def flat_pair(patches, cone, p, q):
+    """Whether two patches, or one, lie in a stretch of cloth that is so flat that it cannot meet itself."""
+    return flat_together(cone[p], cone[q]) and (p == q or _joined(patches, cone, p, q))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from sim_core.cloth.contact.pairs import Search, at, near_pairs, segment_parameters, triangle_weights
+from sim_core.cloth.contact.pairs import Search, at, segment_parameters, triangle_weights
 from sim_core.cloth.contact.sleep import asleep
 
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
@@ -75,15 +75,12 @@ def _apart2(v, i, j):
 
 
 @njit(cache=True, error_model="numpy")
-def repel(x, v, mesh, pairs, counts, shell, dt, step):
-    """Impulses for counts[0] vertex-face pairs and counts[1] edge-edge pairs, each list (K, 3) in its fixed order.
-
-    The third of each is the step until which a pair sleeps, since it cannot touch before.
-    """
+def repel(x, v, mesh, near, shell, dt, step):
+    """Impulses for the vertex-face pairs and edge-edge pairs of `Near`, in its order, but for those that sleep."""
     reach2 = shell.thickness * shell.thickness
-    points, crossings, inverse_mass = pairs[0], pairs[1], mesh.inverse_mass
+    points, crossings, counts, inverse_mass = near.points, near.crossings, near.count, mesh.inverse_mass
     faces, edges = mesh.faces, mesh.edges
-    for k in range(counts[0]):
+    for k in range(counts[1]):
         if points[k, 2] > step:
             continue
         i, f = points[k, 0], points[k, 1]
@@ -98,7 +95,7 @@ def repel(x, v, mesh, pairs, counts, shell, dt, step):
         else:
             fast2 = max(_apart2(v, i, a), _apart2(v, i, b), _apart2(v, i, c))
             points[k, 2] = step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
-    for k in range(counts[1]):
+    for k in range(counts[2]):
         if crossings[k, 2] > step:
             continue
         e, g = crossings[k, 0], crossings[k, 1]
@@ -117,13 +114,10 @@ def repel(x, v, mesh, pairs, counts, shell, dt, step):
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, mesh, reaches, patches, shapes, lists):
-    """Vertex-face and edge-edge candidates: see `pairs.near_pairs`. reaches: thickness [m], and how far to look [m]."""
-    thickness, reach = reaches
-    edges, length2 = mesh.edges, mesh.length2
-    side = 0.0
+def search_for(mesh, thickness, skin):
+    """What a shell's pairs are looked for by."""
+    edges, length2, side, reach = mesh.edges, mesh.length2, 0.0, thickness + skin
     for e in range(len(edges)):
-        side += math.sqrt(length2[e])
+        side += math.sqrt(length2[e]) / len(edges)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
-    return near_pairs(x, mesh, patches, shapes, Search(thickness, reach, near), lists)
+    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side)

@@ -17,7 +17,8 @@ from sim_core.cloth.contact.collisions import (
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.packed import Packed
-from sim_core.cloth.contact.pairs import Mesh, finder_of, pairs_of
+from sim_core.cloth.contact.pairs import Mesh, finder_of
+from sim_core.cloth.contact.near_pairs import near_pairs_of
 from sim_core.cloth.contact.patches import patches_of, shapes_of
 from sim_core.cloth.contact.solids import Solid
 from sim_core.cloth.contact.untangling import Memory, Untangling, faces_at_edges, no_crossings, untangle
@@ -89,7 +90,7 @@ class Engine:
             same=self.holds.same,
         )
         layers = (count, len(s.edges), len(s.faces)) if self.shell.thickness else (0, 0, 0)
-        self.pairs = pairs_of(layers[0])
+        self.near = near_pairs_of(layers[0])
         patches = patches_of(s.edges, s.faces if self.shell.thickness else s.faces[:0], self.holds.same)
         self.finder = finder_of(*layers)
         vertices, middles = self._samples()
@@ -203,9 +204,9 @@ class Engine:
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(frame.pins))
         touch = self.touch._replace(solid=solid, shell=shell)
         if self.laned:
-            self.pairs = self.laned.advance(mesh, touch, inside, steps, state, self.pairs)
+            self.near = self.laned.advance(mesh, touch, inside, steps, state, self.near)
         else:
-            self.pairs = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.pairs)
+            self.near = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.near)
 
     def _lead(self, frame: Frame, state: State, seconds: float = FRAME) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""
@@ -265,7 +266,7 @@ class Engine:
             return 0, 0
         there, speed = (np.ascontiguousarray(array.T) for array in state)
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(pins))
-        memory = Memory(self.finder, self.crossed)
+        memory = Memory(self.finder, self.crossed, self.touch.patches, self.touch.shapes, self.near.spare.patches)
         before, after, self.crossed = untangle(there, speed, mesh, self.third, self.holds, memory, how)
         if before:
             state.x[:], state.v[:] = there.T, speed.T

@@ -17,7 +17,8 @@ from sim_core.cloth.contact.collisions import (
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
 from sim_core.cloth.contact.packed import MOVING, Packed
 from sim_core.cloth.contact.patches import Patches, Shapes
-from sim_core.cloth.contact.repulsion import Shell, candidate_pairs, repel
+from sim_core.cloth.contact.near_pairs import begin_pairs, likely_skin, renew_pairs
+from sim_core.cloth.contact.repulsion import Shell, repel, search_for
 from sim_core.cloth.step.frame import FREE, State
 from sim_core.cloth.step.kernels.banded import axes, band_limit
 from sim_core.cloth.step.kernels.leaps import arrive, leap, look_back
@@ -26,8 +27,6 @@ SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and 
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
-PUSHED = 2e-5  # [m] that a solid may push a vertex at once, where none has pushed lately
-LEAST_SKIN = 0.2  # of a skin, that is looked through however slow the cloth is
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
 
 
@@ -66,7 +65,6 @@ class Room(NamedTuple):
     air_now: np.ndarray
     air_past: np.ndarray
     face: np.ndarray
-    mark: np.ndarray
     spare: np.ndarray
 
 
@@ -90,46 +88,8 @@ def room_of(edges: int, vertices: int, longest: int, lanes: type | None = None) 
         air_now=axes(vertices),
         air_past=axes(vertices),
         face=axes(max(longest, 1)),
-        mark=axes(vertices),
         spare=axes(vertices if lanes else 0),
     )
-
-
-@njit(cache=True, error_model="numpy")
-def travel(x, v, mark):
-    """How far (V, 3) x has come from its mark and how fast it goes, at most, off the cloth's mean."""
-    dx = dy = dz = vx = vy = vz = 0.0
-    for i in range(len(x)):
-        dx, dy, dz = dx + x[i, 0] - mark[i, 0], dy + x[i, 1] - mark[i, 1], dz + x[i, 2] - mark[i, 2]
-        vx, vy, vz = vx + v[i, 0], vy + v[i, 1], vz + v[i, 2]
-    share = 1.0 / len(x)
-    dx, dy, dz = share * dx, share * dy, share * dz
-    vx, vy, vz = share * vx, share * vy, share * vz
-    far = fast = 0.0
-    for i in range(len(x)):
-        a, b, c = x[i, 0] - mark[i, 0] - dx, x[i, 1] - mark[i, 1] - dy, x[i, 2] - mark[i, 2] - dz
-        far = max(far, a * a + b * b + c * c)
-        a, b, c = v[i, 0] - vx, v[i, 1] - vy, v[i, 2] - vz
-        fast = max(fast, a * a + b * b + c * c)
-    return np.sqrt(far), np.sqrt(fast)
-
-
-@njit(cache=True, error_model="numpy")
-def patience(left, fast, pushed, dt):
-    """Substeps of dt [s] until `left` [m] may be used up, at twice the speed `fast` and twice what solids `pushed` in
-    one since the last look [m], and a little.
-    """
-    if not left > 0.0:
-        return 0
-    return int(min(LOOK_EVERY, left / (2.0 * fast * dt + 2.0 * pushed + PUSHED)))
-
-
-@njit(cache=True, error_model="numpy")
-def margin(fast, time, skin):
-    """How much further than they touch pairs are looked for [m]: as far as the cloth goes in what is left of a frame,
-    time [s], at the speed `fast`, within the skin: a search costs as much as many pairs that sleep.
-    """
-    return min(skin, max(4.0 * fast * time, LEAST_SKIN * skin))
 
 
 @njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
@@ -160,20 +120,21 @@ def _sew(holds, inverse, frame, steps, x, v, k):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(layout, mesh, touch, frame, steps, room, state, pairs):
+def advance(layout, mesh, touch, frame, steps, room, state, near):
     """Simulates a frame's steps over `Bands` or `Lanes`; the state's x, v (3, V) change in place.
 
     frame: its vertices and its body in the numbers of this loop. pairs: lists as `pairs.near_pairs` takes them, written over; returned,
     longer where they were full. v lives half a step behind x. Lists of pairs are renewed before the cloth has moved
     half their margin off its mean.
     """
-    here, there, mark = state, State(room.spare, state.v), room.mark.T
+    here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
-    layers, skin, pushed = shell.thickness > 0.0, 0.0, shell.cap if solids else 0.0
+    layers, pushed = shell.thickness > 0.0, 0.0
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, counts = -1, (0, 0, 0)
+    look_layer, patches, shapes = -1, touch.patches, touch.shapes
+    how = search_for(mesh, shell.thickness, shell.skin)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
@@ -181,17 +142,14 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
             if k >= look_layer:
-                far, fast = travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
-                if far > 0.3 * skin:
-                    room.mark[:] = here.x
-                    far, fast = travel(x, v, mark)
-                    skin = margin(fast, (steps.count - k) * steps.dt, shell.skin)
-                    reaches = shell.thickness, shell.thickness + skin
-                    pairs, counts = candidate_pairs(x, mesh, reaches, touch.patches, touch.shapes, pairs)
-                look_layer = k + 1 + patience(0.5 * skin - far, fast, pushed, steps.dt)
-                pushed = 0.0
-            if counts[0] + counts[1] > 0:
-                repel(x, v, mesh, pairs, counts, shell, steps.dt * shell.every, k)
+                if look_layer < 0:
+                    skin = likely_skin(x, v, patches, shapes, shell.skin, steps.count * steps.dt)
+                    how = search_for(mesh, shell.thickness, skin)
+                    near = begin_pairs(x, mesh, patches, shapes, how, near)
+                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, pushed / steps.dt)
+                look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0
+            if near.now.count[1] + near.now.count[2] > 0:
+                repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         if late:
@@ -204,4 +162,4 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
             bound(holds, x, v)
             mirror(holds, x, v)
     state.x[:] = here.x  # lanes go to and fro between two arrays
-    return pairs
+    return near
