@@ -1,4 +1,4 @@
-"""What a worn garment costs: processor time a frame, standing, raising its arms and walking; prints a table, writes JSON.
+"""What a worn garment costs a frame: standing, raising its arms, walking; prints a table, writes JSON.
 
     python tests/bench/bench_worn.py [--only standing raising walking] [--frames 12] [--rounds 3]
         [--garment FILE.npz] [--beside CHECKOUT] [--json FILE]
@@ -125,7 +125,10 @@ def main() -> int:
         return 0
     trees = {"here": ROOT} | ({"beside": arguments.beside.resolve()} if arguments.beside else {})
     found: dict[str, dict[str, list[dict[str, Any]]]] = {}
-    print(f"{'':9} {'':7} {'ms a frame':>18} {'substeps':>9} {'inside':>7} {'crossings':>10} {'strain95':>8} {'p99 µm':>9}")
+    print(
+        f"{'':9} {'':7} {'ms a frame':>18} {'substeps':>9} {'inside':>7} {'crossings':>10}"
+        f" {'strain95':>8} {'p99 µm':>9}"
+    )
     for case in arguments.only:
         runs = {name: [] for name in trees}
         for _ in range(arguments.rounds):

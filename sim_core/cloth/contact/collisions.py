@@ -99,7 +99,9 @@ def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
             carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
             _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
             deepest = max(deepest, -room)
-        wake[s] = step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, max(speed, 0.0), push.dt)
+        wake[s] = (
+            step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, max(speed, 0.0), push.dt)
+        )
     return min(deepest, push.cap)
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.pairs import Search, edges_on_edges, points_on_faces
+from sim_core.cloth.contact.pairs import edges_on_edges, points_on_faces
 from sim_core.cloth.contact.patches import apart, flat_pair, grown, move_patches, patch_pairs, place_patches
 from sim_core.cloth.contact.sleep import GAINED
 
@@ -29,7 +29,9 @@ class Near(NamedTuple):
     points: np.ndarray  # (K, 3) int32 vertex, face, and the step until which the pair sleeps
     crossings: np.ndarray  # (K, 3) int32 edge, edge, step
     patches: np.ndarray  # (K, 4) int32
-    gone: np.ndarray  # (K,) [m] how far the patches of each have moved against each other since they were looked for
+    gone: (
+        np.ndarray
+    )  # (K,) [m] how far the patches of each have moved against each other since they were looked for
     count: np.ndarray  # (3,) int64 of pairs of patches, points, crossings
     mark: np.ndarray  # (V, 3) where the cloth was when `gone` was counted last
 
@@ -41,7 +43,9 @@ class NearPairs(NamedTuple):
     spare: Near
     begun: np.ndarray  # (V, 3)
     order: np.ndarray  # (K,) int32 working memory
-    tally: np.ndarray  # (4,) int64 looks, renewals, those of them among other pairs of patches, pairs looked for anew
+    tally: (
+        np.ndarray
+    )  # (4,) int64 looks, renewals, those of them among other pairs of patches, pairs looked for anew
 
 
 def near_pairs_of(vertices: int) -> NearPairs:
@@ -102,7 +106,6 @@ def _rebuilt(x, mesh, patches, shapes, how, old, pairs, total, out):
     first = second = 0
     if len(gone) < total:
         gone = np.zeros(2 * total)
-    skin = how.reach - how.thickness
     for k in range(total):
         p, q, place = pairs[k, 0], pairs[k, 1], pairs[k, 2]
         if place >= 0:
@@ -183,8 +186,8 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
 
 @njit(cache=True, error_model="numpy")
 def _soonest(near, moved, skin, pushed):
-    """Whether patches of any pair have moved against each other by LATE of the skin [m], and for how long [s] none moves
-    by all of it, those left out that are looked for anew if any is.
+    """Whether patches of any pair have moved against each other by LATE of the skin [m], and for how long [s] none
+    moves by all of it, those left out that are looked for anew if any is.
     """
     late, soonest, lasting = False, 1.0, 1.0
     for k in range(near.count[0]):

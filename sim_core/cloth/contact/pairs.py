@@ -232,8 +232,8 @@ def within_box(parts, first, last, box, p, reach, out):
 
 @njit(cache=True, error_model="numpy")
 def near_balls(first, these, second, those, one, other, reach, out):
-    """Pairs (n, m) whose balls one[n] and other[m] come within reach, of n in first[:these] and m in second[:those], into
-    out (K, 2); how many.
+    """Pairs (n, m) whose balls one[n] and other[m] come within reach, of n in first[:these] and m in second[:those],
+    into out (K, 2); how many.
     """
     count = 0
     for a in range(these):
@@ -261,8 +261,8 @@ def _alike(a, n, b, m):
 
 @njit(cache=True, error_model="numpy")
 def points_on_faces(x, mesh, patches, shapes, how, parts, found):
-    """Adds the (vertex, face) pairs of the vertices of patch p and the faces of patch q, parts = (p, q), to a list (K, 3)
-    that holds some; returns it, a longer one where it was full, and how many there are.
+    """Adds the (vertex, face) pairs of the vertices of patch p and the faces of patch q, parts = (p, q), to a list
+    (K, 3) that holds some; returns it, a longer one where it was full, and how many there are.
     """
     (p, q), (pairs, count) = parts, found
     rest, faces, same, near2, reach = mesh.rest, mesh.faces, mesh.same, how.near**2, how.reach

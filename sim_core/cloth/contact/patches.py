@@ -40,11 +40,15 @@ class Shapes(NamedTuple):
 
     face_normal: np.ndarray  # (F, 3)
     vertex_normal: np.ndarray  # (V, 3)
-    face: np.ndarray  # (F, 8) in the order of Patches.faces: centre, radius of the ball around it, normal, size
+    face: (
+        np.ndarray
+    )  # (F, 8) in the order of Patches.faces: centre, radius of the ball around it, normal, size
     edge: np.ndarray  # (E, 8) of Patches.edges: midpoint, half length, mean normal
     vertex: np.ndarray  # (V, 8) of Patches.vertices: place, 0, normal
     box: np.ndarray  # (P, 6) lowest and highest corner
-    cone: np.ndarray  # (P, 5) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed)
+    cone: (
+        np.ndarray
+    )  # (P, 5) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed)
     order: np.ndarray  # (P,) by the low end along the longest way
     moved: np.ndarray  # (P, 8) mean way since the mark, furthest from it; mean velocity, furthest from that
     start: np.ndarray  # (P + 2,) int64
@@ -350,7 +354,11 @@ def move_patches(x, v, mark, patches, moved):
 @njit(error_model="numpy", inline="always")
 def apart(moved, p, q, c):
     """The most by which parts of two patches have moved against each other [m] (c = 0), or do [m/s] (c = 4)."""
-    dx, dy, dz = moved[p, c] - moved[q, c], moved[p, c + 1] - moved[q, c + 1], moved[p, c + 2] - moved[q, c + 2]
+    dx, dy, dz = (
+        moved[p, c] - moved[q, c],
+        moved[p, c + 1] - moved[q, c + 1],
+        moved[p, c + 2] - moved[q, c + 2],
+    )
     within = moved[p, c + 3] + (moved[q, c + 3] if p != q else moved[p, c + 3])
     return math.sqrt(dx * dx + dy * dy + dz * dz) + within
 

@@ -94,7 +94,9 @@ def repel(x, v, mesh, near, shell, dt, step):
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
         else:
             fast2 = max(_apart2(v, i, a), _apart2(v, i, b), _apart2(v, i, c))
-            points[k, 2] = step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            points[k, 2] = (
+                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            )
     for k in range(counts[2]):
         if crossings[k, 2] > step:
             continue
@@ -107,7 +109,9 @@ def repel(x, v, mesh, near, shell, dt, step):
         gap2 = dx * dx + dy * dy + dz * dz
         if gap2 >= reach2:
             fast2 = max(_apart2(v, a, c), _apart2(v, a, d), _apart2(v, b, c), _apart2(v, b, d))
-            crossings[k, 2] = step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            crossings[k, 2] = (
+                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            )
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
         elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
             _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)

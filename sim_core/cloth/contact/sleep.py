@@ -1,4 +1,4 @@
-"""How long what is apart may be left alone: until it could have met, at the speed it has and faster ones it may gain."""
+"""How long what is apart may be left alone: until it could have met, at its speed and what it may gain."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ SOON = 40  # substeps: who sleeps longer is not asked at the end of a frame eith
 
 @njit(error_model="numpy", inline="always")
 def asleep(room, fast2, drift, dt):
-    """Substeps of dt [s] that `room` [m] lasts at twice the speed, squared fast2 [m2/s2], while a surface comes nearer at
-    `drift` [m/s]; 0 where there is none.
+    """Substeps of dt [s] that `room` [m] lasts at twice the speed, squared fast2 [m2/s2], while a surface comes nearer
+    at `drift` [m/s]; 0 where there is none.
 
     Between two keys a body's distance at a place changes evenly, so what it loses now it loses until the frame's end.
     """

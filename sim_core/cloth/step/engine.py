@@ -16,9 +16,9 @@ from sim_core.cloth.contact.collisions import (
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.contact.moving_grid import MovingGrid
+from sim_core.cloth.contact.near_pairs import near_pairs_of
 from sim_core.cloth.contact.packed import Packed
 from sim_core.cloth.contact.pairs import Mesh, finder_of
-from sim_core.cloth.contact.near_pairs import near_pairs_of
 from sim_core.cloth.contact.patches import patches_of, shapes_of
 from sim_core.cloth.contact.solids import Solid
 from sim_core.cloth.contact.untangling import Memory, Untangling, faces_at_edges, no_crossings, untangle
@@ -266,7 +266,9 @@ class Engine:
             return 0, 0
         there, speed = (np.ascontiguousarray(array.T) for array in state)
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(pins))
-        memory = Memory(self.finder, self.crossed, self.touch.patches, self.touch.shapes, self.near.spare.patches)
+        memory = Memory(
+            self.finder, self.crossed, self.touch.patches, self.touch.shapes, self.near.spare.patches
+        )
         before, after, self.crossed = untangle(there, speed, mesh, self.third, self.holds, memory, how)
         if before:
             state.x[:], state.v[:] = there.T, speed.T

@@ -15,9 +15,9 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
+from sim_core.cloth.contact.near_pairs import begin_pairs, likely_skin, renew_pairs
 from sim_core.cloth.contact.packed import MOVING, Packed
 from sim_core.cloth.contact.patches import Patches, Shapes
-from sim_core.cloth.contact.near_pairs import begin_pairs, likely_skin, renew_pairs
 from sim_core.cloth.contact.repulsion import Shell, repel, search_for
 from sim_core.cloth.step.frame import FREE, State
 from sim_core.cloth.step.kernels.banded import axes, band_limit
@@ -123,9 +123,8 @@ def _sew(holds, inverse, frame, steps, x, v, k):
 def advance(layout, mesh, touch, frame, steps, room, state, near):
     """Simulates a frame's steps over `Bands` or `Lanes`; the state's x, v (3, V) change in place.
 
-    frame: its vertices and its body in the numbers of this loop. pairs: lists as `pairs.near_pairs` takes them, written over; returned,
-    longer where they were full. v lives half a step behind x. Lists of pairs are renewed before the cloth has moved
-    half their margin off its mean.
+    frame: its vertices and its body in the numbers of this loop. near: `NearPairs`, written over and returned, with
+    longer lists where they were full. v lives half a step behind x.
     """
     here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
