@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.contact.closest_points import triangle_weights
 from sim_core.cloth.contact.packed import BOX, CAPSULE, CYLINDER, GRID, MOVING, Fields
-from sim_core.cloth.contact.pairs import triangle_weights
 
 
 @njit(cache=True, error_model="numpy")

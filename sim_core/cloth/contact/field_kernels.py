@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.pairs import at
+from sim_core.cloth.contact.closest_points import at
 from sim_core.metrics.triangles import squared_gap
 
 

@@ -15,13 +15,19 @@ from sim_core.cloth.contact.collisions import (
     contact_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
+from sim_core.cloth.contact.layers.near_pairs import near_pairs_of
+from sim_core.cloth.contact.layers.pairs import Mesh, finder_of
+from sim_core.cloth.contact.layers.patches import patches_of, shapes_of
+from sim_core.cloth.contact.layers.untangling import (
+    Memory,
+    Untangling,
+    faces_at_edges,
+    no_crossings,
+    untangle,
+)
 from sim_core.cloth.contact.moving_grid import MovingGrid
-from sim_core.cloth.contact.near_pairs import near_pairs_of
 from sim_core.cloth.contact.packed import Packed
-from sim_core.cloth.contact.pairs import Mesh, finder_of
-from sim_core.cloth.contact.patches import patches_of, shapes_of
 from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.contact.untangling import Memory, Untangling, faces_at_edges, no_crossings, untangle
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.frame import FRAME, FREE, Contact, Frame, State
 from sim_core.cloth.step.health import Health

@@ -15,10 +15,10 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
-from sim_core.cloth.contact.near_pairs import begin_pairs, likely_skin, renew_pairs
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, likely_skin, renew_pairs
+from sim_core.cloth.contact.layers.patches import Patches, Shapes
+from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for
 from sim_core.cloth.contact.packed import MOVING, Packed
-from sim_core.cloth.contact.patches import Patches, Shapes
-from sim_core.cloth.contact.repulsion import Shell, repel, search_for
 from sim_core.cloth.step.frame import FREE, State
 from sim_core.cloth.step.kernels.banded import axes, band_limit
 from sim_core.cloth.step.kernels.leaps import arrive, leap, look_back

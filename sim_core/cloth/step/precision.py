@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth.contact.near_pairs import NearPairs
-from sim_core.cloth.contact.pairs import Mesh
+from sim_core.cloth.contact.layers.near_pairs import NearPairs
+from sim_core.cloth.contact.layers.pairs import Mesh
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.frame import Frame, State
 from sim_core.cloth.step.kernels.bands import Bands

@@ -13,8 +13,15 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.pairs import edges_on_edges, points_on_faces
-from sim_core.cloth.contact.patches import apart, flat_pair, grown, move_patches, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
+from sim_core.cloth.contact.layers.patches import (
+    apart,
+    flat_pair,
+    grown,
+    move_patches,
+    patch_pairs,
+    place_patches,
+)
 from sim_core.cloth.contact.sleep import GAINED
 
 AHEAD = 0.01  # [m] further than the reach, in which pairs of patches are kept
@@ -97,11 +104,13 @@ def _by_first(near, start, order):
 
 
 @njit(cache=True, error_model="numpy")
-def _rebuilt(x, mesh, patches, shapes, how, old, pairs, total, out):
-    """The lists of the first `total` of patch pairs (K, 4): what `old` holds of each, the others looked for anew.
+def _rebuilt(x, mesh, patches, shapes, how, old, listed, out):
+    """The lists of patch pairs: what `old` holds of each, the others looked for anew.
 
-    pairs[k, 2]: the place in old.patches, or -1; it is written over, as all memory of `out` is.
+    listed: pairs (K, 4) and how many of them; pairs[k, 2]: the place in old.patches, or -1. They are written over,
+    as all memory of `out` is.
     """
+    pairs, total = listed
     points, crossings, gone = out.points, out.crossings, out.gone
     first = second = 0
     if len(gone) < total:
@@ -152,7 +161,7 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
         return near
     pairs, count = patch_pairs(patches, shapes, along, how.reach + AHEAD, near.now.patches)
     pairs[:count, 2] = -1
-    now = _rebuilt(x, mesh, patches, shapes, how, near.spare, pairs, count, near.now)
+    now = _rebuilt(x, mesh, patches, shapes, how, near.spare, (pairs, count), near.now)
     return NearPairs(now, near.spare, near.begun, near.order, near.tally)
 
 
@@ -230,5 +239,5 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
         near.tally[3] += pairs[k, 2] < 0
     near.tally[1] += 1
     near.tally[2] += away
-    spare = _rebuilt(x, mesh, patches, shapes, how, now, pairs, count, near.spare)
+    spare = _rebuilt(x, mesh, patches, shapes, how, now, (pairs, count), near.spare)
     return NearPairs(spare, now, near.begun, order, near.tally)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from numba import njit
 
-from sim_core.cloth.contact.pairs import Search, at, segment_parameters, triangle_weights
+from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
+from sim_core.cloth.contact.layers.pairs import Search
 from sim_core.cloth.contact.sleep import asleep
 
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
