@@ -12,6 +12,7 @@ import numpy as np
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.solids import Solid
+from sim_core.cloth.run.causes import cause
 from sim_core.cloth.run.checkpoint import RunState
 from sim_core.cloth.run.smoothing import smoothed
 from sim_core.cloth.sheet.sheet import Sheet
@@ -34,6 +35,7 @@ SHELL_VERSION = 3  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
 LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
+MORE_IMPLICIT = (IMPLICIT_STEPS, 64, 512)  # steps of backward Euler that are tried then, one after the other
 MOST_FIXED = 100_000  # substeps of a frame that may be asked for
 INTEGRATORS = ("auto", "explicit", "implicit")
 _KINDS = {  # of what a run may be given, and the remedy
@@ -304,13 +306,15 @@ class Run:
                     continue
                 engine.forget()
             if self._gives_in(attempt, stride.count):
-                end = self._implicit(frame, begin, IMPLICIT_STEPS)
-                if engine.health.good(frame, begin, end):
-                    state.fallbacks += 1
-                    return end, stride._replace(count=IMPLICIT_STEPS)
-                engine.forget()
+                for count in MORE_IMPLICIT if stride.count > MOST_SUBSTEPS else MORE_IMPLICIT[:1]:
+                    end = self._implicit(frame, begin, count)
+                    if engine.health.good(frame, begin, end):
+                        state.fallbacks += 1
+                        return end, stride._replace(count=count)
+                    engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
-        raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
+        why = cause(engine, frame, begin, MOST_SUBSTEPS, self._count(step))
+        raise SimCoreError(f"frame {state.frame}: {why}")
 
     def _layer_step(self, frame: Frame, begin: State) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
