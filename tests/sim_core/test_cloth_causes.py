@@ -50,17 +50,15 @@ def test_a_start_within_a_solid_is_told_with_its_depth():
         drape(sheet, x, [Phase(1.0)], collider=HalfSpace((0.0, 0.3, 0.0)))
 
 
-def test_pins_led_to_one_place_are_named_and_it_goes_on_with_one_let_go():
+def test_pins_led_to_one_place_are_named_and_nothing_has_happened():
     sheet, x = flat(21, 1.0)
-    cloth = Live(sheet, x, pins=[0, 1], contact=LAYERS)
+    cloth, twin = (Live(sheet, x, pins=[0, 1], contact=LAYERS) for _ in range(2))
     with pytest.raises(
         SimCoreError, match="pins 0 and 1 are to be 0 mm apart, the cloth between them is 50 mm"
     ):
-        for _ in range(3):
-            cloth.step(targets=np.array([[0.5, 0.0, 0.5]] * 2))
-    before = cloth.positions
-    assert np.abs(cloth.step(pins=[0]) - before).max() < 1.0
-    assert np.isfinite(cloth.positions).all()
+        cloth.step(targets=np.array([[0.5, 0.0, 0.5]] * 2))
+    for _ in range(3):
+        assert np.array_equal(cloth.step(), twin.step())
 
 
 @pytest.mark.parametrize("contact", [None, LAYERS], ids=["bare", "layers"])

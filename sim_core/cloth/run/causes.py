@@ -18,6 +18,7 @@ CLOSE, FAR = (
 DEEP = 0.5  # of the mean edge, that a vertex may lie in a solid: from deeper it is thrown out
 THROWN = 300.0  # [m/s] that a pull may give a vertex within a frame, or a vertex may begin with
 HOPELESS = 1e5  # [m/s] likewise, from which on it is not even tried
+ONE_PLACE = 1e-3  # of its length, likewise of an edge between two pins that are led
 TINY = 1e-4  # of the cloth's mean, from which on a vertex counts as too light or an edge as too short
 
 
@@ -27,7 +28,7 @@ def cause(engine: Engine, frame: Frame, begin: State, most: int, count: int) -> 
     begin: x, v (3, V) in band order; count: the steps that the explicit scheme would take, at most `most`.
     """
     looks: tuple[Callable[[], Iterator[str]], ...] = (
-        lambda: _pins(engine, frame, begin),
+        lambda: _pins(engine, frame, begin.x, CLOSE),
         lambda: _pulls(engine, frame, THROWN),
         lambda: _inside(engine, frame, begin),
         lambda: _speeds(engine, begin),
@@ -46,14 +47,14 @@ def _place(engine: Engine, at: np.ndarray, vertex: int) -> str:
     return f"vertex {engine.order[vertex]} at ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
-def _pins(engine: Engine, frame: Frame, begin: State) -> Iterator[str]:
-    """Cloth between two pins that is pressed into a point, or torn."""
-    there, held = begin.x.copy(), engine.inverse_mass(frame.pins) == 0.0
+def _pins(engine: Engine, frame: Frame, x: np.ndarray, close: float) -> Iterator[str]:
+    """Cloth between two pins that is pressed together to `close` of its length, or torn; x (3, V) [m]."""
+    there, held = x.copy(), engine.inverse_mass(frame.pins) == 0.0
     there[:, engine.number[frame.led]] = frame.places.T
     a, b = engine.sheet.edges[held[engine.sheet.edges].all(1)].T
     rest = np.sqrt(engine.sheet.stencil.length2[held[engine.sheet.edges].all(1)])
     apart = np.linalg.norm(there[:, a] - there[:, b], axis=0)
-    for n in np.flatnonzero((apart < CLOSE * rest) | (apart > FAR * rest))[:1]:
+    for n in np.flatnonzero((apart < close * rest) | (apart > FAR * rest))[:1]:
         first, second = sorted(int(engine.order[k]) for k in (a[n], b[n]))
         yield (
             f"pins {first} and {second} are to be {1000 * apart[n]:.3g} mm apart, the cloth between them is "
@@ -62,9 +63,15 @@ def _pins(engine: Engine, frame: Frame, begin: State) -> Iterator[str]:
         )
 
 
-def check_pulls(engine: Engine, frame: Frame) -> None:
-    """Raises SimCoreError where somebody pulls so hard that the frame need not be tried."""
-    for told in _pulls(engine, frame, HOPELESS):
+def check_hands(engine: Engine, frame: Frame, x: np.ndarray) -> None:
+    """Raises SimCoreError where somebody pulls so hard, or leads pins so close, that nothing good comes of it.
+
+    x (V, 3) [m] in the caller's order.
+    """
+    looks = [_pulls(engine, frame, HOPELESS)]
+    if len(frame.led):
+        looks.append(_pins(engine, frame, engine.inward(x), ONE_PLACE))
+    for told in (told for look in looks for told in look):
         raise SimCoreError(told)
 
 
