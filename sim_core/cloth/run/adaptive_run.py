@@ -146,11 +146,12 @@ class Run:
     def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
         """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
 
-        Not where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
+        Layers that lie exactly on each other are a little apart then. It is not smoothed where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
         """
         if self.setup.certify is not False:
             self._certify(x)
         engine, holds = self.engine, self.engine.holds
+        x = engine.parted(self.frames[0].pins, x)
         held = engine.limited or len(holds.pairs) or len(holds.low) or len(holds.slaves)
         if held or engine.moving or len(engine.packed.kind) or self.certified is not None:
             return RunState(x, v)

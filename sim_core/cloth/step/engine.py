@@ -15,9 +15,11 @@ from sim_core.cloth.contact.collisions import (
     contact_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
-from sim_core.cloth.contact.layers.near_pairs import near_pairs_of
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
 from sim_core.cloth.contact.layers.pairs import Mesh, finder_of
+from sim_core.cloth.contact.layers.parting import parted
 from sim_core.cloth.contact.layers.patches import patches_of, shapes_of
+from sim_core.cloth.contact.layers.repulsion import search_for
 from sim_core.cloth.contact.layers.untangling import (
     Memory,
     Untangling,
@@ -263,6 +265,17 @@ class Engine:
                 collide_vertices(solid, inverse, x, v, touch.vertices.samples, push)
         bound(self.holds, x, v)
         mirror(self.holds, x, v)
+
+    def parted(self, pins: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """x (V, 3) in the caller's order, with layers that lie exactly on each other a little apart."""
+        thickness = self.shell.thickness
+        if thickness == 0.0:
+            return x
+        mesh, there = self.mesh._replace(inverse_mass=self.inverse_mass(pins)), np.ascontiguousarray(x[self.order])
+        how, touch = search_for(mesh, thickness, 0.0), self.touch
+        self.near = begin_pairs(there, mesh, touch.patches, touch.shapes, how, self.near)
+        found = parted(there, mesh, self.near.now, thickness)
+        return x if found is there else found[self.number]
 
     def untangle(self, pins: np.ndarray, state: State) -> tuple[int, int]:
         """Takes a cloth out of itself in place; pairs of edge and face that crossed before, and after."""
