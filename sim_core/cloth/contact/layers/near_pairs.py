@@ -124,7 +124,7 @@ def _rebuilt(x, mesh, patches, shapes, how, old, listed, out):
             gone[k] = old.gone[place]
         else:
             gone[k] = 0.0
-        if place < 0 and not flat_pair(patches, shapes.cone, p, q):
+        if place < 0 and not flat_pair(patches, shapes.cone, p, q, how.wide):
             points, first = points_on_faces(x, mesh, patches, shapes, how, (p, q), (points, first))
             if p != q:
                 points, first = points_on_faces(x, mesh, patches, shapes, how, (q, p), (points, first))

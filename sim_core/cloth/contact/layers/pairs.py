@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
-from sim_core.cloth.contact.layers.patches import grown
+from sim_core.cloth.contact.layers.patches import CONE, grown
 
 CELLS = 8  # of the hash grid, at most, for each thing that is looked for
 FAR = 1e6  # [m] beyond it, or not a number, nothing is looked for
@@ -155,6 +155,7 @@ class Search(NamedTuple):
     reach: float
     near: float
     edge: float  # [m] length of the edges at rest, on average
+    wide: float = CONE  # cosine of the angle that normals may be apart in a stretch that cannot meet itself
 
 
 @njit(cache=True, error_model="numpy")

@@ -16,7 +16,7 @@ from numba import njit
 from sim_core.cloth.sheet.sheet import face_edge_table
 
 FACES = 16  # of a patch; larger ones are flat less often, smaller ones are more to look at
-CONE = math.cos(math.radians(60.0))  # of the widest angle between two normals of what counts as flat
+CONE = math.cos(math.radians(60.0))  # of the widest angle between two normals of what cannot pass through itself
 CRUSHED = 0.5  # of its squared length at rest, below which an edge may lie in a fold that normals do not show
 
 
@@ -300,22 +300,18 @@ def place_patches(x, mesh, patches, shapes):
 
 
 @njit(cache=True, error_model="numpy")
-def flat_together(a, b):
-    """Whether all normals of two cones (see Shapes.cone) are within the widest angle of what counts as flat."""
-    if a[3] < CONE or b[3] < CONE:
+def flat_together(a, b, wide):
+    """Whether no two normals of two cones (see Shapes.cone) are further apart than by an angle with the cosine `wide`."""
+    cosine, sine = a[3] * b[3] - a[4] * b[4], a[4] * b[3] + a[3] * b[4]  # of both half angles
+    if sine < 0.0 or min(a[3], b[3]) <= 0.0:
         return False
     between = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     beside = math.sqrt(max(0.0, 1.0 - between * between))
-    if between < CONE:
-        return False
-    cosine, sine = a[3] * b[3] - a[4] * b[4], a[4] * b[3] + a[3] * b[4]  # of both half angles
-    if cosine <= 0.0:
-        return False
-    return cosine * between - sine * beside >= CONE
+    return sine * between + cosine * beside >= 0.0 and cosine * between - sine * beside >= wide
 
 
 @njit(cache=True, error_model="numpy")
-def _joined(patches, cone, p, q):
+def _joined(patches, cone, p, q, wide):
     """Whether two patches share a vertex, or one with a third that is flat together with both."""
     start, beside = patches.beside_start, patches.beside
     for k in range(start[p], start[p + 1]):
@@ -323,7 +319,7 @@ def _joined(patches, cone, p, q):
         if r == q:
             return True
         for m in range(start[q], start[q + 1]):
-            if beside[m] == r and flat_together(cone[p], cone[r]) and flat_together(cone[q], cone[r]):
+            if beside[m] == r and flat_together(cone[p], cone[r], wide) and flat_together(cone[q], cone[r], wide):
                 return True
     return False
 
@@ -391,6 +387,9 @@ def patch_pairs(patches, shapes, along, reach, pairs):
 
 
 @njit(cache=True, error_model="numpy")
-def flat_pair(patches, cone, p, q):
-    """Whether two patches, or one, lie in a stretch of cloth that is so flat that it cannot meet itself."""
-    return flat_together(cone[p], cone[q]) and (p == q or _joined(patches, cone, p, q))
+def flat_pair(patches, cone, p, q, wide):
+    """Whether two patches, or one, lie in a stretch of cloth that is so flat that it cannot meet itself.
+
+    wide: the cosine of the angle that normals may be apart for that.
+    """
+    return flat_together(cone[p], cone[q], wide) and (p == q or _joined(patches, cone, p, q, wide))

@@ -14,9 +14,12 @@ from numba import njit
 
 from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
 from sim_core.cloth.contact.layers.pairs import Search
+from sim_core.cloth.contact.layers.patches import CONE
 from sim_core.cloth.contact.sleep import asleep
 
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
+WIDEST = math.cos(math.radians(140.0))  # of two normals in a stretch of cloth that does not meet itself
+NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
 
@@ -124,5 +127,8 @@ def search_for(mesh, thickness, skin):
     edges, length2, side, reach = mesh.edges, mesh.length2, 0.0, thickness + skin
     for e in range(len(edges)):
         side += math.sqrt(length2[e]) / len(edges)
+    # A V whose sides open by this angle is as wide as it has to be where they are an edge's height from its crease.
+    opening = 2.0 * math.asin(min(1.0, (thickness + NEARER * skin) / (math.sqrt(3.0) * side)))
+    wide = min(max(math.cos(math.pi - opening), WIDEST), CONE)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side)
+    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side, wide)

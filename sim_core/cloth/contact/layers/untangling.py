@@ -22,7 +22,7 @@ from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
 from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
-from sim_core.cloth.contact.layers.patches import Patches, Shapes, flat_pair, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes, flat_pair, patch_pairs, place_patches
 from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
@@ -198,7 +198,7 @@ def crossings_by_patches(x, mesh, patches, shapes, near, lists):
         near, total = patch_pairs(patches, shapes, along, 0.0, near)
         for k in range(total):
             p, q = near[k, 0], near[k, 1]
-            if flat_pair(patches, shapes.cone, p, q):
+            if flat_pair(patches, shapes.cone, p, q, CONE):
                 continue
             found = pairs, place, count
             pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (p, q), found)
