@@ -15,7 +15,7 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
-from sim_core.cloth.contact.layers.near_pairs import begin_pairs, likely_skin, renew_pairs
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, likely_way, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for
 from sim_core.cloth.contact.packed import MOVING, Packed
@@ -133,7 +133,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
     look_layer, patches, shapes = -1, touch.patches, touch.shapes
-    how = search_for(mesh, shell.thickness, shell.skin)
+    how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
@@ -142,8 +142,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         if layers and k % shell.every == 0:
             if k >= look_layer:
                 if look_layer < 0:
-                    skin = likely_skin(x, v, patches, shapes, shell.skin, steps.count * steps.dt)
-                    how = search_for(mesh, shell.thickness, skin)
+                    way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
+                    how = search_for(mesh, shell.thickness, shell.skin, way)
                     near = begin_pairs(x, mesh, patches, shapes, how, near)
                 near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, pushed / steps.dt)
                 look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0

@@ -16,6 +16,7 @@ from numba import njit
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
 from sim_core.cloth.contact.layers.patches import (
     apart,
+    between,
     flat_pair,
     grown,
     move_patches,
@@ -24,9 +25,7 @@ from sim_core.cloth.contact.layers.patches import (
 )
 from sim_core.cloth.contact.sleep import GAINED
 
-AHEAD = 0.01  # [m] further than the reach, in which pairs of patches are kept
 LATE = 0.6  # of what patches may move against each other, from where on their pairs are looked for anew
-LEAST = 0.3  # of a skin, that calm cloth is looked through
 SOON = 0.3  # likewise for those that are looked for along with others
 
 
@@ -39,6 +38,7 @@ class Near(NamedTuple):
     gone: (
         np.ndarray
     )  # (K,) [m] how far the patches of each have moved against each other since they were looked for
+    lasts: np.ndarray  # (K,) [m] how far they may, until they are to be
     count: np.ndarray  # (3,) int64 of pairs of patches, points, crossings
     mark: np.ndarray  # (V, 3) where the cloth was when `gone` was counted last
 
@@ -65,6 +65,7 @@ def near_pairs_of(vertices: int) -> NearPairs:
             crossings=np.zeros((many, 3), np.int32),
             patches=np.zeros((many, 4), np.int32),
             gone=np.zeros(many),
+            lasts=np.zeros(many),
             count=np.zeros(3, np.int64),
             mark=np.zeros((vertices, 3)),
         )
@@ -111,20 +112,22 @@ def _rebuilt(x, mesh, patches, shapes, how, old, listed, out):
     as all memory of `out` is.
     """
     pairs, total = listed
-    points, crossings, gone = out.points, out.crossings, out.gone
+    points, crossings, gone, lasts, skin = out.points, out.crossings, out.gone, out.lasts, how.reach - how.thickness
     first = second = 0
     if len(gone) < total:
-        gone = np.zeros(2 * total)
+        gone, lasts = np.zeros(2 * total), np.zeros(2 * total)
     for k in range(total):
         p, q, place = pairs[k, 0], pairs[k, 1], pairs[k, 2]
         if place >= 0:
             begin, start = (old.patches[place - 1, 2], old.patches[place - 1, 3]) if place > 0 else (0, 0)
-            points, first = _taken(old.points, begin, old.patches[place, 2], points, first)
-            crossings, second = _taken(old.crossings, start, old.patches[place, 3], crossings, second)
-            gone[k] = old.gone[place]
+            if old.patches[place, 2] > begin:
+                points, first = _taken(old.points, begin, old.patches[place, 2], points, first)
+            if old.patches[place, 3] > start:
+                crossings, second = _taken(old.crossings, start, old.patches[place, 3], crossings, second)
+            gone[k], lasts[k] = old.gone[place], old.lasts[place]
         else:
-            gone[k] = 0.0
-        if place < 0 and not flat_pair(patches, shapes.cone, p, q, how.wide):
+            gone[k], lasts[k] = 0.0, max(skin, between(x, patches, shapes.box, p, q) - how.thickness)
+        if place < 0 and lasts[k] == skin and not flat_pair(patches, shapes.cone, p, q, how.wide):
             points, first = points_on_faces(x, mesh, patches, shapes, how, (p, q), (points, first))
             if p != q:
                 points, first = points_on_faces(x, mesh, patches, shapes, how, (q, p), (points, first))
@@ -132,14 +135,12 @@ def _rebuilt(x, mesh, patches, shapes, how, old, listed, out):
         pairs[k, 2], pairs[k, 3] = first, second
     out.count[0], out.count[1], out.count[2] = total, first, second
     out.mark[:] = x
-    return Near(points, crossings, pairs, gone, out.count, out.mark)
+    return Near(points, crossings, pairs, gone, lasts, out.count, out.mark)
 
 
 @njit(cache=True, error_model="numpy")
-def likely_skin(x, v, patches, shapes, skin, seconds):
-    """How much further than the cloth touches it is looked through [m], at most `skin`: twice as far as its patches go
-    against each other in so many seconds, on average. Few pairs are cheap to look for, and many to look for seldom.
-    """
+def likely_way(x, v, patches, shapes, seconds):
+    """How far patches go against the mean of all in so many seconds [m], on average, if they go on so."""
     moved, many = shapes.moved, len(patches.face_start) - 1
     move_patches(x, v, x, patches, moved)
     mx = my = mz = total = 0.0
@@ -148,7 +149,7 @@ def likely_skin(x, v, patches, shapes, skin, seconds):
     for p in range(many):
         dx, dy, dz = moved[p, 4] - mx, moved[p, 5] - my, moved[p, 6] - mz
         total += math.sqrt(dx * dx + dy * dy + dz * dz) + moved[p, 7]
-    return min(skin, max(LEAST * skin, 2.0 * seconds * total / many))
+    return seconds * total / many
 
 
 @njit(cache=True, error_model="numpy")
@@ -159,7 +160,7 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
     near.begun[:] = x
     if not finite:
         return near
-    pairs, count = patch_pairs(patches, shapes, along, how.reach + AHEAD, near.now.patches)
+    pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.now.patches)
     pairs[:count, 2] = -1
     now = _rebuilt(x, mesh, patches, shapes, how, near.spare, (pairs, count), near.now)
     return NearPairs(now, near.spare, near.begun, near.order, near.tally)
@@ -183,35 +184,35 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
         dx, dy, dz = moved[p, 0] - mx, moved[p, 1] - my, moved[p, 2] - mz
         far = max(far, math.sqrt(dx * dx + dy * dy + dz * dz) + moved[p, 3])
         fast = max(fast, math.sqrt(moved[p, 4] ** 2 + moved[p, 5] ** 2 + moved[p, 6] ** 2) + moved[p, 7])
-    away = 2.0 * far > LATE * AHEAD
+    away = 2.0 * far > LATE * how.ahead
     move_patches(x, v, now.mark, patches, moved)
-    skin = how.reach - how.thickness
-    late, worst = _soonest(now, moved, skin, pushed)
+    late, worst = _soonest(now, moved, pushed)
     if late or away:
         near = _looked_through(x, mesh, patches, shapes, how, near, away)
         far = 0.0 if away else far
-    return near, max(0.0, min(worst, (0.5 * AHEAD - far) / (2.0 * (fast + pushed) + GAINED)))
+    return near, max(0.0, min(worst, (0.5 * how.ahead - far) / (2.0 * (fast + pushed) + GAINED)))
 
 
 @njit(cache=True, error_model="numpy")
-def _soonest(near, moved, skin, pushed):
-    """Whether patches of any pair have moved against each other by LATE of the skin [m], and for how long [s] none
+def _soonest(near, moved, pushed):
+    """Whether patches of any pair have moved against each other by LATE of what they may, and for how long [s] none
     moves by all of it, those left out that are looked for anew if any is.
     """
     late, soonest, lasting = False, 1.0, 1.0
     for k in range(near.count[0]):
         p, q = near.patches[k, 0], near.patches[k, 1]
         gone, fast = near.gone[k] + apart(moved, p, q, 0), 2.0 * (apart(moved, p, q, 4) + pushed) + GAINED
-        late = late or not gone <= LATE * skin
-        soonest = min(soonest, (skin - gone) / fast)
-        lasting = min(lasting, (skin - (gone if gone <= SOON * skin else 0.0)) / fast)
+        most = near.lasts[k]
+        late = late or not gone <= LATE * most
+        soonest = min(soonest, (most - gone) / fast)
+        lasting = min(lasting, (most - (gone if gone <= SOON * most else 0.0)) / fast)
     return late, lasting if late else soonest
 
 
 @njit(cache=True, error_model="numpy")
 def _looked_through(x, mesh, patches, shapes, how, near, away):
     """The lists with what is SOON due looked for anew, among other pairs of patches where these have gone too far."""
-    now, moved, skin = near.now, shapes.moved, how.reach - how.thickness
+    now, moved = near.now, shapes.moved
     for k in range(now.count[0]):
         now.gone[k] += apart(moved, now.patches[k, 0], now.patches[k, 1], 0)
     finite, along = place_patches(x, mesh, patches, shapes)
@@ -221,7 +222,7 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
     pairs, order, count = near.spare.patches, near.order, now.count[0]
     if away:
         near.begun[:] = x
-        pairs, count = patch_pairs(patches, shapes, along, how.reach + AHEAD, pairs)
+        pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, pairs)
         order = _by_first(now, shapes.start, order)
         for k in range(count):
             pairs[k, 2] = -1
@@ -234,7 +235,7 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
             pairs[k, 0], pairs[k, 1], pairs[k, 2] = now.patches[k, 0], now.patches[k, 1], k
     for k in range(count):
         place = pairs[k, 2]
-        if place >= 0 and now.gone[place] > SOON * skin:
+        if place >= 0 and now.gone[place] > SOON * now.lasts[place]:
             pairs[k, 2] = -1
         near.tally[3] += pairs[k, 2] < 0
     near.tally[1] += 1

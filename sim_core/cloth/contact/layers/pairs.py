@@ -156,6 +156,7 @@ class Search(NamedTuple):
     near: float
     edge: float  # [m] length of the edges at rest, on average
     wide: float = CONE  # cosine of the angle that normals may be apart in a stretch that cannot meet itself
+    ahead: float = 0.01  # [m] further than the reach, in which pairs of patches are kept
 
 
 @njit(cache=True, error_model="numpy")

@@ -360,6 +360,30 @@ def apart(moved, p, q, c):
 
 
 @njit(cache=True, error_model="numpy")
+def between(x, patches, box, p, q):
+    """At least so far two patches are from each other [m]: along an axis of their boxes, or from middle to middle."""
+    ax = max(box[p, 0] - box[q, 3], box[q, 0] - box[p, 3])
+    ay = max(box[p, 1] - box[q, 4], box[q, 1] - box[p, 4])
+    gap = max(ax, ay, max(box[p, 2] - box[q, 5], box[q, 2] - box[p, 5]))
+    dx, dy, dz = (
+        box[q, 0] + box[q, 3] - box[p, 0] - box[p, 3],
+        box[q, 1] + box[q, 4] - box[p, 1] - box[p, 4],
+        box[q, 2] + box[q, 5] - box[p, 2] - box[p, 5],
+    )
+    size = math.sqrt(dx * dx + dy * dy + dz * dz)
+    if size == 0.0:
+        return gap
+    corners, start, high, low = patches.corners, patches.corner_start, -np.inf, np.inf
+    for n in range(start[p], start[p + 1]):
+        i = corners[n]
+        high = max(high, dx * x[i, 0] + dy * x[i, 1] + dz * x[i, 2])
+    for n in range(start[q], start[q + 1]):
+        i = corners[n]
+        low = min(low, dx * x[i, 0] + dy * x[i, 1] + dz * x[i, 2])
+    return max(gap, (low - high) / size)
+
+
+@njit(cache=True, error_model="numpy")
 def patch_pairs(patches, shapes, along, reach, pairs):
     """Pairs (K, 4) of patches p <= q, of which parts may come nearer than `reach` [m]; each is one with itself, too.
 

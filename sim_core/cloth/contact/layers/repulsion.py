@@ -19,6 +19,8 @@ from sim_core.cloth.contact.sleep import asleep
 
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
 WIDEST = math.cos(math.radians(140.0))  # of two normals in a stretch of cloth that does not meet itself
+LEAST = 0.3  # of the skin, that calm cloth is looked through
+AHEAD = 0.01, 0.06  # [m] at least and at most further than the reach, in which pairs of patches are kept
 NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
@@ -122,8 +124,12 @@ def repel(x, v, mesh, near, shell, dt, step):
 
 
 @njit(cache=True, error_model="numpy")
-def search_for(mesh, thickness, skin):
-    """What a shell's pairs are looked for by."""
+def search_for(mesh, thickness, most, way):
+    """What a shell's pairs are looked for by, `way` [m] being how far patches are likely to go in a frame.
+
+    Few pairs are cheap to look for, and many to look for seldom: the skin [m], at most `most`, is twice that way.
+    """
+    skin, ahead = min(most, max(LEAST * most, 2.0 * way)), min(max(AHEAD[0], way), AHEAD[1])
     edges, length2, side, reach = mesh.edges, mesh.length2, 0.0, thickness + skin
     for e in range(len(edges)):
         side += math.sqrt(length2[e]) / len(edges)
@@ -131,4 +137,4 @@ def search_for(mesh, thickness, skin):
     opening = 2.0 * math.asin(min(1.0, (thickness + NEARER * skin) / (math.sqrt(3.0) * side)))
     wide = min(max(math.cos(math.pi - opening), WIDEST), CONE)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side, wide)
+    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side, wide, ahead)
