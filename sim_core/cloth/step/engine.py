@@ -271,7 +271,10 @@ class Engine:
         thickness = self.shell.thickness
         if thickness == 0.0:
             return x
-        mesh, there = self.mesh._replace(inverse_mass=self.inverse_mass(pins)), np.ascontiguousarray(x[self.order])
+        mesh, there = (
+            self.mesh._replace(inverse_mass=self.inverse_mass(pins)),
+            np.ascontiguousarray(x[self.order]),
+        )
         how, touch = search_for(mesh, thickness, 0.0, 0.0), self.touch
         self.near = begin_pairs(there, mesh, touch.patches, touch.shapes, how, self.near)
         found = parted(there, mesh, self.near.now, thickness)

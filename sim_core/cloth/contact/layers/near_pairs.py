@@ -15,18 +15,23 @@ from numba import njit
 
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
 from sim_core.cloth.contact.layers.patches import (
+    WHOLE,
     apart,
     between,
     flat_pair,
+    furthest,
     grown,
     move_patches,
     patch_pairs,
+    place_patch,
     place_patches,
+    turn_parts,
 )
 from sim_core.cloth.contact.sleep import GAINED
 
 LATE = 0.6  # of what patches may move against each other, from where on their pairs are looked for anew
 SOON = 0.3  # likewise for those that are looked for along with others
+KEEP, DROP, LOOK = 0, 1, 2  # what a pair of patches holds stays, is nothing, or is to be looked for
 
 
 class Near(NamedTuple):
@@ -34,7 +39,9 @@ class Near(NamedTuple):
 
     points: np.ndarray  # (K, 3) int32 vertex, face, and the step until which the pair sleeps
     crossings: np.ndarray  # (K, 3) int32 edge, edge, step
-    patches: np.ndarray  # (K, 4) int32
+    patches: (
+        np.ndarray
+    )  # (K, 5) int32; while they are renewed p, q, the place in the lists before or -1, 0, what to do
     gone: (
         np.ndarray
     )  # (K,) [m] how far the patches of each have moved against each other since they were looked for
@@ -63,7 +70,7 @@ def near_pairs_of(vertices: int) -> NearPairs:
         return Near(
             points=np.zeros((many, 3), np.int32),
             crossings=np.zeros((many, 3), np.int32),
-            patches=np.zeros((many, 4), np.int32),
+            patches=np.zeros((many, 5), np.int32),
             gone=np.zeros(many),
             lasts=np.zeros(many),
             count=np.zeros(3, np.int64),
@@ -105,51 +112,77 @@ def _by_first(near, start, order):
 
 
 @njit(cache=True, error_model="numpy")
-def _rebuilt(x, mesh, patches, shapes, how, old, listed, out):
-    """The lists of patch pairs: what `old` holds of each, the others looked for anew.
-
-    listed: pairs (K, 4) and how many of them; pairs[k, 2]: the place in old.patches, or -1. They are written over,
-    as all memory of `out` is.
+def _sifted(x, mesh, patches, shapes, how, near):
+    """Looks at the pairs of patches that are due: how far they may move until they are due again, and what to do with
+    what they hold, into near.patches[:, 4]. Returns how many were due, and how many of them are to be looked through.
     """
-    pairs, total = listed
-    points, crossings, gone, lasts, skin = out.points, out.crossings, out.gone, out.lasts, how.reach - how.thickness
+    pairs, gone, lasts, skin = near.patches, near.gone, near.lasts, how.reach - how.thickness
+    placed, look, box = shapes.placed, shapes.look, shapes.box
+    corners, start = patches.corners, patches.corner_start
+    due = through = 0
+    for k in range(near.count[0]):
+        if gone[k] <= SOON * lasts[k]:
+            pairs[k, 4] = KEEP
+            continue
+        p, q = pairs[k, 0], pairs[k, 1]
+        if placed[p, 0] != look[0]:
+            place_patch(x, mesh, patches, shapes, p)
+        if placed[q, 0] != look[0]:
+            place_patch(x, mesh, patches, shapes, q)
+        due += 1
+        pairs[k, 4], gone[k] = DROP, 0.0
+        lasts[k] = max(skin, between(x, corners, start, box, p, q) - how.thickness)
+        if lasts[k] == skin and not flat_pair(x, mesh, patches, shapes, p, q, how.wide):
+            pairs[k, 4] = LOOK
+            through += 1
+    return due, through
+
+
+@njit(cache=True, error_model="numpy")
+def _rebuilt(x, mesh, patches, shapes, how, old, out):
+    """The lists of the pairs of patches in `out`, which are sifted: what `old` holds of those that are kept, others looked
+    for anew. All memory of `out` is written over.
+    """
+    pairs, total, points, crossings = out.patches, out.count[0], out.points, out.crossings
+    ends, old_points, old_crossings = old.patches, old.points, old.crossings
     first = second = 0
-    if len(gone) < total:
-        gone, lasts = np.zeros(2 * total), np.zeros(2 * total)
     for k in range(total):
-        p, q, place = pairs[k, 0], pairs[k, 1], pairs[k, 2]
-        if place >= 0:
-            begin, start = (old.patches[place - 1, 2], old.patches[place - 1, 3]) if place > 0 else (0, 0)
-            if old.patches[place, 2] > begin:
-                points, first = _taken(old.points, begin, old.patches[place, 2], points, first)
-            if old.patches[place, 3] > start:
-                crossings, second = _taken(old.crossings, start, old.patches[place, 3], crossings, second)
-            gone[k], lasts[k] = old.gone[place], old.lasts[place]
-        else:
-            gone[k], lasts[k] = 0.0, max(skin, between(x, patches, shapes.box, p, q) - how.thickness)
-        if place < 0 and lasts[k] == skin and not flat_pair(patches, shapes.cone, p, q, how.wide):
+        if pairs[k, 4] == KEEP:
+            place = pairs[k, 2]
+            begin, start = (ends[place - 1, 2], ends[place - 1, 3]) if place > 0 else (0, 0)
+            if ends[place, 2] > begin:
+                points, first = _taken(old_points, begin, ends[place, 2], points, first)
+            if ends[place, 3] > start:
+                crossings, second = _taken(old_crossings, start, ends[place, 3], crossings, second)
+        elif pairs[k, 4] == LOOK:
+            p, q = pairs[k, 0], pairs[k, 1]
+            turn_parts(x, mesh, patches, shapes, p)
+            turn_parts(x, mesh, patches, shapes, q)
             points, first = points_on_faces(x, mesh, patches, shapes, how, (p, q), (points, first))
             if p != q:
                 points, first = points_on_faces(x, mesh, patches, shapes, how, (q, p), (points, first))
             crossings, second = edges_on_edges(x, mesh, patches, shapes, how, (p, q), (crossings, second))
         pairs[k, 2], pairs[k, 3] = first, second
-    out.count[0], out.count[1], out.count[2] = total, first, second
+    out.count[1], out.count[2] = first, second
     out.mark[:] = x
-    return Near(points, crossings, pairs, gone, lasts, out.count, out.mark)
+    return Near(points, crossings, pairs, out.gone, out.lasts, out.count, out.mark)
 
 
 @njit(cache=True, error_model="numpy")
 def likely_way(x, v, patches, shapes, seconds):
-    """How far patches go against the mean of all in so many seconds [m], on average, if they go on so."""
-    moved, many = shapes.moved, len(patches.face_start) - 1
-    move_patches(x, v, x, patches, moved)
-    mx = my = mz = total = 0.0
-    for p in range(many):
-        mx, my, mz = mx + moved[p, 4] / many, my + moved[p, 5] / many, mz + moved[p, 6] / many
-    for p in range(many):
-        dx, dy, dz = moved[p, 4] - mx, moved[p, 5] - my, moved[p, 6] - mz
-        total += math.sqrt(dx * dx + dy * dy + dz * dz) + moved[p, 7]
-    return seconds * total / many
+    """How far patches go against all of them as a whole in so many seconds [m], on average, if they go on so."""
+    move_patches(x, v, x, patches, shapes.moved)
+    return seconds * furthest(shapes.moved, WHOLE)[1]
+
+
+@njit(cache=True, error_model="numpy")
+def _lengthened(near, pairs, count):
+    """`Near` of `count` pairs of patches, with room for what is told of each."""
+    gone, lasts = near.gone, near.lasts
+    if len(gone) < count:
+        gone, lasts = np.zeros(2 * count), np.zeros(2 * count)
+    near.count[0] = count
+    return Near(near.points, near.crossings, pairs, gone, lasts, near.count, near.mark)
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,8 +194,10 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
     if not finite:
         return near
     pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.now.patches)
-    pairs[:count, 2] = -1
-    now = _rebuilt(x, mesh, patches, shapes, how, near.spare, (pairs, count), near.now)
+    now = _lengthened(near.now, pairs, count)
+    now.gone[:count] = np.inf
+    _sifted(x, mesh, patches, shapes, how, now)
+    now = _rebuilt(x, mesh, patches, shapes, how, near.spare, now)
     return NearPairs(now, near.spare, near.begun, near.order, near.tally)
 
 
@@ -175,20 +210,17 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
     now, moved = near.now, shapes.moved
     near.tally[0] += 1
     move_patches(x, v, near.begun, patches, moved)
-    mx = my = mz = 0.0
-    many = len(patches.face_start) - 1
-    for p in range(many):
-        mx, my, mz = mx + moved[p, 0] / many, my + moved[p, 1] / many, mz + moved[p, 2] / many
-    far = fast = 0.0
-    for p in range(many):
-        dx, dy, dz = moved[p, 0] - mx, moved[p, 1] - my, moved[p, 2] - mz
-        far = max(far, math.sqrt(dx * dx + dy * dy + dz * dz) + moved[p, 3])
-        fast = max(fast, math.sqrt(moved[p, 4] ** 2 + moved[p, 5] ** 2 + moved[p, 6] ** 2) + moved[p, 7])
+    (far, total), (fast, _) = furthest(moved, 0), furthest(moved, WHOLE)
+    if not math.isfinite(total):
+        now.count[:] = 0
+        return near, 1.0
     away = 2.0 * far > LATE * how.ahead
     move_patches(x, v, now.mark, patches, moved)
     late, worst = _soonest(now, moved, pushed)
     if late or away:
         near = _looked_through(x, mesh, patches, shapes, how, near, away)
+        moved[:, :WHOLE] = 0.0
+        _, worst = _soonest(near.now, moved, pushed)
         far = 0.0 if away else far
     return near, max(0.0, min(worst, (0.5 * how.ahead - far) / (2.0 * (fast + pushed) + GAINED)))
 
@@ -196,49 +228,61 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
 @njit(cache=True, error_model="numpy")
 def _soonest(near, moved, pushed):
     """Whether patches of any pair have moved against each other by LATE of what they may, and for how long [s] none
-    moves by all of it, those left out that are looked for anew if any is.
+    moves by all of it.
     """
-    late, soonest, lasting = False, 1.0, 1.0
+    pairs, gone, lasts, late, soonest = near.patches, near.gone, near.lasts, False, 1.0
     for k in range(near.count[0]):
-        p, q = near.patches[k, 0], near.patches[k, 1]
-        gone, fast = near.gone[k] + apart(moved, p, q, 0), 2.0 * (apart(moved, p, q, 4) + pushed) + GAINED
-        most = near.lasts[k]
-        late = late or not gone <= LATE * most
-        soonest = min(soonest, (most - gone) / fast)
-        lasting = min(lasting, (most - (gone if gone <= SOON * most else 0.0)) / fast)
-    return late, lasting if late else soonest
+        p, q = pairs[k, 0], pairs[k, 1]
+        way, fast = gone[k] + apart(moved, p, q, 0), 2.0 * (apart(moved, p, q, WHOLE) + pushed) + GAINED
+        late = late or not way <= LATE * lasts[k]
+        soonest = min(soonest, (lasts[k] - way) / fast)
+    return late, soonest
+
+
+@njit(cache=True, error_model="numpy")
+def _matched(now, pairs, count, start, order, out):
+    """What `now` tells of pairs (K, 5) of patches, into `out`; what it does not hold is due."""
+    order = _by_first(now, start, order)
+    seconds, gone, lasts = now.patches, now.gone, now.lasts
+    for k in range(count):
+        p, q, place = pairs[k, 0], pairs[k, 1], -1
+        for n in range(start[p], start[p + 1]):
+            if seconds[order[n], 1] == q:
+                place = order[n]
+                break
+        pairs[k, 2] = place
+        out.gone[k], out.lasts[k] = (gone[place], lasts[place]) if place >= 0 else (np.inf, 1.0)
+    return order
 
 
 @njit(cache=True, error_model="numpy")
 def _looked_through(x, mesh, patches, shapes, how, near, away):
     """The lists with what is SOON due looked for anew, among other pairs of patches where these have gone too far."""
-    now, moved = near.now, shapes.moved
+    now, moved, order, pairs = near.now, shapes.moved, near.order, near.now.patches
     for k in range(now.count[0]):
-        now.gone[k] += apart(moved, now.patches[k, 0], now.patches[k, 1], 0)
-    finite, along = place_patches(x, mesh, patches, shapes)
-    if not finite:
-        now.count[:] = 0
-        return near
-    pairs, order, count = near.spare.patches, near.order, now.count[0]
-    if away:
-        near.begun[:] = x
-        pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, pairs)
-        order = _by_first(now, shapes.start, order)
-        for k in range(count):
-            pairs[k, 2] = -1
-            for n in range(shapes.start[pairs[k, 0]], shapes.start[pairs[k, 0] + 1]):
-                if now.patches[order[n], 1] == pairs[k, 1]:
-                    pairs[k, 2] = order[n]
-    else:
-        pairs = grown(pairs, count)
-        for k in range(count):
-            pairs[k, 0], pairs[k, 1], pairs[k, 2] = now.patches[k, 0], now.patches[k, 1], k
-    for k in range(count):
-        place = pairs[k, 2]
-        if place >= 0 and now.gone[place] > SOON * now.lasts[place]:
-            pairs[k, 2] = -1
-        near.tally[3] += pairs[k, 2] < 0
+        now.gone[k] += apart(moved, pairs[k, 0], pairs[k, 1], 0)
     near.tally[1] += 1
     near.tally[2] += away
-    spare = _rebuilt(x, mesh, patches, shapes, how, now, (pairs, count), near.spare)
+    if away:
+        near.begun[:] = x
+        _, along = place_patches(x, mesh, patches, shapes)
+        pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.spare.patches)
+        spare = _lengthened(near.spare, pairs, count)
+        order = _matched(now, pairs, count, shapes.start, order, spare)
+        due, _ = _sifted(x, mesh, patches, shapes, how, spare)
+    else:
+        shapes.look[0] += 1
+        due, through = _sifted(x, mesh, patches, shapes, how, now)
+        if through == 0 and now.count[1] + now.count[2] == 0:
+            near.tally[3] += due
+            now.mark[:] = x
+            return near
+        count = now.count[0]
+        spare = _lengthened(near.spare, grown(near.spare.patches, count), count)
+        pairs = spare.patches
+        for k in range(count):
+            pairs[k, 0], pairs[k, 1], pairs[k, 2] = now.patches[k, 0], now.patches[k, 1], k
+            pairs[k, 4], spare.gone[k], spare.lasts[k] = now.patches[k, 4], now.gone[k], now.lasts[k]
+    near.tally[3] += due
+    spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
     return NearPairs(spare, now, near.begun, order, near.tally)

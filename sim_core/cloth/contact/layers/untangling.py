@@ -198,7 +198,7 @@ def crossings_by_patches(x, mesh, patches, shapes, near, lists):
         near, total = patch_pairs(patches, shapes, along, 0.0, near)
         for k in range(total):
             p, q = near[k, 0], near[k, 1]
-            if flat_pair(patches, shapes.cone, p, q, CONE):
+            if flat_pair(x, mesh, patches, shapes, p, q, CONE):
                 continue
             found = pairs, place, count
             pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (p, q), found)
