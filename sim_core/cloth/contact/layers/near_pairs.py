@@ -77,7 +77,7 @@ def near_pairs_of(vertices: int) -> NearPairs:
             mark=np.zeros((vertices, 3)),
         )
 
-    return NearPairs(near(), near(), np.zeros((vertices, 3)), np.zeros(0, np.int32), np.zeros(4, np.int64))
+    return NearPairs(near(), near(), np.zeros((vertices, 3)), np.zeros(0, np.int32), np.zeros(5, np.int64))
 
 
 @njit(cache=True, error_model="numpy")
@@ -269,7 +269,7 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
         pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.spare.patches)
         spare = _lengthened(near.spare, pairs, count)
         order = _matched(now, pairs, count, shapes.start, order, spare)
-        due, _ = _sifted(x, mesh, patches, shapes, how, spare)
+        due, through = _sifted(x, mesh, patches, shapes, how, spare)
     else:
         shapes.look[0] += 1
         due, through = _sifted(x, mesh, patches, shapes, how, now)
@@ -284,5 +284,6 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
             pairs[k, 0], pairs[k, 1], pairs[k, 2] = now.patches[k, 0], now.patches[k, 1], k
             pairs[k, 4], spare.gone[k], spare.lasts[k] = now.patches[k, 4], now.gone[k], now.lasts[k]
     near.tally[3] += due
+    near.tally[4] += through
     spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
     return NearPairs(spare, now, near.begun, order, near.tally)
