@@ -145,7 +145,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
                     near = begin_pairs(x, mesh, patches, shapes, how, near)
-                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, pushed / steps.dt)
+                enough, push = LOOK_EVERY * steps.dt, pushed / steps.dt
+                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, push, enough)
                 look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0
             if near.now.count[1] + near.now.count[2] > 0:
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)

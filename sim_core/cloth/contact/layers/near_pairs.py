@@ -48,6 +48,7 @@ class Near(NamedTuple):
     lasts: np.ndarray  # (K,) [m] how far they may, until they are to be
     count: np.ndarray  # (3,) int64 of pairs of patches, points, crossings
     mark: np.ndarray  # (V, 3) where the cloth was when `gone` was counted last
+    least: np.ndarray  # (2,) [m] how far any pair may move from there until it is due, and until it is late
 
 
 class NearPairs(NamedTuple):
@@ -75,6 +76,7 @@ def near_pairs_of(vertices: int) -> NearPairs:
             lasts=np.zeros(many),
             count=np.zeros(3, np.int64),
             mark=np.zeros((vertices, 3)),
+            least=np.zeros(2),
         )
 
     return NearPairs(near(), near(), np.zeros((vertices, 3)), np.zeros(0, np.int32), np.zeros(5, np.int64))
@@ -165,7 +167,7 @@ def _rebuilt(x, mesh, patches, shapes, how, old, out):
         pairs[k, 2], pairs[k, 3] = first, second
     out.count[1], out.count[2] = first, second
     out.mark[:] = x
-    return Near(points, crossings, pairs, out.gone, out.lasts, out.count, out.mark)
+    return Near(points, crossings, pairs, out.gone, out.lasts, out.count, out.mark, out.least)
 
 
 @njit(cache=True, error_model="numpy")
@@ -182,7 +184,7 @@ def _lengthened(near, pairs, count):
     if len(gone) < count:
         gone, lasts = np.zeros(2 * count), np.zeros(2 * count)
     near.count[0] = count
-    return Near(near.points, near.crossings, pairs, gone, lasts, near.count, near.mark)
+    return Near(near.points, near.crossings, pairs, gone, lasts, near.count, near.mark, near.least)
 
 
 @njit(cache=True, error_model="numpy")
@@ -198,17 +200,21 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
     now.gone[:count] = np.inf
     _sifted(x, mesh, patches, shapes, how, now)
     now = _rebuilt(x, mesh, patches, shapes, how, near.spare, now)
+    _margins(now)
     return NearPairs(now, near.spare, near.begun, near.order, near.tally)
 
 
 @njit(cache=True, error_model="numpy")
-def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
+def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed, enough):
     """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold at velocities v (V, 3).
 
-    pushed [m/s]: at most, by solids, beside the velocities.
+    pushed [m/s]: at most, by solids, beside the velocities. enough [s]: nobody asks whether they hold for longer.
     """
     now, moved = near.now, shapes.moved
     near.tally[0] += 1
+    calm = _calm_for(x, v, near.begun, now.mark, now.least, how.ahead, pushed)
+    if calm >= enough:  # without a look at any patch
+        return near, calm
     move_patches(x, v, near.begun, patches, moved)
     (far, total), (fast, _) = furthest(moved, 0), furthest(moved, WHOLE)
     if not math.isfinite(total):
@@ -221,8 +227,37 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed):
         near = _looked_through(x, mesh, patches, shapes, how, near, away)
         moved[:, :WHOLE] = 0.0
         _, worst = _soonest(near.now, moved, pushed)
+        _margins(near.now)
         far = 0.0 if away else far
     return near, max(0.0, min(worst, (0.5 * how.ahead - far) / (2.0 * (fast + pushed) + GAINED)))
+
+
+@njit(cache=True, error_model="numpy")
+def _margins(near):
+    """How far the patches of any pair may move against each other now, into near.least."""
+    gone, lasts, due, late = near.gone, near.lasts, np.inf, np.inf
+    for k in range(near.count[0]):
+        due, late = min(due, LATE * lasts[k] - gone[k]), min(late, lasts[k] - gone[k])
+    near.least[0], near.least[1] = due, late
+
+
+@njit(cache=True, error_model="numpy")
+def _calm_for(x, v, begun, mark, least, ahead, pushed):
+    """For how long [s] the lists hold for all that the furthest and the fastest vertex say; 0 where that is not enough."""
+    far = away = fast = 0.0
+    for i in range(len(x)):
+        far = max(
+            far, (x[i, 0] - mark[i, 0]) ** 2 + (x[i, 1] - mark[i, 1]) ** 2 + (x[i, 2] - mark[i, 2]) ** 2
+        )
+        away = max(
+            away, (x[i, 0] - begun[i, 0]) ** 2 + (x[i, 1] - begun[i, 1]) ** 2 + (x[i, 2] - begun[i, 2]) ** 2
+        )
+        fast = max(fast, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
+    far, away, fast = math.sqrt(far), math.sqrt(away), math.sqrt(fast)
+    if not (2.0 * far <= least[0] and 2.0 * away <= LATE * ahead and math.isfinite(fast)):
+        return 0.0
+    speed = 2.0 * (2.0 * fast + pushed) + GAINED
+    return max(0.0, min((least[1] - 2.0 * far) / speed, (0.5 * ahead - away) / speed))
 
 
 @njit(cache=True, error_model="numpy")
