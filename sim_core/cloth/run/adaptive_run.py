@@ -146,7 +146,8 @@ class Run:
     def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
         """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
 
-        Layers that lie exactly on each other are a little apart then. It is not smoothed where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
+        Layers that lie exactly on each other are a little apart then. It is not smoothed where a solid, sewing pairs,
+        bounds, images or limits of lengths are: a smooth sheet may lie across them.
         """
         if self.setup.certify is not False:
             self._certify(x)

@@ -142,8 +142,8 @@ def _sifted(x, mesh, patches, shapes, how, near):
 
 @njit(cache=True, error_model="numpy")
 def _rebuilt(x, mesh, patches, shapes, how, old, out):
-    """The lists of the pairs of patches in `out`, which are sifted: what `old` holds of those that are kept, others looked
-    for anew. All memory of `out` is written over.
+    """The lists of the pairs of patches in `out`, which are sifted: what `old` holds of those that are kept, others
+    looked for anew. All memory of `out` is written over.
     """
     pairs, total, points, crossings = out.patches, out.count[0], out.points, out.crossings
     ends, old_points, old_crossings = old.patches, old.points, old.crossings
@@ -243,7 +243,7 @@ def _margins(near):
 
 @njit(cache=True, error_model="numpy")
 def _calm_for(x, v, begun, mark, least, ahead, pushed):
-    """For how long [s] the lists hold for all that the furthest and the fastest vertex say; 0 where that is not enough."""
+    """For how long [s] the lists hold by what the furthest and the fastest vertex say; 0 where they cannot tell."""
     far = away = fast = 0.0
     for i in range(len(x)):
         far = max(

@@ -1,4 +1,8 @@
-"""A start whose layers lie exactly on each other: which is above is not told by where they are, but by how they turn."""
+"""A start whose layers lie exactly on each other: which is above is told by how they turn, not by where they are.
+
+Of a sheet folded once, and of sheets in a pile, that is enough. One folded several times needs a start with its layers
+apart: which fold lies within which is a question without a short answer (flat foldability).
+"""
 
 from __future__ import annotations
 

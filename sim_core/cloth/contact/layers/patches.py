@@ -459,7 +459,7 @@ def apart(moved, p, q, c):
 
 @njit(cache=True, error_model="numpy")
 def furthest(moved, c):
-    """The most by which any part of a patch has left the way that all of them go as a whole [m], or [m/s] (see `apart`)."""
+    """The most by which any part of a patch leaves the way that all of them go as a whole [m], or [m/s], and the mean."""
     many = len(moved)
     share = 1.0 / max(many, 1)
     cx = cy = cz = ax = ay = az = 0.0
@@ -545,7 +545,7 @@ def patch_pairs(patches, shapes, along, reach, pairs):
 
 @njit(error_model="numpy", inline="always")
 def flat_pair(x, mesh, patches, shapes, p, q, wide):
-    """Whether two patches, or one, that are placed lie in a stretch of cloth that is so flat that it cannot meet itself.
+    """Whether two patches, or one, that are placed lie in a stretch of cloth so flat that it cannot meet itself.
 
     wide: the cosine of the angle that normals may be apart for that.
     """
