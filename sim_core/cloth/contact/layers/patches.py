@@ -459,7 +459,7 @@ def apart(moved, p, q, c):
 
 @njit(cache=True, error_model="numpy")
 def furthest(moved, c):
-    """The most by which any part of a patch leaves the way that all of them go as a whole [m], or [m/s], and the mean."""
+    """The most by which any part of a patch leaves the way that all go as a whole [m], or [m/s], and the mean."""
     many = len(moved)
     share = 1.0 / max(many, 1)
     cx = cy = cz = ax = ay = az = 0.0
