@@ -19,9 +19,10 @@ from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
 from sim_core.cloth.step.engine import IMPLICIT_STEPS, Engine, Stride
 from sim_core.cloth.step.frame import FRAME, Contact, Frame, Phase, State, checked_phases, schedule
+from sim_core.cloth.step.haste import LATE, passing_step
 from sim_core.cloth.step.kernels.diagnostics import ways
 from sim_core.cloth.step.precision import Pace
-from sim_core.cloth.step.stability import first_mode, passing_step, stable_with
+from sim_core.cloth.step.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
 from sim_core.validation import coordinates, instance_of, integer, one_of, vector3, vertex_indices
 
@@ -33,7 +34,6 @@ MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
 SHELL_VERSION = 3  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
-LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 MORE_IMPLICIT = (IMPLICIT_STEPS, 64, 512)  # steps of backward Euler that are tried then, one after the other
 MOST_FIXED = 100_000  # substeps of a frame that may be asked for
@@ -278,7 +278,7 @@ class Run:
         bounds = min(engine.air_step(frame, begin.v), self._layer_step(frame, begin))
         longest = min(stable, bounds / pace.courant)
         count = self._count(longest)
-        return longest, Stride(count, state.last_step, guard, usual=FRAME / count)
+        return longest, Stride(count, state.last_step, guard, usual=FRAME / count, breaks=True)
 
     def _explicit(self, state: RunState, frame: Frame, begin: State) -> tuple[State, Stride]:
         """Where one frame leads and how it was gone through; the run's safety, mode and counters change."""
@@ -292,7 +292,10 @@ class Run:
             stride = stride._replace(count=self._count(state.safety * step))
             if stride.count <= MOST_SUBSTEPS:
                 end = begin.copy()
-                engine.advance(frame, end, stride)
+                if not engine.advance(frame, end, stride):
+                    step = min(0.5 * step, passing_step(engine.shell.thickness, end.v) / self.pace.courant)
+                    engine.forget()
+                    continue
                 good = engine.health.good(frame, begin, end)
                 if not good and not frame.quiet and np.isfinite(end.x).all():
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.

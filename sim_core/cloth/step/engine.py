@@ -60,6 +60,7 @@ class Stride(NamedTuple):
         0.0  # the step [s] that layers are as stiff as at, however short the steps are (0: the steps')
     )
     share: float = 1.0  # of a frame that this is
+    breaks: bool = False  # off, as soon as layers are too fast for its steps: the frame is done again then
 
 
 class Engine:
@@ -191,6 +192,7 @@ class Engine:
             last=stride.last,
             beta=max(float(self.sheet.material.stiffness_damping), stride.guard),
             slow=self.slow(dt) if stride.count % self.pace.slow == 0 else 1,
+            breaks=stride.breaks,
             whole=not (self.shell.thickness > 0.0 or frame.speed_limit < FREE),
         )
 
@@ -202,8 +204,8 @@ class Engine:
         packed, body = self.moving.packed(*frame.body)
         return packed, inside._replace(body=body)
 
-    def advance(self, frame: Frame, state: State, stride: Stride) -> None:
-        """Moves a state in place through a frame, or the share of one that the stride tells."""
+    def advance(self, frame: Frame, state: State, stride: Stride) -> bool:
+        """Moves a state in place through a frame, or the share of one that the stride tells; False if it broke off."""
         steps, shell = self._steps(frame, stride), self.shell
         if stride.usual > 0.0:
             shell = shell._replace(spring=shell.spring * (steps.dt / stride.usual) ** 2)
@@ -212,9 +214,10 @@ class Engine:
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(frame.pins))
         touch = self.touch._replace(solid=solid, shell=shell)
         if self.laned:
-            self.near = self.laned.advance(mesh, touch, inside, steps, state, self.near)
+            self.near, done = self.laned.advance(mesh, touch, inside, steps, state, self.near)
         else:
-            self.near = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.near)
+            self.near, done = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.near)
+        return done
 
     def _lead(self, frame: Frame, state: State, seconds: float = FRAME) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""

@@ -20,6 +20,7 @@ from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for
 from sim_core.cloth.contact.packed import MOVING, Packed
 from sim_core.cloth.step.frame import FREE, State
+from sim_core.cloth.step.haste import LATE, passing_step
 from sim_core.cloth.step.kernels.banded import axes, band_limit
 from sim_core.cloth.step.kernels.leaps import arrive, leap, look_back
 
@@ -38,6 +39,7 @@ class Steps(NamedTuple):
     last: float  # [s] the step before the frame; 0 at the start
     beta: float  # stiffness damping [s]
     slow: int  # steps between two looks at bending
+    breaks: bool  # where layers are too fast for these steps
     whole: bool  # nothing comes between the kick and the drift of a step: no layers, no limit of speed
 
 
@@ -124,7 +126,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     """Simulates a frame's steps over `Bands` or `Lanes`; the state's x, v (3, V) change in place.
 
     frame: its vertices and its body in the numbers of this loop. near: `NearPairs`, written over and returned, with
-    longer lists where they were full. v lives half a step behind x.
+    longer lists where they were full; after it, whether all steps were done: see `Steps.breaks`. v lives half a step
+    behind x.
     """
     here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
@@ -132,7 +135,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes = -1, touch.patches, touch.shapes
+    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
@@ -141,6 +144,9 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
             if k >= look_layer:
+                if steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
+                    done = False
+                    break
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
@@ -162,4 +168,4 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             bound(holds, x, v)
             mirror(holds, x, v)
     state.x[:] = here.x  # lanes go to and fro between two arrays
-    return near
+    return near, done

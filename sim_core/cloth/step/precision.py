@@ -96,7 +96,7 @@ class Laned:
         steps: Steps,
         state: State,
         near: NearPairs,
-    ) -> NearPairs:
+    ) -> tuple[NearPairs, bool]:
         """`leapfrog.advance` of a state in float64; single counts free cloth from its middle."""
         x, v, inverse = state.x, state.v, mesh.inverse_mass
         there = len(touch.solid.kind) > 0 or len(touch.holds.low) > 0 or len(touch.holds.slaves) > 0
@@ -106,13 +106,13 @@ class Laned:
         own.x[:] = x - middle
         own.v[:] = v
         mesh = mesh._replace(inverse_mass=self._cast(inverse))
-        near = advance(self.lanes, mesh, touch, frame, steps, self.room, own, near)
+        near, done = advance(self.lanes, mesh, touch, frame, steps, self.room, own, near)
         v[:] = own.v
         still = inverse == 0.0
         kept = x[:, still] + v[:, still] * (steps.dt * steps.count)
         x[:] = own.x + middle
         x[:, still] = kept  # what is pinned is exactly where it was, or was led to
-        return near
+        return near, done
 
     def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
         """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""
