@@ -133,6 +133,9 @@ def test_what_it_says_is_in_the_visitors_language(corridor):
         os.kill(process.pid, signal.SIGCONT)
     page.locator(NOTICE).wait_for(state="hidden", timeout=10_000)
     page.keyboard.up("KeyW")
+    page.wait_for_timeout(
+        500
+    )  # what was walked until then is sent with the next frames, after a jump as well
     assert page.locator("[data-testid=toast]").count() == 0  # nothing was lost, so nothing is restored
 
 
