@@ -48,10 +48,11 @@ def elsewhere(command: Sequence[str], *, nice: int = 0) -> subprocess.Popen:
 def open_hall(checkout: Path, stack: contextlib.ExitStack, arguments: argparse.Namespace) -> Any:
     """`hall serve` of a checkout on the first core; one from before `--visitors` has its constant raised."""
     begin = f"import sys, runpy; sys.path.insert(0, {str(checkout)!r}); sys.argv[0] = 'hall'"
-    options = [*arguments.options.split(), "--visitors", str(max(arguments.visitors, OTHERS + 10))]
+    options, most = arguments.options.split(), max(arguments.visitors, OTHERS + 10)
     if (checkout / "hall_app/server/relay.py").exists():  # the README's figures compare with such a one
-        begin += f"; import hall_app.server.relay as r; r.MOST_VISITORS = {arguments.visitors}"
-        options = options[:-2]
+        begin += f"; import hall_app.server.relay as r; r.MOST_VISITORS = {most}"
+    else:
+        options += ["--visitors", str(most)]
     begin += "; runpy.run_module('hall_app', run_name='__main__')"
     program = ("taskset", "-c", str(CORES[0]), sys.executable, "-c", begin)
     work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
