@@ -139,10 +139,15 @@ class WalkSession:
         return self.reply()
 
     def goto(self, x: Any, z: Any) -> Moved:
-        """Teleport to the reachable free spot nearest to (x, z) [m]; what is no number changes nothing."""
+        """Teleport to the reachable free spot nearest to (x, z) [m]; what is no number changes nothing.
+
+        Server mode: keys held before are forgotten, since nobody walks on out of a jump; the page tells again
+        those that still are.
+        """
         if _number(x) and _number(z) and self._reach is not None:
             x, z = self._reach.spot(float(x), float(z))
             self.pose = replace(self.pose, x=x, z=z)
+            self._held = Keys()
         return self.moved()
 
     def moved(self) -> Moved:

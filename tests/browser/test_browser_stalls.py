@@ -133,8 +133,6 @@ def test_what_it_says_is_in_the_visitors_language(corridor):
         os.kill(process.pid, signal.SIGCONT)
     page.locator(NOTICE).wait_for(state="hidden", timeout=10_000)
     page.keyboard.up("KeyW")
-    # The hall learns that the key is up with the page's next frame, and walks on until then, after a jump as well.
-    page.wait_for_timeout(500)
     assert page.locator("[data-testid=toast]").count() == 0  # nothing was lost, so nothing is restored
 
 

@@ -169,6 +169,22 @@ def test_server_mode_makes_up_for_a_burst_of_keys_once():
     assert START.x - walk.pose.x <= SPEED * 3 / 60 + 1e-9
 
 
+def test_nobody_walks_on_out_of_a_jump():
+    """Where the server walks, keys are up after a jump until the page tells them again."""
+    walk = session(mode="server")
+    walk.keys(1, 0, math.pi / 2, 1.6, now=0.0)
+    assert walk.tick(now=0.1).x < START.x
+    walk.goto(math.nan, 1)  # no jump
+    walked = walk.tick(now=0.2)
+    moved = walk.goto(8.0, 3.0)
+    assert walked.x < START.x - SPEED * 3 / 60
+    for now in (0.25, 0.3, 0.4):
+        reply = walk.tick(now=now)
+        assert (reply.x, reply.z) == (moved.x, moved.z)
+    walk.keys(1, 0, math.pi / 2, 1.6, now=0.41)  # still held
+    assert walk.tick(now=0.5).x < moved.x
+
+
 def test_goto_finds_the_nearest_reachable_spot():
     walk = session()
     moved = walk.goto(9.0, 3.0)  # beyond the wall
