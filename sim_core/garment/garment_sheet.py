@@ -7,14 +7,17 @@ from functools import partial
 
 import numpy as np
 
-from sim_core.cloth import Drape, Material, Sheet, drape
+from sim_core.cloth import Drape, Material, Pace, Sheet, drape
 from sim_core.cloth.sheet import evened
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 
-__all__ = ["APART", "garment_sheet", "standing"]
+__all__ = ["APART", "PACE", "garment_sheet", "standing"]
 
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
+PACE = Pace(
+    courant=0.95
+)  # garments are soft to bend and limited in length: steps may be as long as they come
 
 
 def garment_sheet(garment: Garment) -> Sheet:
@@ -43,7 +46,12 @@ def standing(garment: Garment) -> partial[Drape]:
     what shall be otherwise."""
     settled = garment.settled
     assert settled is not None
-    touching = {"collider": settled.beneath.solid(), "contact": settled.contact, "holds": settled.holds}
+    touching = {
+        "collider": settled.beneath.solid(),
+        "contact": settled.contact,
+        "holds": settled.holds,
+        "pace": PACE,
+    }
     return partial(drape, garment_sheet(garment), garment.positions, **touching)
 
 
