@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -22,6 +22,7 @@ __all__ = ["SIZE", "Film", "Look", "Part", "Piece", "filming", "stills"]
 SIZE = (720, 540)  # pixels
 RATE = 25  # pictures per second, of the film and of the simulation
 ROUND = 75  # pictures of the walk round the finished garment
+TOGETHER = 8  # pictures that follow each other, between whose first and last the sky's light changes evenly
 STILLS = {"front": 18.0, "side": 74.0, "back": 196.0}  # [deg] about +y from the front
 
 Picture = NDArray[np.uint8]
@@ -84,46 +85,76 @@ def _camera(look: Look, angle: float) -> Any:
 class Film:
     """Pictures under way in processes of their own, while this one simulates."""
 
-    def __init__(self, look: Look, pool: ProcessPoolExecutor, folder: Path) -> None:
-        self._look, self._pool, self._folder = look, pool, folder
+    def __init__(
+        self, look: Look, pool: ProcessPoolExecutor, clerk: ThreadPoolExecutor, folder: Path
+    ) -> None:
+        self._look, self._pool, self._clerk, self._folder = look, pool, clerk, folder
         self._pictures: list[Future[None]] = []
+        self._waiting: list[_Picture] = []
         self._count = 0
+        self._encoding: Future[None] | None = None
         folder.mkdir(parents=True, exist_ok=True)
 
-    def shoot(
-        self,
-        moved: Sequence[NDArray[np.floating]],
-        angles: Sequence[float] = (STILLS["front"],),
-    ) -> None:
-        """The next pictures, one from each angle; what an interrupted build left is kept.
+    def shoot(self, moved: Sequence[NDArray[np.floating]], angle: float = STILLS["front"]) -> None:
+        """The next picture; what an interrupted build left is kept.
 
         moved: vertices of the look's first pieces as they are now.
         """
-        views = [
-            (float(angle), self._folder / f"{self._count + number:05d}.png")
-            for number, angle in enumerate(angles)
-        ]
-        self._count += len(views)
-        self._pictures.append(self._pool.submit(_shoot, self._look, [np.array(x) for x in moved], views))
+        path = self._folder / f"{self._count:05d}.png"
+        self._count += 1
+        self._waiting.append(_Picture(tuple(np.array(x) for x in moved), angle, path))
+        if len(self._waiting) == TOGETHER:
+            self._draw()
 
     def walk_round(self, moved: Sequence[NDArray[np.floating]]) -> None:
         """Once round the finished garment, slowly beginning and ending."""
+        self._draw()
         shares = np.arange(1, ROUND + 1) / ROUND
-        angles = STILLS["front"] + 360.0 * shares * shares * (3 - 2 * shares)
-        for piece in np.array_split(angles, 6):
-            self.shoot(moved, piece.tolist())
+        for angle in STILLS["front"] + 360.0 * shares * shares * (3 - 2 * shares):
+            self.shoot(moved, float(angle))
+        self._draw()
 
-    def write(
-        self, paths: tuple[Path, ...], sound: NDArray[np.float32] | None, tick: Callable[[float], None]
-    ) -> None:
-        """Encode what was shot into every one of `paths`, side by side."""
+    def _draw(self) -> None:
+        if self._waiting:
+            self._pictures.append(self._pool.submit(_shoot, self._look, self._waiting))
+        self._waiting = []
+
+    def stills(self, look: Look, folder: Path) -> None:
+        """The pictures of `stills`, likewise beside this process."""
+        self._pictures.append(self._pool.submit(stills, look, folder))
+
+    def encode(self, paths: tuple[Path, ...], sound: Callable[[], NDArray[np.float32]]) -> None:
+        """Encodes what was shot into every one of `paths`, side by side, as soon as it is drawn."""
+        self._draw()
+        self._encoding = self._clerk.submit(self._encoded, paths, sound)
+
+    def wait(self, tick: Callable[[float], None]) -> None:
+        """Until all is drawn and encoded; raises what went wrong there."""
         for number, future in enumerate(self._pictures):
             future.result()
             tick(0.8 * number / len(self._pictures))
-        films = [self._pool.submit(_encode, path, self._folder, self._count, sound) for path in paths]
-        for number, film in enumerate(films):
+        if self._encoding is not None:
+            self._encoding.result()
+        tick(1.0)
+
+    def _encoded(self, paths: tuple[Path, ...], sound: Callable[[], NDArray[np.float32]]) -> None:
+        heard = self._pool.submit(sound)
+        for future in (*self._pictures, heard):
+            future.result()
+        films = [
+            self._pool.submit(_encode, path, self._folder, self._count, heard.result()) for path in paths
+        ]
+        for film in films:
             film.result()
-            tick(0.8 + 0.2 * (number + 1) / len(films))
+
+
+@dataclass(frozen=True)
+class _Picture:
+    """One picture of a film: vertices of what moves, from where it is seen [deg], and its file."""
+
+    moved: tuple[NDArray[np.floating], ...]
+    angle: float
+    path: Path
 
 
 def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | None) -> None:
@@ -136,25 +167,27 @@ def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | N
     encode_film(path, shown, count, rate=RATE, sound=sound)
 
 
-def _shoot(
-    look: Look,
-    moved: Sequence[NDArray[np.floating]],
-    views: list[tuple[float, Path]],
-) -> None:
+def _shoot(look: Look, pictures: Sequence[_Picture]) -> None:
+    """Draws what follows each other; what is there already is kept, so that the same light falls on the others."""
     from PIL import Image
 
     from sim_core.picture import lighting, render
 
-    left = [(angle, path) for angle, path in views if not path.is_file()]
-    if not left:
+    if all(picture.path.is_file() for picture in pictures):
         return
-    surfaces = _surfaces(look, moved)
-    lit = lighting(surfaces)
-    for angle, path in left:
-        partial = path.with_suffix(".part")
-        shown = render(surfaces, _camera(look, angle), SIZE, lit=lit)
+    scenes = [_surfaces(look, picture.moved) for picture in pictures]
+    still = all(map(np.array_equal, pictures[0].moved, pictures[-1].moved))
+    first = lighting(scenes[0])
+    last = first if still else lighting(scenes[-1])
+    for number, (picture, surfaces) in enumerate(zip(pictures, scenes, strict=True)):
+        if picture.path.is_file():
+            continue
+        share = number / max(1, len(pictures) - 1)
+        lit = first if still else lighting(surfaces, sky=(1.0 - share) * first.sky + share * last.sky)
+        shown = render(surfaces, _camera(look, picture.angle), SIZE, lit=lit)
+        partial = picture.path.with_suffix(".part")
         Image.fromarray(shown).save(partial, format="png", compress_level=1)
-        partial.replace(path)
+        partial.replace(picture.path)
 
 
 @contextmanager
@@ -166,10 +199,11 @@ def filming(look: Look, folder: Path) -> Iterator[Film]:
         initializer=os.nice,
         initargs=(10,),  # the simulation goes first
     )
-    try:
-        yield Film(look, pool, folder)
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+    with ThreadPoolExecutor(1, "film") as clerk:  # who waits for the pictures and has them encoded
+        try:
+            yield Film(look, pool, clerk, folder)
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 def stills(look: Look, folder: Path) -> None:

@@ -73,8 +73,6 @@ def bake_outfit(
     kept = _kept(former, dressing, len(wardrobe.outfit.layers), out, film=film) if former else None
     if kept is None:
         garments, seconds = _dress(wardrobe, work, out, progress, models, film=film)
-        progress(0.95, "pictures")
-        stills(wardrobe.still(garments), out)
         seconds["all"] = round(time.perf_counter() - began, 2)
     else:
         garments, seconds = kept
@@ -156,14 +154,18 @@ def _dress(
         refuse_disorder(garments)
         if taken is not None:
             taken.walk_round(_at_rest(wardrobe.outfit, garments))
+            taken.stills(wardrobe.still(garments), out)
+            taken.encode((out / FILM[0], out / FILM[1]), _sound)
         progress(0.6, "models")
         models(garments)
         lap("models")
         if taken is not None:
             progress(0.7, "film")
-            paths = (out / FILM[0], out / FILM[1])
-            taken.write(paths, _sound(), lambda share: progress(0.7 + 0.25 * share, "film"))
+            taken.wait(lambda share: progress(0.7 + 0.25 * share, "film"))
             lap("film")
+        else:
+            progress(0.95, "pictures")
+            stills(wardrobe.still(garments), out)
     return garments, seconds
 
 

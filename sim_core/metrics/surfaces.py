@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.metrics.components import components
-from sim_core.metrics.triangles import crossings, nearest, winding
+from sim_core.metrics.face_tree import face_tree, nearest_face
+from sim_core.metrics.triangles import crossings, winding
 
 __all__ = [
     "Distances",
@@ -91,55 +91,9 @@ def sample_surface(vertices: np.ndarray, faces: np.ndarray, spacing: float) -> n
 def surface_distance(
     points: np.ndarray, vertices: np.ndarray, faces: np.ndarray, *, limit: float = np.inf
 ) -> np.ndarray:
-    """Exact unsigned distance (N,) [m] of points (N, 3) to a mesh; beyond `limit` [m] the limit is returned.
-
-    The nearest centroid bounds the distance; every face whose bounding ball could beat it is then measured.
-    """
+    """Exact unsigned distance (N,) [m] of points (N, 3) to a mesh; beyond `limit` [m] the limit is returned."""
     vertices, faces = _mesh("mesh", vertices, faces)
-    points = np.ascontiguousarray(points, float)
-    corner = vertices[faces]
-    centre = corner.mean(1)
-    radius = np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max(1)
-    size = np.ceil(np.log2(np.maximum(radius, 1e-9)))
-    out = np.full(len(points), float(limit))
-    for group in np.unique(size):  # faces in classes of size: a few long ones must not make every search wide
-        member = np.flatnonzero(size == group)
-        tree, reach = KDTree(centre[member]), float(radius[member].max())
-        far, near = tree.query(points, k=min(10, len(member)), distance_upper_bound=limit + reach)
-        far, near = far.reshape(len(points), -1), near.reshape(len(points), -1)
-        close = np.flatnonzero(far[:, 0] - reach < out)
-        found = _to_class(
-            points[close], vertices, faces[member], tree, reach, far[close], near[close], out[close]
-        )
-        out[close] = found
-    return out
-
-
-def _to_class(
-    points: np.ndarray,
-    vertices: np.ndarray,
-    faces: np.ndarray,
-    tree: KDTree,
-    reach: float,
-    far: np.ndarray,
-    near: np.ndarray,
-    limit: np.ndarray,
-) -> np.ndarray:
-    """Distance (N,) to faces of about one size; the few nearest centroids decide most points, the rest search on."""
-    known = np.isfinite(far)
-    start = np.r_[0, np.cumsum(known.sum(1))]
-    best = nearest(points, vertices, faces, start, near[known].astype(np.int64), limit)
-    left = np.flatnonzero(far[:, -1] - reach < best) if far.shape[1] < len(faces) else np.zeros(0, int)
-    for part in np.array_split(left, max(1, len(left) // 20000)):
-        if len(part) == 0:
-            continue
-        found = tree.query_ball_point(points[part], best[part] + reach)
-        start = np.r_[0, np.cumsum([len(entry) for entry in found])]
-        entry = (
-            np.concatenate([np.asarray(e, np.int64) for e in found]) if start[-1] else np.zeros(0, np.int64)
-        )
-        best[part] = nearest(points[part], vertices, faces, start, entry, best[part])
-    return best
+    return nearest_face(np.ascontiguousarray(points, float), face_tree(vertices, faces), float(limit))
 
 
 def hausdorff(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-__all__ = ["crossings", "nearest", "winding"]
+__all__ = ["crossings", "squared_gap", "winding"]
 
 
 @njit(cache=True, error_model="numpy")
@@ -37,19 +37,6 @@ def squared_gap(p, a, b, c):
         if _side(x, y, z, b, c, nx, ny, nz) >= 0.0 and _side(x, y, z, c, a, nx, ny, nz) >= 0.0:
             return ((x - a[0]) * nx + (y - a[1]) * ny + (z - a[2]) * nz) ** 2 / size2
     return min(_segment2(x, y, z, a, b), _segment2(x, y, z, b, c), _segment2(x, y, z, c, a))
-
-
-@njit(cache=True, error_model="numpy")
-def nearest(points, vertices, faces, start, entry, guess):
-    """Distance (N,) to the faces listed per point in entry[start[i]:start[i + 1]], at most guess (N,)."""
-    out = guess.copy()
-    for i in range(len(points)):
-        best = guess[i] * guess[i]
-        for k in range(start[i], start[i + 1]):
-            f = faces[entry[k]]
-            best = min(best, squared_gap(points[i], vertices[f[0]], vertices[f[1]], vertices[f[2]]))
-        out[i] = np.sqrt(best)
-    return out
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,68 +1,56 @@
-"""Compiled triangle rasteriser behind `picture`: depth maps, and shaded fragments of opaque and sheer cloth."""
+"""Compiled triangle rasteriser behind `picture`: which triangle is nearest in each pixel, and depth maps."""
 
 from __future__ import annotations
-
-import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 LAYERS = 8  # sheer layers kept per pixel, the nearest ones
+HALF = 0.5 - 1e-9
+NARROW = 6  # pixels of a triangle's box, up to which each is tried
 
 
-class Projected(NamedTuple):
-    """A surface before the camera: screen (V, 3) x, y [pixel] and 1 / distance, faces (F, 3) int32, world (V, 3) [m],
-    normals (V, 3), sky (V,): the share of it that each vertex sees."""
-
-    screen: np.ndarray
-    faces: np.ndarray
-    world: np.ndarray
-    normals: np.ndarray
-    sky: np.ndarray
-
-
-class Shadow(NamedTuple):
-    """The key light's shadow: matrix (3, 4) from world to its maps, depths (h, w) of the opaque and of the sheer, the
-    share that the sheer hold back, bias [m] by which a surface lies before its own shadow."""
-
-    matrix: np.ndarray
-    opaque: np.ndarray
-    sheer: np.ndarray
-    veil: float
-    bias: float
-
-
-@njit(cache=True, error_model="numpy")
-def _rows(a, b, c, height):
-    """Pixel rows of a screen triangle, clipped, and one over twice its signed area (0: degenerate)."""
-    y0 = max(int(math.floor(min(a[1], b[1], c[1]))), 0)
-    y1 = min(int(math.ceil(max(a[1], b[1], c[1]))), height - 1)
-    area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return y0, y1, 1.0 / area if area != 0.0 else 0.0
+@njit(error_model="numpy", inline="always")
+def spread(screen, i, j, k, width, height):
+    """Of a screen triangle its first and last column and row of pixels whose middles it may cover (none: last < first),
+    and the barycentric weights u of i and v of j: at the origin, and their growth a pixel along x and y.
+    """
+    ax, ay, bx, by, cx, cy = (
+        screen[i, 0], screen[i, 1], screen[j, 0], screen[j, 1], screen[k, 0], screen[k, 1],
+    )  # fmt: skip
+    # Middles lie at halves: rounded up from the least, down from the most.
+    x0 = int(min(max(min(ax, bx, cx) + HALF, 0.0), width))
+    x1 = int(min(max(max(ax, bx, cx) + 0.5, 0.0), width)) - 1
+    y0 = int(min(max(min(ay, by, cy) + HALF, 0.0), height))
+    y1 = int(min(max(max(ay, by, cy) + 0.5, 0.0), height)) - 1
+    area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    if area == 0.0:
+        x1 = x0 - 1
+    over = 1.0 / area
+    ux, uy, vx, vy = (by - cy) * over, (cx - bx) * over, (cy - ay) * over, (ax - cx) * over
+    return x0, x1, y0, y1, -ux * cx - uy * cy, ux, uy, -vx * cx - vy * cy, vx, vy
 
 
-@njit(cache=True, error_model="numpy")
-def _weights(a, b, c, over, y):
-    """Barycentric weights of a and b along the row y: each (value at x = 0, growth per pixel)."""
-    u1, v1 = (b[1] - c[1]) * over, (c[1] - a[1]) * over
-    u0 = (b[0] * (c[1] - y) - (b[1] - y) * c[0]) * over
-    v0 = (c[0] * (a[1] - y) - (c[1] - y) * a[0]) * over
-    return u0, u1, v0, v1
-
-
-@njit(cache=True, error_model="numpy")
-def _columns(u0, u1, v0, v1, width):
-    """First and last pixel of a row whose middle may lie in the triangle; one too many at either end."""
-    low, high = -1.0, width + 1.0
-    for value, growth in ((u0, u1), (v0, v1), (1.0 - u0 - v0, -u1 - v1)):
-        if growth > 0.0:
-            low = max(low, -value / growth)
-        elif growth < 0.0:
-            high = min(high, -value / growth)
-        elif value < 0.0:
-            return 1, 0
-    return max(int(low - 0.5), 0), min(int(high + 0.5), width - 1)
+@njit(error_model="numpy", inline="always")
+def narrowed(u, ux, v, vx, x0, x1):
+    """Columns between x0 and x1 whose middles may lie in the triangle; one too many at either end. u, v: at x = 0."""
+    low, high = x0 + 0.5, x1 + 0.5
+    w, wx = 1.0 - u - v, -ux - vx
+    if ux > 0.0:
+        low = max(low, -u / ux)
+    elif ux < 0.0:
+        high = min(high, -u / ux)
+    if vx > 0.0:
+        low = max(low, -v / vx)
+    elif vx < 0.0:
+        high = min(high, -v / vx)
+    if wx > 0.0:
+        low = max(low, -w / wx)
+    elif wx < 0.0:
+        high = min(high, -w / wx)
+    if not low <= high + 1.0:
+        return 1, 0
+    return max(int(low - 0.5), x0), min(int(high + 0.5), x1)
 
 
 @njit(cache=True, error_model="numpy")
@@ -70,20 +58,111 @@ def depth_map(screen, faces, depth):
     """Smallest screen z per pixel into depth (h, w); screen (V, 3): x, y [pixel], z."""
     height, width = depth.shape
     for f in range(len(faces)):
-        a, b, c = screen[faces[f, 0]], screen[faces[f, 1]], screen[faces[f, 2]]
-        y0, y1, over = _rows(a, b, c, height)
-        if over == 0.0:
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        x0, x1, y0, y1, u0, ux, uy, v0, vx, vy = spread(screen, i, j, k, width, height)
+        if x1 < x0 or y1 < y0:
             continue
+        base = screen[k, 2]
+        rise, lean = screen[i, 2] - base, screen[j, 2] - base
+        first, last = x0, x1
         for py in range(y0, y1 + 1):
-            u0, u1, v0, v1 = _weights(a, b, c, over, py + 0.5)
-            x0, x1 = _columns(u0, u1, v0, v1, width)
-            for px in range(x0, x1 + 1):
-                u, v = u0 + u1 * (px + 0.5), v0 + v1 * (px + 0.5)
-                w = 1.0 - u - v
-                if u >= 0.0 and v >= 0.0 and w >= 0.0:
-                    z = u * a[2] + v * b[2] + w * c[2]
-                    if z < depth[py, px]:
-                        depth[py, px] = z
+            ur, vr = u0 + uy * (py + 0.5), v0 + vy * (py + 0.5)
+            if x1 - x0 > NARROW:
+                first, last = narrowed(ur, ux, vr, vx, x0, x1)
+            for px in range(first, last + 1):
+                u, v = ur + ux * (px + 0.5), vr + vx * (px + 0.5)
+                z, before = base + u * rise + v * lean, depth[py, px]
+                nearer = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (z < before)
+                depth[py, px] = z if nearer else before  # no branch that nobody can foretell
+
+
+@njit(cache=True, error_model="numpy")
+def nearest_faces(screen, faces, which, near, owner):
+    """Of `which` (K,) of the faces the nearest in each pixel into owner (h, w) int32, and the inverse of its distance
+    into near (h, w), which begin with -1 and 0; screen (V, 3): x, y [pixel], 1 / distance.
+    """
+    height, width = near.shape
+    for n in range(len(which)):
+        f = which[n]
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        base = screen[k, 2]
+        rise, lean = screen[i, 2] - base, screen[j, 2] - base
+        if base <= 0.0 or base + rise <= 0.0 or base + lean <= 0.0:  # behind the eye
+            continue
+        x0, x1, y0, y1, u0, ux, uy, v0, vx, vy = spread(screen, i, j, k, width, height)
+        if x1 < x0 or y1 < y0:
+            continue
+        first, last = x0, x1
+        for py in range(y0, y1 + 1):
+            ur, vr = u0 + uy * (py + 0.5), v0 + vy * (py + 0.5)
+            if x1 - x0 > NARROW:
+                first, last = narrowed(ur, ux, vr, vx, x0, x1)
+            for px in range(first, last + 1):
+                u, v = ur + ux * (px + 0.5), vr + vx * (px + 0.5)
+                if u >= 0.0 and v >= 0.0 and u + v <= 1.0:
+                    z = base + u * rise + v * lean
+                    if z > near[py, px]:
+                        near[py, px], owner[py, px] = z, f
+
+
+@njit(cache=True, error_model="numpy")
+def sheer_faces(screen, faces, which, near, count, layer_near, layer_face):
+    """Of `which` (K,) of the faces those before the opaque ones, the LAYERS nearest of each pixel from near to far.
+
+    near (h, w): of the opaque, as `nearest_faces` left it; count (h, w) uint8 begins with 0, layer_near and layer_face
+    (h, w, LAYERS) are filled so far.
+    """
+    height, width = near.shape
+    for n in range(len(which)):
+        f = which[n]
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        base = screen[k, 2]
+        rise, lean = screen[i, 2] - base, screen[j, 2] - base
+        if base <= 0.0 or base + rise <= 0.0 or base + lean <= 0.0:
+            continue
+        x0, x1, y0, y1, u0, ux, uy, v0, vx, vy = spread(screen, i, j, k, width, height)
+        if x1 < x0 or y1 < y0:
+            continue
+        first, last = x0, x1
+        for py in range(y0, y1 + 1):
+            ur, vr = u0 + uy * (py + 0.5), v0 + vy * (py + 0.5)
+            if x1 - x0 > NARROW:
+                first, last = narrowed(ur, ux, vr, vx, x0, x1)
+            for px in range(first, last + 1):
+                u, v = ur + ux * (px + 0.5), vr + vx * (px + 0.5)
+                z = base + u * rise + v * lean
+                if not (u >= 0.0 and v >= 0.0 and u + v <= 1.0 and z > near[py, px]):
+                    continue
+                m = count[py, px]
+                if m == LAYERS:
+                    if z <= layer_near[py, px, LAYERS - 1]:
+                        continue
+                    m -= 1
+                else:
+                    count[py, px] = m + 1
+                while m > 0 and layer_near[py, px, m - 1] < z:
+                    layer_near[py, px, m] = layer_near[py, px, m - 1]
+                    layer_face[py, px, m] = layer_face[py, px, m - 1]
+                    m -= 1
+                layer_near[py, px, m], layer_face[py, px, m] = z, f
+
+
+@njit(error_model="numpy", inline="always")
+def lit_at(x, y, z, depth, bias, radius):
+    """Fraction of the depth map's taps around a point that do not hide it; where there is no map, nothing does."""
+    height, width = depth.shape
+    if not (x > -radius - 1 and y > -radius - 1 and x < width + radius and y < height + radius):
+        return 1.0
+    column, row, limit, hidden = int(x), int(y), z - bias, 0
+    if column >= radius and row >= radius and column + radius < width and row + radius < height:
+        for dy in range(-radius, radius + 1):
+            for dx in range(-radius, radius + 1):
+                hidden += depth[row + dy, column + dx] < limit
+    else:
+        for py in range(max(row - radius, 0), min(row + radius, height - 1) + 1):
+            for px in range(max(column - radius, 0), min(column + radius, width - 1) + 1):
+                hidden += depth[py, px] < limit
+    return 1.0 - hidden / ((2 * radius + 1) * (2 * radius + 1))
 
 
 @njit(cache=True, error_model="numpy")
@@ -91,154 +170,67 @@ def lit(screen, depth, bias, radius):
     """Fraction of the depth map's taps around each point (N, 3) that do not hide it, (N,)."""
     out = np.zeros(len(screen))
     for i in range(len(screen)):
-        out[i] = _lit_at(screen[i, 0], screen[i, 1], screen[i, 2], depth, bias, radius)
+        out[i] = lit_at(screen[i, 0], screen[i, 1], screen[i, 2], depth, bias, radius)
     return out
 
 
 @njit(cache=True, error_model="numpy")
-def _lit_at(x, y, z, depth, bias, radius):
-    height, width = depth.shape
-    seen, taps = 0.0, 0
-    for dy in range(-radius, radius + 1):
-        for dx in range(-radius, radius + 1):
-            px, py = int(x) + dx, int(y) + dy
-            taps += 1
-            if px < 0 or py < 0 or px >= width or py >= height or z <= depth[py, px] + bias:
-                seen += 1.0
-    return seen / taps
+def placed(points, matrix, out):
+    """points (N, 3) under an affine map (3, 4), into out."""
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        for c in range(3):
+            out[i, c] = matrix[c, 0] * x + matrix[c, 1] * y + matrix[c, 2] * z + matrix[c, 3]
 
 
 @njit(cache=True, error_model="numpy")
-def _place(m, p):
-    """An affine map (3, 4) of a point; triples instead of arrays, since a fragment must not allocate."""
-    x, y, z = p
-    return (
-        m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3],
-        m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3],
-        m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3],
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def _shade(n, p, open_sky, colour, look, scene):
-    """Linear colour of a fragment with normal n turned to the eye; scene rows: eye, key, key colour, sky, ground."""
-    ex, ey, ez = scene[0, 0] - p[0], scene[0, 1] - p[1], scene[0, 2] - p[2]
-    far = math.sqrt(ex * ex + ey * ey + ez * ez)
-    ex, ey, ez = ex / far, ey / far, ez / far
-    facing = n[0] * ex + n[1] * ey + n[2] * ez
-    if look[4] > 0.0:  # a floor that only shows shadows, else the backdrop's own colour
-        shade = (0.55 + 0.45 * open_sky[1]) * (0.72 + 0.28 * open_sky[0])
-        return (colour[0] * shade, colour[1] * shade, colour[2] * shade), 1.0
-    key = n[0] * scene[1, 0] + n[1] * scene[1, 1] + n[2] * scene[1, 2]
-    through = look[2]  # part of the light that comes through from behind: thin cloth glows
-    diffuse = max(key, 0.0) + through * max(-key, 0.0)
-    hx, hy, hz = ex + scene[1, 0], ey + scene[1, 1], ez + scene[1, 2]
-    size = math.sqrt(hx * hx + hy * hy + hz * hz)
-    gloss = 0.0
-    if look[0] > 0.0:
-        gloss = look[0] * max(0.0, (n[0] * hx + n[1] * hy + n[2] * hz) / size) ** 24
-        gloss *= math.sqrt(max(key, 0.0)) * open_sky[0]
-    sheen = look[1] * (1.0 - min(1.0, max(facing, 0.0))) ** 3
-    up, lamp = 0.5 + 0.5 * n[1], open_sky[0] * diffuse
-    r0 = _channel(colour[0], lamp, gloss, sheen, up, open_sky[1], scene[2, 0], scene[3, 0], scene[4, 0])
-    r1 = _channel(colour[1], lamp, gloss, sheen, up, open_sky[1], scene[2, 1], scene[3, 1], scene[4, 1])
-    r2 = _channel(colour[2], lamp, gloss, sheen, up, open_sky[1], scene[2, 2], scene[3, 2], scene[4, 2])
-    return (r0, r1, r2), max(facing, 0.05)
-
-
-@njit(cache=True, error_model="numpy")
-def _channel(colour, lamp, gloss, sheen, up, opened, key, sky, ground):
-    """One colour channel of a shaded fragment."""
-    ambient = opened * (up * sky + (1.0 - up) * ground)
-    light = lamp * key + ambient
-    return colour * light + gloss * key + sheen * (0.35 + 0.65 * colour) * (0.5 * ambient + 0.4 * light)
-
-
-@njit(cache=True, error_model="numpy")
-def _insert(layer_depth, layer_colour, z, r, alpha):
-    """Keeps the nearest layers of a pixel, sorted from near to far."""
-    k = LAYERS - 1
-    if z >= layer_depth[k]:
-        return
-    while k > 0 and layer_depth[k - 1] > z:
-        layer_depth[k] = layer_depth[k - 1]
-        layer_colour[k] = layer_colour[k - 1]
-        k -= 1
-    layer_depth[k] = z
-    layer_colour[k, 0], layer_colour[k, 1], layer_colour[k, 2], layer_colour[k, 3] = r[0], r[1], r[2], alpha
-
-
-@njit(cache=True, error_model="numpy")
-def _mixed(rows, i, j, k, u, v, w):
-    """Weighted sum of three rows of (V, 3)."""
-    return (
-        u * rows[i, 0] + v * rows[j, 0] + w * rows[k, 0],
-        u * rows[i, 1] + v * rows[j, 1] + w * rows[k, 1],
-        u * rows[i, 2] + v * rows[j, 2] + w * rows[k, 2],
-    )
-
-
-@njit(cache=True, error_model="numpy")
-def _fragment(p, n, sky, colour, look, scene, shadow):
-    """Colour and slant of a fragment at p whose normal n is turned to the eye first."""
-    size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) + 1e-12
-    if n[0] * (scene[0, 0] - p[0]) + n[1] * (scene[0, 1] - p[1]) + n[2] * (scene[0, 2] - p[2]) < 0.0:
-        size = -size
-    at = _place(shadow.matrix, p)
-    seen = _lit_at(at[0], at[1], at[2], shadow.opaque, shadow.bias, 2)
-    seen *= 1.0 - shadow.veil * (1.0 - _lit_at(at[0], at[1], at[2], shadow.sheer, shadow.bias, 3))
-    return _shade((n[0] / size, n[1] / size, n[2] / size), p, (seen, sky), colour, look, scene)
-
-
-@njit(cache=True, error_model="numpy")
-def fragments(mesh, colour, look, scene, shadow, depth, image, layer_depth, layer_colour):
-    """Draws one surface, mesh: `Projected`, shadow: `Shadow`.
-
-    look: gloss, sheen, through, alpha, 1 for a floor that only shows shadows. depth holds -1/distance of the opaque;
-    sheer surfaces (alpha < 1) go to the layers.
+def fitted(points, axes, pixels, out):
+    """Affine map (3, 4) that projects points (N, 3) [m] along the last row of axes (3, 3) onto a square of so many
+    pixels, which they fill; z grows along it [m]. Into out.
     """
-    screen, faces, sky = mesh.screen, mesh.faces, mesh.sky
-    height, width = depth.shape
-    for f in range(len(faces)):
-        i, j, k = faces[f]
-        a, b, c = screen[i], screen[j], screen[k]
-        if a[2] <= 0.0 or b[2] <= 0.0 or c[2] <= 0.0:
-            continue
-        y0, y1, over = _rows(a, b, c, height)
-        if over == 0.0:
-            continue
-        for py in range(y0, y1 + 1):
-            u0, u1, v0, v1 = _weights(a, b, c, over, py + 0.5)
-            x0, x1 = _columns(u0, u1, v0, v1, width)
-            for px in range(x0, x1 + 1):
-                u, v = u0 + u1 * (px + 0.5), v0 + v1 * (px + 0.5)
-                w = 1.0 - u - v
-                if u < 0.0 or v < 0.0 or w < 0.0:
-                    continue
-                near = u * a[2] + v * b[2] + w * c[2]
-                if -near >= depth[py, px]:
-                    continue
-                u, v, w = u * a[2] / near, v * b[2] / near, w * c[2] / near
-                p = _mixed(mesh.world, i, j, k, u, v, w)
-                n = _mixed(mesh.normals, i, j, k, u, v, w)
-                r, facing = _fragment(p, n, u * sky[i] + v * sky[j] + w * sky[k], colour, look, scene, shadow)
-                if look[3] >= 1.0:
-                    depth[py, px] = -near
-                    image[py, px, 0], image[py, px, 1], image[py, px, 2] = r
-                else:
-                    # More threads lie in a slanting line of sight.
-                    alpha = 1.0 - (1.0 - look[3]) ** (1.0 / facing)
-                    _insert(layer_depth[py, px], layer_colour[py, px], -near, r, alpha)
+    lx = ly = np.inf
+    hx = hy = -np.inf
+    for i in range(len(points)):
+        px, py, pz = points[i, 0], points[i, 1], points[i, 2]
+        x = px * axes[0, 0] + py * axes[0, 1] + pz * axes[0, 2]
+        y = px * axes[1, 0] + py * axes[1, 1] + pz * axes[1, 2]
+        lx, hx, ly, hy = min(lx, x), max(hx, x), min(ly, y), max(hy, y)
+    scale = (pixels - 4) / max(hx - lx, hy - ly, 1e-6)
+    for c in range(3):
+        out[0, c], out[1, c], out[2, c] = scale * axes[0, c], scale * axes[1, c], axes[2, c]
+    out[0, 3], out[1, 3], out[2, 3] = 2.0 - scale * lx, 2.0 - scale * ly, 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def compose(image, depth, layer_depth, layer_colour):
-    """Lays the sheer layers over the opaque image, far to near, in place."""
-    height, width = depth.shape
-    for y in range(height):
-        for x in range(width):
-            for k in range(LAYERS - 1, -1, -1):
-                if layer_depth[y, x, k] < depth[y, x]:
-                    a = layer_colour[y, x, k, 3]
-                    for c in range(3):
-                        image[y, x, c] = a * layer_colour[y, x, k, c] + (1.0 - a) * image[y, x, c]
+def open_shares(points, casters, faces, ways, pixels, bias):
+    """Share (N,) of `ways` (K, 3, 3), along whose last rows light comes, from which nothing hides points (N, 3) [m].
+
+    The first `casters` of the points bear the faces (F, 3) that cast shadows, seen in maps of so many pixels.
+    """
+    out, at, matrix = np.zeros(len(points)), np.empty((len(points), 3)), np.empty((3, 4))
+    depth = np.empty((pixels, pixels), np.float32)
+    for way in range(len(ways)):
+        fitted(points[:casters], ways[way], pixels, matrix)
+        placed(points, matrix, at)
+        depth[:] = np.inf
+        depth_map(at, faces, depth)
+        for i in range(len(points)):
+            out[i] += lit_at(at[i, 0], at[i, 1], at[i, 2], depth, bias, 1)
+    for i in range(len(points)):
+        out[i] /= len(ways)
+    return out
+
+
+@njit(cache=True, error_model="numpy")
+def seen_from(points, own, faces, ways, pixels, bias):
+    """Which (own,) of the first points (N, 3) [m] can be seen along any of `ways` (K, 3, 3) past the faces (F, 3)."""
+    found, at, matrix = np.zeros(own, np.bool_), np.empty((len(points), 3)), np.empty((3, 4))
+    depth = np.empty((pixels, pixels), np.float32)
+    for way in range(len(ways)):
+        fitted(points, ways[way], pixels, matrix)
+        placed(points, matrix, at)
+        depth[:] = np.inf
+        depth_map(at, faces, depth)
+        for i in range(own):
+            found[i] = found[i] or lit_at(at[i, 0], at[i, 1], at[i, 2], depth, bias, 0) > 0.5
+    return found

@@ -4,19 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.picture.raster import LAYERS, Projected, Shadow, compose, depth_map, fragments
-from sim_core.picture.raster import lit as lit_share
+from sim_core.picture.fragments import ALPHA, FLOOR, TONES, Scene, Seen, Shadow, developed
+from sim_core.picture.raster import (
+    LAYERS,
+    depth_map,
+    fitted,
+    nearest_faces,
+    open_shares,
+    placed,
+    sheer_faces,
+)
 from sim_core.validation.files import written_whole
 
-__all__ = ["Camera", "Light", "Lighting", "Surface", "lighting", "normals", "render", "save_png"]
+__all__ = ["Camera", "Light", "Lighting", "Surface", "fan", "lighting", "normals", "render", "save_png"]
 
 _SKY_DIRECTIONS = 40
 _SKY_PIXELS = 320
+_SKY_BIAS = 0.012  # [m] likewise, in maps so coarse
 _SHADOW_PIXELS = 1400
 _BIAS = 0.006  # [m] a surface lies before its own shadow
 
@@ -59,26 +69,37 @@ class Light:
 
 @dataclass(frozen=True)
 class Lighting:
-    """What no camera changes: the floor, each surface's view of the sky (V,), the key light's depth maps."""
+    """What no camera changes: the floor, the share of the sky that each vertex of all surfaces sees (V,), one behind
+    the other and the floor's last, and the key light's depth maps."""
 
     light: Light
     ground: Surface | None
-    skies: tuple[np.ndarray, ...]
+    sky: np.ndarray
     shadow: Shadow
 
 
-def lighting(surfaces: Sequence[Surface], light: Light | None = None, *, floor: bool = True) -> Lighting:
+def lighting(
+    surfaces: Sequence[Surface],
+    light: Light | None = None,
+    *,
+    floor: bool = True,
+    sky: np.ndarray | None = None,
+) -> Lighting:
     """Light on `surfaces`, for several pictures of the same scene.
 
+    sky: what `Lighting.sky` is to be, such as a mean of what it is shortly before and after; None: it is looked for.
     Raises SimCoreError if a surface has no vertices, wrong shapes or coordinates that are not finite.
     """
     for number, surface in enumerate(surfaces):
         _check(number, surface)
     light = light or Light()
     ground = _floor(surfaces, light) if floor else None
-    drawn = [*surfaces, ground] if ground else list(surfaces)
-    skies = tuple(_sky_visibility(drawn, len(surfaces)))
-    return Lighting(light, ground, skies, _shadow(surfaces, _unit(light.key)))
+    casting = sum(len(surface.vertices) for surface in surfaces)
+    points = _points(surfaces, ground)
+    if sky is None:
+        ways, faces = fan(_SKY_DIRECTIONS, 0.0, 1.0), _faces(surfaces)
+        sky = 0.15 + 0.85 * open_shares(points, casting, faces, ways, _SKY_PIXELS, _SKY_BIAS)
+    return Lighting(light, ground, sky, _shadow(surfaces, points[:casting], _unit(light.key)))
 
 
 def normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -109,41 +130,58 @@ def render(
     Raises SimCoreError if a surface has no vertices, wrong shapes or coordinates that are not finite.
     """
     lit = lit or lighting(surfaces, light, floor=floor)
-    light, width, height = lit.light, size[0] * supersample, size[1] * supersample
-    image = np.broadcast_to(_linear(light.background), (height, width, 3)).astype(np.float64).copy()
-    if lit.ground:
-        _backdrop(image)
-    depth = np.zeros((height, width))
-    sheer = any(surface.alpha < 1 for surface in surfaces)
-    layer_shape = (height, width, LAYERS) if sheer else (1, 1, LAYERS)
-    layer_depth = np.full(layer_shape, np.inf, np.float32)
-    layer_colour = np.zeros((*layer_shape, 4), np.float32)
-    scene = np.array([camera.eye, _unit(light.key), light.key_colour, light.sky, light.ground], float)
-    target = (depth, image, layer_depth, layer_colour)
+    width, height = size[0] * supersample, size[1] * supersample
+    scene = _scene(surfaces, lit, camera, width, height)
+    backdrop = np.tile(_linear(lit.light.background), (height, 1))
+    if lit.ground:  # floor and wall are one colour, a little darker towards the top: no horizon to look at
+        backdrop *= np.linspace(0.80, 1.03, height)[:, None]
+    return developed(scene, lit.shadow, _seen(scene, width, height), backdrop, _tones(), supersample)
+
+
+def _scene(surfaces: Sequence[Surface], lit: Lighting, camera: Camera, width: int, height: int) -> Scene:
+    """All surfaces and the floor before the camera."""
     drawn = [*surfaces, lit.ground] if lit.ground else list(surfaces)
-    for surface, sky in zip(drawn, lit.skies, strict=True):
-        screen = _project(surface.vertices, camera, width, height)
-        _draw(surface, screen, sky, surface is lit.ground, scene, lit.shadow, target)
-    if sheer:
-        compose(image, depth, layer_depth, layer_colour)
-    small = image.reshape(size[1], supersample, size[0], supersample, 3).mean(axis=(1, 3))
-    return (255 * _srgb(small) + 0.5).astype(np.uint8)
+    world, light = _points(surfaces, lit.ground), lit.light
+    looks = np.array(
+        [[*_linear(one.colour), one.gloss, one.sheen, one.through, one.alpha, 0.0] for one in drawn], float
+    )
+    looks[len(surfaces) :, FLOOR] = 1.0
+    return Scene(
+        screen=_project(world, camera, width, height),
+        world=world,
+        normals=np.concatenate([normals(np.asarray(one.vertices, float), one.faces) for one in drawn]),
+        sky=lit.sky,
+        faces=_faces(drawn),
+        of=np.repeat(np.arange(len(drawn), dtype=np.int32), [len(one.faces) for one in drawn]),
+        looks=looks,
+        lights=np.array([camera.eye, _unit(light.key), light.key_colour, light.sky, light.ground], float),
+    )
 
 
-def _draw(
-    surface: Surface,
-    screen: np.ndarray,
-    sky: np.ndarray,
-    ground: bool,
-    scene: np.ndarray,
-    shadow: Shadow,
-    target: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
-) -> None:
-    """One surface into the target (depth, image, sheer layers' depths and colours)."""
-    world, faces = np.ascontiguousarray(surface.vertices, float), surface.faces.astype(np.int32)
-    mesh = Projected(screen, faces, world, normals(world, faces), sky)
-    look = np.array([surface.gloss, surface.sheen, surface.through, surface.alpha, float(ground)])
-    fragments(mesh, _linear(surface.colour), look, scene, shadow, *target)
+def _seen(scene: Scene, width: int, height: int) -> Seen:
+    """What is in each pixel."""
+    sheer = scene.looks[scene.of, ALPHA] < 1.0
+    near, owner = np.zeros((height, width), np.float32), np.full((height, width), -1, np.int32)
+    nearest_faces(scene.screen, scene.faces, np.flatnonzero(~sheer), near, owner)
+    shape = (height, width) if sheer.any() else (0, 0)
+    count, layers = np.zeros(shape, np.uint8), np.empty((*shape, LAYERS), np.int32)
+    if sheer.any():
+        depths = np.empty((*shape, LAYERS), np.float32)  # memory that no pixel asks for is never touched
+        sheer_faces(scene.screen, scene.faces, np.flatnonzero(sheer), near, count, depths, layers)
+    return Seen(owner, count, layers)
+
+
+def _points(surfaces: Sequence[Surface], ground: Surface | None) -> np.ndarray:
+    """The vertices (V, 3) of all, the floor's last."""
+    drawn = [*surfaces, ground] if ground else surfaces
+    return np.concatenate([np.asarray(one.vertices, float) for one in drawn])
+
+
+def _faces(surfaces: Sequence[Surface]) -> np.ndarray:
+    """Their faces (F, 3) int32, of `_points`."""
+    first = np.cumsum([0, *(len(one.vertices) for one in surfaces)])
+    faces = [one.faces + start for one, start in zip(surfaces, first[:-1], strict=True)]
+    return np.concatenate(faces).astype(np.int32)
 
 
 def save_png(path: Path, picture: np.ndarray) -> None:
@@ -185,6 +223,20 @@ def _axes(forward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return side, np.cross(side, forward)
 
 
+def fan(count: int, first: float, last: float) -> np.ndarray:
+    """Evenly spread directions (K, 3, 3) to look from, whose elevations have sines between first and last.
+
+    Of each: to the right, up and away from the eye.
+    """
+    golden, ways = np.pi * (3 - np.sqrt(5)), []
+    for k in range(count):
+        y = first + (last - first) * (k + 0.5) / count
+        ring = np.sqrt(1 - y * y)
+        away = -np.array([ring * np.cos(golden * k), y, ring * np.sin(golden * k)])
+        ways.append([*_axes(away), away])
+    return np.array(ways)
+
+
 def _project(points: np.ndarray, camera: Camera, width: int, height: int) -> np.ndarray:
     """Screen x, y [pixel] and 1 / distance (<= 0 behind the camera), (V, 3)."""
     eye = np.asarray(camera.eye, float)
@@ -199,49 +251,26 @@ def _project(points: np.ndarray, camera: Camera, width: int, height: int) -> np.
     )
 
 
-def _light_matrix(points: np.ndarray, direction: np.ndarray, pixels: int) -> np.ndarray:
-    """(3, 4) parallel projection along `direction` that fits all points; z grows away from the light [m]."""
-    side, up = _axes(-direction)
-    rows = np.stack([side, up, -direction])
-    seen = points @ rows.T
-    low, span = seen.min(0), max(float(np.ptp(seen[:, :2], axis=0).max()), 1e-6)
-    scale = (pixels - 4) / span
-    matrix = np.concatenate([rows, np.zeros((3, 1))], axis=1)
-    matrix[:2] *= scale
-    matrix[:2, 3] = 2 - low[:2] * scale
-    return matrix
-
-
-def _depths(surfaces: Sequence[Surface], matrix: np.ndarray, pixels: int) -> np.ndarray:
-    depth = np.full((pixels, pixels), np.inf)
-    for surface in surfaces:
-        depth_map(surface.vertices @ matrix[:, :3].T + matrix[:, 3], surface.faces.astype(np.int32), depth)
-    return depth
-
-
-def _shadow(surfaces: Sequence[Surface], key: np.ndarray) -> Shadow:
+def _shadow(surfaces: Sequence[Surface], points: np.ndarray, key: np.ndarray) -> Shadow:
     """The key light's depth maps of the opaque and of the sheer, and how much the sheer holds back."""
-    matrix = _light_matrix(np.concatenate([s.vertices for s in surfaces]), key, _SHADOW_PIXELS)
-    opaque, sheer = [s for s in surfaces if s.alpha >= 1], [s for s in surfaces if s.alpha < 1]
-    veil = 0.7 * max((s.alpha for s in sheer), default=0.0)
-    first, second = (_depths(group, matrix, _SHADOW_PIXELS) for group in (opaque, sheer))
-    return Shadow(matrix, first, second, veil, _BIAS)
+    matrix, at = np.empty((3, 4)), np.empty_like(points)
+    fitted(points, np.stack([*_axes(-key), -key]), _SHADOW_PIXELS, matrix)
+    placed(points, matrix, at)
+    sheer = np.repeat([one.alpha < 1 for one in surfaces], [len(one.faces) for one in surfaces])
+    faces, maps = _faces(surfaces), []
+    for which in (~sheer, sheer):
+        pixels = _SHADOW_PIXELS if which.any() else 0
+        depth = np.full((pixels, pixels), np.inf, np.float32)
+        depth_map(at, faces[which], depth)
+        maps.append(depth)
+    veil = 0.7 * max((one.alpha for one in surfaces if one.alpha < 1), default=0.0)
+    return Shadow(matrix, *maps, veil, _BIAS)
 
 
-def _sky_visibility(surfaces: Sequence[Surface], casters: int) -> list[np.ndarray]:
-    """Share of the sky each vertex sees, by depth maps from a fixed fan of directions: (V,) per surface."""
-    points = np.concatenate([s.vertices for s in surfaces[:casters]])
-    total = [np.zeros(len(s.vertices)) for s in surfaces]
-    golden = np.pi * (3 - np.sqrt(5))
-    for k in range(_SKY_DIRECTIONS):
-        y = (k + 0.5) / _SKY_DIRECTIONS
-        ring = np.sqrt(1 - y * y)
-        direction = np.array([ring * np.cos(golden * k), y, ring * np.sin(golden * k)])
-        matrix = _light_matrix(points, direction, _SKY_PIXELS)
-        depth = _depths(surfaces[:casters], matrix, _SKY_PIXELS)
-        for sum_, surface in zip(total, surfaces, strict=True):
-            sum_ += lit_share(surface.vertices @ matrix[:, :3].T + matrix[:, 3], depth, 0.012, 1)
-    return [0.15 + 0.85 * sum_ / _SKY_DIRECTIONS for sum_ in total]
+@cache
+def _tones() -> np.ndarray:
+    """sRGB (TONES + 1,) uint8 of linear light from 0 to 1."""
+    return (255 * _srgb(np.linspace(0.0, 1.0, TONES + 1)) + 0.5).astype(np.uint8)
 
 
 def _floor(surfaces: Sequence[Surface], light: Light) -> Surface:
@@ -258,8 +287,3 @@ def _floor(surfaces: Sequence[Surface], light: Light) -> Surface:
     a = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
     faces = np.concatenate([np.stack([a, a + 1, a + n], 1), np.stack([a + 1, a + n + 1, a + n], 1)])
     return Surface(vertices, faces.astype(np.int32), light.background)
-
-
-def _backdrop(image: np.ndarray) -> None:
-    """Floor and wall are one colour, a little darker towards the top: no horizon to look at."""
-    image *= np.linspace(0.80, 1.03, image.shape[0])[:, None, None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -18,14 +19,13 @@ from sim_core.garment.pattern.pattern import Pattern
 SHARES = tuple(
     float(share) for share in np.geomspace(0.6, 0.05, 24).round(3)
 )  # of the triangles, tried in turn
+STRIDE = 4
 _SPACING = 0.006  # [m] of the samples that measure the distance of two levels
 _TRYING = 0.016  # [m] the same while levels are tried; a seventh of the samples
 
 
-def thinned(
-    garment: Garment, counts: Sequence[int], *, solid: Solid | None = None, spacing: float = _SPACING
-) -> Iterator[Garment]:
-    """The garment with about each of `counts` triangles, the largest first, its distance measured every `spacing` [m].
+def thinned(garment: Garment, counts: Sequence[int]) -> Iterator[Garment]:
+    """The garment with about each of `counts` triangles, the largest first.
 
     Triangles go where the drape is flat (see `thinning`); what stays keeps place and texture coordinates. Of a
     mirrored garment one half is thinned and mirrored. The last one may come again when nothing more can go.
@@ -37,23 +37,20 @@ def thinned(
     mesh = Thinning(
         garment.positions[own], garment.pattern_faces[:faces], weld.reshape(-1), garment.pattern[:vertices]
     )
-    if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
-        solid = garment.settled.beneath.solid()
     for count in sorted(counts, reverse=True):
         mesh.to(count // twice)
         left, index = mesh.faces(), mesh.numbers()
         if twice == 2:
             left = np.concatenate([left, left[:, [0, 2, 1]] + vertices])
             index = np.concatenate([index, index + faces])
-        coarse = _kept(garment, left.astype(np.int32), garment.panel[index], solid)
-        yield _measured(garment, coarse, spacing)
+        yield _kept(garment, left.astype(np.int32), garment.panel[index])
 
 
-def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid | None) -> Garment:
+def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray) -> Garment:
     """The garment with these faces of its pattern vertices alone."""
     used, new = np.unique(faces, return_inverse=True)
     own, weld = np.unique(garment.weld[used], return_inverse=True)
-    coarse = replace(
+    return replace(
         garment,
         pattern=garment.pattern[used],
         pattern_faces=new.reshape(-1, 3).astype(np.int32),
@@ -61,9 +58,6 @@ def _kept(garment: Garment, faces: np.ndarray, panel: np.ndarray, solid: Solid |
         panel=panel,
         positions=garment.positions[own],
     )
-    if solid is not None:
-        coarse = replace(coarse, positions=_cleared(coarse.positions, coarse.faces, solid))
-    return coarse
 
 
 def _measured(garment: Garment, coarse: Garment, spacing: float) -> Garment:
@@ -78,38 +72,48 @@ def _measured(garment: Garment, coarse: Garment, spacing: float) -> Garment:
 def choose_detail(garment: Garment, budget: float, *, solid: Solid | None = None) -> Garment:
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
-    The garment is thinned by steps until it fails. Levels are tried on few samples and the chosen one is measured again
-    on many; where it fails then, the level before it is taken. The garment itself is returned when none will do. Where
-    a chord would cut into the stand, or into `solid`, the mesh is moved out. The choice and all that was tried go into
+    The garment is thinned by steps, of which every STRIDE-th is measured until one fails, and then those between it and
+    the last that did not, halving what is left. Levels are tried on few samples and the chosen one is measured again on
+    many; where it fails then, the level before it is taken. The garment itself is returned when none will do. Where a
+    chord would cut into the stand, or into `solid`, the mesh is moved out. The choice and all that was tried go into
     the provenance.
     """
     counts = [round(len(garment.faces) * share) for share in SHARES]
+    thinner, levels = thinned(garment, counts), list[Garment]()
+    if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
+        solid = garment.settled.beneath.solid()
     tried: list[dict[str, float]] = []
-    fitting: list[Garment] = []
-    for coarse in thinned(garment, counts, solid=solid, spacing=_TRYING):
-        facts = coarse.provenance["detail"]
-        p99 = facts["hausdorff"]["p99_m"]
-        tried.append({"triangles": facts["triangles"], "p99_m": p99})
-        if p99 > budget:
-            break
-        fitting.append(coarse)
-    for coarse in reversed(fitting):
-        best = _measured(garment, coarse, _SPACING)
+    fits, fails = -1, len(counts)
+    while fails - fits > 1:
+        number = (fits + fails) // 2 if fails < len(counts) else min(fits + STRIDE, fails - 1)
+        levels.extend(islice(thinner, max(0, number + 1 - len(levels))))
+        levels[number] = _measured(garment, _cleared(levels[number], solid), _TRYING)
+        facts = levels[number].provenance["detail"]
+        tried.append({"triangles": facts["triangles"], "p99_m": facts["hausdorff"]["p99_m"]})
+        if tried[-1]["p99_m"] > budget:
+            fails = number
+        else:
+            fits = number
+    tried.sort(key=lambda one: -one["triangles"])
+    for coarse in reversed(levels[: fits + 1]):
+        best = _measured(garment, _cleared(coarse, solid), _SPACING)
         chosen = best.provenance["detail"]
         if chosen["hausdorff"]["p99_m"] <= budget:
             return best.noted(detail={**chosen, "budget_m": budget, "tried": tried})
     return garment.noted(detail={"triangles": len(garment.faces), "budget_m": budget, "tried": tried})
 
 
-def _cleared(positions: np.ndarray, faces: np.ndarray, solid: Solid) -> np.ndarray:
-    """Moves a mesh off the solid until vertices, midpoints and centroids are 1 mm away; few vertices move."""
-    x, v = positions.copy(), np.zeros_like(positions)
-    edges, _ = face_edge_table(faces)
-    vertices, middles = contact_samples(edges, faces, len(x))
+def _cleared(garment: Garment, solid: Solid | None) -> Garment:
+    """Its mesh moved off the solid until vertices, midpoints and centroids are 1 mm away; few vertices move."""
+    if solid is None:
+        return garment
+    x, v = garment.positions.copy(), np.zeros_like(garment.positions)
+    edges, _ = face_edge_table(garment.faces)
+    vertices, middles = contact_samples(edges, garment.faces, len(x))
     packed, free = solid.packed(), np.ones(len(x))
     push = Push(clearance=0.001, cap=0.0005, friction=0.0, dt=1.0)
     for _ in range(60):
         collide_samples(packed, free, x, v, middles, push)
         collide_vertices(packed, free, x, v, vertices, push)
         v[:] = 0.0
-    return x
+    return replace(garment, positions=x)

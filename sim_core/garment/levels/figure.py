@@ -6,8 +6,8 @@ import numpy as np
 
 from sim_core.garment.glb import Shown
 from sim_core.garment.levels.thinning import Thinning
-from sim_core.picture import normals
-from sim_core.picture.raster import depth_map, lit
+from sim_core.picture import fan, normals
+from sim_core.picture.raster import seen_from
 
 __all__ = ["shown_figure", "seen"]
 
@@ -19,30 +19,9 @@ BASE = (0.21, 0.025)  # [m] radius and height of the disc it stands on
 
 def seen(vertices: np.ndarray, cloth: np.ndarray, cloth_faces: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Which vertices (V,) of a figure are seen past the cloth (C, 3) from any of the directions a visitor may look."""
-    everything = np.concatenate([vertices, cloth])
-    found = np.zeros(len(vertices), bool)
-    golden = np.pi * (3 - np.sqrt(5))
-    for k in range(DIRECTIONS):
-        y = HIGHEST - (HIGHEST - LOWEST) * (k + 0.5) / DIRECTIONS
-        ring = np.sqrt(1 - y * y)
-        rows = _axes(np.array([ring * np.cos(golden * k), y, ring * np.sin(golden * k)]))
-        flat = everything @ rows.T
-        low = flat.min(0)
-        scale = (PIXELS - 4) / float(np.ptp(flat[:, :2], axis=0).max())
-        flat[:, :2] = 2 + (flat[:, :2] - low[:2]) * scale
-        depth = np.full((PIXELS, PIXELS), np.inf)
-        depth_map(flat[len(vertices) :], cloth_faces.astype(np.int32), depth)
-        depth_map(flat[: len(vertices)], faces.astype(np.int32), depth)
-        found |= lit(flat[: len(vertices)], depth, BIAS, 0) > 0.5
-    return found
-
-
-def _axes(direction: np.ndarray) -> np.ndarray:
-    """Rows: right, up and away from an eye in `direction`."""
-    helper = np.array([0.0, 1.0, 0.0]) if abs(direction[1]) < 0.99 else np.array([0.0, 0.0, -1.0])
-    side = np.cross(-direction, helper)
-    side /= np.linalg.norm(side)
-    return np.stack([side, np.cross(side, -direction), -direction])
+    points = np.concatenate([vertices, cloth])
+    everything = np.concatenate([faces, np.asarray(cloth_faces) + len(vertices)]).astype(np.int32)
+    return seen_from(points, len(vertices), everything, fan(DIRECTIONS, HIGHEST, LOWEST), PIXELS, BIAS)
 
 
 def shown_figure(

@@ -6,9 +6,11 @@ place and their pattern coordinates, so texture coordinates are exact and twins 
 
 from __future__ import annotations
 
-import heapq
+import math
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 __all__ = ["Thinning"]
 
@@ -16,6 +18,38 @@ LINE_WEIGHT = 4.0  # of keeping a border or seam in its line, against keeping a 
 SHAPE_WEIGHT = 2e-3  # of short ways
 LEAST_SHAPE = 0.05  # area over longest side squared; 0.43 is equilateral
 TURN = 0.2  # cosine between a face's old and new normal
+TWINS = 32  # of one vertex, that move at once
+
+
+class _Mesh(NamedTuple):
+    """V vertices, P pattern vertices, F faces; the corner k of face f is number 3 f + k."""
+
+    x: np.ndarray  # (V, 3) [m]
+    flat: np.ndarray  # (P, 2) [m], or (0, 2)
+    weld: np.ndarray  # (P,) int64
+    faces: np.ndarray  # (F, 3) int64
+    alive: np.ndarray  # (F,) bool
+    head: np.ndarray  # (V,) a corner of each vertex, or -1
+    link: np.ndarray  # (3 F,) the next one
+    lines: np.ndarray  # (N,) neighbours along borders and seams, or -1
+    line_start: np.ndarray  # (V + 1,)
+    stays: np.ndarray  # (V,) bool
+    quadric: np.ndarray  # (V, 10)
+    version: np.ndarray  # (V,) int64: what the heap holds of an older one counts no more
+    count: np.ndarray  # (1,) int64 of the faces that are left
+    ring: np.ndarray  # (V,) int64 working memory
+    met: np.ndarray  # (V,) int64 likewise: when each vertex was met last
+    clock: np.ndarray  # (1,) int64
+    old: np.ndarray  # (TWINS,) int64 pattern vertices that move
+    new: np.ndarray  # (TWINS,) int64 to where
+
+
+class _Heap(NamedTuple):
+    """Ways of vertices onto others, the one of the least error first, then the lower vertices."""
+
+    error: np.ndarray  # (N,)
+    way: np.ndarray  # (N, 3) int64 vertex, onto which, and its version
+    size: np.ndarray  # (1,) int64
 
 
 class Thinning:
@@ -33,147 +67,339 @@ class Thinning:
         pattern: np.ndarray | None = None,
         fixed: np.ndarray | None = None,
     ) -> None:
-        self._x = [tuple(p) for p in vertices.tolist()]
-        self._flat = None if pattern is None else [tuple(p) for p in pattern.tolist()]
-        self._weld = weld.tolist()
-        self._faces: list[tuple[int, int, int] | None] = [(a, b, c) for a, b, c in faces.tolist()]
-        self.count = len(faces)
-        self._around: list[set[int]] = [set() for _ in range(len(vertices))]
-        for f, face in enumerate(faces.tolist()):
-            for p in face:
-                self._around[self._weld[p]].add(f)
-        welded = weld[faces]
-        self._lines = _line_neighbours(welded, faces, len(vertices))
-        self._stays = np.zeros(len(vertices), bool) if fixed is None else fixed.copy()
-        self._quadric = _quadrics(vertices, welded, self._lines)
-        self._version = [0] * len(vertices)
-        self._heap: list[tuple[float, int, int, int]] = []
-        for v in range(len(vertices)):
-            self._offer(v)
+        count, welded = len(vertices), weld[faces]
+        lines = _line_neighbours(welded, faces, count)
+        corners = welded.ravel()
+        order = np.argsort(corners, kind="stable")
+        link = np.full(len(corners), -1, np.int64)
+        alike = corners[order][1:] == corners[order][:-1]
+        link[order[:-1][alike]] = order[1:][alike]
+        head = np.full(count, -1, np.int64)
+        head[corners[::-1]] = np.arange(len(corners))[::-1]
+        self._mesh = _Mesh(
+            x=np.ascontiguousarray(vertices, float),
+            flat=np.zeros((0, 2)) if pattern is None else np.ascontiguousarray(pattern, float),
+            weld=weld.astype(np.int64),
+            faces=faces.astype(np.int64),
+            alive=np.ones(len(faces), bool),
+            head=head,
+            link=link,
+            lines=np.array([u for near in lines for u in sorted(near)], np.int64),
+            line_start=np.cumsum([0, *map(len, lines)]),
+            stays=np.zeros(count, bool) if fixed is None else fixed.copy(),
+            quadric=_quadrics(vertices, welded, lines),
+            version=np.zeros(count, np.int64),
+            count=np.array([len(faces)]),
+            ring=np.zeros(count, np.int64),
+            met=np.zeros(count, np.int64),
+            clock=np.zeros(1, np.int64),
+            old=np.zeros(TWINS, np.int64),
+            new=np.zeros(TWINS, np.int64),
+        )
+        room = 8 * count + 64
+        heap = _Heap(np.zeros(room), np.zeros((room, 3), np.int64), np.zeros(1, np.int64))
+        self._heap = _offer_all(self._mesh, heap)
+
+    @property
+    def count(self) -> int:
+        """How many faces are left."""
+        return int(self._mesh.count[0])
 
     def faces(self) -> np.ndarray:
         """The faces (F, 3) that are left, of pattern vertices."""
-        return np.array([face for face in self._faces if face is not None], np.int32)
+        return self._mesh.faces[self._mesh.alive].astype(np.int32)
 
     def numbers(self) -> np.ndarray:
         """Which of the first faces (F,) are left, in the order of `faces`."""
-        return np.array([number for number, face in enumerate(self._faces) if face is not None], np.int64)
+        return np.flatnonzero(self._mesh.alive)
 
     def to(self, triangles: int) -> None:
         """Collapses edges until at most `triangles` are left, or no collapse is sound."""
-        while self.count > triangles and self._heap:
-            _, v, u, version = heapq.heappop(self._heap)
-            if version == self._version[v] and self._sound(v, u):
-                self._collapse(v, u)
+        self._heap = _thin(self._mesh, self._heap, triangles)
 
-    def _neighbours(self, v: int) -> set[int]:
-        found = {self._weld[p] for f in self._around[v] for p in self._faces[f] or ()}
-        found.discard(v)
-        return found
 
-    def _offer(self, v: int) -> None:
-        """Puts all ways v may go onto the heap."""
-        self._version[v] += 1
-        lines = self._lines[v]
-        if self._stays[v] or not self._around[v] or len(lines) not in (0, 2):
-            return
-        x, q = self._x[v], self._quadric[v]
-        for u in lines or self._neighbours(v):
-            y = self._x[u]
-            way = (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2
-            heapq.heappush(
-                self._heap, (_error(q, y) + SHAPE_WEIGHT * way * q[9] * 1e-3, v, u, self._version[v])
-            )
+@njit(error_model="numpy", inline="always")
+def _before(error, way, n, m):
+    """Whether the entry n of a heap goes before the entry m."""
+    if error[n] != error[m]:
+        return error[n] < error[m]
+    if way[n, 0] != way[m, 0]:
+        return way[n, 0] < way[m, 0]
+    return way[n, 1] < way[m, 1] if way[n, 1] != way[m, 1] else way[n, 2] < way[m, 2]
 
-    def _sound(self, v: int, u: int) -> bool:
-        """No pinch, no turned or needle-like face, neither in space nor in the pattern."""
-        shared = self._around[v] & self._around[u]
-        if not shared or len(self._neighbours(v) & self._neighbours(u)) != len(shared):
-            return False
-        moved = self._moves(v, u, shared)
-        if moved is None:
-            return False
-        for f in self._around[v] - shared:
-            face = self._faces[f]
-            assert face is not None
-            new = tuple(moved.get(p, p) for p in face)
-            if any(self._weld[p] == v for p in new) or not self._fair(face, new):
-                return False
+
+@njit(error_model="numpy", inline="always")
+def _swap(error, way, n, m):
+    error[n], error[m] = error[m], error[n]
+    for c in range(3):
+        way[n, c], way[m, c] = way[m, c], way[n, c]
+
+
+@njit(cache=True, error_model="numpy")
+def _pushed(heap, error, v, u, version):
+    """The heap with one more way."""
+    size = heap.size[0]
+    if size == len(heap.error):
+        wider = _Heap(np.zeros(2 * size), np.zeros((2 * size, 3), np.int64), heap.size)
+        wider.error[:size], wider.way[:size] = heap.error, heap.way
+        heap = wider
+    errors, way = heap.error, heap.way
+    errors[size], way[size, 0], way[size, 1], way[size, 2] = error, v, u, version
+    heap.size[0] = size + 1
+    while size > 0 and _before(errors, way, size, (size - 1) // 2):
+        _swap(errors, way, size, (size - 1) // 2)
+        size = (size - 1) // 2
+    return heap
+
+
+@njit(cache=True, error_model="numpy")
+def _popped(heap):
+    """The first way, which leaves the heap: vertex, onto which, and its version."""
+    error, way, last = heap.error, heap.way, heap.size[0] - 1
+    v, u, version = way[0, 0], way[0, 1], way[0, 2]
+    _swap(error, way, 0, last)
+    heap.size[0] = last
+    n = 0
+    while 2 * n + 1 < last:
+        m = 2 * n + 1
+        if m + 1 < last and _before(error, way, m + 1, m):
+            m += 1
+        if not _before(error, way, m, n):
+            break
+        _swap(error, way, n, m)
+        n = m
+    return v, u, version
+
+
+@njit(cache=True, error_model="numpy")
+def _offer_all(mesh, heap):
+    for v in range(len(mesh.x)):
+        heap = _offer(mesh, heap, v)
+    return heap
+
+
+@njit(cache=True, error_model="numpy")
+def _thin(mesh, heap, triangles):
+    while mesh.count[0] > triangles and heap.size[0] > 0:
+        v, u, version = _popped(heap)
+        if version == mesh.version[v]:
+            moves = _sound(mesh, v, u)
+            if moves > 0:
+                heap = _collapse(mesh, heap, v, u, moves)
+    return heap
+
+
+@njit(cache=True, error_model="numpy")
+def _neighbours(mesh, v, first):
+    """Appends the neighbours of v that this tick of the clock has not met to mesh.ring[:first]; how many it holds."""
+    weld, faces, met, now = mesh.weld, mesh.faces, mesh.met, mesh.clock[0]
+    c = mesh.head[v]
+    while c >= 0:
+        f = c // 3
+        if mesh.alive[f]:
+            for k in range(3):
+                u = weld[faces[f, k]]
+                if u != v and met[u] != now:
+                    met[u] = now
+                    mesh.ring[first] = u
+                    first += 1
+        c = mesh.link[c]
+    return first
+
+
+@njit(cache=True, error_model="numpy")
+def _common(mesh, v, u):
+    """How many neighbours two vertices share."""
+    mesh.clock[0] += 1
+    _neighbours(mesh, v, 0)
+    weld, faces, met, mine, count = mesh.weld, mesh.faces, mesh.met, mesh.clock[0], 0
+    mesh.clock[0] += 1
+    c = mesh.head[u]
+    while c >= 0:
+        f = c // 3
+        if mesh.alive[f]:
+            for k in range(3):
+                w = weld[faces[f, k]]
+                if w != u and met[w] == mine:
+                    met[w] = mesh.clock[0]
+                    count += 1
+        c = mesh.link[c]
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _offer(mesh, heap, v):
+    """The heap with all ways v may go."""
+    mesh.version[v] += 1
+    start, end = mesh.line_start[v], mesh.line_start[v + 1]
+    along = 0
+    for n in range(start, end):
+        along += mesh.lines[n] >= 0
+    if mesh.stays[v] or along not in (0, 2):
+        return heap
+    mesh.clock[0] += 1
+    many = _neighbours(mesh, v, 0)
+    if many == 0:
+        return heap
+    if along > 0:
+        many = 0
+        for n in range(start, end):
+            if mesh.lines[n] >= 0:
+                mesh.ring[many] = mesh.lines[n]
+                many += 1
+    x, q = mesh.x, mesh.quadric
+    for n in range(many):
+        u = mesh.ring[n]
+        way = (x[v, 0] - x[u, 0]) ** 2 + (x[v, 1] - x[u, 1]) ** 2 + (x[v, 2] - x[u, 2]) ** 2
+        error = _error(q, v, x[u, 0], x[u, 1], x[u, 2]) + SHAPE_WEIGHT * way * q[v, 9] * 1e-3
+        heap = _pushed(heap, error, v, u, mesh.version[v])
+    return heap
+
+
+@njit(cache=True, error_model="numpy")
+def _sound(mesh, v, u):
+    """How many pattern vertices move where v goes to u, into mesh.old and mesh.new: each twin of v to the twin of u
+    that lies in one face with it. 0 where that makes a pinch, or a turned or needle-like face, in space or pattern.
+    """
+    weld, faces, alive = mesh.weld, mesh.faces, mesh.alive
+    shared = moves = 0
+    c = mesh.head[v]
+    while c >= 0:
+        f = c // 3
+        if alive[f]:
+            p = -1
+            for k in range(3):
+                if weld[faces[f, k]] == u:
+                    p = faces[f, k]
+            if p >= 0:
+                shared += 1
+                known = False
+                for n in range(moves):
+                    if mesh.old[n] == faces[f, c % 3]:
+                        known = True
+                        if mesh.new[n] != p:
+                            return 0
+                if not known:
+                    if moves == TWINS:
+                        return 0
+                    mesh.old[moves], mesh.new[moves] = faces[f, c % 3], p
+                    moves += 1
+        c = mesh.link[c]
+    if shared == 0:
+        return 0
+    if _common(mesh, v, u) != shared:
+        return 0
+    c = mesh.head[v]
+    while c >= 0:
+        f = c // 3
+        if alive[f]:
+            a, b, d = faces[f, 0], faces[f, 1], faces[f, 2]
+            if weld[a] != u and weld[b] != u and weld[d] != u:
+                a, b, d = _moved(mesh, a, moves), _moved(mesh, b, moves), _moved(mesh, d, moves)
+                left = weld[a] == v or weld[b] == v or weld[d] == v
+                if left or not _fair(mesh, f, a, b, d):
+                    return 0
+        c = mesh.link[c]
+    return moves
+
+
+@njit(error_model="numpy", inline="always")
+def _moved(mesh, p, moves):
+    for n in range(moves):
+        if mesh.old[n] == p:
+            return mesh.new[n]
+    return p
+
+
+@njit(cache=True, error_model="numpy")
+def _fair(mesh, f, a, b, c):
+    """Whether the face f may have the corners a, b, c."""
+    x, weld, faces = mesh.x, mesh.weld, mesh.faces
+    n = _normal(x, weld[faces[f, 0]], weld[faces[f, 1]], weld[faces[f, 2]])
+    i, j, k = weld[a], weld[b], weld[c]
+    m = _normal(x, i, j, k)
+    size, old = math.sqrt(m[0] ** 2 + m[1] ** 2 + m[2] ** 2), math.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
+    longest = max(_far(x, i, j), _far(x, j, k), _far(x, k, i))
+    if 0.5 * size < LEAST_SHAPE * longest or n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < TURN * old * size:
+        return False
+    flat = mesh.flat
+    if len(flat) == 0:
         return True
-
-    def _moves(self, v: int, u: int, shared: set[int]) -> dict[int, int] | None:
-        """Which pattern vertex takes the place of each twin of v: the twin of u that lies in one face with it."""
-        moved: dict[int, int] = {}
-        for f in shared:
-            face = self._faces[f]
-            assert face is not None
-            old = next(p for p in face if self._weld[p] == v)
-            new = next(p for p in face if self._weld[p] == u)
-            if moved.setdefault(old, new) != new:
-                return None
-        return moved
-
-    def _fair(self, face: tuple[int, ...], new: tuple[int, ...]) -> bool:
-        before, after = ([self._x[self._weld[p]] for p in corners] for corners in (face, new))
-        n, m = _normal(*before), _normal(*after)
-        size = (m[0] ** 2 + m[1] ** 2 + m[2] ** 2) ** 0.5
-        old = (n[0] ** 2 + n[1] ** 2 + n[2] ** 2) ** 0.5
-        longest = max(_far(after[0], after[1]), _far(after[1], after[2]), _far(after[2], after[0]))
-        if 0.5 * size < LEAST_SHAPE * longest:
-            return False
-        if n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < TURN * old * size:
-            return False
-        if self._flat is None:
-            return True
-        (ax, ay), (bx, by), (cx, cy) = (self._flat[p] for p in new)
-        # positive in (x, -y)
-        return (by - ay) * (cx - ax) - (bx - ax) * (cy - ay) > 0.02 * longest
-
-    def _collapse(self, v: int, u: int) -> None:
-        shared = self._around[v] & self._around[u]
-        moved = self._moves(v, u, shared)
-        assert moved is not None
-        ring = self._neighbours(v) | self._neighbours(u)
-        for f in shared:
-            for p in self._faces[f] or ():
-                self._around[self._weld[p]].discard(f)
-            self._faces[f] = None
-        for f in self._around[v]:
-            face = self._faces[f]
-            assert face is not None
-            a, b, c = (moved.get(p, p) for p in face)
-            self._faces[f] = (a, b, c)
-            self._around[u].add(f)
-        self._around[v] = set()
-        self.count -= len(shared)
-        for w in self._lines[v]:
-            self._lines[w].discard(v)
-            if w != u:
-                self._lines[w].add(u)
-                self._lines[u].add(w)
-        self._lines[v] = set()
-        self._quadric[u] = [a + b for a, b in zip(self._quadric[u], self._quadric[v], strict=True)]
-        self._version[v] += 1
-        for w in ring - {v}:
-            self._offer(w)
+    turn = (flat[b, 1] - flat[a, 1]) * (flat[c, 0] - flat[a, 0])
+    turn -= (flat[b, 0] - flat[a, 0]) * (flat[c, 1] - flat[a, 1])
+    return turn > 0.02 * longest  # positive in (x, -y)
 
 
-def _normal(a: tuple, b: tuple, c: tuple) -> tuple[float, float, float]:
-    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+@njit(cache=True, error_model="numpy")
+def _collapse(mesh, heap, v, u, moves):
+    weld, faces, link, head, lines, start = mesh.weld, mesh.faces, mesh.link, mesh.head, mesh.lines, mesh.line_start
+    mesh.clock[0] += 1
+    many = _neighbours(mesh, u, _neighbours(mesh, v, 0))  # v is among them
+    c, left = head[v], -1
+    while c >= 0:
+        after, f = link[c], c // 3
+        if mesh.alive[f]:
+            if weld[faces[f, 0]] == u or weld[faces[f, 1]] == u or weld[faces[f, 2]] == u:
+                mesh.alive[f] = False
+                mesh.count[0] -= 1
+            else:
+                faces[f, c % 3] = _moved(mesh, faces[f, c % 3], moves)
+                link[c], left = left, c
+        c = after
+    head[v] = -1
+    c = head[u]
+    while c >= 0:
+        after = link[c]
+        if mesh.alive[c // 3]:
+            link[c], left = left, c
+        c = after
+    head[u] = left
+    for n in range(start[v], start[v + 1]):
+        w = lines[n]
+        lines[n] = -1
+        if w >= 0 and w != u:  # there are two, and u is the other one
+            _replace(lines, start, w, v, u)
+            _replace(lines, start, u, v, w)
+    for n in range(10):
+        mesh.quadric[u, n] += mesh.quadric[v, n]
+    mesh.version[v] += 1
+    for w in mesh.ring[:many].copy():  # which offers write over
+        if w != v:
+            heap = _offer(mesh, heap, w)
+    return heap
+
+
+@njit(cache=True, error_model="numpy")
+def _replace(lines, start, v, old, new):
+    """Puts a neighbour along v's lines in the place of another, once."""
+    place = -1
+    for n in range(start[v], start[v + 1]):
+        if lines[n] == old:
+            place = n
+        elif lines[n] == new:
+            new = -1
+    if place >= 0:
+        lines[place] = new
+
+
+@njit(error_model="numpy", inline="always")
+def _normal(x, i, j, k):
+    ux, uy, uz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+    vx, vy, vz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
     return uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
 
 
-def _far(a: tuple, b: tuple) -> float:
-    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2
+@njit(error_model="numpy", inline="always")
+def _far(x, i, j):
+    return (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2
 
 
-def _error(q: list[float], p: tuple) -> float:
-    """Sum of weighted squared distances of p to all planes in q."""
-    x, y, z = p
-    square = q[0] * x * x + q[4] * y * y + q[7] * z * z + q[9]
-    cross = q[1] * x * y + q[2] * x * z + q[5] * y * z
-    return max(square + 2 * (cross + q[3] * x + q[6] * y + q[8] * z), 0.0)
+@njit(cache=True, error_model="numpy")
+def _error(q, v, x, y, z):
+    """Sum of weighted squared distances of a point to all planes in q[v]."""
+    square = q[v, 0] * x * x + q[v, 4] * y * y + q[v, 7] * z * z + q[v, 9]
+    cross = q[v, 1] * x * y + q[v, 2] * x * z + q[v, 5] * y * z
+    return max(square + 2 * (cross + q[v, 3] * x + q[v, 6] * y + q[v, 8] * z), 0.0)
 
 
 def _line_neighbours(welded: np.ndarray, faces: np.ndarray, count: int) -> list[set[int]]:
@@ -195,7 +421,7 @@ def _line_neighbours(welded: np.ndarray, faces: np.ndarray, count: int) -> list[
     return lines
 
 
-def _quadrics(vertices: np.ndarray, faces: np.ndarray, lines: list[set[int]]) -> list[list[float]]:
+def _quadrics(vertices: np.ndarray, faces: np.ndarray, lines: list[set[int]]) -> np.ndarray:
     """Ten numbers per vertex: the planes of its faces by area, and planes that hold its lines."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -219,7 +445,7 @@ def _quadrics(vertices: np.ndarray, faces: np.ndarray, lines: list[set[int]]) ->
             held = _products(np.column_stack([n, -(n * vertices[i]).sum(1)])) * weight[:, None]
             np.add.at(total, i, held)
             np.add.at(total, j, held)
-    return total.tolist()
+    return total
 
 
 def _products(plane: np.ndarray) -> np.ndarray:
