@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.metrics.components import components
