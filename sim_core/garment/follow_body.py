@@ -15,7 +15,7 @@ from sim_core.cloth.contact import hull_faces
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import PACE, garment_sheet, standing
+from sim_core.garment.garment_sheet import garment_sheet, pace_of, standing
 from sim_core.garment.outfit import Outfit
 from sim_core.garment.outfit.outfit import UNTANGLE
 from sim_core.validation import numeric_array
@@ -102,7 +102,7 @@ def follow(
         collider=wearer,
         contact=contact,
         holds=settled and settled.holds,
-        pace=PACE,
+        pace=pace_of(settled is not None and settled.even),
         **hooks,
     )
 

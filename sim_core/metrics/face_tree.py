@@ -43,7 +43,10 @@ def face_tree(vertices: np.ndarray, faces: np.ndarray) -> FaceTree:
     level = leaves
     while level > 1:
         pairs, level = box[level : 2 * level].reshape(-1, 2, 6), level // 2
-        box[level : 2 * level, :3], box[level : 2 * level, 3:] = pairs[:, :, :3].min(1), pairs[:, :, 3:].max(1)
+        box[level : 2 * level, :3], box[level : 2 * level, 3:] = (
+            pairs[:, :, :3].min(1),
+            pairs[:, :, 3:].max(1),
+        )
     return FaceTree(np.ascontiguousarray(corner.reshape(-1, 9)), start, box)
 
 
@@ -80,7 +83,7 @@ def _box2(x, y, z, box, n):
 def nearest_face(points, tree, limit):
     """Distance (N,) [m] of points (N, 3) to the nearest face of a `FaceTree`; `limit` where it is further."""
     corners, start, box = tree.corners, tree.start, tree.box
-    leaves, out = len(start) - 1, np.empty(len(points))
+    leaves, out = len(start) - 1, np.zeros(len(points))
     waits, gap, found = np.zeros(DEEPEST, np.int64), np.zeros(DEEPEST), 0
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
@@ -99,7 +102,10 @@ def nearest_face(points, tree, limit):
                 continue
             first, second = _box2(x, y, z, box, 2 * n), _box2(x, y, z, box, 2 * n + 1)
             near = 2 * n if first <= second else 2 * n + 1
-            waits[left], gap[left] = 4 * n + 1 - near, max(first, second)  # the nearer one is looked into first
+            waits[left], gap[left] = (
+                4 * n + 1 - near,
+                max(first, second),
+            )  # the nearer one is looked into first
             waits[left + 1], gap[left + 1] = near, min(first, second)
             left += 2
         out[i] = math.sqrt(best)

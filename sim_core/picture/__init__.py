@@ -1,7 +1,17 @@
 """Stills of meshes without a graphics card: smooth two-sided shading, shadows, sky occlusion, sheer cloth."""
 
 from sim_core.picture.raster import depth_map, lit
-from sim_core.picture.shading import Camera, Light, Lighting, Surface, fan, lighting, normals, render, save_png
+from sim_core.picture.shading import (
+    Camera,
+    Light,
+    Lighting,
+    Surface,
+    fan,
+    lighting,
+    normals,
+    render,
+    save_png,
+)
 
 __all__ = [
     "Camera",

@@ -23,7 +23,9 @@ class Scene(NamedTuple):
     sky: np.ndarray  # (V,) the share of it that each vertex sees
     faces: np.ndarray  # (F, 3) int32
     of: np.ndarray  # (F,) int32 the surface of each face
-    looks: np.ndarray  # (S, 8) linear colour, gloss, sheen, through, alpha, 1 for a floor that only shows shadows
+    looks: (
+        np.ndarray
+    )  # (S, 8) linear colour, gloss, sheen, through, alpha, 1 for a floor that only shows shadows
     lights: np.ndarray  # (5, 3) eye, key, key colour, sky, ground
 
 
@@ -60,7 +62,9 @@ def _along(a, i, j, k, u, v, w, c):
 
 
 @njit(error_model="numpy", inline="always")
-def _shaded(screen, world, normals, sky, faces, of, looks, lights, matrix, opaque, sheer, veil, bias, f, x, y):
+def _shaded(
+    screen, world, normals, sky, faces, of, looks, lights, matrix, opaque, sheer, veil, bias, f, x, y
+):
     """Linear colour of a face where it is seen at (x, y) [pixel], and how squarely it is seen, 0.05 to 1."""
     i, j, k, s = faces[f, 0], faces[f, 1], faces[f, 2], of[f]
     cx, cy = screen[k, 0], screen[k, 1]
@@ -123,10 +127,17 @@ def developed(scene, shadow, seen, backdrop, tones, fine):
     pixel that one opaque face fills is shaded once.
     """
     screen, world, normals, sky, faces = scene.screen, scene.world, scene.normals, scene.sky, scene.faces
-    of, looks, lights, owner, count, layers = scene.of, scene.looks, scene.lights, seen.owner, seen.count, seen.layers
+    of, looks, lights, owner, count, layers = (
+        scene.of,
+        scene.looks,
+        scene.lights,
+        seen.owner,
+        seen.count,
+        seen.layers,
+    )
     matrix, opaque, sheer, veil, bias = shadow.matrix, shadow.opaque, shadow.sheer, shadow.veil, shadow.bias
     height, width = owner.shape[0] // fine, owner.shape[1] // fine
-    out, sheers = np.empty((height, width, 3), np.uint8), len(count) > 0
+    out, sheers = np.zeros((height, width, 3), np.uint8), len(count) > 0
     for row in range(height):
         for column in range(width):
             y, x = row * fine, column * fine

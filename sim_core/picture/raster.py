@@ -207,8 +207,8 @@ def open_shares(points, casters, faces, ways, pixels, bias):
 
     The first `casters` of the points bear the faces (F, 3) that cast shadows, seen in maps of so many pixels.
     """
-    out, at, matrix = np.zeros(len(points)), np.empty((len(points), 3)), np.empty((3, 4))
-    depth = np.empty((pixels, pixels), np.float32)
+    out, at, matrix = np.zeros(len(points)), np.zeros((len(points), 3)), np.zeros((3, 4))
+    depth = np.zeros((pixels, pixels), np.float32)
     for way in range(len(ways)):
         fitted(points[:casters], ways[way], pixels, matrix)
         placed(points, matrix, at)
@@ -224,8 +224,8 @@ def open_shares(points, casters, faces, ways, pixels, bias):
 @njit(cache=True, error_model="numpy")
 def seen_from(points, own, faces, ways, pixels, bias):
     """Which (own,) of the first points (N, 3) [m] can be seen along any of `ways` (K, 3, 3) past the faces (F, 3)."""
-    found, at, matrix = np.zeros(own, np.bool_), np.empty((len(points), 3)), np.empty((3, 4))
-    depth = np.empty((pixels, pixels), np.float32)
+    found, at, matrix = np.zeros(own, np.bool_), np.zeros((len(points), 3)), np.zeros((3, 4))
+    depth = np.zeros((pixels, pixels), np.float32)
     for way in range(len(ways)):
         fitted(points, ways[way], pixels, matrix)
         placed(points, matrix, at)

@@ -164,9 +164,9 @@ def _seen(scene: Scene, width: int, height: int) -> Seen:
     near, owner = np.zeros((height, width), np.float32), np.full((height, width), -1, np.int32)
     nearest_faces(scene.screen, scene.faces, np.flatnonzero(~sheer), near, owner)
     shape = (height, width) if sheer.any() else (0, 0)
-    count, layers = np.zeros(shape, np.uint8), np.empty((*shape, LAYERS), np.int32)
+    count, layers = np.zeros(shape, np.uint8), np.zeros((*shape, LAYERS), np.int32)
     if sheer.any():
-        depths = np.empty((*shape, LAYERS), np.float32)  # memory that no pixel asks for is never touched
+        depths = np.zeros((*shape, LAYERS), np.float32)
         sheer_faces(scene.screen, scene.faces, np.flatnonzero(sheer), near, count, depths, layers)
     return Seen(owner, count, layers)
 
@@ -253,7 +253,7 @@ def _project(points: np.ndarray, camera: Camera, width: int, height: int) -> np.
 
 def _shadow(surfaces: Sequence[Surface], points: np.ndarray, key: np.ndarray) -> Shadow:
     """The key light's depth maps of the opaque and of the sheer, and how much the sheer holds back."""
-    matrix, at = np.empty((3, 4)), np.empty_like(points)
+    matrix, at = np.zeros((3, 4)), np.zeros_like(points)
     fitted(points, np.stack([*_axes(-key), -key]), _SHADOW_PIXELS, matrix)
     placed(points, matrix, at)
     sheer = np.repeat([one.alpha < 1 for one in surfaces], [len(one.faces) for one in surfaces])

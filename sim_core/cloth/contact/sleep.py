@@ -7,7 +7,7 @@ import math
 from numba import njit
 
 GAINED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
-HASTE = 100.0  # [m/s2] at which it may fly off on the spot, ten times as fast as cloth falls
+HASTE = 100.0  # [m/s2] at which it may fly off, ten times as fast as cloth falls
 SOON = 40  # substeps: who sleeps longer is not asked at the end of a frame either
 
 
@@ -18,6 +18,5 @@ def asleep(room, fast2, drift, dt):
 
     Between two keys a body's distance at a place changes evenly, so what it loses now it loses until the frame's end.
     """
-    left = max(room, 0.0)
-    at_speed = left / (2.0 * math.sqrt(fast2) + GAINED + drift)
-    return int(min(at_speed, math.sqrt(2.0 * left / HASTE)) / dt)
+    left, speed = max(room, 0.0), 2.0 * math.sqrt(fast2) + GAINED + drift
+    return int((math.sqrt(speed * speed + 2.0 * HASTE * left) - speed) / (HASTE * dt))

@@ -29,6 +29,7 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
+SURE_FOR = 2  # substeps for which a quick look has to be sure that the lists hold: a thorough one costs as much as 20
 
 
 class Steps(NamedTuple):
@@ -151,8 +152,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
                     near = begin_pairs(x, mesh, patches, shapes, how, near)
-                enough, push = LOOK_EVERY * steps.dt, pushed / steps.dt
-                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, push, enough)
+                enough, push = SURE_FOR * steps.dt, pushed / steps.dt
+                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, (push, enough))
                 look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0
             if near.now.count[1] + near.now.count[2] > 0:
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)

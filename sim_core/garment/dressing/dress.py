@@ -26,7 +26,7 @@ from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
 from sim_core.garment.dressing.symmetry import let_go_whole, mirrored
 from sim_core.garment.dressing.wearing import Trail, Wearing
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import PACE
+from sim_core.garment.garment_sheet import pace_of
 from sim_core.garment.outfit import Belt, Layer, Outfit
 from sim_core.garment.placement import Flat
 from sim_core.garment.settled import Settled
@@ -191,7 +191,7 @@ class _Dressing:
         apart = np.array([k if panel.along else 0 for k, panel in enumerate(panels)] or [0])
         kind, apart = materials.of_faces(self.cloth), apart[self.cloth.panel % len(apart)]
         solid, gap = self.wearing.solid(half=self.half), None
-        x, v = start, np.zeros_like(start)
+        x, v, even = start, np.zeros_like(start), self.layer.program.even
         sheet: SewnSheet | None = None
         done: list[Drape] = []
         for number, course in enumerate(self.runs):
@@ -200,7 +200,6 @@ class _Dressing:
                 if sheet is not None:
                     x, v = x[sheet.number], v[sheet.number]
                     gap = self._gap(x)
-                even = self.layer.program.even
                 sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart, even=even)
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
@@ -217,7 +216,7 @@ class _Dressing:
                     collider=solid,
                     contact=self._contact(course),
                     holds=self._holds(sheet, course, places, x),
-                    pace=PACE,
+                    pace=pace_of(even),
                     **self._hooks(number, lambda x, sheet=sheet: self._both(x[sheet.number])),
                 )
             )

@@ -332,7 +332,14 @@ def _fair(mesh, f, a, b, c):
 
 @njit(cache=True, error_model="numpy")
 def _collapse(mesh, heap, v, u, moves):
-    weld, faces, link, head, lines, start = mesh.weld, mesh.faces, mesh.link, mesh.head, mesh.lines, mesh.line_start
+    weld, faces, link, head, lines, start = (
+        mesh.weld,
+        mesh.faces,
+        mesh.link,
+        mesh.head,
+        mesh.lines,
+        mesh.line_start,
+    )
     mesh.clock[0] += 1
     many = _neighbours(mesh, u, _neighbours(mesh, v, 0))  # v is among them
     c, left = head[v], -1

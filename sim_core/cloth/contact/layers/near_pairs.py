@@ -14,19 +14,16 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
-from sim_core.cloth.contact.layers.patches import (
-    WHOLE,
-    apart,
+from sim_core.cloth.contact.layers.patch_motion import apart, furthest, move_patches
+from sim_core.cloth.contact.layers.patch_places import (
     between,
     flat_pair,
-    furthest,
-    grown,
-    move_patches,
     patch_pairs,
     place_patch,
     place_patches,
     turn_parts,
 )
+from sim_core.cloth.contact.layers.patches import WHOLE, grown
 from sim_core.cloth.contact.sleep import GAINED
 
 LATE = 0.6  # of what patches may move against each other, from where on their pairs are looked for anew
@@ -205,12 +202,13 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
 
 
 @njit(cache=True, error_model="numpy")
-def renew_pairs(x, v, mesh, patches, shapes, how, near, pushed, enough):
+def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold at velocities v (V, 3).
 
-    pushed [m/s]: at most, by solids, beside the velocities. enough [s]: nobody asks whether they hold for longer.
+    within: the speed [m/s] at which solids push at most, beside the velocities, and for how long [s] it is enough that
+    they hold: what a quick look is sure of for so long is not looked at thoroughly.
     """
-    now, moved = near.now, shapes.moved
+    now, moved, (pushed, enough) = near.now, shapes.moved, within
     near.tally[0] += 1
     calm = _calm_for(x, v, near.begun, now.mark, now.least, how.ahead, pushed)
     if calm >= enough:  # without a look at any patch

@@ -22,7 +22,8 @@ from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
 from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
-from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes, flat_pair, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes
 from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
