@@ -264,7 +264,7 @@ def _shadow(surfaces: Sequence[Surface], points: np.ndarray, key: np.ndarray) ->
         depth_map(at, faces[which], depth)
         maps.append(depth)
     veil = 0.7 * max((one.alpha for one in surfaces if one.alpha < 1), default=0.0)
-    return Shadow(matrix, *maps, veil, _BIAS)
+    return Shadow(matrix, maps[0], maps[1], veil, _BIAS)
 
 
 @cache

@@ -9,10 +9,10 @@ import numpy as np
 
 from sim_core.cloth.contact.collisions import (
     Push,
-    Watch,
     collide_samples,
     collide_vertices,
     contact_samples,
+    watch_of,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
@@ -25,6 +25,7 @@ from sim_core.cloth.contact.layers.untangling import (
     Untangling,
     faces_at_edges,
     no_crossings,
+    none_crosses,
     untangle,
 )
 from sim_core.cloth.contact.moving_grid import MovingGrid
@@ -105,8 +106,8 @@ class Engine:
         vertices, middles = self._samples()
         self.touch = Touch(
             solid=self.packed,
-            vertices=Watch(vertices, np.zeros(len(vertices), np.int32)),
-            middles=Watch(middles, np.zeros(len(middles), np.int32)),
+            vertices=watch_of(vertices),
+            middles=watch_of(middles),
             shell=self.shell,
             patches=patches,
             shapes=shapes_of(patches),
@@ -280,6 +281,7 @@ class Engine:
         )
         how, touch = search_for(mesh, thickness, 0.0, 0.0), self.touch
         self.near = begin_pairs(there, mesh, touch.patches, touch.shapes, how, self.near)
+        self.near.kept[:] = 0.0
         found = parted(there, mesh, self.near.now, thickness)
         return x if found is there else found[self.number]
 
@@ -288,6 +290,8 @@ class Engine:
         c = self.contact
         how = Untangling(UNTANGLE * c.thickness, c.untangle, c.partly)
         if not how.rounds or not how.step:
+            return 0, 0
+        if none_crosses(state.x.T, self.mesh, self.third, self.near, c.thickness):
             return 0, 0
         there, speed = (np.ascontiguousarray(array.T) for array in state)
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(pins))
@@ -304,6 +308,7 @@ class Engine:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
+        self.near.kept[:] = 0.0
         if self.laned:
             self.laned.forget()
 

@@ -15,9 +15,9 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
-from sim_core.cloth.contact.layers.near_pairs import begin_pairs, likely_way, renew_pairs
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, go_on, likely_way, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
-from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for
+from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for, search_with
 from sim_core.cloth.contact.packed import MOVING, Packed
 from sim_core.cloth.step.frame import FREE, State
 from sim_core.cloth.step.haste import LATE, passing_step
@@ -135,7 +135,9 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     layers, pushed = shell.thickness > 0.0, 0.0
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
+    touch.vertices.planes[:, 9] = 0.0
     touch.middles.wake[:] = 0
+    touch.middles.planes[:, 9] = 0.0
     look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
@@ -151,7 +153,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
-                    near = begin_pairs(x, mesh, patches, shapes, how, near)
+                    if go_on(near, how):
+                        how = search_with(how.thickness, how.edge, near.kept[0], near.kept[1])
+                    else:
+                        near = begin_pairs(x, mesh, patches, shapes, how, near)
                 enough, push = SURE_FOR * steps.dt, pushed / steps.dt
                 near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, (push, enough))
                 look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0

@@ -192,8 +192,7 @@ class _Dressing:
         kind, apart = materials.of_faces(self.cloth), apart[self.cloth.panel % len(apart)]
         solid, gap = self.wearing.solid(half=self.half), None
         x, v, even = start, np.zeros_like(start), self.layer.program.even
-        sheet: SewnSheet | None = None
-        done: list[Drape] = []
+        sheet, done = None, list[Drape]()
         for number, course in enumerate(self.runs):
             if sheet is None or course.closed != self.runs[number - 1].closed:
                 weld = self.cloth.closed if course.closed else self.cloth.joined

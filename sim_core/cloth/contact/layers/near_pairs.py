@@ -55,6 +55,7 @@ class NearPairs(NamedTuple):
     spare: Near
     begun: np.ndarray  # (V, 3)
     order: np.ndarray  # (K,) int32 working memory
+    kept: np.ndarray  # (3,) [m] the skin and the way ahead that the lists are looked for with; 1 while they hold
     tally: (
         np.ndarray
     )  # (4,) int64 looks, renewals, those of them among other pairs of patches, pairs looked for anew
@@ -76,7 +77,8 @@ def near_pairs_of(vertices: int) -> NearPairs:
             least=np.zeros(2),
         )
 
-    return NearPairs(near(), near(), np.zeros((vertices, 3)), np.zeros(0, np.int32), np.zeros(5, np.int64))
+    none = np.zeros(0, np.int32)
+    return NearPairs(near(), near(), np.zeros((vertices, 3)), none, np.zeros(3), np.zeros(5, np.int64))
 
 
 @njit(cache=True, error_model="numpy")
@@ -185,20 +187,61 @@ def _lengthened(near, pairs, count):
 
 
 @njit(cache=True, error_model="numpy")
+def _in_order(pairs, count, start, order):
+    """Puts pairs (p, q) in the order of p, then of q, so that it tells nothing of when they were looked for.
+
+    order (K,) is written over and returned, a longer one where it was full.
+    """
+    if len(order) < 4 * count:
+        order = np.zeros(8 * count, np.int32)
+    for column in (1, 0):  # by the last first: each pass leaves equal ones in their order
+        start[:] = 0
+        for k in range(count):
+            start[pairs[k, column] + 1] += 1
+        for p in range(1, len(start)):
+            start[p] += start[p - 1]
+        for k in range(count):
+            p = pairs[k, column]
+            order[2 * start[p]], order[2 * start[p] + 1] = pairs[k, 0], pairs[k, 1]
+            start[p] += 1
+        for k in range(count):
+            pairs[k, 0], pairs[k, 1] = order[2 * k], order[2 * k + 1]
+    return order
+
+
+@njit(cache=True, error_model="numpy")
+def go_on(near, how):
+    """Whether the lists of the frame before hold on and are as those that would be looked for so; nobody sleeps then.
+
+    Only where edges are long: between short ones it depends on when they are looked at which pairs count as one sheet.
+    """
+    skin, (before, ahead, holds) = how.reach - how.thickness, near.kept
+    like = 0.5 * before <= skin <= 2.0 * before and 0.5 * ahead <= how.ahead <= 2.0 * ahead
+    if holds == 0.0 or how.near > 0.0 or not like:
+        return False
+    near.now.points[: near.now.count[1], 2] = 0
+    near.now.crossings[: near.now.count[2], 2] = 0
+    return True
+
+
+@njit(cache=True, error_model="numpy")
 def begin_pairs(x, mesh, patches, shapes, how, near):
     """All lists anew at x (V, 3); none where x is not finite: whoever checks the frame tells."""
     finite, along = place_patches(x, mesh, patches, shapes)
     near.now.count[:] = 0
     near.begun[:] = x
+    near.kept[0], near.kept[1], near.kept[2] = how.reach - how.thickness, how.ahead, 0.0
     if not finite:
         return near
     pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.now.patches)
+    order = _in_order(pairs, count, shapes.start, near.order)
     now = _lengthened(near.now, pairs, count)
     now.gone[:count] = np.inf
     _sifted(x, mesh, patches, shapes, how, now)
     now = _rebuilt(x, mesh, patches, shapes, how, near.spare, now)
     _margins(now)
-    return NearPairs(now, near.spare, near.begun, near.order, near.tally)
+    near.kept[2] = 1.0 if how.near == 0.0 else 0.0
+    return NearPairs(now, near.spare, near.begun, order, near.kept, near.tally)
 
 
 @njit(cache=True, error_model="numpy")
@@ -217,6 +260,7 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     (far, total), (fast, _) = furthest(moved, 0), furthest(moved, WHOLE)
     if not math.isfinite(total):
         now.count[:] = 0
+        near.kept[2] = 0.0
         return near, 1.0
     away = 2.0 * far > LATE * how.ahead
     move_patches(x, v, now.mark, patches, moved)
@@ -237,6 +281,23 @@ def _margins(near):
     for k in range(near.count[0]):
         due, late = min(due, LATE * lasts[k] - gone[k]), min(late, lasts[k] - gone[k])
     near.least[0], near.least[1] = due, late
+
+
+@njit(cache=True, error_model="numpy")
+def listed_within(x, near):
+    """Up to which gap [m] beyond the thickness all pairs at x (V, 3) are in the lists; less than 0: nobody knows."""
+    far = away = 0.0
+    mark, begun = near.now.mark, near.begun
+    for i in range(len(x)):
+        far = max(
+            far, (x[i, 0] - mark[i, 0]) ** 2 + (x[i, 1] - mark[i, 1]) ** 2 + (x[i, 2] - mark[i, 2]) ** 2
+        )
+        away = max(
+            away, (x[i, 0] - begun[i, 0]) ** 2 + (x[i, 1] - begun[i, 1]) ** 2 + (x[i, 2] - begun[i, 2]) ** 2
+        )
+    if near.kept[2] == 0.0 or not 2.0 * math.sqrt(away) <= near.kept[1]:
+        return -1.0
+    return min(near.now.least[1], near.kept[0]) - 2.0 * math.sqrt(far)
 
 
 @njit(cache=True, error_model="numpy")
@@ -300,6 +361,7 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
         near.begun[:] = x
         _, along = place_patches(x, mesh, patches, shapes)
         pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.spare.patches)
+        order = _in_order(pairs, count, shapes.start, order)
         spare = _lengthened(near.spare, pairs, count)
         order = _matched(now, pairs, count, shapes.start, order, spare)
         due, through = _sifted(x, mesh, patches, shapes, how, spare)
@@ -319,4 +381,4 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
     near.tally[3] += due
     near.tally[4] += through
     spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
-    return NearPairs(spare, now, near.begun, order, near.tally)
+    return NearPairs(spare, now, near.begun, order, near.kept, near.tally)

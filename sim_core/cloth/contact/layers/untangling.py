@@ -22,6 +22,7 @@ from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
 from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
+from sim_core.cloth.contact.layers.near_pairs import listed_within
 from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_patches
 from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes
 from sim_core.metrics import components
@@ -207,6 +208,43 @@ def crossings_by_patches(x, mesh, patches, shapes, near, lists):
                 found = pairs, place, count
                 pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (q, p), found)
     return (pairs, place), near, count
+
+
+@njit(cache=True, error_model="numpy")
+def _widest(x, faces):
+    """The largest radius [m] of a circle within a face: twice its area over its girth."""
+    widest = 0.0
+    for f in range(len(faces)):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy, uz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+        wx, wy, wz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
+        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+        sx, sy, sz = wx - ux, wy - uy, wz - uz
+        girth = math.sqrt(ux * ux + uy * uy + uz * uz) + math.sqrt(wx * wx + wy * wy + wz * wz)
+        girth += math.sqrt(sx * sx + sy * sy + sz * sz)
+        widest = max(widest, math.sqrt(nx * nx + ny * ny + nz * nz) / girth)
+    return widest
+
+
+@njit(cache=True, error_model="numpy")
+def none_crosses(x, mesh, third, near, thickness):
+    """Whether lists of near pairs (`NearPairs`) show that no edge passes through a face at x (V, 3).
+
+    Where an edge does, one of the face's own is no further from it than the circle within the face is wide, and so is
+    in the list, if that goes so far. third (E, 2): see `faces_at_edges`. False: nobody knows.
+    """
+    edges, same, pairs = mesh.edges, mesh.same, near.now.crossings
+    if not _widest(x, mesh.faces) <= thickness + listed_within(x, near):
+        return False
+    for k in range(near.now.count[2]):
+        for n in range(2):
+            e, g = pairs[k, n], pairs[k, 1 - n]
+            i, j, a, b = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+            for side in range(2):
+                c = third[g, side]
+                if c >= 0 and same[c] != same[i] and same[c] != same[j] and _through(x, i, j, a, b, c)[0] >= 0.0:
+                    return False
+    return True
 
 
 @njit(cache=True, error_model="numpy")
