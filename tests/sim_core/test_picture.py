@@ -70,6 +70,32 @@ def test_light_is_shared_between_pictures():
     )
 
 
+def test_the_sky_of_other_pictures_serves_again():
+    """A film's pictures between two share what was seen of the sky then."""
+    surfaces = [Surface(SQUARE, FACES), Surface(SQUARE - [0, 0, 0.3], FACES)]
+    lit = lighting(surfaces)
+    again, dark = lighting(surfaces, sky=lit.sky), lighting(surfaces, sky=0.2 * lit.sky)
+    pictures = [render(surfaces, CAMERA, (80, 60), lit=light).astype(int) for light in (lit, again, dark)]
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert pictures[2].mean() < pictures[0].mean()
+
+
+def test_a_pixel_that_one_face_fills_is_shaded_once_and_looks_the_same():
+    """Fine faces are shaded at each sample, a coarse one once a pixel: a flat square is one colour either way."""
+    steps = np.linspace(0.0, 1.0, 41)
+    u, v = (part.ravel() for part in np.meshgrid(steps, steps, indexing="ij"))
+    fine = np.column_stack([u - 0.5, v, 0 * u])
+    a = (np.arange(40)[:, None] * 41 + np.arange(40)).ravel()
+    faces = np.concatenate([np.stack([a, a + 41, a + 42], 1), np.stack([a, a + 42, a + 1], 1)]).astype(
+        np.int32
+    )
+    seen = []
+    for surface in (Surface(SQUARE, FACES), Surface(fine, faces)):
+        lit = lighting([surface], floor=False, sky=np.ones(len(surface.vertices)))
+        seen.append(render([surface], CAMERA, (80, 60), lit=lit).astype(int))
+    assert np.abs(seen[0] - seen[1]).max() <= 1
+
+
 def test_a_sheer_square_shows_what_is_behind_it():
     def middle(alpha):
         surfaces = [

@@ -18,6 +18,7 @@ from sim_core.cloth.contact.layers.untangling import (
     crossings_of,
     faces_at_edges,
     no_crossings,
+    none_crosses,
     untangle,
 )
 from sim_core.cloth.contact.solid_meshes import solid_mesh
@@ -63,6 +64,7 @@ __all__ = [
     "moving_mesh",
     "near_pairs_of",
     "no_crossings",
+    "none_crosses",
     "patches_of",
     "renew_pairs",
     "repel",

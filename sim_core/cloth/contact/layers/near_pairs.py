@@ -55,7 +55,9 @@ class NearPairs(NamedTuple):
     spare: Near
     begun: np.ndarray  # (V, 3)
     order: np.ndarray  # (K,) int32 working memory
-    kept: np.ndarray  # (3,) [m] the skin and the way ahead that the lists are looked for with; 1 while they hold
+    kept: (
+        np.ndarray
+    )  # (3,) [m] the skin and the way ahead that the lists are looked for with; 1 while they hold
     tally: (
         np.ndarray
     )  # (4,) int64 looks, renewals, those of them among other pairs of patches, pairs looked for anew

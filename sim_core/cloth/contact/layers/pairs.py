@@ -1,4 +1,4 @@
-"""Candidates for self-contact: vertex-triangle and edge-edge pairs nearer than a reach, found on a hash grid."""
+"""Candidates for self-contact: vertex-triangle and edge-edge pairs nearer than a reach, of two patches; a hash grid."""
 
 from __future__ import annotations
 

@@ -21,14 +21,15 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
-from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
 from sim_core.cloth.contact.layers.near_pairs import listed_within
+from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
 from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_patches
 from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes
 from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
 NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met on the way
+FRESH = 0.8  # of the skin, that lists which have just been begun are sure of
 PATIENCE = 8  # steps without fewer crossings after which it is left to the next frame
 
 
@@ -231,10 +232,14 @@ def none_crosses(x, mesh, third, near, thickness):
     """Whether lists of near pairs (`NearPairs`) show that no edge passes through a face at x (V, 3).
 
     Where an edge does, one of the face's own is no further from it than the circle within the face is wide, and so is
-    in the list, if that goes so far. third (E, 2): see `faces_at_edges`. False: nobody knows.
+    in the list, if that goes so far. third (E, 2): see `faces_at_edges`. False: nobody knows; lists that have aged are
+    begun anew in the next frame then.
     """
     edges, same, pairs = mesh.edges, mesh.same, near.now.crossings
-    if not _widest(x, mesh.faces) <= thickness + listed_within(x, near):
+    asked, sure = _widest(x, mesh.faces) - thickness, listed_within(x, near)
+    if not asked <= sure:
+        if asked <= FRESH * near.kept[0]:
+            near.kept[2] = 0.0
         return False
     for k in range(near.now.count[2]):
         for n in range(2):
@@ -242,7 +247,12 @@ def none_crosses(x, mesh, third, near, thickness):
             i, j, a, b = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
             for side in range(2):
                 c = third[g, side]
-                if c >= 0 and same[c] != same[i] and same[c] != same[j] and _through(x, i, j, a, b, c)[0] >= 0.0:
+                if (
+                    c >= 0
+                    and same[c] != same[i]
+                    and same[c] != same[j]
+                    and _through(x, i, j, a, b, c)[0] >= 0.0
+                ):
                     return False
     return True
 
