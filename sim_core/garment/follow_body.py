@@ -10,12 +10,12 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from sim_core.body import Beneath, Surface
-from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Phase, Solid, drape, moving_mesh
+from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Pace, Phase, Solid, drape, moving_mesh
 from sim_core.cloth.contact import hull_faces
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import garment_sheet, pace_of, standing
+from sim_core.garment.garment_sheet import garment_sheet, standing
 from sim_core.garment.outfit import Outfit
 from sim_core.garment.outfit.outfit import UNTANGLE
 from sim_core.validation import numeric_array
@@ -24,6 +24,9 @@ __all__ = ["follow", "move"]
 
 DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
+QUICK = Pace(
+    courant=0.95
+)  # of garments whose mass is shared out, on a wearer who moves: none of them is to rest
 SAME = 1e-3  # [m] that a layer beneath may be away at first from where the garment was settled on it
 
 
@@ -102,7 +105,7 @@ def follow(
         collider=wearer,
         contact=contact,
         holds=settled and settled.holds,
-        pace=pace_of(settled is not None and settled.even),
+        pace=QUICK if settled is not None and settled.even else None,
         **hooks,
     )
 

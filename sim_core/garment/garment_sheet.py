@@ -7,24 +7,14 @@ from functools import partial
 
 import numpy as np
 
-from sim_core.cloth import Drape, Material, Pace, Sheet, drape
+from sim_core.cloth import Drape, Material, Sheet, drape
 from sim_core.cloth.sheet import evened
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 
-__all__ = ["APART", "garment_sheet", "pace_of", "standing"]
+__all__ = ["APART", "garment_sheet", "standing"]
 
 APART = 5.0  # [m] panels that overlap in pattern axes are laid apart for what counts as one stretch of cloth
-LONG = 0.95  # share of the stable step that garments take whose mass is shared out for long steps
-
-
-def pace_of(even: bool) -> Pace:
-    """How a garment is paced. even: whether its mass is shared out for longer steps, which are taken then.
-
-    Garments that are limited in length both ways came out alike at LONG. Scarves gathered over a bar did not: at 0.7
-    none of 16 had a vertex in the bar, at LONG three of eight.
-    """
-    return Pace(courant=LONG) if even else Pace()
 
 
 def garment_sheet(garment: Garment) -> Sheet:
@@ -57,7 +47,6 @@ def standing(garment: Garment) -> partial[Drape]:
         "collider": settled.beneath.solid(),
         "contact": settled.contact,
         "holds": settled.holds,
-        "pace": pace_of(settled.even),
     }
     return partial(drape, garment_sheet(garment), garment.positions, **touching)
 

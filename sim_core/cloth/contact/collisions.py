@@ -16,8 +16,6 @@ from numba import njit
 from sim_core.cloth.contact.distance import carried, distance_at, fields_of, signed_distance
 from sim_core.cloth.contact.sleep import SOON, asleep
 
-BESIDE = 1e-4  # [m] from where a solid was asked, within which its surface is taken for the plane it is there
-SINCE = 8  # substeps, likewise, of one that moves
 SETTLE = 6  # more looks at samples inside, at the end of a frame
 
 
@@ -34,39 +32,10 @@ class Watch(NamedTuple):
     """Samples (S, 3) int32 and the steps (S,) int32 until which they sleep: as long as they cannot arrive.
 
     A vertex is stored as (i, i, i), a midpoint as (i, j, i) with weights 1/2, 1/2, a centroid as (i, j, k).
-    planes (S, 10): where a sample was when the solid was asked last, how far from it, the way out, its surface's speed,
-    the step, and 1 if that is of this frame: so near by, and so soon after, the surface is as good as that plane.
     """
 
     samples: np.ndarray
     wake: np.ndarray
-    planes: np.ndarray
-
-
-def watch_of(samples: np.ndarray) -> Watch:
-    """Samples (S, 3) int32 that nobody has looked at yet."""
-    return Watch(samples, np.zeros(len(samples), np.int32), np.zeros((len(samples), 10)))
-
-
-@njit(error_model="numpy", inline="always")
-def _plane(planes, s, step, dt, at):
-    """Distance, way out (x, y, z) and speed of the surface as the plane of sample s tells them for a place; inf where
-    it is of no use.
-    """
-    dx, dy, dz, speed = at[0] - planes[s, 0], at[1] - planes[s, 1], at[2] - planes[s, 2], planes[s, 7]
-    age = step - planes[s, 8] if speed != 0.0 else 0.0
-    if planes[s, 9] == 0.0 or dx * dx + dy * dy + dz * dz > BESIDE * BESIDE or age > SINCE:
-        return np.inf, 0.0, 0.0, 0.0, 0.0
-    nx, ny, nz = planes[s, 4], planes[s, 5], planes[s, 6]
-    return planes[s, 3] + dx * nx + dy * ny + dz * nz - speed * age * dt, nx, ny, nz, speed
-
-
-@njit(error_model="numpy", inline="always")
-def _note(planes, s, step, at, seen):
-    """Keeps what a solid told of the place of sample s."""
-    planes[s, 0], planes[s, 1], planes[s, 2] = at[0], at[1], at[2]
-    planes[s, 3], planes[s, 4], planes[s, 5], planes[s, 6], planes[s, 7] = seen
-    planes[s, 8], planes[s, 9] = step, 1.0
 
 
 @njit(error_model="numpy", inline="always")
@@ -116,7 +85,7 @@ def collide_vertices(packed, inverse_mass, x, v, near, push):
 @njit(cache=True, error_model="numpy")
 def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
     """As `collide_vertices`, for those who are due; returns the furthest that one was pushed [m]."""
-    samples, wake, planes, deepest, dt = watch.samples, watch.wake, watch.planes, 0.0, push.dt
+    samples, wake, deepest = watch.samples, watch.wake, 0.0
     (kind, data, grid, later, blend), carries = fields_of(packed), len(packed.ways) > 0
     for s in range(len(samples)):
         if wake[s] > step:
@@ -124,11 +93,7 @@ def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        px, py, pz = x[i, 0], x[i, 1], x[i, 2]
-        d, nx, ny, nz, speed = _plane(planes, s, step, dt, (px, py, pz))
-        if d == np.inf:
-            d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, px, py, pz)
-            _note(planes, s, step, (px, py, pz), (d, nx, ny, nz, speed))
+        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
         room = d - push.clearance
         if room < 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
             carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
@@ -228,17 +193,13 @@ def settle_samples(packed, inverse_mass, x, v, watch, step, push):
 def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
     """As `collide_samples`, for those who are due, or all that would be SOON where they are `awake`."""
     fields, samples, wake = fields_of(packed), watch.samples, watch.wake
-    planes, dt = watch.planes, push.dt
     (kind, data, grid, later, blend), latest = fields, step + SOON if awake else step
     for s in range(len(samples)):
         if wake[s] > latest:
             continue
         i, j, k = samples[s, 0], samples[s, 1], samples[s, 2]
         px, py, pz, _ = _middle(x, i, j, k)
-        d, nx, ny, nz, speed = _plane(planes, s, step, dt, (px, py, pz))
-        if d == np.inf:
-            d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, px, py, pz)
-            _note(planes, s, step, (px, py, pz), (d, nx, ny, nz, speed))
+        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, px, py, pz)
         if d < push.clearance:
             _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), push)
         fast = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2

@@ -9,10 +9,10 @@ import numpy as np
 
 from sim_core.cloth.contact.collisions import (
     Push,
+    Watch,
     collide_samples,
     collide_vertices,
     contact_samples,
-    watch_of,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
 from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
@@ -106,8 +106,8 @@ class Engine:
         vertices, middles = self._samples()
         self.touch = Touch(
             solid=self.packed,
-            vertices=watch_of(vertices),
-            middles=watch_of(middles),
+            vertices=Watch(vertices, np.zeros(len(vertices), np.int32)),
+            middles=Watch(middles, np.zeros(len(middles), np.int32)),
             shell=self.shell,
             patches=patches,
             shapes=shapes_of(patches),

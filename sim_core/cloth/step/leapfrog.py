@@ -135,9 +135,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     layers, pushed = shell.thickness > 0.0, 0.0
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
-    touch.vertices.planes[:, 9] = 0.0
     touch.middles.wake[:] = 0
-    touch.middles.planes[:, 9] = 0.0
     look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:

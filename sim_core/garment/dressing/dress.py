@@ -26,7 +26,6 @@ from sim_core.garment.dressing.sewn_sheet import SewnSheet, sewn_sheet
 from sim_core.garment.dressing.symmetry import let_go_whole, mirrored
 from sim_core.garment.dressing.wearing import Trail, Wearing
 from sim_core.garment.garment import Garment
-from sim_core.garment.garment_sheet import pace_of
 from sim_core.garment.outfit import Belt, Layer, Outfit
 from sim_core.garment.placement import Flat
 from sim_core.garment.settled import Settled
@@ -215,7 +214,6 @@ class _Dressing:
                     collider=solid,
                     contact=self._contact(course),
                     holds=self._holds(sheet, course, places, x),
-                    pace=pace_of(even),
                     **self._hooks(number, lambda x, sheet=sheet: self._both(x[sheet.number])),
                 )
             )
