@@ -1,6 +1,6 @@
 """Stills of meshes without a graphics card: smooth two-sided shading, shadows, sky occlusion, sheer cloth."""
 
-from sim_core.picture.raster import depth_map, lit
+from sim_core.picture.raster import depth_map
 from sim_core.picture.shading import (
     Camera,
     Light,
@@ -21,7 +21,6 @@ __all__ = [
     "depth_map",
     "fan",
     "lighting",
-    "lit",
     "normals",
     "render",
     "save_png",

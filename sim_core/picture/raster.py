@@ -166,15 +166,6 @@ def lit_at(x, y, z, depth, bias, radius):
 
 
 @njit(cache=True, error_model="numpy")
-def lit(screen, depth, bias, radius):
-    """Fraction of the depth map's taps around each point (N, 3) that do not hide it, (N,)."""
-    out = np.zeros(len(screen))
-    for i in range(len(screen)):
-        out[i] = lit_at(screen[i, 0], screen[i, 1], screen[i, 2], depth, bias, radius)
-    return out
-
-
-@njit(cache=True, error_model="numpy")
 def placed(points, matrix, out):
     """points (N, 3) under an affine map (3, 4), into out."""
     for i in range(len(points)):

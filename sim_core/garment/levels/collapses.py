@@ -140,20 +140,10 @@ def _neighbours(mesh, v, first):
 def _common(mesh, v, u):
     """How many neighbours two vertices share."""
     mesh.clock[0] += 1
-    _neighbours(mesh, v, 0)
-    weld, faces, met, mine, count = mesh.weld, mesh.faces, mesh.met, mesh.clock[0], 0
+    mine = _neighbours(mesh, v, 0)
+    others = _neighbours(mesh, u, mine) - mine  # of u, but not of v
     mesh.clock[0] += 1
-    c = mesh.head[u]
-    while c >= 0:
-        f = c // 3
-        if mesh.alive[f]:
-            for k in range(3):
-                w = weld[faces[f, k]]
-                if w != u and met[w] == mine:
-                    met[w] = mesh.clock[0]
-                    count += 1
-        c = mesh.link[c]
-    return count
+    return _neighbours(mesh, u, 0) - others
 
 
 @njit(cache=True, error_model="numpy")
