@@ -193,6 +193,15 @@ def fitted(points, axes, pixels, out):
 
 
 @njit(cache=True, error_model="numpy")
+def _look_along(points, casters, faces, way, matrix, at, depth):
+    """Points (N, 3) in the map along `way`, which their first `casters` fill, into at; and how near faces are there."""
+    fitted(points[:casters], way, len(depth), matrix)
+    placed(points, matrix, at)
+    depth[:] = np.inf
+    depth_map(at, faces, depth)
+
+
+@njit(cache=True, error_model="numpy")
 def open_shares(points, casters, faces, ways, pixels, bias):
     """Share (N,) of `ways` (K, 3, 3), along whose last rows light comes, from which nothing hides points (N, 3) [m].
 
@@ -201,10 +210,7 @@ def open_shares(points, casters, faces, ways, pixels, bias):
     out, at, matrix = np.zeros(len(points)), np.zeros((len(points), 3)), np.zeros((3, 4))
     depth = np.zeros((pixels, pixels), np.float32)
     for way in range(len(ways)):
-        fitted(points[:casters], ways[way], pixels, matrix)
-        placed(points, matrix, at)
-        depth[:] = np.inf
-        depth_map(at, faces, depth)
+        _look_along(points, casters, faces, ways[way], matrix, at, depth)
         for i in range(len(points)):
             out[i] += lit_at(at[i, 0], at[i, 1], at[i, 2], depth, bias, 1)
     for i in range(len(points)):
@@ -218,10 +224,7 @@ def seen_from(points, own, faces, ways, pixels, bias):
     found, at, matrix = np.zeros(own, np.bool_), np.zeros((len(points), 3)), np.zeros((3, 4))
     depth = np.zeros((pixels, pixels), np.float32)
     for way in range(len(ways)):
-        fitted(points, ways[way], pixels, matrix)
-        placed(points, matrix, at)
-        depth[:] = np.inf
-        depth_map(at, faces, depth)
+        _look_along(points, len(points), faces, ways[way], matrix, at, depth)
         for i in range(own):
             found[i] = found[i] or lit_at(at[i, 0], at[i, 1], at[i, 2], depth, bias, 0) > 0.5
     return found
