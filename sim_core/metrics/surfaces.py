@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
-from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.metrics.components import components
-from sim_core.metrics.face_tree import face_tree, nearest_face
+from sim_core.metrics.face_tree import crossings_with, face_tree, nearest_face
 from sim_core.metrics.triangles import crossings, winding
 
 __all__ = [
@@ -43,12 +41,14 @@ class Distances:
 class Penetration:
     """How many vertices, edge midpoints and centroids lie inside a solid, and the least distance [m] of each.
 
-    Distances above FAR are told as FAR.
+    Distances above FAR are told as FAR. edges: how often an edge of the cloth passes through a face of the solid, or
+    one of the solid through one of the cloth, as a thumb does between the points that are looked at.
     """
 
     vertices: int
     midpoints: int
     centroids: int
+    edges: int
     clearance: tuple[float, float, float]
 
     @property
@@ -172,49 +172,28 @@ def penetration(
     """
     vertices, faces = _mesh("cloth", vertices, faces)
     solid_vertices, solid_faces = _mesh("solid", solid_vertices, solid_faces)
-    pairs = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    pairs = _edges(faces)
     middles, centres = vertices[pairs].mean(1), vertices[faces].mean(1)
     signed = [_signed(points, solid_vertices, solid_faces) for points in (vertices, middles, centres)]
     inside = [int((d < 0).sum()) for d in signed]
     least = (float(signed[0].min()), float(signed[1].min()), float(signed[2].min()))
-    return Penetration(inside[0], inside[1], inside[2], least)
-
-
-@njit(cache=True, error_model="numpy")
-def _crosses(p, q, a, b, c):
-    """Does the segment p q pass through the triangle a b c (shared points excluded by the caller)?"""
-    n = np.cross(b - a, c - a)
-    dp, dq = (p - a) @ n, (q - a) @ n
-    if dp * dq >= 0.0:
-        return False
-    x = p + (q - p) * (dp / (dp - dq))
-    inside = np.cross(b - a, x - a) @ n >= 0.0 and np.cross(c - b, x - b) @ n >= 0.0
-    return inside and np.cross(a - c, x - c) @ n >= 0.0
-
-
-@njit(cache=True, error_model="numpy")
-def _count_crossings(vertices, faces, edges, start, entry):
-    hit = np.zeros(len(edges), np.int64)
-    for e in range(len(edges)):
-        i, j = edges[e]
-        for k in range(start[e], start[e + 1]):
-            a, b, c = faces[entry[k]]
-            if i == a or i == b or i == c or j == a or j == b or j == c:
-                continue
-            if _crosses(vertices[i], vertices[j], vertices[a], vertices[b], vertices[c]):
-                hit[e] += 1
-    return hit
+    count = len(vertices)
+    both, around = np.concatenate([vertices, solid_vertices]), solid_faces + count
+    through = _crossings(both, pairs, around) + _crossings(both, _edges(solid_faces) + count, faces)
+    return Penetration(inside[0], inside[1], inside[2], through, least)
 
 
 def intersections(vertices: np.ndarray, faces: np.ndarray) -> int:
     """Number of (edge, face) pairs of a mesh that pass through each other and share no vertex."""
     vertices, faces = _mesh("mesh", vertices, faces)
-    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
-    corner = vertices[faces]
-    centre, middle = corner.mean(1), vertices[edges].mean(1)
-    reach = float(np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max())
-    half = np.sqrt(((vertices[edges[:, 0]] - middle) ** 2).sum(1))
-    near = KDTree(centre).query_ball_point(middle, half + reach)
-    start = np.r_[0, np.cumsum([len(n) for n in near])]
-    entry = np.concatenate([np.asarray(n, int) for n in near])
-    return int(_count_crossings(vertices, faces, edges, start, entry).sum())
+    return _crossings(vertices, _edges(faces), faces)
+
+
+def _edges(faces: np.ndarray) -> np.ndarray:
+    """Every edge (E, 2) of the faces once."""
+    return np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+
+
+def _crossings(vertices: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> int:
+    """How often one of the edges (E, 2) passes through one of the faces (F, 3) and shares no vertex with it."""
+    return int(crossings_with(vertices, edges, faces, face_tree(vertices, faces)))

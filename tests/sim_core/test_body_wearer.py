@@ -8,21 +8,31 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import JOINTS, POSES, Figure, Mannequin, Pose
+from sim_core.body import HANDS, JOINTS, POSES, Figure, Mannequin, Pose, pose_named
 from sim_core.body.making import section
 from sim_core.cloth import Contact, HalfSpace, Material, MovingGrid, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.contact import GridSdf, Union, distances, field_of
+from sim_core.cloth.contact import GridSdf, Union, distances, field_of, hull_mesh, united
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 
 WOMAN = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"
 CELL = 0.015
+EXACT = 2.4 * CELL - HANDS  # [m] up to which distances to the nearest face are the nearest
 FLOOR = HalfSpace()
 
 
 @pytest.fixture(scope="module")
 def figure() -> Figure:
     return Figure(Mannequin.load(WOMAN), CELL)
+
+
+@pytest.mark.parametrize("pose", ["display", "held"])
+def test_the_fields_cells_round_no_finger_off(pose: str) -> None:
+    """Cloth is kept out of the field, and is seen beside the mesh."""
+    beneath = Figure(Mannequin.load(WOMAN)).beneath(pose_named(pose))
+    (surface,), field = beneath.surfaces, beneath.field()
+    for hand in surface.hulls:
+        assert field.at(surface.vertices[hand]).max() < 5e-4
 
 
 def test_the_whole_field_holds_both_hands_as_hulls(figure: Figure) -> None:
@@ -65,13 +75,13 @@ def test_all_fields_of_a_figure_share_their_nodes(figure: Figure) -> None:
     values = values[
         tuple(slice(max(-k, 0), max(-k, 0) + n) for k, n in zip(first, shared.shape, strict=True))
     ]
-    near = np.abs(shared) < 2.4 * CELL
+    near = np.abs(shared) < EXACT
     assert near.sum() > 1000
     assert np.abs(shared - values)[near].max() < 1e-6
     middle = round(-whole.origin[0] / CELL)
     left, right = whole.values[middle:], whole.values[middle::-1]
     count = min(len(left), len(right))
-    near = np.abs(left[:count]) < 2.4 * CELL
+    near = np.abs(left[:count]) < EXACT
     assert np.abs(left[:count] - right[:count])[near].max() < 1.2e-4  # as the mesh is mirrored
 
 
@@ -82,10 +92,10 @@ def test_a_motion_is_a_key_a_pose_and_carries_what_lies_on_it(figure: Figure) ->
     vertices, faces = figure.mesh(poses[2])
     hand = vertices[np.unique(figure.hands()[0])]
     box = (np.array(body.origin), body.origin + CELL * (np.array(body.key(2).shape) - 1))
-    alone = field_of(vertices, faces, cell=CELL, band=0.04, hulls=[hand], box=box, far=False)
-    exact = (
-        np.abs(alone.values) < 2.4 * CELL
-    )  # further off the faces are handed on, the hull's in another order
+    meshes = (vertices, faces), hull_mesh(hand)
+    own, hull = (field_of(*mesh, cell=CELL, band=0.04, box=box, far=False) for mesh in meshes)
+    alone = united(own, hull, thicker=HANDS)
+    exact = np.abs(alone.values) < EXACT  # further off the faces are handed on, the hull's in another order
     assert np.abs(alone.values - body.key(2))[exact].max() < 1e-6
     assert body.surface is not None
     nearest, corners = body.surface(2)
@@ -155,6 +165,26 @@ def test_cloth_on_the_floor_is_not_carried_by_a_body_that_passes_it() -> None:
     phase = Phase(frames * FRAME, body=(0.0, float(frames)))
     end = drape(sheet, start, [phase], collider=_going(frames, 0.5, FLOOR)).positions
     assert np.abs(end - start).max() < 1e-4
+
+
+@pytest.mark.parametrize("height", [0.01, 0.014])
+def test_a_body_comes_upon_cloth_that_hovers_over_the_floor(height: float) -> None:
+    """The floor is nearest, which stands still, until the block is there: at 100 mm a frame, whoever waits is hit."""
+    (sheet, flat), body = _square(0.01, 0.01), _going(1, 2.5, FLOOR)
+    for ahead in np.linspace(0.18, 0.1995, 14):
+        start = np.column_stack([ahead + flat[:, 0], np.full(len(flat), height), flat[:, 1]])
+        end = drape(sheet, start, [Phase(FRAME, (0.0, 0.0), body=(0.0, 1.0))], collider=body)
+        assert body.solid(1).distance(end.positions).min() > 0.0, ahead
+
+
+def test_a_garment_beneath_reaches_beyond_its_mesh_everywhere_in_the_field() -> None:
+    """A hull that is 25 mm thicker lies beside the body: the fields end 30 mm from the thick one, not from its mesh."""
+    vertices = np.concatenate([_block(0.0), _block(0.5)])
+    body = moving_mesh(vertices[None], BLOCK, cell=0.01, band=0.03, hulls=[BLOCK + 8], thicker=[0.025])
+    solid = body.solid(0)
+    for out in (0.03, 0.035, 0.04, 0.045, 0.05):
+        at = np.array([[0.4 - out, 0.1, 0.0]])
+        assert solid.distance(at)[0] == pytest.approx(out - 0.025, abs=1e-3)
 
 
 def _skirt(figure: Figure, floor: float) -> tuple[np.ndarray, np.ndarray]:

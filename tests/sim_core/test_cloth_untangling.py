@@ -13,7 +13,10 @@ from sim_core.cloth.contact import (
     crossings_of,
     faces_at_edges,
     finder_of,
+    near_pairs_of,
     no_crossings,
+    patches_of,
+    shapes_of,
     untangle,
 )
 from sim_core.cloth.scenes import equilateral_sheet
@@ -35,7 +38,9 @@ def mesh_of(faces: np.ndarray, inverse: np.ndarray) -> Mesh:
 
 def untangled(x: np.ndarray, v: np.ndarray, mesh: Mesh, how: Untangling) -> tuple[int, int]:
     """Crossings before and after."""
-    memory = Memory(finder_of(len(x), len(mesh.edges), len(mesh.faces)), no_crossings())
+    patches = patches_of(mesh.edges, mesh.faces, mesh.same, mesh.rest[mesh.faces])
+    finder = finder_of(len(x), len(mesh.edges), len(mesh.faces))
+    memory = Memory(finder, no_crossings(), patches, shapes_of(patches), near_pairs_of(0).now.patches)
     third = faces_at_edges(mesh.edges, mesh.faces)
     return untangle(x, v, mesh, third, Holds.of(len(x)), memory, how)[:2]
 
@@ -66,7 +71,10 @@ def test_crossings_are_those_of_the_metrics_on_a_crumpled_sheet() -> None:
 
 
 def test_every_edge_knows_its_faces() -> None:
+    """In whatever order faces name their corners: an edge may stand at the same place of both of its faces."""
     _, faces = equilateral_sheet(0.1, 0.1, 0.02)
+    turns = np.random.default_rng(1).integers(0, 3, len(faces))
+    faces = np.stack([np.roll(face, turn) for face, turn in zip(faces, turns, strict=True)])
     edges = edges_of(faces)
     third = faces_at_edges(edges, faces)
     met = {tuple(sorted(map(int, face))) for face in faces}
@@ -90,6 +98,37 @@ def test_a_corner_that_dips_through_is_drawn_back() -> None:
     assert x.mean(0) == pytest.approx(start.mean(0), abs=1e-5)  # one side as far as the other
     going = ((x - start) * v).sum(1)
     assert going.min() >= -1e-12
+
+
+def slit() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A level sheet cut open in its middle by 30 mm; one side of the slit lies over the other and dips through it."""
+    n, step = 17, 0.01
+    u, w = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    rest = step * np.stack([u.ravel(), w.ravel()], axis=1).astype(float)
+    a = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = np.concatenate([np.stack([a, a + n, a + 1], 1), np.stack([a + 1, a + n, a + n + 1], 1)])
+    middle, half = n // 2, 3
+    cut = middle * n + np.arange(half)
+    other = np.arange(n * n)
+    other[cut] = n * n + np.arange(half)
+    right = rest[faces].mean(1)[:, 0] > middle * step
+    faces[right] = other[faces[right]]
+    rest = np.concatenate([rest, rest[cut]])
+    x = np.column_stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]])
+    opened = np.clip(1 - rest[:, 1] / (half * step), 0, 1)
+    opened *= np.clip(1 - np.abs(rest[:, 0] - middle * step) / (middle * step), 0, 1)
+    side = np.isin(np.arange(len(x)), faces[right]) & (opened > 0)
+    x[side, 0] -= 0.006 * opened[side]
+    x[side, 1] += 0.0015 * opened[side] * np.cos(90 * rest[side, 1])
+    return rest, x, faces.astype(np.int32)
+
+
+def test_sides_of_a_slit_that_lie_in_one_plane_are_seen_to_cross() -> None:
+    rest, x, faces = slit()
+    mesh = mesh_of(faces, np.ones(len(x)))._replace(rest=rest)
+    before, after = untangled(x.copy(), np.zeros_like(x), mesh, ENOUGH)
+    assert before == metrics.intersections(x, faces) > 0
+    assert after == 0
 
 
 @pytest.mark.parametrize("partly", [False, True])

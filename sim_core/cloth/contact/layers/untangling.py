@@ -21,7 +21,14 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
-from sim_core.cloth.contact.pairs import Finder, Mesh, hash_points
+from sim_core.cloth.contact.layers.crossings import (
+    Lists,
+    crossings_by_patches,
+    crossings_of,
+    near_crossings,
+)
+from sim_core.cloth.contact.layers.pairs import Finder, Mesh
+from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
@@ -29,14 +36,14 @@ NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met
 PATIENCE = 8  # steps without fewer crossings after which it is left to the next frame
 
 
-Lists = tuple[np.ndarray, np.ndarray]
-
-
 class Memory(NamedTuple):
     """Working memory of a search for crossings."""
 
     finder: Finder
     lists: Lists
+    patches: Patches
+    shapes: Shapes
+    near: np.ndarray  # (K, 4) int32
 
 
 class Untangling(NamedTuple):
@@ -45,134 +52,6 @@ class Untangling(NamedTuple):
     step: float
     rounds: int
     partly: bool = False
-
-
-def no_crossings() -> Lists:
-    """Lists for some crossings: pairs (K, 2) int32 and places (K, 4)."""
-    return np.zeros((64, 2), np.int32), np.zeros((64, 4))
-
-
-def faces_at_edges(edges: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """The third vertices (E, 2) int32 of the faces (F, 3) at each edge (E, 2); -1 where there is but one face."""
-    count = int(faces.max()) + 1
-    key = np.sort(edges, axis=1).astype(np.int64) @ [count, 1]
-    order = np.argsort(key)
-    third = np.full((len(edges), 2), -1, np.int32)
-    for corner in range(3):
-        a, b, c = (faces[:, (corner + k) % 3].astype(np.int64) for k in range(3))
-        edge = order[np.searchsorted(key[order], np.minimum(a, b) * count + np.maximum(a, b))]
-        free = third[edge, 0] < 0
-        third[edge[free], 0] = c[free]
-        third[edge[~free], 1] = c[~free]
-    return third
-
-
-@njit(cache=True, error_model="numpy")
-def _reach(x, edges, faces):
-    """Half the longest edge, and the largest distance of a face's corner from its centre [m]."""
-    half = wide = 0.0
-    for e in range(len(edges)):
-        i, j = edges[e]
-        half = max(half, (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2)
-    for f in range(len(faces)):
-        a, b, c = faces[f]
-        for k in (a, b, c):
-            gap = 0.0
-            for axis in range(3):
-                gap += (x[k, axis] - (x[a, axis] + x[b, axis] + x[c, axis]) / 3.0) ** 2
-            wide = max(wide, gap)
-    return 0.5 * math.sqrt(half), math.sqrt(wide)
-
-
-@njit(cache=True, error_model="numpy")
-def _through(x, p, q, a, b, c):
-    """Where the segment p q passes through the face a b c: share of the way along it (-1: nowhere), weights of b, c."""
-    ux, uy, uz = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1], x[b, 2] - x[a, 2]
-    wx, wy, wz = x[c, 0] - x[a, 0], x[c, 1] - x[a, 1], x[c, 2] - x[a, 2]
-    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    dp = (x[p, 0] - x[a, 0]) * nx + (x[p, 1] - x[a, 1]) * ny + (x[p, 2] - x[a, 2]) * nz
-    dq = (x[q, 0] - x[a, 0]) * nx + (x[q, 1] - x[a, 1]) * ny + (x[q, 2] - x[a, 2]) * nz
-    if dp * dq >= 0.0:
-        return -1.0, 0.0, 0.0
-    t = dp / (dp - dq)
-    mx = x[p, 0] + t * (x[q, 0] - x[p, 0]) - x[a, 0]
-    my = x[p, 1] + t * (x[q, 1] - x[p, 1]) - x[a, 1]
-    mz = x[p, 2] + t * (x[q, 2] - x[p, 2]) - x[a, 2]
-    size = nx * nx + ny * ny + nz * nz
-    v = ((my * wz - mz * wy) * nx + (mz * wx - mx * wz) * ny + (mx * wy - my * wx) * nz) / size
-    w = ((uy * mz - uz * my) * nx + (uz * mx - ux * mz) * ny + (ux * my - uy * mx) * nz) / size
-    if v < 0.0 or w < 0.0 or v + w > 1.0:
-        return -1.0, 0.0, 0.0
-    return t, v, w
-
-
-@njit(cache=True, error_model="numpy")
-def crossings_of(x, mesh, finder, lists):
-    """Finds the pairs of an edge and a face that pass through each other and share no vertex; x (V, 3) [m].
-
-    lists, written over: pairs (K, 2) int32 and where, place (K, 4), the share of the way along the edge and the
-    weights of the face's corners. Returns both, longer where they were full, and how many there are.
-    """
-    (pairs, place), edges, faces, same = lists, mesh.edges, mesh.faces, mesh.same
-    half, wide = _reach(x, edges, faces)
-    reach, middle = half + wide, finder.by_cell
-    balls = finder.balls[: len(edges)]
-    for e in range(len(edges)):
-        i, j = edges[e]
-        length2 = 0.0
-        for axis in range(3):
-            balls[e, axis] = 0.5 * (x[i, axis] + x[j, axis])
-            length2 += (x[i, axis] - x[j, axis]) ** 2
-        balls[e, 3] = 0.5 * math.sqrt(length2)
-    dims, low, cell = hash_points(balls, reach, finder)
-    order, start = finder.order, finder.start
-    for s in range(len(edges)):
-        for c in range(4):
-            middle[s, c] = balls[order[s], c]
-    count = 0
-    for f in range(len(faces)):
-        a, b, c = faces[f]
-        px = (x[a, 0] + x[b, 0] + x[c, 0]) / 3.0
-        py = (x[a, 1] + x[b, 1] + x[c, 1]) / 3.0
-        pz = (x[a, 2] + x[b, 2] + x[c, 2]) / 3.0
-        ax, ay, az = int((px - low[0]) / cell), int((py - low[1]) / cell), int((pz - low[2]) / cell)
-        for cx in range(max(ax - 1, 0), min(ax + 2, dims[0])):
-            for cy in range(max(ay - 1, 0), min(ay + 2, dims[1])):
-                row = (cx * dims[1] + cy) * dims[2]
-                for s in range(start[row + max(az - 1, 0)], start[row + min(az + 2, dims[2])]):
-                    span = wide + middle[s, 3]
-                    mx, my, mz = middle[s, 0] - px, middle[s, 1] - py, middle[s, 2] - pz
-                    if mx * mx + my * my + mz * mz > span * span:
-                        continue
-                    e = order[s]
-                    i, j = edges[e]
-                    si, sj, sa, sb, sc = same[i], same[j], same[a], same[b], same[c]
-                    if si == sa or si == sb or si == sc or sj == sa or sj == sb or sj == sc:
-                        continue
-                    t, v, w = _through(x, i, j, a, b, c)
-                    if t < 0.0:
-                        continue
-                    if count == len(pairs):
-                        pairs, place = np.concatenate((pairs, pairs)), np.concatenate((place, place))
-                    pairs[count, 0], pairs[count, 1] = e, f
-                    place[count, 0], place[count, 1], place[count, 2], place[count, 3] = t, 1.0 - v - w, v, w
-                    count += 1
-    return (pairs, place), count
-
-
-@njit(cache=True, error_model="numpy")
-def near_crossings(x, shapes, crossed, reach):
-    """Which of the edges or faces (N, 2 or 3) begin within `reach` [m] of an edge that is crossed, (K, 2); N bools."""
-    near = np.zeros(len(shapes), np.bool_)
-    for n in range(len(shapes)):
-        i = shapes[n, 0]
-        for k in range(len(crossed)):
-            j = crossed[k, 0]
-            gap2 = (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2
-            if gap2 < reach * reach:
-                near[n] = True
-                break
-    return near
 
 
 @njit(cache=True, error_model="numpy")
@@ -264,11 +143,12 @@ def untangle(
     v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`. Returns how many crossings there were
     before, and are now, and the lists, longer ones where they were full.
     """
-    finder = memory.finder
-    lists, count = crossings_of(x, mesh, finder, memory.lists)
-    first = least = count
-    if not first:
+    finder, patches, shapes = memory.finder, memory.patches, memory.shapes
+    lists, _, count = crossings_by_patches(x, mesh, patches, shapes, memory.near, memory.lists)
+    if not count:
         return 0, 0, lists
+    lists, count = crossings_of(x, mesh, finder, lists)  # by the count that the end is judged by
+    first = least = count
     edges, faces = mesh.edges, mesh.faces
     start, best, late = x.copy(), x.copy(), 0
     reach = NEAR * float(np.sqrt(((x[edges[:, 0]] - x[edges[:, 1]]) ** 2).sum(1).max()))
