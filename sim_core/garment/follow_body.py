@@ -10,7 +10,7 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from sim_core.body import Beneath, Surface
-from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Phase, Solid, drape, moving_mesh
+from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Pace, Phase, Solid, drape, moving_mesh
 from sim_core.cloth.contact import hull_faces
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
@@ -24,6 +24,9 @@ __all__ = ["follow", "move"]
 
 DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
+QUICK = Pace(
+    courant=0.95
+)  # of garments whose mass is shared out, on a wearer who moves: none of them is to rest
 SAME = 1e-3  # [m] that a layer beneath may be away at first from where the garment was settled on it
 
 
@@ -102,6 +105,7 @@ def follow(
         collider=wearer,
         contact=contact,
         holds=settled and settled.holds,
+        pace=QUICK if settled is not None and settled.even else None,
         **hooks,
     )
 

@@ -43,7 +43,11 @@ def standing(garment: Garment) -> partial[Drape]:
     what shall be otherwise."""
     settled = garment.settled
     assert settled is not None
-    touching = {"collider": settled.beneath.solid(), "contact": settled.contact, "holds": settled.holds}
+    touching = {
+        "collider": settled.beneath.solid(),
+        "contact": settled.contact,
+        "holds": settled.holds,
+    }
     return partial(drape, garment_sheet(garment), garment.positions, **touching)
 
 

@@ -23,13 +23,15 @@ from sim_core.cloth import (
 )
 from sim_core.cloth.contact import (
     Mesh,
+    Search,
+    begin_pairs,
     distances,
-    edge_edge_pairs,
     finder_of,
     hash_points,
-    pairs_of,
+    near_pairs_of,
+    patches_of,
+    shapes_of,
     solid_mesh,
-    vertex_face_pairs,
 )
 from sim_core.cloth.scenes import bar, equilateral_sheet, scene
 from sim_core.errors import SimCoreError
@@ -211,16 +213,26 @@ def test_two_layers_falling_on_each_other_stay_apart() -> None:
     assert sunk.positions[len(rest) :, 1].max() < 0.0035
 
 
+Found = tuple[set[tuple[int, int]], set[tuple[int, int]]]
+
+
+def near(x: np.ndarray, mesh: Mesh, how: Search) -> Found:
+    """The (vertex, face) pairs and the (edge, edge) pairs, lower first, that a search finds."""
+    patches = patches_of(mesh.edges, mesh.faces, mesh.same)
+    found = begin_pairs(x, mesh, patches, shapes_of(patches), how, near_pairs_of(len(x))).now
+    _, points, crossings = found.count
+    met = np.sort(found.crossings[:crossings, :2], axis=1)
+    return {(int(v), int(f)) for v, f, _ in found.points[:points]}, {(int(a), int(b)) for a, b in met}
+
+
 def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     """Against the brute force, on a crumpled sheet."""
     rng = np.random.default_rng(8)
     rest, faces = equilateral_sheet(0.2, 0.2, 0.04)
     edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     x, reach, same = rng.normal(0, 0.03, (len(rest), 3)), 0.01, np.arange(len(rest), dtype=np.int32)
-    finder = finder_of(len(x), len(edges), len(faces))
     mesh = Mesh(np.ones(len(rest)), rest, edges, faces, np.zeros(len(edges)), same)
-    pairs, count = vertex_face_pairs(x, mesh, reach, reach, 0.0, finder, pairs_of(0))
-    found = {(int(v), int(f)) for v, f in pairs[:count]}
+    found, met = near(x, mesh, Search(reach, reach, 0.0, 0.04))
     expected = {
         (v, f)
         for f, face in enumerate(faces)
@@ -230,8 +242,6 @@ def test_candidate_pairs_are_all_pairs_within_reach() -> None:
     assert found == expected
     t = np.linspace(0, 1, 60)
     dense = x[edges[:, 0], None] * (1 - t[:, None]) + x[edges[:, 1], None] * t[:, None]
-    pairs, count = edge_edge_pairs(x, mesh, reach, reach, 0.0, finder, pairs_of(0))
-    met = {tuple(sorted(map(int, pair))) for pair in pairs[:count]}
     for a in range(len(edges)):
         for b in range(a + 1, len(edges)):
             if set(edges[a]) & set(edges[b]):
@@ -252,17 +262,7 @@ def test_neighbours_that_a_fold_brings_together_are_candidates_at_any_angle() ->
     mesh = Mesh(
         np.ones(len(rest)), rest, edges, faces, np.zeros(len(edges)), np.arange(len(rest), dtype=np.int32)
     )
-    finder = finder_of(len(x), len(edges), len(faces))
-    every, some = (
-        [
-            {tuple(map(int, pair)) for pair in pairs[:count]}
-            for pairs, count in (
-                search(x, mesh, 0.004, 0.01, near, finder, pairs_of(0))
-                for search in (vertex_face_pairs, edge_edge_pairs)
-            )
-        ]
-        for near in (0.0, 0.07)
-    )
+    every, some = (near(x, mesh, Search(0.004, 0.01, within, 0.02)) for within in (0.0, 0.07))
     assert some[0] < every[0]  # what is flat is left out
     assert some[1] < every[1]
     for v, f in every[0] - some[0]:

@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Contact, GridSdf
-from sim_core.cloth.contact import LEVER, Mesh, Push, Shell, collide_samples, collide_vertices, repel
+from sim_core.cloth.contact import (
+    LEVER,
+    Mesh,
+    Near,
+    Push,
+    Shell,
+    collide_samples,
+    collide_vertices,
+    near_pairs_of,
+    repel,
+)
 
 THICKNESS = 0.004  # [m]
 LAYERS = Contact(thickness=THICKNESS, spring=1e-9)  # so weak that damping and friction are seen alone
@@ -23,22 +33,31 @@ def mesh_of(inverse: np.ndarray, faces: np.ndarray, edges: np.ndarray) -> Mesh:
     return Mesh(inverse, np.zeros((len(inverse), 2)), edges, faces, np.ones(len(edges)), same)
 
 
+def near_of(points: list[list[int]], crossings: list[list[int]]) -> Near:
+    """Lists that hold these pairs, awake."""
+
+    def awake(pairs: list[list[int]]) -> np.ndarray:
+        return np.array([[*pair, 0] for pair in pairs], np.int32).reshape(-1, 3)
+
+    counts = np.array([0, len(points), len(crossings)])
+    return near_pairs_of(0).now._replace(points=awake(points), crossings=awake(crossings), count=counts)
+
+
 def met(gap: float, velocity: tuple[float, float, float], friction: float, kind: str) -> np.ndarray:
     """Velocity (3,) [m/s] of a layer relative to the one `gap` [m] below it, after one impulse."""
     if kind == "vertex on face":
         x = np.concatenate([[[0.0, gap, 0.0]], FACE])
         faces, edges = np.array([[1, 2, 3]], np.int32), np.zeros((0, 2), np.int32)
-        points, crossings = np.array([[0, 0]], np.int32), np.zeros((0, 2), np.int32)
+        near = near_of([[0, 0]], [])
         upper, below = [1.0, 0, 0, 0], [0, 1 / 4, 1 / 4, 1 / 2]
     else:
         x = np.concatenate([[[-0.01, gap, 0.0], [0.01, gap, 0.0]], BAR])
         faces, edges = np.zeros((0, 3), np.int32), np.array([[0, 1], [2, 3]], np.int32)
-        points, crossings = np.zeros((0, 2), np.int32), np.array([[0, 1]], np.int32)
+        near = near_of([], [[0, 1]])
         upper, below = [0.5, 0.5, 0, 0], [0, 0, 0.5, 0.5]
     v = np.asarray(upper)[:, None].astype(bool) * np.array(velocity)
     v = np.ascontiguousarray(v, float)
-    pairs, counts = (points, crossings), (len(points), len(crossings))
-    repel(x, v, mesh_of(np.ones(4), faces, edges), pairs, counts, shell_of(friction), 1e-3)
+    repel(x, v, mesh_of(np.ones(4), faces, edges), near, shell_of(friction), 1e-3, 0)
     weights = np.array(below)
     return np.asarray(upper) @ v - weights @ v
 
@@ -71,10 +90,9 @@ def test_what_is_pushed_near_its_pin_is_not_thrown(arm: float) -> None:
     """A led edge meets another one `arm` of its length from its pin: to give way there its end would need 1 / arm."""
     x = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02 * arm, 2e-4, -0.01], [0.02 * arm, 2e-4, 0.01]])
     v = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
-    free, edges, crossing = np.array([0.0, 1.0, 0.0, 0.0]), np.array([[0, 1], [2, 3]], np.int32), [[0, 1]]
+    free, edges = np.array([0.0, 1.0, 0.0, 0.0]), np.array([[0, 1], [2, 3]], np.int32)
     mesh = mesh_of(free, np.zeros((0, 3), np.int32), edges)
-    pairs = np.zeros((0, 2), np.int32), np.array(crossing, np.int32)
-    repel(x, v, mesh, pairs, (0, 1), shell_of(0.0), 1e-3)
+    repel(x, v, mesh, near_of([], [[0, 1]]), shell_of(0.0), 1e-3, 0)
     assert v[1] == pytest.approx([0.0, -min(1 / arm, LEVER), 0.0], abs=1e-4)
 
 

@@ -38,18 +38,23 @@ def counted():
     _nrt_python.memsys_disable_stats()
 
 
+def places(engine: Engine) -> set[int]:
+    """Where the lists of near pairs lie in memory."""
+    return {array.ctypes.data for half in (engine.near.now, engine.near.spare) for array in half}
+
+
 def test_the_compiled_loop_allocates_nothing_once_the_lists_are_long_enough(counted) -> None:
     """Handing arrays over costs a block each; four times the steps, dozens of searches among them, cost no more."""
     engine, state = crumpled()
     engine.advance(FALLING, state, Stride(400, 0.0))
-    lists, cost = engine.pairs, []
+    lists, cost = places(engine), []
     for steps in (400, 1600):
         begin, before = state.copy(), allocated()
         engine.advance(FALLING, state, Stride(steps, 1e-4))
         cost.append(allocated() - before)
     assert np.linalg.norm(state.x - begin.x, axis=0).max() > 5 * CONTACT.skin
     assert cost[1] - cost[0] < 5
-    assert all(a is b for a, b in zip(engine.pairs, lists, strict=True))
+    assert places(engine) == lists
 
 
 def test_full_lists_grow_and_keep_the_result() -> None:
@@ -57,23 +62,29 @@ def test_full_lists_grow_and_keep_the_result() -> None:
     for short in (False, True):
         engine, state = crumpled()
         if short:
-            engine.pairs = np.zeros((4, 2), np.int32), np.zeros((4, 2), np.int32)
+            short_lists = engine.near.now._replace(
+                points=np.zeros((4, 3), np.int32), crossings=np.zeros((4, 3), np.int32)
+            )
+            engine.near = engine.near._replace(now=short_lists)
         engine.advance(FALLING, state, Stride(400, 0.0))
         ends.append(state.x)
-        assert min(len(pairs) for pairs in engine.pairs) > 4
+        assert min(len(engine.near.now.points), len(engine.near.now.crossings)) > 4
     assert ends[0].tobytes() == ends[1].tobytes()
 
 
 @pytest.mark.parametrize("broken", [np.nan, np.inf, 1e300])
 def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) -> None:
-    from sim_core.cloth.contact import Mesh, edge_edge_pairs, finder_of, pairs_of, vertex_face_pairs
+    from sim_core.cloth.contact import Mesh, Search, begin_pairs, near_pairs_of, patches_of, shapes_of
 
     rest, faces = equilateral_sheet(0.1, 0.1, 0.02)
     faces = faces.astype(np.int32)
     edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
     x = np.column_stack([rest, np.zeros(len(rest))])
     x[3] = broken
-    finder, same = finder_of(len(x), len(edges), len(faces)), np.arange(len(x), dtype=np.int32)
+    same = np.arange(len(x), dtype=np.int32)
     mesh = Mesh(np.ones(len(x)), rest, edges, faces, np.ones(len(edges)), same)
-    assert vertex_face_pairs(x, mesh, 0.01, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
-    assert edge_edge_pairs(x, mesh, 0.01, 0.01, 0.0, finder, pairs_of(len(x)))[1] == 0
+    patches = patches_of(edges, faces, same)
+    found = begin_pairs(
+        x, mesh, patches, shapes_of(patches), Search(0.01, 0.01, 0.0, 0.02), near_pairs_of(len(x))
+    )
+    assert not found.now.count[1:].any()

@@ -13,7 +13,10 @@ from sim_core.cloth.contact import (
     crossings_of,
     faces_at_edges,
     finder_of,
+    near_pairs_of,
     no_crossings,
+    patches_of,
+    shapes_of,
     untangle,
 )
 from sim_core.cloth.scenes import equilateral_sheet
@@ -35,7 +38,9 @@ def mesh_of(faces: np.ndarray, inverse: np.ndarray) -> Mesh:
 
 def untangled(x: np.ndarray, v: np.ndarray, mesh: Mesh, how: Untangling) -> tuple[int, int]:
     """Crossings before and after."""
-    memory = Memory(finder_of(len(x), len(mesh.edges), len(mesh.faces)), no_crossings())
+    patches = patches_of(mesh.edges, mesh.faces, mesh.same)
+    finder = finder_of(len(x), len(mesh.edges), len(mesh.faces))
+    memory = Memory(finder, no_crossings(), patches, shapes_of(patches), near_pairs_of(0).now.patches)
     third = faces_at_edges(mesh.edges, mesh.faces)
     return untangle(x, v, mesh, third, Holds.of(len(x)), memory, how)[:2]
 

@@ -8,25 +8,21 @@ from typing import TYPE_CHECKING
 from sim_core.cloth.contact.collisions import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
-from sim_core.cloth.contact.pairs import (
-    Mesh,
-    edge_edge_pairs,
-    finder_of,
-    hash_points,
-    pairs_of,
-    vertex_face_pairs,
-)
-from sim_core.cloth.contact.repulsion import LEVER, Shell, repel
-from sim_core.cloth.contact.solid_meshes import solid_mesh
-from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
-from sim_core.cloth.contact.untangling import (
+from sim_core.cloth.contact.layers.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
+from sim_core.cloth.contact.layers.pairs import Mesh, Search, finder_of, hash_points
+from sim_core.cloth.contact.layers.patches import Patches, patches_of, shapes_of
+from sim_core.cloth.contact.layers.repulsion import LEVER, Shell, repel
+from sim_core.cloth.contact.layers.untangling import (
     Memory,
     Untangling,
     crossings_of,
     faces_at_edges,
     no_crossings,
+    none_crosses,
     untangle,
 )
+from sim_core.cloth.contact.solid_meshes import solid_mesh
+from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 
 if TYPE_CHECKING:
     from sim_core.cloth.contact.distance_field import DistanceField, field_of, hull_faces, hull_mesh, united
@@ -44,17 +40,21 @@ __all__ = [
     "Memory",
     "Mesh",
     "MovingGrid",
+    "Near",
+    "NearPairs",
+    "Patches",
     "Push",
+    "Search",
     "Shell",
     "Solid",
     "Union",
     "Untangling",
+    "begin_pairs",
     "collide_samples",
     "collide_vertices",
     "contact_samples",
     "crossings_of",
     "distances",
-    "edge_edge_pairs",
     "faces_at_edges",
     "field_of",
     "finder_of",
@@ -62,13 +62,16 @@ __all__ = [
     "hull_faces",
     "hull_mesh",
     "moving_mesh",
+    "near_pairs_of",
     "no_crossings",
-    "pairs_of",
-    "solid_mesh",
+    "none_crosses",
+    "patches_of",
+    "renew_pairs",
     "repel",
+    "shapes_of",
+    "solid_mesh",
     "united",
     "untangle",
-    "vertex_face_pairs",
 ]
 
 _LATE = {

@@ -13,12 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.distance import carried, fields_of, signed_distance
-from sim_core.cloth.contact.packed import FASTEST, MOVING
+from sim_core.cloth.contact.distance import carried, distance_at, fields_of, signed_distance
+from sim_core.cloth.contact.sleep import SOON, asleep
 
-LONGEST_SLEEP = 40  # substeps
 SETTLE = 6  # more looks at samples inside, at the end of a frame
-SLEEP_SPEED = 0.2  # [m/s] that a sleeper may gain beside twice its speed
 
 
 class Push(NamedTuple):
@@ -40,7 +38,7 @@ class Watch(NamedTuple):
     wake: np.ndarray
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy", inline="always")
 def _resolve(x, v, i, n, depth, speed, carry, push):
     """Pushes vertex i out along n = (nx, ny, nz), at least as fast as the surface moves, and applies friction.
 
@@ -62,57 +60,49 @@ def _resolve(x, v, i, n, depth, speed, carry, push):
         v[i, c] = vn * n[c] + (1.0 - lost) * t + along
 
 
-@njit(error_model="numpy", inline="always")  # a call would hand on every array of both, for each vertex
-def _meet(packed, fields, x, v, i, push):
-    """Resolves vertex i; returns how far outside the clearance it was [m]. fields: those of packed."""
-    d, (nx, ny, nz), speed = signed_distance(fields, x[i, 0], x[i, 1], x[i, 2])
-    if d < push.clearance and nx * nx + ny * ny + nz * nz > 0.5:
-        carry = (0.0, 0.0, 0.0)
-        if len(packed.ways) > 0:
-            carry = carried(packed, d, x[i, 0], x[i, 1], x[i, 2])
-        _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
-    return d - push.clearance
+@njit(cache=True, error_model="numpy")
+def _carried(packed, d, x, i):
+    return carried(packed, d, x[i, 0], x[i, 1], x[i, 2])
 
 
 @njit(cache=True, error_model="numpy")
 def collide_vertices(packed, inverse_mass, x, v, near, push):
     """Resolves the vertices near[:, 0]; returns the deepest depth seen [m]."""
-    deepest, fields = 0.0, fields_of(packed)
+    deepest, (kind, data, grid, later, blend) = 0.0, fields_of(packed)
+    carries = len(packed.ways) > 0
     for s in range(len(near)):
         i = near[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        room = _meet(packed, fields, x, v, i, push)
-        deepest = max(deepest, -room)
+        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
+        if d < push.clearance and nx * nx + ny * ny + nz * nz > 0.5:
+            carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
+            _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
+        deepest = max(deepest, push.clearance - d)
     return deepest
 
 
 @njit(cache=True, error_model="numpy")
 def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
-    """As `collide_vertices`, for those who are due."""
-    drift, fields, samples, wake = drift_of(packed), fields_of(packed), watch.samples, watch.wake
+    """As `collide_vertices`, for those who are due; returns the furthest that one was pushed [m]."""
+    samples, wake, deepest = watch.samples, watch.wake, 0.0
+    (kind, data, grid, later, blend), carries = fields_of(packed), len(packed.ways) > 0
     for s in range(len(samples)):
         if wake[s] > step:
             continue
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        room = _meet(packed, fields, x, v, i, push)
-        wake[s] = step + 1 + _sleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, push.dt)
-
-
-@njit(cache=True, error_model="numpy")
-def _sleep(room, speed2, drift, dt):
-    """Substeps that `room` [m] lasts at twice the speed, that of the body's surface and a little more."""
-    if room <= 0.0:
-        return 0
-    return int(min(LONGEST_SLEEP, room / (dt * (2.0 * math.sqrt(speed2) + SLEEP_SPEED + drift))))
-
-
-@njit(cache=True, error_model="numpy")
-def drift_of(packed):
-    """The most that the distance at a place loses in a second [m/s] as the body moves."""
-    return abs(packed.blend[1]) * packed.data[0, FASTEST] if packed.kind[0] == MOVING else 0.0
+        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
+        room = d - push.clearance
+        if room < 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
+            carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
+            _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
+            deepest = max(deepest, -room)
+        wake[s] = (
+            step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, max(speed, 0.0), push.dt)
+        )
+    return min(deepest, push.cap)
 
 
 @njit(cache=True, error_model="numpy")
@@ -129,23 +119,27 @@ def _way_of_corners(fields, x, sample, count):
     return gx / size, gy / size, gz / size
 
 
+@njit(error_model="numpy", inline="always")
+def _middle(x, i, j, k):
+    """The place of a midpoint (i, j, i) or centroid (i, j, k), and the weight of its corners."""
+    w = 0.5 if i == k else 1.0 / 3.0
+    third = 0.0 if i == k else w
+    px = w * (x[i, 0] + x[j, 0]) + third * x[k, 0]
+    py = w * (x[i, 1] + x[j, 1]) + third * x[k, 1]
+    pz = w * (x[i, 2] + x[j, 2]) + third * x[k, 2]
+    return px, py, pz, w
+
+
 @njit(cache=True, error_model="numpy")
-def _meet_middle(fields, inverse_mass, x, v, sample, push):
-    """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
-    i, j, k = sample[0], sample[1], sample[2]
-    pair = i == k
-    w = 0.5 if pair else 1.0 / 3.0
-    count = 2 if pair else 3
-    px = w * (x[i, 0] + x[j, 0]) + (0.0 if pair else w * x[k, 0])
-    py = w * (x[i, 1] + x[j, 1]) + (0.0 if pair else w * x[k, 1])
-    pz = w * (x[i, 2] + x[j, 2]) + (0.0 if pair else w * x[k, 2])
-    d, (nx, ny, nz), _ = signed_distance(fields, px, py, pz)
-    if d >= push.clearance:
-        return d - push.clearance
+def _push_middle(fields, inverse_mass, x, v, sample, out, push):
+    """Pushes a midpoint or centroid that is too near out; out: its distance [m] and the way, a unit vector or 0."""
+    d, nx, ny, nz = out
+    i, k = sample[0], sample[2]
+    w, count = (0.5, 2) if i == k else (1.0 / 3.0, 3)
     if nx * nx + ny * ny + nz * nz < 0.5:
         nx, ny, nz = _way_of_corners(fields, x, sample, count)
         if nx * nx + ny * ny + nz * nz < 0.5:
-            return d - push.clearance
+            return
     way = min(push.clearance - d, push.cap) / (w * w * count)
     vn = 0.0
     for a in range(count):
@@ -161,6 +155,15 @@ def _meet_middle(fields, inverse_mass, x, v, sample, push):
             v[u, 0] += w * gain * nx
             v[u, 1] += w * gain * ny
             v[u, 2] += w * gain * nz
+
+
+@njit(cache=True, error_model="numpy")
+def _meet_middle(fields, inverse_mass, x, v, sample, push):
+    """Pushes one midpoint (i, j, i) or centroid (i, j, k) out; returns how far outside it was [m]."""
+    px, py, pz, _ = _middle(x, sample[0], sample[1], sample[2])
+    d, (nx, ny, nz), _ = signed_distance(fields, px, py, pz)
+    if d < push.clearance:
+        _push_middle(fields, inverse_mass, x, v, sample, (d, nx, ny, nz), push)
     return d - push.clearance
 
 
@@ -188,17 +191,21 @@ def settle_samples(packed, inverse_mass, x, v, watch, step, push):
 
 @njit(cache=True, error_model="numpy")
 def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
-    """As `collide_samples`, for those who are due, or for all where they are `awake`."""
-    drift, fields, samples, wake = drift_of(packed), fields_of(packed), watch.samples, watch.wake
+    """As `collide_samples`, for those who are due, or all that would be SOON where they are `awake`."""
+    fields, samples, wake = fields_of(packed), watch.samples, watch.wake
+    (kind, data, grid, later, blend), latest = fields, step + SOON if awake else step
     for s in range(len(samples)):
-        if wake[s] > step and not awake:
+        if wake[s] > latest:
             continue
-        room = _meet_middle(fields, inverse_mass, x, v, samples[s], push)
-        fast = 0.0
-        for a in range(3):
-            u = samples[s, a]
-            fast = max(fast, v[u, 0] ** 2 + v[u, 1] ** 2 + v[u, 2] ** 2)
-        wake[s] = step + 1 + _sleep(room, fast, drift, push.dt)
+        i, j, k = samples[s, 0], samples[s, 1], samples[s, 2]
+        px, py, pz, _ = _middle(x, i, j, k)
+        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, px, py, pz)
+        if d < push.clearance:
+            _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), push)
+        fast = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
+        fast = max(fast, v[j, 0] ** 2 + v[j, 1] ** 2 + v[j, 2] ** 2)
+        fast = max(fast, v[k, 0] ** 2 + v[k, 1] ** 2 + v[k, 2] ** 2)
+        wake[s] = step + 1 + asleep(d - push.clearance, fast, max(speed, 0.0), push.dt)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

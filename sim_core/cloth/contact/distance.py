@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.packed import BOX, CAPSULE, CYLINDER, HALFSPACE, MOVING, Fields
-from sim_core.cloth.contact.pairs import triangle_weights
+from sim_core.cloth.contact.closest_points import triangle_weights
+from sim_core.cloth.contact.packed import BOX, CAPSULE, CYLINDER, GRID, MOVING, Fields
 
 
 @njit(cache=True, error_model="numpy")
@@ -72,7 +72,7 @@ def _box(r, x, y, z):
     return d - r[6], c * gx + s * gz, gy, -s * gx + c * gz
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy", inline="always")
 def _within(u, count):
     """The nearest place in a row of `count` nodes that has one behind it; NaN, of a frame that blew up, is its begin.
 
@@ -83,14 +83,15 @@ def _within(u, count):
     return u if u < last else last
 
 
-@njit(cache=True, error_model="numpy")
-def _grid(r, grid, x, y, z):
+@njit(error_model="numpy", inline="always")
+def _grid(data, p, grid, x, y, z):
     """Trilinear value and gradient; outside the box the value at its border plus the way there."""
     nx, ny, nz = grid.shape
-    per = 1.0 / r[3]
-    u, v, w = (x - r[0]) * per, (y - r[1]) * per, (z - r[2]) * per
+    size = data[p, 3]
+    per = 1.0 / size
+    u, v, w = (x - data[p, 0]) * per, (y - data[p, 1]) * per, (z - data[p, 2]) * per
     cu, cv, cw = _within(u, nx), _within(v, ny), _within(w, nz)
-    ox, oy, oz = (u - cu) * r[3], (v - cv) * r[3], (w - cw) * r[3]
+    ox, oy, oz = (u - cu) * size, (v - cv) * size, (w - cw) * size
     i, j, k = np.uint64(cu), np.uint64(cv), np.uint64(cw)
     a, b, c = cu - i, cv - j, cw - k
     one = np.uint64(1)
@@ -105,9 +106,10 @@ def _grid(r, grid, x, y, z):
     dx = (1.0 - c) * (x00 + b * (x10 - x00)) + c * (x01 + b * (x11 - x01))
     dy = (1.0 - c) * (h10 - h00) + c * (h11 - h01)
     away = math.sqrt(ox * ox + oy * oy + oz * oz)
+    value, gx, gy, gz = (1 - c) * lo + c * hi, dx * per, dy * per, (hi - lo) * per
     if away > 0.0:
-        return (1 - c) * lo + c * hi + away, ox / away, oy / away, oz / away
-    return (1 - c) * lo + c * hi, dx * per, dy * per, (hi - lo) * per
+        value, gx, gy, gz = value + away, ox / away, oy / away, oz / away
+    return value, gx, gy, gz
 
 
 @njit(cache=True, error_model="numpy")
@@ -117,47 +119,61 @@ def fields_of(packed):
 
 
 @njit(cache=True, error_model="numpy")
+def _exact(kind, row, x, y, z):
+    """Distance and gradient of a solid that is no grid."""
+    if kind == CAPSULE:
+        return _capsule(row, x, y, z)
+    if kind == CYLINDER:
+        return _cylinder(row, x, y, z)
+    if kind == BOX:
+        return _box(row, x, y, z)
+    gx, gy, gz = row[0], row[1], row[2]
+    return (x - row[3]) * gx + (y - row[4]) * gy + (z - row[5]) * gz, gx, gy, gz
+
+
+@njit(error_model="numpy", inline="always")
+def distance_at(kind, data, grid, later, blend, x, y, z):
+    """`signed_distance` for loops over many points, which name the arrays of `Fields` once: taken out of the record
+    each is counted, at every point.
+    """
+    best, bx, by, bz, speed = np.inf, 0.0, 1.0, 0.0, 0.0
+    for p in range(len(kind)):
+        around = data[p, 19]
+        reach = best + around
+        if around >= 0.0:
+            ux, uy, uz = x - data[p, 16], y - data[p, 17], z - data[p, 18]
+            if ux * ux + uy * uy + uz * uz > reach * abs(reach):
+                continue  # not even the ball around it is nearer than the best
+        w = 0.0
+        if kind[p] >= GRID:
+            d, gx, gy, gz = _grid(data, p, grid, x, y, z)
+            if kind[p] == MOVING:
+                e, hx, hy, hz = _grid(data, p, later, x, y, z)
+                s = blend[0]
+                w = -(e - d) * blend[1]
+                d, gx = (1.0 - s) * d + s * e, (1.0 - s) * gx + s * hx
+                gy, gz = (1.0 - s) * gy + s * hy, (1.0 - s) * gz + s * hz
+            size = math.sqrt(gx * gx + gy * gy + gz * gz)
+            # Between two surfaces the sampled gradient shrinks; pushing along it throws vertices to and fro.
+            size = size if size >= 0.75 else np.inf
+            gx, gy, gz = gx / size, gy / size, gz / size
+        else:
+            d, gx, gy, gz = _exact(kind[p], data[p], x, y, z)
+        if d < best:
+            best, bx, by, bz, speed = d, gx, gy, gz, w
+    return best, bx, by, bz, speed
+
+
+@njit(cache=True, error_model="numpy")
 def signed_distance(fields, x, y, z):
     """Distance [m], unit gradient (x, y, z) and the surface's speed along it [m/s] at a point.
 
     The gradient is 0 where a grid has none (medial axis). A moving grid is blended between two keys; its surface
     moves by what the distance loses.
     """
-    best, bx, by, bz, speed = np.inf, 0.0, 1.0, 0.0, 0.0
-    for p in range(len(fields.kind)):
-        kind, row = fields.kind[p], fields.data[p]
-        reach = best + row[19]
-        if row[19] >= 0.0 and (x - row[16]) ** 2 + (y - row[17]) ** 2 + (z - row[18]) ** 2 > reach * abs(
-            reach
-        ):
-            continue  # not even the ball around it is nearer than the best
-        w = 0.0
-        if kind == CAPSULE:
-            d, gx, gy, gz = _capsule(row, x, y, z)
-        elif kind == CYLINDER:
-            d, gx, gy, gz = _cylinder(row, x, y, z)
-        elif kind == BOX:
-            d, gx, gy, gz = _box(row, x, y, z)
-        elif kind == HALFSPACE:
-            gx, gy, gz = row[0], row[1], row[2]
-            d = (x - row[3]) * gx + (y - row[4]) * gy + (z - row[5]) * gz
-        else:
-            d, gx, gy, gz = _grid(row, fields.grid, x, y, z)
-            if kind == MOVING:
-                e, hx, hy, hz = _grid(row, fields.later, x, y, z)
-                s = fields.blend[0]
-                w = -(e - d) * fields.blend[1]
-                d, gx = (1.0 - s) * d + s * e, (1.0 - s) * gx + s * hx
-                gy, gz = (1.0 - s) * gy + s * hy, (1.0 - s) * gz + s * hz
-            size = math.sqrt(gx * gx + gy * gy + gz * gz)
-            # Between two surfaces the sampled gradient shrinks; pushing along it throws vertices to and fro.
-            if size < 0.75:
-                gx, gy, gz = 0.0, 0.0, 0.0
-            else:
-                gx, gy, gz = gx / size, gy / size, gz / size
-        if d < best:
-            best, bx, by, bz, speed = d, gx, gy, gz, w
-    return best, (bx, by, bz), speed
+    kind, data, grid, later, blend = fields
+    d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x, y, z)
+    return d, (nx, ny, nz), speed
 
 
 @njit(cache=True, error_model="numpy")
@@ -194,7 +210,8 @@ def carried(packed, d, x, y, z):
 @njit(cache=True, error_model="numpy")
 def distances(packed, points):
     """Signed distance (N,) at points (N, 3)."""
-    out, fields = np.zeros(len(points)), fields_of(packed)
+    out, (kind, data, grid, later, blend) = np.zeros(len(points)), fields_of(packed)
     for i in range(len(points)):
-        out[i] = signed_distance(fields, points[i, 0], points[i, 1], points[i, 2])[0]
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        out[i] = distance_at(kind, data, grid, later, blend, x, y, z)[0]
     return out

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.contact.closest_points import at
 from sim_core.metrics.triangles import squared_gap
 
 
@@ -14,9 +15,9 @@ from sim_core.metrics.triangles import squared_gap
 def splat(vertices, faces, origin, cell, reach, distance, nearest):
     """Writes, into every node within `reach` [m] of a face, the least distance and the face it belongs to."""
     nx, ny, nz = distance.shape
-    p = np.zeros(3)
+    ox, oy, oz = origin[0], origin[1], origin[2]
     for f in range(len(faces)):
-        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        a, b, c = at(vertices, faces[f, 0]), at(vertices, faces[f, 1]), at(vertices, faces[f, 2])
         ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
         vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
         mx, my, mz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
@@ -28,25 +29,25 @@ def splat(vertices, faces, origin, cell, reach, distance, nearest):
         for q in (a, b, c):
             ball = max(ball, (q[0] - cx) ** 2 + (q[1] - cy) ** 2 + (q[2] - cz) ** 2)
         ball = math.sqrt(ball)
-        i0 = max(0, math.ceil((min(a[0], b[0], c[0]) - reach - origin[0]) / cell))
-        j0 = max(0, math.ceil((min(a[1], b[1], c[1]) - reach - origin[1]) / cell))
-        k0 = max(0, math.ceil((min(a[2], b[2], c[2]) - reach - origin[2]) / cell))
-        i1 = min(nx - 1, math.floor((max(a[0], b[0], c[0]) + reach - origin[0]) / cell))
-        j1 = min(ny - 1, math.floor((max(a[1], b[1], c[1]) + reach - origin[1]) / cell))
-        k1 = min(nz - 1, math.floor((max(a[2], b[2], c[2]) + reach - origin[2]) / cell))
+        i0 = max(0, math.ceil((min(a[0], b[0], c[0]) - reach - ox) / cell))
+        j0 = max(0, math.ceil((min(a[1], b[1], c[1]) - reach - oy) / cell))
+        k0 = max(0, math.ceil((min(a[2], b[2], c[2]) - reach - oz) / cell))
+        i1 = min(nx - 1, math.floor((max(a[0], b[0], c[0]) + reach - ox) / cell))
+        j1 = min(ny - 1, math.floor((max(a[1], b[1], c[1]) + reach - oy) / cell))
+        k1 = min(nz - 1, math.floor((max(a[2], b[2], c[2]) + reach - oz) / cell))
         for i in range(i0, i1 + 1):
-            p[0] = origin[0] + cell * i
+            px = ox + cell * i
             for j in range(j0, j1 + 1):
-                p[1] = origin[1] + cell * j
+                py = oy + cell * j
                 for k in range(k0, k1 + 1):
-                    p[2] = origin[2] + cell * k
+                    pz = oz + cell * k
                     best = min(distance[i, j, k], reach)
                     rim = best + ball
-                    if (p[0] - cx) ** 2 + (p[1] - cy) ** 2 + (p[2] - cz) ** 2 >= rim * rim:
+                    if (px - cx) ** 2 + (py - cy) ** 2 + (pz - cz) ** 2 >= rim * rim:
                         continue  # not even the ball around the face is nearer
-                    if abs((p[0] - a[0]) * mx + (p[1] - a[1]) * my + (p[2] - a[2]) * mz) >= best:
+                    if abs((px - a[0]) * mx + (py - a[1]) * my + (pz - a[2]) * mz) >= best:
                         continue  # nor its plane
-                    d2 = squared_gap(p, a, b, c)
+                    d2 = squared_gap((px, py, pz), a, b, c)
                     if d2 < best * best:
                         distance[i, j, k] = math.sqrt(d2)
                         nearest[i, j, k] = f
@@ -60,7 +61,7 @@ def spread(vertices, faces, origin, cell, band, distance, nearest):
     """
     nx, ny, nz = distance.shape
     queue = np.flatnonzero(nearest.ravel() >= 0).astype(np.int64)
-    p = np.zeros(3)
+    ox, oy, oz = origin[0], origin[1], origin[2]
     while len(queue):
         following = np.zeros(6 * len(queue), np.int64)
         count = 0
@@ -68,7 +69,7 @@ def spread(vertices, faces, origin, cell, band, distance, nearest):
             i, rest = queue[q] // (ny * nz), queue[q] % (ny * nz)
             j, k = rest // nz, rest % nz
             f = nearest[i, j, k]
-            a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+            a, b, c = at(vertices, faces[f, 0]), at(vertices, faces[f, 1]), at(vertices, faces[f, 2])
             limit = distance[i, j, k] + cell * 1.001
             for side in range(6):
                 u, v, w = i, j, k
@@ -84,8 +85,7 @@ def spread(vertices, faces, origin, cell, band, distance, nearest):
                 best = distance[u, v, w]
                 if best <= distance[i, j, k] - cell:
                     continue
-                p[0], p[1], p[2] = origin[0] + cell * u, origin[1] + cell * v, origin[2] + cell * w
-                d2 = squared_gap(p, a, b, c)
+                d2 = squared_gap((ox + cell * u, oy + cell * v, oz + cell * w), a, b, c)
                 least = min(best, limit, band)
                 if d2 < least * least * (1.0 - 1e-6):
                     distance[u, v, w] = math.sqrt(d2)

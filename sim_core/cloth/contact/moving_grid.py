@@ -157,6 +157,16 @@ def _worn(name: str, value: object, shape: tuple[int, ...]) -> Worn:
     return np.ascontiguousarray(nearest, np.int32), np.ascontiguousarray(corners, float)
 
 
+def _nodes_around(
+    points: np.ndarray, low: np.ndarray, cell: float, band: float, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Lowest and highest index (3,) of the nodes within `band` [m] of points (…, 3); None where there are none."""
+    flat = points.reshape(-1, 3)
+    first = np.maximum(np.floor((flat.min(0) - band - low) / cell), 0).astype(int)
+    last = np.minimum(np.ceil((flat.max(0) + band - low) / cell), np.array(shape) - 1).astype(int)
+    return (first, last) if (last > first).all() else None
+
+
 def moving_mesh(
     positions: np.ndarray,
     faces: np.ndarray,
@@ -218,10 +228,16 @@ def moving_mesh(
         values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
         before = len(faces)
         for hull, reach in zip(parts[1:], beyond, strict=True):
-            other, face = field_and_faces(frames[k], hull, cell=cell, band=band, box=(low, high))
-            other, face = other - reach, np.where(face < 0, -1, face + before)
-            nearer = other < values
-            values, nearest = np.where(nearer, other, values), np.where(nearer, face, nearest)
+            around = _nodes_around(frames[k][hull], low, cell, band, values.shape)
+            if around is not None:
+                first, last = around
+                there = tuple(slice(a, b + 1) for a, b in zip(first, last, strict=True))
+                inner = low + cell * first, low + cell * last
+                other, face = field_and_faces(frames[k], hull, cell=cell, band=band, box=inner)
+                other, face = other - reach, np.where(face < 0, -1, face + before)
+                nearer = other < values[there]
+                values[there] = np.where(nearer, other, values[there])
+                nearest[there] = np.where(nearer, face, nearest[there])
             before += len(hull)
         for old in [j for j in near if abs(j - k) > 1]:
             del near[old]

@@ -12,15 +12,17 @@ import numpy as np
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.solids import Solid
+from sim_core.cloth.run.causes import cause
 from sim_core.cloth.run.checkpoint import RunState
 from sim_core.cloth.run.smoothing import smoothed
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
 from sim_core.cloth.step.engine import IMPLICIT_STEPS, Engine, Stride
 from sim_core.cloth.step.frame import FRAME, Contact, Frame, Phase, State, checked_phases, schedule
+from sim_core.cloth.step.haste import LATE, passing_step
 from sim_core.cloth.step.kernels.diagnostics import ways
 from sim_core.cloth.step.precision import Pace
-from sim_core.cloth.step.stability import first_mode, passing_step, stable_with
+from sim_core.cloth.step.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
 from sim_core.validation import coordinates, instance_of, integer, one_of, vector3, vertex_indices
 
@@ -32,8 +34,8 @@ MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
 SHELL_VERSION = 3  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
-LATE = 2.0  # times that step, beyond which a frame whose layers became faster is done again
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
+MORE_IMPLICIT = (IMPLICIT_STEPS, 64, 512)  # steps of backward Euler that are tried then, one after the other
 MOST_FIXED = 100_000  # substeps of a frame that may be asked for
 INTEGRATORS = ("auto", "explicit", "implicit")
 _KINDS = {  # of what a run may be given, and the remedy
@@ -144,11 +146,13 @@ class Run:
     def begun(self, x: np.ndarray, v: np.ndarray) -> RunState:
         """The state before the first frame, from x, v (V, 3); a hopeless start is smoothed.
 
-        Not where a solid, sewing pairs, bounds, images or limits of lengths are: a smooth sheet may lie across them.
+        Layers that lie exactly on each other are a little apart then. It is not smoothed where a solid, sewing pairs,
+        bounds, images or limits of lengths are: a smooth sheet may lie across them.
         """
         if self.setup.certify is not False:
             self._certify(x)
         engine, holds = self.engine, self.engine.holds
+        x = engine.parted(self.frames[0].pins, x)
         held = engine.limited or len(holds.pairs) or len(holds.low) or len(holds.slaves)
         if held or engine.moving or len(engine.packed.kind) or self.certified is not None:
             return RunState(x, v)
@@ -274,7 +278,7 @@ class Run:
         bounds = min(engine.air_step(frame, begin.v), self._layer_step(frame, begin))
         longest = min(stable, bounds / pace.courant)
         count = self._count(longest)
-        return longest, Stride(count, state.last_step, guard, usual=FRAME / count)
+        return longest, Stride(count, state.last_step, guard, usual=FRAME / count, breaks=True)
 
     def _explicit(self, state: RunState, frame: Frame, begin: State) -> tuple[State, Stride]:
         """Where one frame leads and how it was gone through; the run's safety, mode and counters change."""
@@ -288,7 +292,10 @@ class Run:
             stride = stride._replace(count=self._count(state.safety * step))
             if stride.count <= MOST_SUBSTEPS:
                 end = begin.copy()
-                engine.advance(frame, end, stride)
+                if not engine.advance(frame, end, stride):
+                    step = min(0.5 * step, passing_step(engine.shell.thickness, end.v) / self.pace.courant)
+                    engine.forget()
+                    continue
                 good = engine.health.good(frame, begin, end)
                 if not good and not frame.quiet and np.isfinite(end.x).all():
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
@@ -304,13 +311,15 @@ class Run:
                     continue
                 engine.forget()
             if self._gives_in(attempt, stride.count):
-                end = self._implicit(frame, begin, IMPLICIT_STEPS)
-                if engine.health.good(frame, begin, end):
-                    state.fallbacks += 1
-                    return end, stride._replace(count=IMPLICIT_STEPS)
-                engine.forget()
+                for count in MORE_IMPLICIT if stride.count > MOST_SUBSTEPS else MORE_IMPLICIT[:1]:
+                    end = self._implicit(frame, begin, count)
+                    if engine.health.good(frame, begin, end):
+                        state.fallbacks += 1
+                        return end, stride._replace(count=count)
+                    engine.forget()
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
-        raise SimCoreError(f"frame {state.frame}: unstable even at 1/{2**MAX_HALVINGS} of the stable step")
+        why = cause(engine, frame, begin, MOST_SUBSTEPS, self._count(step))
+        raise SimCoreError(f"frame {state.frame}: {why}")
 
     def _layer_step(self, frame: Frame, begin: State) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""

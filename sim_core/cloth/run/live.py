@@ -8,6 +8,7 @@ from typing import Unpack
 import numpy as np
 
 from sim_core.cloth.run.adaptive_run import Options, Run, Setup, checked_state
+from sim_core.cloth.run.causes import check_hands
 from sim_core.cloth.run.certificate import Certificate
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
@@ -120,6 +121,7 @@ class Live:
             pulled=pulled,
             pulls=forces,
         )
+        check_hands(self._run.engine, frame, self._state.positions)
         self._run.frame_under(self._state, frame)
         self.pins, self.air, self.body = held, air, late
         self._state.trace, self._state.seconds = self._state.trace[-1:], self._state.seconds[-1:]

@@ -15,11 +15,22 @@ from sim_core.cloth.contact.collisions import (
     contact_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
+from sim_core.cloth.contact.layers.pairs import Mesh, finder_of
+from sim_core.cloth.contact.layers.parting import parted
+from sim_core.cloth.contact.layers.patches import patches_of, shapes_of
+from sim_core.cloth.contact.layers.repulsion import search_for
+from sim_core.cloth.contact.layers.untangling import (
+    Memory,
+    Untangling,
+    faces_at_edges,
+    no_crossings,
+    none_crosses,
+    untangle,
+)
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.packed import Packed
-from sim_core.cloth.contact.pairs import Mesh, finder_of, pairs_of
 from sim_core.cloth.contact.solids import Solid
-from sim_core.cloth.contact.untangling import Memory, Untangling, faces_at_edges, no_crossings, untangle
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.frame import FRAME, FREE, Contact, Frame, State
 from sim_core.cloth.step.health import Health
@@ -50,6 +61,7 @@ class Stride(NamedTuple):
         0.0  # the step [s] that layers are as stiff as at, however short the steps are (0: the steps')
     )
     share: float = 1.0  # of a frame that this is
+    breaks: bool = False  # off, as soon as layers are too fast for its steps: the frame is done again then
 
 
 class Engine:
@@ -88,14 +100,17 @@ class Engine:
             same=self.holds.same,
         )
         layers = (count, len(s.edges), len(s.faces)) if self.shell.thickness else (0, 0, 0)
-        self.pairs = pairs_of(layers[0]), pairs_of(layers[0])
+        self.near = near_pairs_of(layers[0])
+        patches = patches_of(s.edges, s.faces if self.shell.thickness else s.faces[:0], self.holds.same)
+        self.finder = finder_of(*layers)
         vertices, middles = self._samples()
         self.touch = Touch(
             solid=self.packed,
             vertices=Watch(vertices, np.zeros(len(vertices), np.int32)),
             middles=Watch(middles, np.zeros(len(middles), np.int32)),
             shell=self.shell,
-            finder=finder_of(*layers),
+            patches=patches,
+            shapes=shapes_of(patches),
             holds=self.holds,
         )
         self.third, self.crossed = faces_at_edges(s.edges, s.faces), no_crossings()
@@ -178,6 +193,7 @@ class Engine:
             last=stride.last,
             beta=max(float(self.sheet.material.stiffness_damping), stride.guard),
             slow=self.slow(dt) if stride.count % self.pace.slow == 0 else 1,
+            breaks=stride.breaks,
             whole=not (self.shell.thickness > 0.0 or frame.speed_limit < FREE),
         )
 
@@ -189,8 +205,8 @@ class Engine:
         packed, body = self.moving.packed(*frame.body)
         return packed, inside._replace(body=body)
 
-    def advance(self, frame: Frame, state: State, stride: Stride) -> None:
-        """Moves a state in place through a frame, or the share of one that the stride tells."""
+    def advance(self, frame: Frame, state: State, stride: Stride) -> bool:
+        """Moves a state in place through a frame, or the share of one that the stride tells; False if it broke off."""
         steps, shell = self._steps(frame, stride), self.shell
         if stride.usual > 0.0:
             shell = shell._replace(spring=shell.spring * (steps.dt / stride.usual) ** 2)
@@ -199,9 +215,10 @@ class Engine:
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(frame.pins))
         touch = self.touch._replace(solid=solid, shell=shell)
         if self.laned:
-            self.pairs = self.laned.advance(mesh, touch, inside, steps, state, self.pairs)
+            self.near, done = self.laned.advance(mesh, touch, inside, steps, state, self.near)
         else:
-            self.pairs = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.pairs)
+            self.near, done = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.near)
+        return done
 
     def _lead(self, frame: Frame, state: State, seconds: float = FRAME) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""
@@ -253,15 +270,34 @@ class Engine:
         bound(self.holds, x, v)
         mirror(self.holds, x, v)
 
+    def parted(self, pins: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """x (V, 3) in the caller's order, with layers that lie exactly on each other a little apart."""
+        thickness = self.shell.thickness
+        if thickness == 0.0:
+            return x
+        mesh, there = (
+            self.mesh._replace(inverse_mass=self.inverse_mass(pins)),
+            np.ascontiguousarray(x[self.order]),
+        )
+        how, touch = search_for(mesh, thickness, 0.0, 0.0), self.touch
+        self.near = begin_pairs(there, mesh, touch.patches, touch.shapes, how, self.near)
+        self.near.kept[:] = 0.0
+        found = parted(there, mesh, self.near.now, thickness)
+        return x if found is there else found[self.number]
+
     def untangle(self, pins: np.ndarray, state: State) -> tuple[int, int]:
         """Takes a cloth out of itself in place; pairs of edge and face that crossed before, and after."""
         c = self.contact
         how = Untangling(UNTANGLE * c.thickness, c.untangle, c.partly)
         if not how.rounds or not how.step:
             return 0, 0
+        if none_crosses(state.x.T, self.mesh, self.third, self.near, c.thickness):
+            return 0, 0
         there, speed = (np.ascontiguousarray(array.T) for array in state)
         mesh = self.mesh._replace(inverse_mass=self.inverse_mass(pins))
-        memory = Memory(self.touch.finder, self.crossed)
+        memory = Memory(
+            self.finder, self.crossed, self.touch.patches, self.touch.shapes, self.near.spare.patches
+        )
         before, after, self.crossed = untangle(there, speed, mesh, self.third, self.holds, memory, how)
         if before:
             state.x[:], state.v[:] = there.T, speed.T
@@ -272,6 +308,7 @@ class Engine:
         """Clears the working memory of a frame that blew up: sums go on from what lies there, and so would NaN."""
         for part in self.room:
             part[:] = 0
+        self.near.kept[:] = 0.0
         if self.laned:
             self.laned.forget()
 

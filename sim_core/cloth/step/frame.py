@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim_core.cloth.contact.repulsion import Shell
+from sim_core.cloth.contact.layers.repulsion import Shell
 from sim_core.errors import SimCoreError
 from sim_core.validation import excerpt, finite, instance_of, integer, vector, vertex_indices
 

@@ -15,10 +15,12 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
+from sim_core.cloth.contact.layers.near_pairs import begin_pairs, go_on, likely_way, renew_pairs
+from sim_core.cloth.contact.layers.patches import Patches, Shapes
+from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for, search_with
 from sim_core.cloth.contact.packed import MOVING, Packed
-from sim_core.cloth.contact.pairs import Finder
-from sim_core.cloth.contact.repulsion import Shell, candidate_pairs, repel
 from sim_core.cloth.step.frame import FREE, State
+from sim_core.cloth.step.haste import LATE, passing_step
 from sim_core.cloth.step.kernels.banded import axes, band_limit
 from sim_core.cloth.step.kernels.leaps import arrive, leap, look_back
 
@@ -27,6 +29,7 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
+SURE_FOR = 2  # substeps for which a quick look has to be sure that the lists hold: a thorough one costs as much as 20
 
 
 class Steps(NamedTuple):
@@ -37,6 +40,7 @@ class Steps(NamedTuple):
     last: float  # [s] the step before the frame; 0 at the start
     beta: float  # stiffness damping [s]
     slow: int  # steps between two looks at bending
+    breaks: bool  # where layers are too fast for these steps
     whole: bool  # nothing comes between the kick and the drift of a step: no layers, no limit of speed
 
 
@@ -47,7 +51,8 @@ class Touch(NamedTuple):
     vertices: Watch
     middles: Watch  # edge midpoints and centroids
     shell: Shell
-    finder: Finder
+    patches: Patches
+    shapes: Shapes
     holds: Holds
 
 
@@ -63,7 +68,6 @@ class Room(NamedTuple):
     air_now: np.ndarray
     air_past: np.ndarray
     face: np.ndarray
-    mark: np.ndarray
     spare: np.ndarray
 
 
@@ -87,41 +91,15 @@ def room_of(edges: int, vertices: int, longest: int, lanes: type | None = None) 
         air_now=axes(vertices),
         air_past=axes(vertices),
         face=axes(max(longest, 1)),
-        mark=axes(vertices),
         spare=axes(vertices if lanes else 0),
     )
 
 
-@njit(cache=True, error_model="numpy")
-def travel(x, v, mark):
-    """How far (V, 3) x has come from its mark and how fast it goes, at most, off the cloth's mean."""
-    dx = dy = dz = vx = vy = vz = 0.0
-    for i in range(len(x)):
-        dx, dy, dz = dx + x[i, 0] - mark[i, 0], dy + x[i, 1] - mark[i, 1], dz + x[i, 2] - mark[i, 2]
-        vx, vy, vz = vx + v[i, 0], vy + v[i, 1], vz + v[i, 2]
-    share = 1.0 / len(x)
-    dx, dy, dz = share * dx, share * dy, share * dz
-    vx, vy, vz = share * vx, share * vy, share * vz
-    far = fast = 0.0
-    for i in range(len(x)):
-        a, b, c = x[i, 0] - mark[i, 0] - dx, x[i, 1] - mark[i, 1] - dy, x[i, 2] - mark[i, 2] - dz
-        far = max(far, a * a + b * b + c * c)
-        a, b, c = v[i, 0] - vx, v[i, 1] - vy, v[i, 2] - vz
-        fast = max(fast, a * a + b * b + c * c)
-    return np.sqrt(far), np.sqrt(fast)
-
-
-@njit(cache=True, error_model="numpy")
-def patience(left, fast, dt, cap):
-    """Substeps until `left` [m] may be used up at twice the speed `fast`, with pushes of `cap` each."""
-    if not left > 0.0:
-        return 0
-    return int(min(LOOK_EVERY, left / (2.0 * fast * dt + cap + 1e-12)))
-
-
 @njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
 def _against_solids(touch, inverse, frame, steps, x, v, k):
-    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end."""
+    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end; returns the
+    furthest that a vertex was pushed [m].
+    """
     solid, shell, last, cap, dt = touch.solid, touch.shell, k == steps.count - 1, touch.shell.cap, steps.dt
     if solid.kind[0] == MOVING:
         early, late = frame.body
@@ -132,9 +110,8 @@ def _against_solids(touch, inverse, frame, steps, x, v, k):
         collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, cap, 0.0, dt))
         if last:
             settle_samples(solid, inverse, x, v, middles, k, Push(SETTLED * r, cap, 0.0, dt))
-    collide_due_vertices(
-        solid, inverse, x, v, touch.vertices, k, Push(shell.clearance, cap, frame.friction, dt)
-    )
+    push = Push(shell.clearance, cap, frame.friction, dt)
+    return collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
 
 
 @njit(error_model="numpy", inline="always")
@@ -146,20 +123,21 @@ def _sew(holds, inverse, frame, steps, x, v, k):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(layout, mesh, touch, frame, steps, room, state, pairs):
+def advance(layout, mesh, touch, frame, steps, room, state, near):
     """Simulates a frame's steps over `Bands` or `Lanes`; the state's x, v (3, V) change in place.
 
-    frame: its vertices and its body in the numbers of this loop. pairs: two lists (K, 2), written over; returned,
-    longer where they were full. v lives half a step behind x. Lists of pairs are renewed before the cloth has moved
-    half their margin off its mean.
+    frame: its vertices and its body in the numbers of this loop. near: `NearPairs`, written over and returned, with
+    longer lists where they were full; after it, whether all steps were done: see `Steps.breaks`. v lives half a step
+    behind x.
     """
-    here, there, mark = state, State(room.spare, state.v), room.mark.T
+    here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
-    layers, push = shell.thickness > 0.0, shell.cap if solids else 0.0
+    layers, pushed = shell.thickness > 0.0, 0.0
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, counts = -1, (0, 0)
+    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
+    how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
@@ -167,14 +145,21 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
             if k >= look_layer:
-                far, fast = travel(x, v, mark) if look_layer >= 0 else (np.inf, 0.0)
-                if far > 0.3 * shell.skin:
-                    pairs, counts = candidate_pairs(x, mesh, shell, touch.finder, pairs)
-                    room.mark[:] = here.x
-                    far, fast = travel(x, v, mark)
-                look_layer = k + 1 + patience(0.5 * shell.skin - far, fast, steps.dt, push)
-            if counts[0] + counts[1] > 0:
-                repel(x, v, mesh, pairs, counts, shell, steps.dt * shell.every)
+                if steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
+                    done = False
+                    break
+                if look_layer < 0:
+                    way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
+                    how = search_for(mesh, shell.thickness, shell.skin, way)
+                    if go_on(near, how):
+                        how = search_with(how.thickness, how.edge, near.kept[0], near.kept[1])
+                    else:
+                        near = begin_pairs(x, mesh, patches, shapes, how, near)
+                enough, push = SURE_FOR * steps.dt, pushed / steps.dt
+                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, (push, enough))
+                look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0
+            if near.now.count[1] + near.now.count[2] > 0:
+                repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         if late:
@@ -182,9 +167,9 @@ def advance(layout, mesh, touch, frame, steps, room, state, pairs):
         if len(holds.pairs) > 0:
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
-            _against_solids(touch, inverse, frame, steps, x, v, k)
+            pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
         if bounded:
             bound(holds, x, v)
             mirror(holds, x, v)
     state.x[:] = here.x  # lanes go to and fro between two arrays
-    return pairs
+    return near, done

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.cloth.contact.pairs import Mesh
+from sim_core.cloth.contact.layers.near_pairs import NearPairs
+from sim_core.cloth.contact.layers.pairs import Mesh
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.frame import Frame, State
 from sim_core.cloth.step.kernels.bands import Bands
@@ -94,8 +95,8 @@ class Laned:
         frame: Frame,
         steps: Steps,
         state: State,
-        pairs: tuple[np.ndarray, np.ndarray],
-    ) -> tuple[np.ndarray, np.ndarray]:
+        near: NearPairs,
+    ) -> tuple[NearPairs, bool]:
         """`leapfrog.advance` of a state in float64; single counts free cloth from its middle."""
         x, v, inverse = state.x, state.v, mesh.inverse_mass
         there = len(touch.solid.kind) > 0 or len(touch.holds.low) > 0 or len(touch.holds.slaves) > 0
@@ -105,13 +106,13 @@ class Laned:
         own.x[:] = x - middle
         own.v[:] = v
         mesh = mesh._replace(inverse_mass=self._cast(inverse))
-        pairs = advance(self.lanes, mesh, touch, frame, steps, self.room, own, pairs)
+        near, done = advance(self.lanes, mesh, touch, frame, steps, self.room, own, near)
         v[:] = own.v
         still = inverse == 0.0
         kept = x[:, still] + v[:, still] * (steps.dt * steps.count)
         x[:] = own.x + middle
         x[:, still] = kept  # what is pinned is exactly where it was, or was led to
-        return pairs
+        return near, done
 
     def frequency2(self, inverse: np.ndarray, x: np.ndarray, mode: np.ndarray, *, first: bool) -> float:
         """`stability.highest_frequency2` [1/s2]: x (3, V) float64; mode (3, V) float64 is renewed."""

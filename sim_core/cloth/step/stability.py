@@ -21,8 +21,6 @@ from sim_core.cloth.step.leapfrog import Room
 
 LEAST_ROUNDS, MOST_ROUNDS = 16, 60  # of the power iteration; the first of a run takes the most
 SETTLED = 2e-3  # share by which the largest eigenvalue may still grow in a round and count as found
-HASTE = 0.5  # of the shell's thickness, that a vertex may go in a step
-SHORTEST = 4e-6  # [s], to which haste alone shortens a step
 
 
 @njit(cache=True, error_model="numpy")
@@ -120,15 +118,3 @@ def stable_step(omega2: float, beta: float) -> float:
 def stable_with(step: float, beta: float) -> float:
     """Largest stable step [s] with lagged stiffness damping beta [s] where it is `step` [s] without."""
     return float(np.sqrt(beta * beta + step * step) - beta)
-
-
-def passing_step(thickness: float, v: np.ndarray) -> float:
-    """Largest step [s] in which no two layers can pass through the shell they keep, at velocities v (3, V) [m/s].
-
-    The fastest vertex, seen from the cloth's mean, moves by at most HASTE of the thickness [m]; 0: no shell.
-    """
-    if thickness == 0.0:
-        return np.inf
-    apart = v - v.mean(1, keepdims=True)
-    fastest = float(np.sqrt((apart * apart).sum(0).max()))
-    return max(SHORTEST, HASTE * thickness / max(fastest, 1e-9))

@@ -190,16 +190,14 @@ class _Dressing:
         apart = np.array([k if panel.along else 0 for k, panel in enumerate(panels)] or [0])
         kind, apart = materials.of_faces(self.cloth), apart[self.cloth.panel % len(apart)]
         solid, gap = self.wearing.solid(half=self.half), None
-        x, v = start, np.zeros_like(start)
-        sheet: SewnSheet | None = None
-        done: list[Drape] = []
+        x, v, even = start, np.zeros_like(start), self.layer.program.even
+        sheet, done = None, list[Drape]()
         for number, course in enumerate(self.runs):
             if sheet is None or course.closed != self.runs[number - 1].closed:
                 weld = self.cloth.closed if course.closed else self.cloth.joined
                 if sheet is not None:
                     x, v = x[sheet.number], v[sheet.number]
                     gap = self._gap(x)
-                even = self.layer.program.even
                 sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart, even=even)
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0

@@ -12,13 +12,16 @@ from typing import NamedTuple
 
 from numba import njit
 
-from sim_core.cloth.contact.pairs import (
-    edge_edge_pairs,
-    segment_parameters,
-    triangle_weights,
-    vertex_face_pairs,
-)
+from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
+from sim_core.cloth.contact.layers.pairs import Search
+from sim_core.cloth.contact.layers.patches import CONE
+from sim_core.cloth.contact.sleep import asleep
 
+LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
+WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
+LEAST = 0.45  # of the skin, that calm cloth is looked through
+AHEAD = 0.01, 0.06  # [m] at least and at most further than the reach, in which pairs of patches are kept
+NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
 
@@ -72,47 +75,73 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def repel(x, v, mesh, pairs, counts, shell, dt):
-    """Impulses for counts[0] vertex-face pairs and counts[1] edge-edge pairs, each list (K, 2) in its fixed order."""
+def _apart2(v, i, j):
+    """The square of the speed [m2/s2] at which i and j part or meet, or pass each other."""
+    return (v[i, 0] - v[j, 0]) ** 2 + (v[i, 1] - v[j, 1]) ** 2 + (v[i, 2] - v[j, 2]) ** 2
+
+
+@njit(cache=True, error_model="numpy")
+def repel(x, v, mesh, near, shell, dt, step):
+    """Impulses for the vertex-face pairs and edge-edge pairs of `Near`, in its order, but for those that sleep."""
     reach2 = shell.thickness * shell.thickness
-    (points, crossings), inverse_mass = pairs, mesh.inverse_mass
+    points, crossings, counts, inverse_mass = near.points, near.crossings, near.count, mesh.inverse_mass
     faces, edges = mesh.faces, mesh.edges
-    for k in range(counts[0]):
-        i, f = points[k]
-        a, b, c = faces[f]
-        wa, wb, wc = triangle_weights(x[i], x[a], x[b], x[c])
+    for k in range(counts[1]):
+        if points[k, 2] > step:
+            continue
+        i, f = points[k, 0], points[k, 1]
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        wa, wb, wc = triangle_weights(at(x, i), at(x, a), at(x, b), at(x, c))
         dx = x[i, 0] - wa * x[a, 0] - wb * x[b, 0] - wc * x[c, 0]
         dy = x[i, 1] - wa * x[a, 1] - wb * x[b, 1] - wc * x[c, 1]
         dz = x[i, 2] - wa * x[a, 2] - wb * x[b, 2] - wc * x[c, 2]
-        if dx * dx + dy * dy + dz * dz < reach2:
+        gap2 = dx * dx + dy * dy + dz * dz
+        if gap2 < reach2:
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
-    for k in range(counts[1]):
-        a, b = edges[crossings[k, 0]]
-        c, d = edges[crossings[k, 1]]
-        s, t = segment_parameters(x[a], x[b], x[c], x[d])
-        # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
-        if s <= 0.0 or s >= 1.0 or t <= 0.0 or t >= 1.0:
+        else:
+            fast2 = max(_apart2(v, i, a), _apart2(v, i, b), _apart2(v, i, c))
+            points[k, 2] = (
+                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            )
+    for k in range(counts[2]):
+        if crossings[k, 2] > step:
             continue
+        e, g = crossings[k, 0], crossings[k, 1]
+        a, b, c, d = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+        s, t = segment_parameters(at(x, a), at(x, b), at(x, c), at(x, d))
         dx = x[a, 0] + s * (x[b, 0] - x[a, 0]) - x[c, 0] - t * (x[d, 0] - x[c, 0])
         dy = x[a, 1] + s * (x[b, 1] - x[a, 1]) - x[c, 1] - t * (x[d, 1] - x[c, 1])
         dz = x[a, 2] + s * (x[b, 2] - x[a, 2]) - x[c, 2] - t * (x[d, 2] - x[c, 2])
-        if dx * dx + dy * dy + dz * dz < reach2:
+        gap2 = dx * dx + dy * dy + dz * dz
+        if gap2 >= reach2:
+            fast2 = max(_apart2(v, a, c), _apart2(v, a, d), _apart2(v, b, c), _apart2(v, b, d))
+            crossings[k, 2] = (
+                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            )
+        # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
+        elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
             _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
 
 
 @njit(cache=True, error_model="numpy")
-def candidate_pairs(x, mesh, shell, finder, pairs):
-    """Vertex-face and edge-edge candidates within thickness + skin.
+def search_for(mesh, thickness, most, way):
+    """What a shell's pairs are looked for by, `way` [m] being how far patches are likely to go in a frame.
 
-    Both lists (K, 2) are written over; returns them, longer ones where they were full, and how many are in each.
+    Few pairs are cheap to look for, and many to look for seldom: the skin [m], at most `most`, is twice that way.
     """
-    reach = shell.thickness + shell.skin
-    (points, crossings), edges, length2 = pairs, mesh.edges, mesh.length2
-    side = 0.0
+    edges, length2, side = mesh.edges, mesh.length2, 0.0
     for e in range(len(edges)):
-        side += math.sqrt(length2[e])
+        side += math.sqrt(length2[e]) / len(edges)
+    skin, ahead = min(most, max(LEAST * most, 2.0 * way)), min(max(AHEAD[0], way), AHEAD[1])
+    return search_with(thickness, side, skin, ahead)
+
+
+@njit(cache=True, error_model="numpy")
+def search_with(thickness, side, skin, ahead):
+    """`Search` of a cloth whose edges are `side` [m] long, by so much skin, and patches by so much `ahead` [m]."""
+    reach = thickness + skin
+    # A V whose sides open by this angle is as wide as it has to be where they are an edge's height from its crease.
+    opening = 2.0 * math.asin(min(1.0, (thickness + NEARER * skin) / (math.sqrt(3.0) * side)))
+    wide = min(max(math.cos(math.pi - opening), WIDEST), CONE)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    near = 3.5 * side / len(edges) if side < 2.0 * reach * len(edges) else 0.0
-    points, first = vertex_face_pairs(x, mesh, shell.thickness, reach, near, finder, points)
-    crossings, second = edge_edge_pairs(x, mesh, shell.thickness, reach, near, finder, crossings)
-    return (points, crossings), (first, second)
+    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side, wide, ahead)

@@ -21,11 +21,15 @@ import numpy as np
 from numba import njit
 
 from sim_core.cloth.contact.constraints import Holds, bound, mirror
-from sim_core.cloth.contact.pairs import Finder, Mesh, hash_points
+from sim_core.cloth.contact.layers.near_pairs import listed_within
+from sim_core.cloth.contact.layers.pairs import Finder, Mesh, hash_points, near_balls, within_box
+from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.patches import CONE, Patches, Shapes
 from sim_core.metrics import components
 
 SHY = 0.5  # |G| at which half the full way is gone: where the line runs straight on there is nothing to gain
 NEAR = 3.0  # of the longest edge: what is further from a crossing cannot be met on the way
+FRESH = 0.8  # of the skin, that lists which have just been begun are sure of
 PATIENCE = 8  # steps without fewer crossings after which it is left to the next frame
 
 
@@ -37,6 +41,9 @@ class Memory(NamedTuple):
 
     finder: Finder
     lists: Lists
+    patches: Patches
+    shapes: Shapes
+    near: np.ndarray  # (K, 4) int32
 
 
 class Untangling(NamedTuple):
@@ -161,6 +168,96 @@ def crossings_of(x, mesh, finder, lists):
 
 
 @njit(cache=True, error_model="numpy")
+def _patch_crossings(x, mesh, patches, shapes, parts, found):
+    """Adds the crossings of the edges of patch p with the faces of patch q, parts = (p, q), to lists that hold some."""
+    (p, q), (pairs, place, count) = parts, found
+    edges, faces, same = mesh.edges, mesh.faces, mesh.same
+    edge, face, box, mine, yours = shapes.edge, shapes.face, shapes.box, shapes.some[0], shapes.some[1]
+    these = within_box(edge, patches.edge_start[p], patches.edge_start[p + 1], box, q, 0.0, mine)
+    those = within_box(face, patches.face_start[q], patches.face_start[q + 1], box, p, 0.0, yours)
+    for k in range(near_balls(mine, these, yours, those, edge, face, 0.0, shapes.close)):
+        e, f = patches.edges[shapes.close[k, 0]], patches.faces[shapes.close[k, 1]]
+        i, j, a, b, c = edges[e, 0], edges[e, 1], faces[f, 0], faces[f, 1], faces[f, 2]
+        si, sj, sa, sb, sc = same[i], same[j], same[a], same[b], same[c]
+        if si == sa or si == sb or si == sc or sj == sa or sj == sb or sj == sc:
+            continue
+        t, v, w = _through(x, i, j, a, b, c)
+        if t < 0.0:
+            continue
+        if count == len(pairs):
+            pairs, place = np.concatenate((pairs, pairs)), np.concatenate((place, place))
+        pairs[count, 0], pairs[count, 1] = e, f
+        place[count, 0], place[count, 1], place[count, 2], place[count, 3] = t, 1.0 - v - w, v, w
+        count += 1
+    return pairs, place, count
+
+
+@njit(cache=True, error_model="numpy")
+def crossings_by_patches(x, mesh, patches, shapes, near, lists):
+    """`crossings_of` a whole cloth: stretches that are flat cannot cross themselves. near (K, 4): working memory."""
+    (pairs, place), count = lists, 0
+    finite, along = place_patches(x, mesh, patches, shapes)
+    if finite:
+        near, total = patch_pairs(patches, shapes, along, 0.0, near)
+        for k in range(total):
+            p, q = near[k, 0], near[k, 1]
+            if flat_pair(x, mesh, patches, shapes, p, q, CONE):
+                continue
+            found = pairs, place, count
+            pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (p, q), found)
+            if p != q:
+                found = pairs, place, count
+                pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (q, p), found)
+    return (pairs, place), near, count
+
+
+@njit(cache=True, error_model="numpy")
+def _widest(x, faces):
+    """The largest radius [m] of a circle within a face: twice its area over its girth."""
+    widest = 0.0
+    for f in range(len(faces)):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy, uz = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+        wx, wy, wz = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1], x[k, 2] - x[i, 2]
+        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
+        sx, sy, sz = wx - ux, wy - uy, wz - uz
+        girth = math.sqrt(ux * ux + uy * uy + uz * uz) + math.sqrt(wx * wx + wy * wy + wz * wz)
+        girth += math.sqrt(sx * sx + sy * sy + sz * sz)
+        widest = max(widest, math.sqrt(nx * nx + ny * ny + nz * nz) / girth)
+    return widest
+
+
+@njit(cache=True, error_model="numpy")
+def none_crosses(x, mesh, third, near, thickness):
+    """Whether lists of near pairs (`NearPairs`) show that no edge passes through a face at x (V, 3).
+
+    Where an edge does, one of the face's own is no further from it than the circle within the face is wide, and so is
+    in the list, if that goes so far. third (E, 2): see `faces_at_edges`. False: nobody knows; lists that have aged are
+    begun anew in the next frame then.
+    """
+    edges, same, pairs = mesh.edges, mesh.same, near.now.crossings
+    asked, sure = _widest(x, mesh.faces) - thickness, listed_within(x, near)
+    if not asked <= sure:
+        if asked <= FRESH * near.kept[0]:
+            near.kept[2] = 0.0
+        return False
+    for k in range(near.now.count[2]):
+        for n in range(2):
+            e, g = pairs[k, n], pairs[k, 1 - n]
+            i, j, a, b = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+            for side in range(2):
+                c = third[g, side]
+                if (
+                    c >= 0
+                    and same[c] != same[i]
+                    and same[c] != same[j]
+                    and _through(x, i, j, a, b, c)[0] >= 0.0
+                ):
+                    return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")
 def near_crossings(x, shapes, crossed, reach):
     """Which of the edges or faces (N, 2 or 3) begin within `reach` [m] of an edge that is crossed, (K, 2); N bools."""
     near = np.zeros(len(shapes), np.bool_)
@@ -264,8 +361,8 @@ def untangle(
     v (V, 3) [m/s] loses what leads back. third (E, 2): see `faces_at_edges`. Returns how many crossings there were
     before, and are now, and the lists, longer ones where they were full.
     """
-    finder = memory.finder
-    lists, count = crossings_of(x, mesh, finder, memory.lists)
+    finder, patches, shapes = memory.finder, memory.patches, memory.shapes
+    lists, _, count = crossings_by_patches(x, mesh, patches, shapes, memory.near, memory.lists)
     first = least = count
     if not first:
         return 0, 0, lists
