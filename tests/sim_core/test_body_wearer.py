@@ -157,6 +157,26 @@ def test_cloth_on_the_floor_is_not_carried_by_a_body_that_passes_it() -> None:
     assert np.abs(end - start).max() < 1e-4
 
 
+@pytest.mark.parametrize("height", [0.01, 0.014])
+def test_a_body_comes_upon_cloth_that_hovers_over_the_floor(height: float) -> None:
+    """The floor is nearest, which stands still, until the block is there: at 100 mm a frame, whoever waits is hit."""
+    (sheet, flat), body = _square(0.01, 0.01), _going(1, 2.5, FLOOR)
+    for ahead in np.linspace(0.18, 0.1995, 14):
+        start = np.column_stack([ahead + flat[:, 0], np.full(len(flat), height), flat[:, 1]])
+        end = drape(sheet, start, [Phase(FRAME, (0.0, 0.0), body=(0.0, 1.0))], collider=body)
+        assert body.solid(1).distance(end.positions).min() > 0.0, ahead
+
+
+def test_a_garment_beneath_reaches_beyond_its_mesh_everywhere_in_the_field() -> None:
+    """A hull that is 25 mm thicker lies beside the body: the fields end 30 mm from the thick one, not from its mesh."""
+    vertices = np.concatenate([_block(0.0), _block(0.5)])
+    body = moving_mesh(vertices[None], BLOCK, cell=0.01, band=0.03, hulls=[BLOCK + 8], thicker=[0.025])
+    solid = body.solid(0)
+    for out in (0.03, 0.035, 0.04, 0.045, 0.05):
+        at = np.array([[0.4 - out, 0.1, 0.0]])
+        assert solid.distance(at)[0] == pytest.approx(out - 0.025, abs=1e-3)
+
+
 def _skirt(figure: Figure, floor: float) -> tuple[np.ndarray, np.ndarray]:
     """A cone from round the waist to the floor, its hem lying on it: vertices (V, 3) [m], faces (F, 3)."""
     vertices, faces = figure.mesh(Pose())

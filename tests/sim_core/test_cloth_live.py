@@ -150,6 +150,33 @@ def test_an_interrupt_in_the_midst_of_a_frame_leaves_the_state_as_it_was(
     assert after == before
 
 
+def test_what_a_loop_leaves_half_written_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The lists of layers in particular, which go on from frame to frame."""
+    cloth, twin = (hung(contact=Contact(thickness=0.003))[0] for _ in range(2))
+    for _ in range(2):
+        assert np.array_equal(cloth.step(), twin.step())
+
+    def stopped(engine: Engine, *_: object) -> None:
+        for part in (*engine.near.now[:5], engine.near.now.mark):
+            part[:] = 2**20
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Engine, "advance", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            cloth.step()
+    for _ in range(3):
+        assert np.array_equal(cloth.step(), twin.step())
+
+
+def test_pins_may_draw_cloth_out_slowly_to_any_length() -> None:
+    live, _, start, pins = hung()
+    middle = start[pins].mean(0)
+    for far in np.linspace(1.0, 3.5, 60):
+        x = live.step(targets=middle + far * (start[pins] - middle))
+    assert np.isfinite(x).all()
+
+
 def test_pins_that_change_for_ever_take_no_more_room() -> None:
     _, sheet, start, _ = hung()
     engine = Engine(sheet)

@@ -74,7 +74,7 @@ def collide_vertices(packed, inverse_mass, x, v, near, push):
         i = near[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
+        d, nx, ny, nz, speed, _ = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
         if d < push.clearance and nx * nx + ny * ny + nz * nz > 0.5:
             carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
             _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
@@ -93,15 +93,13 @@ def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
         i = samples[s, 0]
         if inverse_mass[i] == 0.0:
             continue
-        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
+        d, nx, ny, nz, speed, drift = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
         room = d - push.clearance
         if room < 0.0 and nx * nx + ny * ny + nz * nz > 0.5:
             carry = _carried(packed, d, x, i) if carries else (0.0, 0.0, 0.0)
             _resolve(x, v, i, (nx, ny, nz), push.clearance - d, speed, carry, push)
             deepest = max(deepest, -room)
-        wake[s] = (
-            step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, max(speed, 0.0), push.dt)
-        )
+        wake[s] = step + 1 + asleep(room, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2, drift, push.dt)
     return min(deepest, push.cap)
 
 
@@ -191,21 +189,26 @@ def settle_samples(packed, inverse_mass, x, v, watch, step, push):
 
 @njit(cache=True, error_model="numpy")
 def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
-    """As `collide_samples`, for those who are due, or all that would be SOON where they are `awake`."""
+    """As `collide_samples`, for those who are due, or all that would be SOON where they are `awake`.
+
+    Returns the furthest that one was pushed [m].
+    """
     fields, samples, wake = fields_of(packed), watch.samples, watch.wake
-    (kind, data, grid, later, blend), latest = fields, step + SOON if awake else step
+    (kind, data, grid, later, blend), latest, deepest = fields, step + SOON if awake else step, 0.0
     for s in range(len(samples)):
         if wake[s] > latest:
             continue
         i, j, k = samples[s, 0], samples[s, 1], samples[s, 2]
         px, py, pz, _ = _middle(x, i, j, k)
-        d, nx, ny, nz, speed = distance_at(kind, data, grid, later, blend, px, py, pz)
+        d, nx, ny, nz, _, drift = distance_at(kind, data, grid, later, blend, px, py, pz)
         if d < push.clearance:
+            deepest = max(deepest, push.clearance - d)
             _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), push)
         fast = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
         fast = max(fast, v[j, 0] ** 2 + v[j, 1] ** 2 + v[j, 2] ** 2)
         fast = max(fast, v[k, 0] ** 2 + v[k, 1] ** 2 + v[k, 2] ** 2)
-        wake[s] = step + 1 + asleep(d - push.clearance, fast, max(speed, 0.0), push.dt)
+        wake[s] = step + 1 + asleep(d - push.clearance, fast, drift, push.dt)
+    return min(deepest, push.cap)
 
 
 def contact_samples(edges: np.ndarray, faces: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -228,12 +228,13 @@ def moving_mesh(
         values, nearest = field_and_faces(frames[k], faces, cell=cell, band=band, box=(low, high))
         before = len(faces)
         for hull, reach in zip(parts[1:], beyond, strict=True):
-            around = _nodes_around(frames[k][hull], low, cell, band, values.shape)
+            wide = band + reach
+            around = _nodes_around(frames[k][hull], low, cell, wide, values.shape)
             if around is not None:
                 first, last = around
                 there = tuple(slice(a, b + 1) for a, b in zip(first, last, strict=True))
                 inner = low + cell * first, low + cell * last
-                other, face = field_and_faces(frames[k], hull, cell=cell, band=band, box=inner)
+                other, face = field_and_faces(frames[k], hull, cell=cell, band=wide, box=inner)
                 other, face = other - reach, np.where(face < 0, -1, face + before)
                 nearer = other < values[there]
                 values[there] = np.where(nearer, other, values[there])

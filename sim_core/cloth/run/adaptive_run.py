@@ -207,6 +207,7 @@ class Run:
         except BaseException as error:
             for name in ("mode", "safety", "rollbacks", "fallbacks", "tally"):
                 setattr(state, name, getattr(begun, name))
+            self.engine.forget()  # compiled loops left their lists half written
             if _interrupted(error):
                 raise KeyboardInterrupt from error
             raise
@@ -287,13 +288,14 @@ class Run:
             end = begin.copy()
             engine.advance(frame, end, Stride(self.setup.substeps, state.last_step))
             return end, Stride(self.setup.substeps, state.last_step, usual=FRAME / self.setup.substeps)
-        step, stride = self._paced(state, frame, begin)
+        (step, stride), gave_in = self._paced(state, frame, begin), False
         for attempt in range(MAX_HALVINGS):
             stride = stride._replace(count=self._count(state.safety * step))
             if stride.count <= MOST_SUBSTEPS:
                 end = begin.copy()
                 if not engine.advance(frame, end, stride):
-                    step = min(0.5 * step, passing_step(engine.shell.thickness, end.v) / self.pace.courant)
+                    # What blew up is faster than layers ever were: its speed asks for no more than two halvings.
+                    step = min(0.5 * step, max(self._passing(state, end), 0.25 * step))
                     engine.forget()
                     continue
                 good = engine.health.good(frame, begin, end)
@@ -302,15 +304,15 @@ class Run:
                     before, longest = longest, engine.stretch(end.x)
                     good = abs(before / longest - 1) < CONFIRMED
                 if good:
-                    late = passing_step(engine.shell.thickness, end.v)
-                    if FRAME / stride.count <= LATE * late:
+                    if FRAME / stride.count <= LATE * passing_step(engine.shell.thickness, end.v):
                         state.safety = min(1.0, state.safety * 1.1)
                         return end, stride
-                    step = min(step, late / self.pace.courant)  # faster on the way than layers can bear
+                    step = min(step, self._passing(state, end))  # faster on the way than layers can bear
                     engine.forget()
                     continue
                 engine.forget()
-            if self._gives_in(attempt, stride.count):
+            if not gave_in and self._gives_in(attempt, stride.count):
+                gave_in = True
                 for count in MORE_IMPLICIT if stride.count > MOST_SUBSTEPS else MORE_IMPLICIT[:1]:
                     end = self._implicit(frame, begin, count)
                     if engine.health.good(frame, begin, end):
@@ -320,6 +322,11 @@ class Run:
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         why = cause(engine, frame, begin, MOST_SUBSTEPS, self._count(step))
         raise SimCoreError(f"frame {state.frame}: {why}")
+
+    def _passing(self, state: RunState, end: State) -> float:
+        """Largest stable step [s] whose share that is taken lets no layers pass each other at the speeds of `end`."""
+        share = self.pace.courant * state.safety
+        return float(passing_step(self.engine.shell.thickness, end.v)) / share
 
     def _layer_step(self, frame: Frame, begin: State) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""

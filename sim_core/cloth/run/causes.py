@@ -28,7 +28,7 @@ def cause(engine: Engine, frame: Frame, begin: State, most: int, count: int) -> 
     begin: x, v (3, V) in band order; count: the steps that the explicit scheme would take, at most `most`.
     """
     looks: tuple[Callable[[], Iterator[str]], ...] = (
-        lambda: _pins(engine, frame, begin.x, CLOSE),
+        lambda: _pins(engine, frame, begin.x, (CLOSE, FAR)),
         lambda: _pulls(engine, frame, THROWN),
         lambda: _inside(engine, frame, begin),
         lambda: _speeds(engine, begin),
@@ -47,14 +47,15 @@ def _place(engine: Engine, at: np.ndarray, vertex: int) -> str:
     return f"vertex {engine.order[vertex]} at ({x:.4g}, {y:.4g}, {z:.4g})"
 
 
-def _pins(engine: Engine, frame: Frame, x: np.ndarray, close: float) -> Iterator[str]:
-    """Cloth between two pins that is pressed together to `close` of its length, or torn; x (3, V) [m]."""
+def _pins(engine: Engine, frame: Frame, x: np.ndarray, bears: tuple[float, float]) -> Iterator[str]:
+    """Cloth between two pins that is pressed together, or torn, to more than a share of its length; x (3, V) [m]."""
+    close, far = bears
     there, held = x.copy(), engine.inverse_mass(frame.pins) == 0.0
     there[:, engine.number[frame.led]] = frame.places.T
     a, b = engine.sheet.edges[held[engine.sheet.edges].all(1)].T
     rest = np.sqrt(engine.sheet.stencil.length2[held[engine.sheet.edges].all(1)])
     apart = np.linalg.norm(there[:, a] - there[:, b], axis=0)
-    for n in np.flatnonzero((apart < close * rest) | (apart > FAR * rest))[:1]:
+    for n in np.flatnonzero((apart < close * rest) | (apart > far * rest))[:1]:
         first, second = sorted(int(engine.order[k]) for k in (a[n], b[n]))
         yield (
             f"pins {first} and {second} are to be {1000 * apart[n]:.3g} mm apart, the cloth between them is "
@@ -70,7 +71,7 @@ def check_hands(engine: Engine, frame: Frame, x: np.ndarray) -> None:
     """
     looks = [_pulls(engine, frame, HOPELESS)]
     if len(frame.led):
-        looks.append(_pins(engine, frame, engine.inward(x), ONE_PLACE))
+        looks.append(_pins(engine, frame, engine.inward(x), (ONE_PLACE, np.inf)))
     for told in (told for look in looks for told in look):
         raise SimCoreError(told)
 

@@ -97,21 +97,22 @@ def room_of(edges: int, vertices: int, longest: int, lanes: type | None = None) 
 
 @njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
 def _against_solids(touch, inverse, frame, steps, x, v, k):
-    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end; returns the
-    furthest that a vertex was pushed [m].
+    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end; returns how
+    far vertices may have been pushed [m].
     """
     solid, shell, last, cap, dt = touch.solid, touch.shell, k == steps.count - 1, touch.shell.cap, steps.dt
+    pushed = 0.0
     if solid.kind[0] == MOVING:
         early, late = frame.body
         solid.blend[0] = early + (late - early) * (k + 1) / steps.count
         solid.blend[1] = (late - early) / (steps.count * dt)
     if k % SAMPLES_EVERY == 0 or last:
         middles, r = touch.middles, shell.sample_clearance
-        collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, cap, 0.0, dt))
+        pushed = collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, cap, 0.0, dt))
         if last:
             settle_samples(solid, inverse, x, v, middles, k, Push(SETTLED * r, cap, 0.0, dt))
     push = Push(shell.clearance, cap, frame.friction, dt)
-    return collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
+    return pushed + collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
 
 
 @njit(error_model="numpy", inline="always")
@@ -157,7 +158,9 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                         near = begin_pairs(x, mesh, patches, shapes, how, near)
                 enough, push = SURE_FOR * steps.dt, pushed / steps.dt
                 near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, (push, enough))
-                look_layer, pushed = k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt)), 0.0
+                first = look_layer < 0 and solids  # when nobody knows yet how far they push
+                look_layer = k + 1 if first else k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt))
+                pushed = 0.0
             if near.now.count[1] + near.now.count[2] > 0:
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:

@@ -102,11 +102,13 @@ class Laned:
         there = len(touch.solid.kind) > 0 or len(touch.holds.low) > 0 or len(touch.holds.slaves) > 0
         absolute = there or self.real is np.float64
         middle = np.zeros((3, 1)) if absolute else x.mean(axis=1, keepdims=True)
+        _counted_from(middle.T, near)
         own = self._state
         own.x[:] = x - middle
         own.v[:] = v
         mesh = mesh._replace(inverse_mass=self._cast(inverse))
         near, done = advance(self.lanes, mesh, touch, frame, steps, self.room, own, near)
+        _counted_from(-middle.T, near)
         v[:] = own.v
         still = inverse == 0.0
         kept = x[:, still] + v[:, still] * (steps.dt * steps.count)
@@ -133,3 +135,10 @@ class Laned:
         """Clears what a frame that blew up has left."""
         for part in self.room:
             part[:] = 0
+
+
+def _counted_from(place: np.ndarray, near: NearPairs) -> None:
+    """Where lists were looked for, in place, as seen from there (1, 3) [m]."""
+    if len(near.begun) and place.any():
+        near.begun[:] -= place
+        near.now.mark[:] -= place

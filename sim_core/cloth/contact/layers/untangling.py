@@ -65,12 +65,15 @@ def faces_at_edges(edges: np.ndarray, faces: np.ndarray) -> np.ndarray:
     key = np.sort(edges, axis=1).astype(np.int64) @ [count, 1]
     order = np.argsort(key)
     third = np.full((len(edges), 2), -1, np.int32)
-    for corner in range(3):
-        a, b, c = (faces[:, (corner + k) % 3].astype(np.int64) for k in range(3))
-        edge = order[np.searchsorted(key[order], np.minimum(a, b) * count + np.maximum(a, b))]
-        free = third[edge, 0] < 0
-        third[edge[free], 0] = c[free]
-        third[edge[~free], 1] = c[~free]
+    sides = np.concatenate([np.roll(faces, -corner, axis=1) for corner in range(3)]).astype(np.int64)
+    low, high = sides[:, :2].min(1), sides[:, :2].max(1)
+    edge = order[np.searchsorted(key[order], low * count + high)]
+    by_edge = np.argsort(edge, kind="stable")
+    edge, corner = edge[by_edge], sides[by_edge, 2]
+    again = np.concatenate(
+        [[False], edge[1:] == edge[:-1]]
+    )  # the second face there; a third is told elsewhere
+    third[edge[~again], 0], third[edge[again], 1] = corner[~again], corner[again]
     return third
 
 
@@ -363,9 +366,10 @@ def untangle(
     """
     finder, patches, shapes = memory.finder, memory.patches, memory.shapes
     lists, _, count = crossings_by_patches(x, mesh, patches, shapes, memory.near, memory.lists)
-    first = least = count
-    if not first:
+    if not count:
         return 0, 0, lists
+    lists, count = crossings_of(x, mesh, finder, lists)  # by the count that the end is judged by
+    first = least = count
     edges, faces = mesh.edges, mesh.faces
     start, best, late = x.copy(), x.copy(), 0
     reach = NEAR * float(np.sqrt(((x[edges[:, 0]] - x[edges[:, 1]]) ** 2).sum(1).max()))
