@@ -281,7 +281,7 @@ def _report(args: argparse.Namespace, garments: Sequence[Garment], files: dict[s
         return
     for garment in garments:
         e = garment.provenance["errors"]
-        inside = e["inside_vertices"] + e["inside_midpoints"] + e["inside_centroids"]
+        inside = sum(e[f"inside_{what}"] for what in ("vertices", "midpoints", "centroids", "edges"))
         lines = [
             f"{garment.name}: {len(garment.positions)} vertices, {len(garment.faces)} triangles, "
             f"{1000 * e['mass_kg']:.1f} g" + (f" -> {files[garment.name]}" if garment.name in files else ""),

@@ -55,7 +55,9 @@ def test_a_coarse_scarf_lies_on_the_bar(scarf: Garment) -> None:
     low, high = garment.positions.min(0), garment.positions.max(0)
     assert 0.15 < low[1] < 0.45
     assert 1.5 < high[1] < 1.63  # on so coarse a mesh a crest stands off the bar
-    assert high[0] - low[0] < 0.4
+    bar = garment.positions[garment.positions[:, 1] > high[1] - 0.1, 0]
+    assert np.ptp(bar) < 0.33  # gathered there, of 400 mm: 250 to 310 mm over eight seeds
+    assert high[0] - low[0] < 0.44  # no wider than it was cut, but for how its ends slant: 340 to 430 mm
     assert {"weave", "placing", "drape", "check"} <= set(garment.provenance["seconds"])
 
 

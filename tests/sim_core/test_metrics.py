@@ -55,12 +55,22 @@ def test_penetration_counts_vertices_midpoints_and_centroids() -> None:
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.1)
     triangle = np.array([[-1.0, 0, 0], [1.0, 0, 0], [0, 0, 2.0]])
     hit = metrics.penetration(triangle, np.array([[0, 1, 2]]), ball.vertices, ball.faces)
-    assert (hit.vertices, hit.midpoints, hit.centroids, hit.total) == (0, 1, 0, 1)
+    assert (hit.vertices, hit.midpoints, hit.centroids) == (0, 1, 0)
+    assert hit.total == 1 + hit.edges > 10  # half the ball's girth, cut by the triangle
     assert hit.clearance[1] == pytest.approx(-0.1, abs=2e-3)
     away = metrics.penetration(triangle + [0, 0.2, 0], np.array([[0, 1, 2]]), ball.vertices, ball.faces)
     assert away.total == 0
     assert away.clearance[1] == pytest.approx(0.1, abs=2e-3)
     assert away.clearance[0] == metrics.FAR
+
+
+def test_penetration_counts_a_thumb_between_the_points_that_are_looked_at() -> None:
+    cloth, face = np.array([[-0.1, 0, 0], [0.1, 0, 0], [0, 0, 0.2]]), np.array([[0, 1, 2]])
+    thumb = trimesh.creation.icosphere(subdivisions=2, radius=0.01)
+    for at, through in (((0.05, 0.0, 0.04), True), ((0.05, 0.0101, 0.04), False)):
+        hit = metrics.penetration(cloth, face, np.asarray(thumb.vertices) + at, thumb.faces)
+        assert (hit.vertices, hit.midpoints, hit.centroids) == (0, 0, 0)
+        assert (hit.edges > 0) == through
 
 
 def turned(rng: np.random.Generator, open_at: int) -> tuple[np.ndarray, np.ndarray]:

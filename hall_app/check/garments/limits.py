@@ -66,7 +66,7 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1) -> list[Limit]:
     deviation: how far (p99) its model in the hall may be from the close one [m]; layers: of the outfit. Figures of what
     is worn beneath bear its name: robe_area_strain_max.
     """
-    found = [Limit(f"inside_{what}", 0) for what in ("vertices", "midpoints", "centroids")]
+    found = [Limit(f"inside_{what}", 0) for what in ("vertices", "midpoints", "centroids", "edges")]
     if worn.sewn:
         found.append(Limit("seam_gap_sewn_m", 1e-3))
     if worn.seams:

@@ -88,7 +88,7 @@ def cloth_figures(cloth: Cloth, solids: list[Solid], *, half: bool) -> dict[str,
     strain = np.abs(metrics.area_strain(cloth.rest, cloth.positions, cloth.faces))
     figures: dict[str, float] = {
         f"inside_{what}": sum(getattr(one, what) for one in found)
-        for what in ("vertices", "midpoints", "centroids")
+        for what in ("vertices", "midpoints", "centroids", "edges")
     }
     figures["area_strain_p95"] = float(np.percentile(strain, 95))
     figures["area_strain_max"] = float(strain.max())

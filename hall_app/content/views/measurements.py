@@ -36,6 +36,11 @@ ERRORS: dict[str, tuple[str, str, Callable[[float], str]]] = {
     "inside_vertices": ("陷入所着之物的顶点", "Vertices inside what it lies on", _count),
     "inside_midpoints": ("陷入所着之物的边中点", "Edge midpoints inside what it lies on", _count),
     "inside_centroids": ("陷入所着之物的三角形中心", "Triangle centres inside what it lies on", _count),
+    "inside_edges": (
+        "与所着之物互相穿过的边",
+        "Edges that pass through what it lies on, or its through the cloth",
+        _count,
+    ),
     "self_intersections": ("布面自交", "Self-intersections of the cloth", _count),
     "rest_max_m": ("静止时每 1/25 秒的最大位移", "Greatest movement at rest in 1/25 s", _millimetres),
     "hall_triangles": ("展厅模型三角形", "Triangles of the hall model", _count),

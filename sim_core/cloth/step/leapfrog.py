@@ -137,7 +137,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
+    look_layer, patches, shapes, looks, done = -1, touch.patches, touch.shapes, False, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
@@ -145,10 +145,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            if k >= look_layer:
-                if steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
-                    done = False
-                    break
+            looks = k >= look_layer
+            if looks:
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
@@ -165,6 +163,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
+        if looks and steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
+            done = False
+            break
+        looks = False
         if late:
             arrive(layout, mesh, holds.limit, steps, room, here)
         if len(holds.pairs) > 0:

@@ -37,6 +37,7 @@ def measured(garment: Garment, layer: Layer) -> dict[str, Any]:
         "inside_vertices": sum(f.vertices for f in found),
         "inside_midpoints": sum(f.midpoints for f in found),
         "inside_centroids": sum(f.centroids for f in found),
+        "inside_edges": sum(f.edges for f in found),
         "clearance_m": [min(f.clearance[k] for f in found) for k in range(3)],
         "area_strain_p95": float(np.percentile(strain, 95)),
         "area_strain_max": float(strain.max()),
