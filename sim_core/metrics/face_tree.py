@@ -1,4 +1,4 @@
-"""The nearest face of a mesh, exactly: a tree of boxes over its faces in the order of a space-filling curve."""
+"""The nearest face of a mesh, and what passes through it: a tree of boxes over its faces in the order of a curve."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numba import njit
 
 from sim_core.metrics.triangles import squared_gap
 
-__all__ = ["FaceTree", "face_tree", "nearest_face"]
+__all__ = ["FaceTree", "crossings_with", "face_tree", "nearest_face"]
 
 LEAF = 4  # faces of a leaf, at most
 BITS = 20  # of the curve each way
@@ -21,6 +21,7 @@ class FaceTree(NamedTuple):
     """F faces in L leaves, a power of two; the boxes 2 n and 2 n + 1 lie in the box n, and 1 holds all."""
 
     corners: np.ndarray  # (F, 9) [m] of each face, in the order of the curve (Morton 1966)
+    face: np.ndarray  # (F,) int64 which face of the mesh that is
     start: np.ndarray  # (L + 1,) int64 the faces of each leaf
     box: np.ndarray  # (2 L, 6) lowest and highest corner
 
@@ -31,7 +32,8 @@ def face_tree(vertices: np.ndarray, faces: np.ndarray) -> FaceTree:
     centre = corner.mean(1)
     low = centre.min(0)
     cell = (centre - low) * ((2**BITS - 1) / max(float(np.ptp(centre, axis=0).max()), 1e-300))
-    corner = corner[np.argsort(_curve(cell.astype(np.int64)), kind="stable")]
+    order = np.argsort(_curve(cell.astype(np.int64)), kind="stable")
+    corner = corner[order]
     leaves = 1
     while leaves * LEAF < len(faces):
         leaves *= 2
@@ -47,7 +49,7 @@ def face_tree(vertices: np.ndarray, faces: np.ndarray) -> FaceTree:
             pairs[:, :, :3].min(1),
             pairs[:, :, 3:].max(1),
         )
-    return FaceTree(np.ascontiguousarray(corner.reshape(-1, 9)), start, box)
+    return FaceTree(np.ascontiguousarray(corner.reshape(-1, 9)), order, start, box)
 
 
 def _curve(cell: np.ndarray) -> np.ndarray:
@@ -110,3 +112,53 @@ def nearest_face(points, tree, limit):
             left += 2
         out[i] = math.sqrt(best)
     return out
+
+
+@njit(cache=True, error_model="numpy")
+def _crosses(p, q, a, b, c):
+    """Does the segment p q pass through the triangle a b c (shared points excluded by the caller)?"""
+    n = np.cross(b - a, c - a)
+    dp, dq = (p - a) @ n, (q - a) @ n
+    if dp * dq >= 0.0:
+        return False
+    x = p + (q - p) * (dp / (dp - dq))
+    inside = np.cross(b - a, x - a) @ n >= 0.0 and np.cross(c - b, x - b) @ n >= 0.0
+    return inside and np.cross(a - c, x - c) @ n >= 0.0
+
+
+@njit(error_model="numpy", inline="always")
+def _overlap(box, n, low, high):
+    return (
+        box[n, 0] <= high[0]
+        and box[n, 3] >= low[0]
+        and box[n, 1] <= high[1]
+        and box[n, 4] >= low[1]
+        and box[n, 2] <= high[2]
+        and box[n, 5] >= low[2]
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def crossings_with(vertices, edges, faces, tree):
+    """How often one of the edges (E, 2) passes through one of the tree's faces (F, 3) and shares no vertex with it."""
+    leaves, count, waits = len(tree.start) - 1, 0, np.zeros(DEEPEST, np.int64)
+    for e in range(len(edges)):
+        i, j = edges[e]
+        low, high = np.minimum(vertices[i], vertices[j]), np.maximum(vertices[i], vertices[j])
+        waits[0], left = 1, 1
+        while left > 0:
+            left -= 1
+            n = waits[left]
+            if not _overlap(tree.box, n, low, high):
+                continue
+            if n < leaves:
+                waits[left], waits[left + 1] = 2 * n, 2 * n + 1
+                left += 2
+                continue
+            for s in range(tree.start[n - leaves], tree.start[n - leaves + 1]):
+                a, b, c = faces[tree.face[s]]
+                if i == a or i == b or i == c or j == a or j == b or j == c:
+                    continue
+                if _crosses(vertices[i], vertices[j], vertices[a], vertices[b], vertices[c]):
+                    count += 1
+    return count

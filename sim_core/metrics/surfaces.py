@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
-from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.metrics.components import components
-from sim_core.metrics.face_tree import face_tree, nearest_face
+from sim_core.metrics.face_tree import crossings_with, face_tree, nearest_face
 from sim_core.metrics.triangles import crossings, winding
 
 __all__ = [
@@ -185,32 +183,6 @@ def penetration(
     return Penetration(inside[0], inside[1], inside[2], through, least)
 
 
-@njit(cache=True, error_model="numpy")
-def _crosses(p, q, a, b, c):
-    """Does the segment p q pass through the triangle a b c (shared points excluded by the caller)?"""
-    n = np.cross(b - a, c - a)
-    dp, dq = (p - a) @ n, (q - a) @ n
-    if dp * dq >= 0.0:
-        return False
-    x = p + (q - p) * (dp / (dp - dq))
-    inside = np.cross(b - a, x - a) @ n >= 0.0 and np.cross(c - b, x - b) @ n >= 0.0
-    return inside and np.cross(a - c, x - c) @ n >= 0.0
-
-
-@njit(cache=True, error_model="numpy")
-def _count_crossings(vertices, faces, edges, start, entry):
-    hit = np.zeros(len(edges), np.int64)
-    for e in range(len(edges)):
-        i, j = edges[e]
-        for k in range(start[e], start[e + 1]):
-            a, b, c = faces[entry[k]]
-            if i == a or i == b or i == c or j == a or j == b or j == c:
-                continue
-            if _crosses(vertices[i], vertices[j], vertices[a], vertices[b], vertices[c]):
-                hit[e] += 1
-    return hit
-
-
 def intersections(vertices: np.ndarray, faces: np.ndarray) -> int:
     """Number of (edge, face) pairs of a mesh that pass through each other and share no vertex."""
     vertices, faces = _mesh("mesh", vertices, faces)
@@ -224,11 +196,4 @@ def _edges(faces: np.ndarray) -> np.ndarray:
 
 def _crossings(vertices: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> int:
     """How often one of the edges (E, 2) passes through one of the faces (F, 3) and shares no vertex with it."""
-    corner = vertices[faces]
-    centre, middle = corner.mean(1), vertices[edges].mean(1)
-    reach = float(np.sqrt(((corner - centre[:, None]) ** 2).sum(2)).max())
-    half = np.sqrt(((vertices[edges[:, 0]] - middle) ** 2).sum(1))
-    near = KDTree(centre).query_ball_point(middle, half + reach)
-    start = np.r_[0, np.cumsum([len(n) for n in near])]
-    entry = np.concatenate([np.asarray(n, int) for n in near])
-    return int(_count_crossings(vertices, faces, edges, start, entry).sum())
+    return int(crossings_with(vertices, edges, faces, face_tree(vertices, faces)))
