@@ -53,8 +53,8 @@ class Penetration:
 
     @property
     def total(self) -> int:
-        """All points inside, and all edges that pass through."""
-        return self.vertices + self.midpoints + self.centroids + self.edges
+        """All points inside."""
+        return self.vertices + self.midpoints + self.centroids
 
 
 def _mesh(name: str, vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
