@@ -120,6 +120,8 @@ def main() -> int:
     parser.add_argument("--json", type=Path)
     parser.add_argument("--measure", choices=CASES, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.frames < 3:
+        parser.error("--frames: give 3 or more – the first is not counted")
     if arguments.measure:
         print(json.dumps(measure(arguments.measure, arguments.frames, arguments.garment)))
         return 0

@@ -20,7 +20,7 @@ from sim_core.cloth.contact.sleep import asleep
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
 WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
 LEAST = 0.45  # of the skin, that calm cloth is looked through
-AHEAD = 0.01, 0.06  # [m] at least and at most further than the reach, in which pairs of patches are kept
+AHEAD = 0.01, 0.03  # [m] at least and at most further than the reach, in which pairs of patches are kept
 NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
