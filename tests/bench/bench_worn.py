@@ -58,6 +58,8 @@ def measure(case: str, frames: int, file: Path) -> dict[str, Any]:
     from sim_core.garment import Garment, follow
 
     garment = Garment.load(file)
+    if garment.settled is None:
+        sys.exit(f"{file}: a garment that does not say what it was settled with – dress it anew")
     ends = [time.process_time()]
 
     def heard(index: int, x: np.ndarray) -> None:
