@@ -1,6 +1,6 @@
 """Who wears a garment: a figure with joints and weights, its poses, and the moving solid that cloth meets."""
 
-from sim_core.body.beneath import Beneath, Surface
+from sim_core.body.beneath import HANDS, Beneath, Surface
 from sim_core.body.joints import JOINTS, OTHER_SIDE, PARENTS
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
@@ -12,6 +12,7 @@ from sim_core.body.stand import Stand
 from sim_core.body.wearer import Figure
 
 __all__ = [
+    "HANDS",
     "Beneath",
     "Figure",
     "JOINTS",

@@ -9,13 +9,17 @@ import numpy as np
 
 from sim_core.body.stand import Stand
 from sim_core.cloth import HalfSpace, Solid, Union, field_of
-from sim_core.cloth.contact import DistanceField, united
+from sim_core.cloth.contact import DistanceField, hull_mesh, united
 from sim_core.errors import SimCoreError
 
-__all__ = ["Beneath", "Surface"]
+__all__ = ["HANDS", "Beneath", "Surface"]
 
 BAND = 0.04  # [m] of the distance fields: further off cloth asks for nothing
 MARGIN = 0.06  # [m] of a field around what lies beneath
+HANDS = 0.0025  # [m] that hands reach beyond their hulls: cells of 8 mm round the tips of fingers off by up to 2.3 mm
+
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 @dataclass(frozen=True)
@@ -23,13 +27,15 @@ class Surface:
     """A closed mesh that cloth lies on: vertices (V, 3) float64 [m], faces (F, 3) int32 counter-clockwise from outside.
 
     hulls: point sets (N,) int32 of its vertices whose convex hulls count as solid, hands that cloth must slide over;
-    thicker [m]: by how much it reaches beyond its mesh, as a garment beneath another does.
+    thicker [m]: by how much it reaches beyond its mesh, as a garment beneath another does; hulls_thicker [m]: the hulls
+    beyond their points.
     """
 
     vertices: np.ndarray
     faces: np.ndarray
     hulls: tuple[np.ndarray, ...] = ()
     thicker: float = 0.0
+    hulls_thicker: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -43,7 +49,7 @@ class Beneath:
     surfaces: tuple[Surface, ...] = ()
     stand: Stand | None = None
     cell: float = 0.008
-    box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+    box: Box | None = None
     floor: bool = False
 
     def solid(self) -> Solid | None:
@@ -60,16 +66,20 @@ class Beneath:
         if not self.surfaces:
             raise SimCoreError("beneath: no surface – a field needs one")
         points = np.concatenate([surface.vertices for surface in self.surfaces])
-        box = self.box or (points.min(0) - MARGIN, points.max(0) + MARGIN)
+        low, high = points.min(0) - MARGIN, points.max(0) + MARGIN
+        box = self.box or (tuple(low.tolist()), tuple(high.tolist()))
         found: DistanceField | None = None
         for surface in self.surfaces:
-            hulls = [surface.vertices[index] for index in surface.hulls]
-            made = field_of(
-                surface.vertices, surface.faces, cell=self.cell, band=BAND, hulls=hulls, box=box, far=False
-            )
+            made = self._field(surface.vertices, surface.faces, box)
+            for index in surface.hulls:
+                hull = self._field(*hull_mesh(surface.vertices[index]), box)
+                made = united(made, hull, thicker=surface.hulls_thicker)
             found = made if found is None else united(found, made, thicker=surface.thicker)
         assert found is not None
         return found
+
+    def _field(self, vertices: np.ndarray, faces: np.ndarray, box: Box) -> DistanceField:
+        return field_of(vertices, faces, cell=self.cell, band=BAND, box=box, far=False)
 
     def digest(self) -> str:
         """A hash of all that decides the field."""
@@ -78,4 +88,6 @@ class Beneath:
             for array in (surface.vertices, surface.faces, *surface.hulls):
                 hashed.update(array.tobytes())
             hashed.update(repr(surface.thicker).encode())
+            if surface.hulls_thicker:  # figures known before it was told keep their name
+                hashed.update(repr(surface.hulls_thicker).encode())
         return hashed.hexdigest()[:16]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from sim_core.body.beneath import BAND, MARGIN, Beneath, Surface
+from sim_core.body.beneath import BAND, HANDS, MARGIN, Beneath, Box, Surface
 from sim_core.body.joints import JOINTS
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.pose import Pose
@@ -18,7 +18,6 @@ from sim_core.errors import SimCoreError
 __all__ = ["Figure"]
 
 NEAR = 0.01  # [m] above and below a height that a section of the trunk is taken from
-Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ class Figure:
         """The posed figure as what lies beneath cloth."""
         vertices, faces = self.mesh(pose)
         hands = tuple(np.unique(hand).astype(np.int32) for hand in self.hands()[: 1 if half else 2])
-        surface = Surface(vertices, faces, hands)
+        surface = Surface(vertices, faces, hands, hulls_thicker=HANDS)
         return Beneath((surface,), cell=self.cell, box=self._box(vertices[None], half))
 
     def field(self, pose: Pose, *, half: bool = False) -> DistanceField:
@@ -90,13 +89,17 @@ class Figure:
         """
         if not len(poses):
             raise SimCoreError("figure: no poses – give one for each frame")
-        frames = np.stack([self.mannequin.posed(pose) for pose in poses])
+        frames, hands = (
+            np.stack([self.mannequin.posed(pose) for pose in poses]),
+            self.hands()[: 1 if half else 2],
+        )
         return moving_mesh(
             frames,
             self.mannequin.faces,
             cell=self.cell,
             band=BAND,
-            hulls=self.hands()[: 1 if half else 2],
+            hulls=hands,
+            thicker=[HANDS] * len(hands),
             box=self._box(frames, half),
             beside=beside,
         )

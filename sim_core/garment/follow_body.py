@@ -186,7 +186,7 @@ def _wearer(
         cell=lain.cell,
         hulls=hulls,
         beside=HalfSpace() if beside is None and lain.floor else beside,
-        thicker=[0.0] * hands + [surface.thicker for surface in worn],
+        thicker=[own.hulls_thicker if own else 0.0] * hands + [surface.thicker for surface in worn],
     )
 
 

@@ -50,7 +50,8 @@ class Settled:
             "box": self.beneath.box,
             "floor": self.beneath.floor,
             "surfaces": [
-                {"thicker": surface.thicker, "hulls": len(surface.hulls)} for surface in self.beneath.surfaces
+                {"thicker": s.thicker, "hulls": len(s.hulls), "hulls_thicker": s.hulls_thicker}
+                for s in self.beneath.surfaces
             ],
         }
 
@@ -81,6 +82,7 @@ class Settled:
                 np.ascontiguousarray(data[f"surface{k}_faces"], np.int32),
                 tuple(data[f"surface{k}_hull{j}"] for j in range(int(told["hulls"]))),
                 float(told["thicker"]),
+                float(told.get("hulls_thicker", 0.0)),  # of hands, not told by the first files
             )
             for k, told in enumerate(header["surfaces"])
         )

@@ -8,21 +8,31 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import JOINTS, POSES, Figure, Mannequin, Pose
+from sim_core.body import HANDS, JOINTS, POSES, Figure, Mannequin, Pose, pose_named
 from sim_core.body.making import section
 from sim_core.cloth import Contact, HalfSpace, Material, MovingGrid, Phase, Sheet, drape, moving_mesh
-from sim_core.cloth.contact import GridSdf, Union, distances, field_of
+from sim_core.cloth.contact import GridSdf, Union, distances, field_of, hull_mesh, united
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 
 WOMAN = Path(__file__).parents[2] / "assets" / "mannequins" / "woman.npz"
 CELL = 0.015
+EXACT = 2.4 * CELL - HANDS  # [m] up to which distances to the nearest face are the nearest
 FLOOR = HalfSpace()
 
 
 @pytest.fixture(scope="module")
 def figure() -> Figure:
     return Figure(Mannequin.load(WOMAN), CELL)
+
+
+@pytest.mark.parametrize("pose", ["display", "held"])
+def test_the_fields_cells_round_no_finger_off(pose: str) -> None:
+    """Cloth is kept out of the field, and is seen beside the mesh."""
+    beneath = Figure(Mannequin.load(WOMAN)).beneath(pose_named(pose))
+    (surface,), field = beneath.surfaces, beneath.field()
+    for hand in surface.hulls:
+        assert field.at(surface.vertices[hand]).max() < 5e-4
 
 
 def test_the_whole_field_holds_both_hands_as_hulls(figure: Figure) -> None:
@@ -65,13 +75,13 @@ def test_all_fields_of_a_figure_share_their_nodes(figure: Figure) -> None:
     values = values[
         tuple(slice(max(-k, 0), max(-k, 0) + n) for k, n in zip(first, shared.shape, strict=True))
     ]
-    near = np.abs(shared) < 2.4 * CELL
+    near = np.abs(shared) < EXACT
     assert near.sum() > 1000
     assert np.abs(shared - values)[near].max() < 1e-6
     middle = round(-whole.origin[0] / CELL)
     left, right = whole.values[middle:], whole.values[middle::-1]
     count = min(len(left), len(right))
-    near = np.abs(left[:count]) < 2.4 * CELL
+    near = np.abs(left[:count]) < EXACT
     assert np.abs(left[:count] - right[:count])[near].max() < 1.2e-4  # as the mesh is mirrored
 
 
@@ -82,10 +92,10 @@ def test_a_motion_is_a_key_a_pose_and_carries_what_lies_on_it(figure: Figure) ->
     vertices, faces = figure.mesh(poses[2])
     hand = vertices[np.unique(figure.hands()[0])]
     box = (np.array(body.origin), body.origin + CELL * (np.array(body.key(2).shape) - 1))
-    alone = field_of(vertices, faces, cell=CELL, band=0.04, hulls=[hand], box=box, far=False)
-    exact = (
-        np.abs(alone.values) < 2.4 * CELL
-    )  # further off the faces are handed on, the hull's in another order
+    meshes = (vertices, faces), hull_mesh(hand)
+    own, hull = (field_of(*mesh, cell=CELL, band=0.04, box=box, far=False) for mesh in meshes)
+    alone = united(own, hull, thicker=HANDS)
+    exact = np.abs(alone.values) < EXACT  # further off the faces are handed on, the hull's in another order
     assert np.abs(alone.values - body.key(2))[exact].max() < 1e-6
     assert body.surface is not None
     nearest, corners = body.surface(2)

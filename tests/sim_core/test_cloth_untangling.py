@@ -100,6 +100,36 @@ def test_a_corner_that_dips_through_is_drawn_back() -> None:
     assert going.min() >= -1e-12
 
 
+def slit() -> tuple[np.ndarray, np.ndarray]:
+    """A level sheet cut open in its middle by 30 mm; one side of the slit lies over the other and dips through it."""
+    n, step = 17, 0.01
+    u, w = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    rest = step * np.stack([u.ravel(), w.ravel()], axis=1).astype(float)
+    a = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    faces = np.concatenate([np.stack([a, a + n, a + 1], 1), np.stack([a + 1, a + n, a + n + 1], 1)])
+    middle, half = n // 2, 3
+    cut = middle * n + np.arange(half)
+    other = np.arange(n * n)
+    other[cut] = n * n + np.arange(half)
+    right = rest[faces].mean(1)[:, 0] > middle * step
+    faces[right] = other[faces[right]]
+    rest = np.concatenate([rest, rest[cut]])
+    x = np.column_stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]])
+    opened = np.clip(1 - rest[:, 1] / (half * step), 0, 1)
+    opened *= np.clip(1 - np.abs(rest[:, 0] - middle * step) / (middle * step), 0, 1)
+    side = np.isin(np.arange(len(x)), faces[right]) & (opened > 0)
+    x[side, 0] -= 0.006 * opened[side]
+    x[side, 1] += 0.0015 * opened[side] * np.cos(90 * rest[side, 1])
+    return x, faces.astype(np.int32)
+
+
+def test_sides_of_a_slit_that_lie_in_one_plane_are_seen_to_cross() -> None:
+    x, faces = slit()
+    before, after = untangled(x.copy(), np.zeros_like(x), mesh_of(faces, np.ones(len(x))), ENOUGH)
+    assert before == metrics.intersections(x, faces) > 0
+    assert after == 0
+
+
 @pytest.mark.parametrize("partly", [False, True])
 def test_what_cannot_be_undone_is_left_as_it_is_unless_some_of_it_may_be(partly: bool) -> None:
     _, faces, x = two_layers(*equilateral_sheet(0.2, 0.2, 0.02))

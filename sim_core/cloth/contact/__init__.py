@@ -8,19 +8,12 @@ from typing import TYPE_CHECKING
 from sim_core.cloth.contact.collisions import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
+from sim_core.cloth.contact.layers.crossings import crossings_of, faces_at_edges, no_crossings, none_crosses
 from sim_core.cloth.contact.layers.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
 from sim_core.cloth.contact.layers.pairs import Mesh, Search, finder_of, hash_points
 from sim_core.cloth.contact.layers.patches import Patches, patches_of, shapes_of
 from sim_core.cloth.contact.layers.repulsion import LEVER, Shell, repel
-from sim_core.cloth.contact.layers.untangling import (
-    Memory,
-    Untangling,
-    crossings_of,
-    faces_at_edges,
-    no_crossings,
-    none_crosses,
-    untangle,
-)
+from sim_core.cloth.contact.layers.untangling import Memory, Untangling, untangle
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
 

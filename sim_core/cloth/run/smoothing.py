@@ -19,7 +19,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy import sparse
 
-from sim_core.cloth.contact.layers.untangling import faces_at_edges
+from sim_core.cloth.contact.layers.crossings import faces_at_edges
 from sim_core.cloth.sheet.bending import bending_matrix
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.factor import Factored

@@ -15,19 +15,13 @@ from sim_core.cloth.contact.collisions import (
     contact_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
+from sim_core.cloth.contact.layers.crossings import faces_at_edges, no_crossings, none_crosses
 from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
 from sim_core.cloth.contact.layers.pairs import Mesh, finder_of
 from sim_core.cloth.contact.layers.parting import parted
 from sim_core.cloth.contact.layers.patches import patches_of, shapes_of
 from sim_core.cloth.contact.layers.repulsion import search_for
-from sim_core.cloth.contact.layers.untangling import (
-    Memory,
-    Untangling,
-    faces_at_edges,
-    no_crossings,
-    none_crosses,
-    untangle,
-)
+from sim_core.cloth.contact.layers.untangling import Memory, Untangling, untangle
 from sim_core.cloth.contact.moving_grid import MovingGrid
 from sim_core.cloth.contact.packed import Packed
 from sim_core.cloth.contact.solids import Solid

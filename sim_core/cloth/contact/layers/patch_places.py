@@ -179,8 +179,11 @@ def flat_pair(x, mesh, patches, shapes, p, q, wide):
 
     wide: the cosine of the angle that normals may be apart for that.
     """
-    return flat_together(shapes.cone, p, q, wide) and (
-        p == q or _joined(x, mesh, patches, shapes, p, q, wide)
+    inner = not (patches.rim[p] and patches.rim[q])
+    return (
+        inner
+        and flat_together(shapes.cone, p, q, wide)
+        and (p == q or _joined(x, mesh, patches, shapes, p, q, wide))
     )
 
 

@@ -1,8 +1,9 @@
 """Patches: a cloth cut into small connected groups of faces, and which of them may touch.
 
 A patch whose normals lie in a narrow cone, and whose edges are not crushed, is a graph over a plane and cannot meet
-itself, nor a neighbour with which it shares the cone (Volino & Magnenat-Thalmann 1994; Provot 1997). Of cloth that
-hangs in folds nearly all is such; what is left are pairs of patches whose boxes overlap: layers, and sharp folds.
+itself, nor a neighbour with which it shares the cone (Volino & Magnenat-Thalmann 1994; Provot 1997), unless its outline
+does: both sides of a slit lie in one plane. So nothing is said of two patches, or one, at a rim. Of cloth that hangs in
+folds nearly all is flat; what is left are pairs of patches whose boxes overlap: layers, rims, and sharp folds.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ class Patches(NamedTuple):
     corner_start: np.ndarray  # (P + 1,)
     beside: np.ndarray  # (N,) int32 the patches that share a vertex with each, without itself
     beside_start: np.ndarray  # (P + 1,)
+    rim: np.ndarray  # (P,) bool: a vertex of it is where the cloth ends, or goes on as more than one sheet
 
 
 class Shapes(NamedTuple):
@@ -104,7 +106,7 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
     count = len(same)
     if not len(faces):
         none, start = np.zeros(0, np.int32), np.zeros(1, np.int32)
-        return Patches(none, none, none, start, start, start, none, start, none, start)
+        return Patches(none, none, none, start, start, start, none, start, none, start, none.astype(bool))
     _, face_edges = face_edge_table(faces)
     flat = face_edges.ravel()
     by_edge = np.argsort(flat, kind="stable")
@@ -132,6 +134,8 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
     named = np.unique(np.column_stack([np.repeat(patch, 3), faces.ravel()]), axis=0)
     corner_start = np.searchsorted(named[:, 0], np.arange(number + 1)).astype(np.int32)
     near, near_start = _neighbours(same[faces], patch, number)
+    rim = np.zeros(number, bool)
+    np.logical_or.at(rim, np.repeat(patch, 3), _at_rim(same[faces].astype(np.int64)).ravel())
     return Patches(
         faces=own_faces,
         edges=own_edges,
@@ -143,7 +147,19 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
         corner_start=corner_start,
         beside=near,
         beside_start=near_start,
+        rim=rim,
     )
+
+
+def _at_rim(corners: np.ndarray) -> np.ndarray:
+    """Of the points that corners (F, 3) name, which are on an edge that is not of two faces that lie alike, (F, 3)."""
+    count = int(corners.max()) + 1
+    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    ways, told = np.unique(a * count + b, return_counts=True)
+    back = ways % count * count + ways // count
+    found = np.minimum(np.searchsorted(ways, back), len(ways) - 1)
+    odd = (told != 1) | (ways[found] != back) | (told[found] != 1)
+    return np.isin(corners, np.concatenate([ways[odd] // count, ways[odd] % count]))
 
 
 def _neighbours(corners: np.ndarray, patch: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
