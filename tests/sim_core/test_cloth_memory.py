@@ -83,7 +83,7 @@ def test_a_search_through_what_blew_up_finds_nothing_and_returns(broken: float) 
     x[3] = broken
     same = np.arange(len(x), dtype=np.int32)
     mesh = Mesh(np.ones(len(x)), rest, edges, faces, np.ones(len(edges)), same)
-    patches = patches_of(edges, faces, same)
+    patches = patches_of(edges, faces, same, rest[faces])
     found = begin_pairs(
         x, mesh, patches, shapes_of(patches), Search(0.01, 0.01, 0.0, 0.02), near_pairs_of(len(x))
     )

@@ -95,7 +95,8 @@ class Engine:
         )
         layers = (count, len(s.edges), len(s.faces)) if self.shell.thickness else (0, 0, 0)
         self.near = near_pairs_of(layers[0])
-        patches = patches_of(s.edges, s.faces if self.shell.thickness else s.faces[:0], self.holds.same)
+        layered = len(s.faces) if self.shell.thickness else 0
+        patches = patches_of(s.edges, s.faces[:layered], self.holds.same, s.corner[:layered])
         self.finder = finder_of(*layers)
         vertices, middles = self._samples()
         self.touch = Touch(

@@ -166,7 +166,7 @@ def _joined(x, mesh, patches, shapes, p, q, wide):
     for k in range(start[p], start[p + 1]):
         r = beside[k]
         for m in range(start[q], start[q + 1]):
-            if beside[m] == r:
+            if beside[m] == r and not patches.bay[r]:
                 place_patch(x, mesh, patches, shapes, r)
                 if flat_together(cone, p, r, wide) and flat_together(cone, q, r, wide):
                     return True
@@ -179,9 +179,8 @@ def flat_pair(x, mesh, patches, shapes, p, q, wide):
 
     wide: the cosine of the angle that normals may be apart for that.
     """
-    inner = not (patches.rim[p] and patches.rim[q])
     return (
-        inner
+        not (patches.bay[p] or patches.bay[q])
         and flat_together(shapes.cone, p, q, wide)
         and (p == q or _joined(x, mesh, patches, shapes, p, q, wide))
     )

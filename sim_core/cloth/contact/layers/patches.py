@@ -2,8 +2,9 @@
 
 A patch whose normals lie in a narrow cone, and whose edges are not crushed, is a graph over a plane and cannot meet
 itself, nor a neighbour with which it shares the cone (Volino & Magnenat-Thalmann 1994; Provot 1997), unless its outline
-does: both sides of a slit lie in one plane. So nothing is said of two patches, or one, at a rim. Of cloth that hangs in
-folds nearly all is flat; what is left are pairs of patches whose boxes overlap: layers, rims, and sharp folds.
+does: both sides of a slit lie in one plane. So nothing is said of patches at a bay of the outline, nor across one. Of
+cloth that hangs in folds nearly all is flat; what is left are pairs of patches whose boxes overlap: layers and sharp
+folds.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ FACES = 16  # of a patch; larger ones are flat less often, smaller ones are more
 CONE = math.cos(
     math.radians(60.0)
 )  # of the widest angle between two normals of what cannot pass through itself
+BAY = math.radians(205.0)  # of cloth around a vertex at a rim, beyond which the outline turns inwards there
 WHOLE = 11  # numbers that tell how a patch moves
 CRUSHED = 0.5  # of its squared length at rest, below which an edge may lie in a fold that normals do not show
 
@@ -37,7 +39,9 @@ class Patches(NamedTuple):
     corner_start: np.ndarray  # (P + 1,)
     beside: np.ndarray  # (N,) int32 the patches that share a vertex with each, without itself
     beside_start: np.ndarray  # (P + 1,)
-    rim: np.ndarray  # (P,) bool: a vertex of it is where the cloth ends, or goes on as more than one sheet
+    bay: (
+        np.ndarray
+    )  # (P,) bool: a vertex of it is where the outline turns inwards, or cloth goes on as several sheets
 
 
 class Shapes(NamedTuple):
@@ -101,8 +105,13 @@ def _grown(beside, size):
     return patch
 
 
-def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int = FACES) -> Patches:
-    """Patches of a mesh: edges (E, 2), faces (F, 3) int32, same (V,) int32, one number for vertices that are sewn."""
+def patches_of(
+    edges: np.ndarray, faces: np.ndarray, same: np.ndarray, corner: np.ndarray, size: int = FACES
+) -> Patches:
+    """Patches of a mesh: edges (E, 2), faces (F, 3) int32, same (V,) int32, one number for vertices that are sewn.
+
+    corner (F, 3, 2) [m]: where each face's corners lie in the pattern.
+    """
     count = len(same)
     if not len(faces):
         none, start = np.zeros(0, np.int32), np.zeros(1, np.int32)
@@ -134,8 +143,8 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
     named = np.unique(np.column_stack([np.repeat(patch, 3), faces.ravel()]), axis=0)
     corner_start = np.searchsorted(named[:, 0], np.arange(number + 1)).astype(np.int32)
     near, near_start = _neighbours(same[faces], patch, number)
-    rim = np.zeros(number, bool)
-    np.logical_or.at(rim, np.repeat(patch, 3), _at_rim(same[faces].astype(np.int64)).ravel())
+    bay = np.zeros(number, bool)
+    np.logical_or.at(bay, np.repeat(patch, 3), _at_bays(same[faces].astype(np.int64), corner).ravel())
     return Patches(
         faces=own_faces,
         edges=own_edges,
@@ -147,19 +156,28 @@ def patches_of(edges: np.ndarray, faces: np.ndarray, same: np.ndarray, size: int
         corner_start=corner_start,
         beside=near,
         beside_start=near_start,
-        rim=rim,
+        bay=bay,
     )
 
 
-def _at_rim(corners: np.ndarray) -> np.ndarray:
-    """Of the points that corners (F, 3) name, which are on an edge that is not of two faces that lie alike, (F, 3)."""
-    count = int(corners.max()) + 1
-    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+def _at_bays(points: np.ndarray, corner: np.ndarray) -> np.ndarray:
+    """Of the points that faces (F, 3) name, which are at bays, (F, 3); corner (F, 3, 2): where the faces' corners lie in
+    the pattern.
+    """
+    count = int(points.max()) + 1
+    a, b = points.ravel(), np.roll(points, -1, axis=1).ravel()
     ways, told = np.unique(a * count + b, return_counts=True)
-    back = ways % count * count + ways // count
+    ends = np.stack([ways // count, ways % count])
+    back = ends[1] * count + ends[0]
     found = np.minimum(np.searchsorted(ways, back), len(ways) - 1)
-    odd = (told != 1) | (ways[found] != back) | (told[found] != 1)
-    return np.isin(corners, np.concatenate([ways[odd] // count, ways[odd] % count]))
+    once, met = told == 1, ways[found] == back
+    one, two = np.roll(corner, -1, axis=1) - corner, np.roll(corner, 1, axis=1) - corner
+    across = one[:, :, 0] * two[:, :, 1] - one[:, :, 1] * two[:, :, 0]
+    angle = np.bincount(points.ravel(), np.arctan2(np.abs(across), (one * two).sum(2)).ravel(), count)
+    rim, several = np.zeros(count, bool), np.zeros(count, bool)
+    rim[ends[:, once & ~met]] = True
+    several[ends[:, ~once | (met & (told[found] != 1))]] = True
+    return (several | (rim & (angle > BAY)))[points]
 
 
 def _neighbours(corners: np.ndarray, patch: np.ndarray, number: int) -> tuple[np.ndarray, np.ndarray]:
