@@ -161,9 +161,7 @@ def patches_of(
 
 
 def _at_bays(points: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """Of the points that faces (F, 3) name, which are at bays, (F, 3); corner (F, 3, 2): where the faces' corners lie in
-    the pattern.
-    """
+    """Of the points that faces (F, 3) name, which are at bays, (F, 3); corner (F, 3, 2): the faces in the pattern."""
     count = int(points.max()) + 1
     a, b = points.ravel(), np.roll(points, -1, axis=1).ravel()
     ways, told = np.unique(a * count + b, return_counts=True)
