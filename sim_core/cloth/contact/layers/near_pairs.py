@@ -218,7 +218,7 @@ def go_on(near, how):
     Only where edges are long: between short ones it depends on when they are looked at which pairs count as one sheet.
     """
     skin, (before, ahead, holds) = how.reach - how.thickness, near.kept
-    like = 0.5 * before <= skin <= 2.0 * before and 0.5 * ahead <= how.ahead <= 2.0 * ahead
+    like = 0.5 * before <= skin <= 1.5 * before and 0.5 * ahead <= how.ahead <= 1.25 * ahead
     if holds == 0.0 or how.near > 0.0 or not like:
         return False
     near.now.points[: near.now.count[1], 2] = 0

@@ -144,4 +144,4 @@ def search_with(thickness, side, skin, ahead):
     opening = 2.0 * math.asin(min(1.0, (thickness + NEARER * skin) / (math.sqrt(3.0) * side)))
     wide = min(max(math.cos(math.pi - opening), WIDEST), CONE)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    return Search(thickness, reach, 3.5 * side if side < 2.0 * reach else 0.0, side, wide, ahead)
+    return Search(thickness, reach, 3.5 * side if side < reach else 0.0, side, wide, ahead)
