@@ -24,7 +24,7 @@ class Push(NamedTuple):
 
     clearance: float  # [m] that they keep
     cap: float  # [m] the largest push
-    friction: float  # of vertices; midpoints and centroids have none
+    friction: float
     dt: float  # [s]
 
 
@@ -129,8 +129,12 @@ def _middle(x, i, j, k):
 
 
 @njit(cache=True, error_model="numpy")
-def _push_middle(fields, inverse_mass, x, v, sample, out, push):
-    """Pushes a midpoint or centroid that is too near out; out: its distance [m] and the way, a unit vector or 0."""
+def _push_middle(fields, inverse_mass, x, v, sample, out, carry, push):
+    """Pushes a midpoint or centroid that is too near out, with friction against a surface that goes by `carry` [m/s].
+
+    out: its distance [m] and the way, a unit vector or 0. What bears on samples and slid without friction would creep,
+    stick by its vertices and creep again.
+    """
     d, nx, ny, nz = out
     i, k = sample[0], sample[2]
     w, count = (0.5, 2) if i == k else (1.0 / 3.0, 3)
@@ -138,21 +142,33 @@ def _push_middle(fields, inverse_mass, x, v, sample, out, push):
         nx, ny, nz = _way_of_corners(fields, x, sample, count)
         if nx * nx + ny * ny + nz * nz < 0.5:
             return
-    way = min(push.clearance - d, push.cap) / (w * w * count)
-    vn = 0.0
+    depth = min(push.clearance - d, push.cap)
+    vx = vy = vz = 0.0
     for a in range(count):
         u = sample[a]
-        vn += w * (v[u, 0] * nx + v[u, 1] * ny + v[u, 2] * nz)
-    gain = max(-vn, 0.0) / (w * w * count)
+        vx, vy, vz = vx + w * v[u, 0], vy + w * v[u, 1], vz + w * v[u, 2]
+    vn = vx * nx + vy * ny + vz * nz
+    cn = carry[0] * nx + carry[1] * ny + carry[2] * nz
+    tx, ty, tz = (
+        vx - vn * nx - carry[0] + cn * nx,
+        vy - vn * ny - carry[1] + cn * ny,
+        vz - vn * nz - carry[2] + cn * nz,
+    )
+    slide, lost = math.sqrt(tx * tx + ty * ty + tz * tz), 0.0
+    if slide > 0.0:
+        lost = min(1.0, push.friction * depth / (push.dt * slide))
+    share = 1.0 / (w * w * count)
+    gain = max(-vn, 0.0)
+    gx, gy, gz = gain * nx - lost * tx, gain * ny - lost * ty, gain * nz - lost * tz
     for a in range(count):
         u = sample[a]
         if inverse_mass[u] > 0.0:
-            x[u, 0] += w * way * nx
-            x[u, 1] += w * way * ny
-            x[u, 2] += w * way * nz
-            v[u, 0] += w * gain * nx
-            v[u, 1] += w * gain * ny
-            v[u, 2] += w * gain * nz
+            x[u, 0] += w * share * (depth * nx - lost * push.dt * tx)
+            x[u, 1] += w * share * (depth * ny - lost * push.dt * ty)
+            x[u, 2] += w * share * (depth * nz - lost * push.dt * tz)
+            v[u, 0] += w * share * gx
+            v[u, 1] += w * share * gy
+            v[u, 2] += w * share * gz
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,7 +177,7 @@ def _meet_middle(fields, inverse_mass, x, v, sample, push):
     px, py, pz, _ = _middle(x, sample[0], sample[1], sample[2])
     d, (nx, ny, nz), _ = signed_distance(fields, px, py, pz)
     if d < push.clearance:
-        _push_middle(fields, inverse_mass, x, v, sample, (d, nx, ny, nz), push)
+        _push_middle(fields, inverse_mass, x, v, sample, (d, nx, ny, nz), (0.0, 0.0, 0.0), push)
     return d - push.clearance
 
 
@@ -193,7 +209,7 @@ def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
 
     Returns the furthest that one was pushed [m].
     """
-    fields, samples, wake = fields_of(packed), watch.samples, watch.wake
+    fields, samples, wake, carries = fields_of(packed), watch.samples, watch.wake, len(packed.ways) > 0
     (kind, data, grid, later, blend), latest, deepest = fields, step + SOON if awake else step, 0.0
     for s in range(len(samples)):
         if wake[s] > latest:
@@ -203,7 +219,8 @@ def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
         d, nx, ny, nz, _, drift = distance_at(kind, data, grid, later, blend, px, py, pz)
         if d < push.clearance:
             deepest = max(deepest, push.clearance - d)
-            _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), push)
+            carry = carried(packed, d, px, py, pz) if carries else (0.0, 0.0, 0.0)
+            _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), carry, push)
         fast = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
         fast = max(fast, v[j, 0] ** 2 + v[j, 1] ** 2 + v[j, 2] ** 2)
         fast = max(fast, v[k, 0] ** 2 + v[k, 1] ** 2 + v[k, 2] ** 2)
