@@ -29,9 +29,6 @@ class Mesh(NamedTuple):
 class Finder(NamedTuple):
     """Working memory of a search, made once a run: V vertices, E edges, F faces, N the most of them."""
 
-    face_normal: np.ndarray  # (F, 3)
-    vertex_normal: np.ndarray  # (V, 3)
-    centre: np.ndarray  # (F, 3)
     balls: np.ndarray  # (E, 7)
     by_cell: np.ndarray  # (N, 7) what is looked for, sorted
     key: np.ndarray  # (N,) cell of each
@@ -45,9 +42,6 @@ def finder_of(vertices: int, edges: int, faces: int) -> Finder:
     most = max(vertices, edges, faces)
     cells = CELLS * most + 65
     return Finder(
-        face_normal=np.zeros((faces, 3)),
-        vertex_normal=np.zeros((vertices, 3)),
-        centre=np.zeros((faces, 3)),
         balls=np.zeros((edges, 7)),
         by_cell=np.zeros((most, 7)),
         key=np.zeros(most, np.int32),
