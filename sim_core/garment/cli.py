@@ -41,7 +41,7 @@ An outfit file:
   weaves = { band = "weaves/juan.toml" }        # of single panels
   dye = "#c39c50"                     # dyes = { band = "#2c4464" } of single panels
   measures = { length = 1180 }        # of the pattern, in millimetres
-  edge = 0.013                        # mesh step in metres
+  edge = 0.013                        # mesh step in metres; below 0.009 it is sewn and posed at 0.015 first
   start = "t"                         # pose the wearer begins in (wrapped, along_path), which a pose step leaves
   [layer.place]
   way = "flat"                        # flat, wrapped, over_bar, along_path or folded; each has keys of its own
@@ -264,7 +264,7 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
 
 
 def _report(args: argparse.Namespace, garments: Sequence[Garment], files: dict[str, Path]) -> None:
-    kept = ("way", "whole", "seconds", "simulated", "substeps", "errors", "inputs")
+    kept = ("way", "whole", "coarse", "seconds", "simulated", "substeps", "errors", "inputs")
     if args.json:
         layers = [
             {
@@ -273,7 +273,7 @@ def _report(args: argparse.Namespace, garments: Sequence[Garment], files: dict[s
                 "digest": garment.digest(),
                 "vertices": len(garment.positions),
                 "triangles": len(garment.faces),
-                **{key: garment.provenance[key] for key in kept},
+                **{key: garment.provenance[key] for key in kept if key in garment.provenance},
             }
             for garment in garments
         ]

@@ -1,16 +1,20 @@
 """Speed against error beside Newton, MuJoCo and Blender: `simcore bench cloth -- --peers`.
 
-    … --peers [FOLDER] [--scene hang_edge|hanging|flag] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
+    … --peers [FOLDER] [--scene NAME] [--only ENGINE] [--rounds N] [--budget SECONDS] [--vertices N]
       [--deciding] [--json FILE] [--plot FILE.png]
+
+Scenes: hang_edge, hanging and flag as published; each with `_silk` once more, so stiff that no edge grows by more than
+3 %; folded, a sheet folded over a bar onto itself, with layers (cloth_folded.py).
 
 Every setting of a peer is run in turn with ours: a turn is one run of each of our settings (the default and cheaper
 ones, OURS) and one of the peer's, settings and peers alternate, and a ratio is the median over turns. Two are told:
 over our default, and over our cheapest setting that stays within 2 mm mean of our own limit. With --deciding only each
 peer's cheapest setting within 2 mm of its limit and the next ones of its sweep are run, the first so often. One thread,
 one core, processor milliseconds a frame of 1/25 s; building the model and compiling are left out and told. Errors are
-vertex distances at the end: from the peer's own limit (its finest setting; `floor` is what the next finer one still
-differs from it) and from ours. What has been run is kept in FOLDER, so a long sweep goes in pieces: with --budget no
-run is begun after so many seconds, and the next call goes on.
+vertex distances at the end (folded: in the worst frame): from the peer's own limit (its finest setting; `floor` is
+what the next finer one still differs from it) and from ours. Of layers all crossings are counted, by one function. A
+run that takes longer than cloth_sweeps.LONGEST is broken off and told. What has been run is kept in FOLDER, so a long
+sweep goes in pieces: with --budget no run is begun after so many seconds, and the next call goes on.
 Peers are put into FOLDER (build/peers) by the lines of peers.txt; a peer that cannot run is named with its reason.
 """
 
@@ -19,34 +23,44 @@ import json
 import os
 import sys
 import time
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from cloth_figures import deciding, summary
-from cloth_sweeps import OURS, SWEEPS, Compared, compared, given, told
+from cloth_sweeps import ENGINES, NAMES, Compared, Own, compared, given, told
 from peers import Peers, peer_python
-
-from sim_core.cloth.step import Pace
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
-NAMES = ("hang_edge", "hanging", "flag")
 DEAR = 1000.0  # [ms a frame] what costs more has one turn, as a limit has
-MAPPING_VERSION = 1  # raise when a peer is given other numbers: what was kept is then run again
+MAPPING_VERSION = 2  # raise when a peer is given other numbers: what was kept is then run again
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 
 
-def ours(asked: Compared, substeps: int | None = None, pace: Pace | None = None) -> dict:
-    """One run of our engine: processor and wall milliseconds of every frame, and the end (V, 3) [m]."""
-    clock, scene = [time.process_time()], asked.scene
-    end = scene.drape(substeps=substeps, pace=pace, on_frame=lambda *_: clock.append(time.process_time()))
+def ours(asked: Compared, substeps: int | None = None, own: Own | None = None) -> dict:
+    """One run of our engine: processor and wall milliseconds of every frame, and the end (V, 3) or film (T, V, 3) [m].
+
+    substeps: so many a frame for a limit; own: the setting (None: the default).
+    """
+    scene, film = asked.scene, []
+    if own and scene.contact:
+        scene = replace(scene, contact=replace(scene.contact, every=own.every))
+    clock = [time.process_time()]
+
+    def hears(_: int, positions: np.ndarray) -> None:
+        clock.append(time.process_time())
+        film.append(positions)
+
+    end = scene.drape(substeps=substeps, pace=own and own.pace, on_frame=hears)
     return {
         "ms": [1e3 * s for s in end.frame_seconds],
         "cpu_ms": list(1e3 * np.diff(clock)),
         "substeps": end.substeps / end.frames,
-        "positions": end.positions,
+        "stretch": end.worst_stretch,
+        "positions": np.array(film, float) if asked.whole else end.positions,
     }
 
 
@@ -56,6 +70,8 @@ class Kept:
     def __init__(self, folder: Path, asked: Compared) -> None:
         arrays = given(asked)
         digest = sha256(b"".join(np.ascontiguousarray(arrays[k]).tobytes() for k in sorted(arrays)))
+        self.sweeps = asked.sweeps
+        self.faces = asked.scene.sheet.faces
         self.folder = folder / f"{asked.scene.name}-{digest.hexdigest()[:12]}-{MAPPING_VERSION}"
         self.folder.mkdir(parents=True, exist_ok=True)
         self.file = self.folder / "turns.json"
@@ -96,15 +112,15 @@ def run_turns(
 
     only: per engine the settings that are run, the first of them in all rounds however dear (None: all of the sweep).
     """
-    arrays, complete = given(asked), True
-    longest = max(len(SWEEPS[engine]) for engine in engines)
+    arrays, complete, sweeps = given(asked), True, asked.sweeps
+    longest = max(len(sweeps[engine]) for engine in engines)
     for turn in range(rounds):
         for k in range(longest):
             for engine in engines:
-                if k >= len(SWEEPS[engine]):
+                if k >= len(sweeps[engine]):
                     continue
-                setting = SWEEPS[engine][k]
-                key, limit = kept.key(engine, setting), k >= len(SWEEPS[engine]) - 2
+                setting = sweeps[engine][k]
+                key, limit = kept.key(engine, setting), k >= len(sweeps[engine]) - 2
                 every = kept.turns.get(key, [])
                 done = [t for t in every if "ours" in t or "error" in t]
                 once = limit or any("error" in t or np.median(t["cpu_ms"]) > DEAR for t in every)
@@ -118,7 +134,7 @@ def run_turns(
                 if time.monotonic() > until:
                     complete = False
                     continue
-                own = {name: ours(asked, pace=pace) for name, pace in OURS.items()}
+                own = {name: ours(asked, own=way) for name, way in asked.ours.items()}
                 found = peers.run(engine, setting, **arrays)
                 end = found.pop("positions", None)
                 kept.add(key, {**found, "ours": {name: run["cpu_ms"] for name, run in own.items()}}, end)
@@ -158,7 +174,7 @@ def arguments() -> argparse.Namespace:
     folder = ROOT / "build" / "peers"
     parser.add_argument("--peers", nargs="?", const=folder, default=folder, type=Path, metavar="FOLDER")
     parser.add_argument("--scene", choices=NAMES, action="append", help="default: all")
-    parser.add_argument("--only", choices=tuple(SWEEPS), action="append", help="one peer (may be repeated)")
+    parser.add_argument("--only", choices=ENGINES, action="append", help="one peer (may be repeated)")
     parser.add_argument("--rounds", type=int, default=3, help="turns of a setting")
     parser.add_argument("--deciding", action="store_true", help="only the settings that decide")
     parser.add_argument("--budget", type=float, default=float("inf"), metavar="SECONDS")
@@ -176,18 +192,22 @@ def main() -> int:
     until, results = time.monotonic() + args.budget, {}
     for name in args.scene or NAMES:
         asked = compared(name, args.vertices)
-        engines = [e for e in args.only or list(SWEEPS) if e in asked.engines]
+        engines = [e for e in args.only or asked.engines if e in asked.engines]
+        if not engines:
+            continue
         kept = Kept(args.peers / "cloth-runs", asked)
-        for pace in OURS.values():  # compile
-            ours(asked, pace=pace)
+        for setting in asked.ours.values():  # compile
+            ours(asked, own=setting)
         only = deciding(kept, engines) if args.deciding else None
         complete = run_turns(asked, engines, kept, args.rounds, until, peers, only) and only is None
-        mine = {label: ours(asked, pace=pace) for label, pace in OURS.items()}
-        runs = [ours(asked, substeps) for substeps in (256, 512, 1024, 2048)]
-        results[name] = summary(kept, list(SWEEPS), mine, runs)
+        mine = {label: ours(asked, own=setting) for label, setting in asked.ours.items()}
+        runs = [ours(asked, substeps) for substeps in asked.steps]
+        results[name] = summary(kept, asked.engines, mine, runs)
         results[name] |= {
             "vertices": len(asked.scene.positions),
             "seconds": asked.seconds,
+            "whole": asked.whole,
+            "stretch": mine["default"]["stretch"],
             "complete": complete,
         }
     peers.close()

@@ -6,17 +6,36 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from cloth_sweeps import SWEEPS, told
+from cloth_sweeps import told
+
+from sim_core.metrics import intersections
 
 NEAR = 2.0  # [mm] mean: how near its own limit a peer's setting has to be to be compared
 
 
 def distance(a: np.ndarray, b: np.ndarray) -> dict[str, float]:
-    """Mean, 99 % and largest distance [mm] of vertices (V, 3); infinite where one is not finite."""
+    """Mean, 99 % and largest distance [mm] of vertices (V, 3); infinite where one is not finite.
+
+    Of films (T, V, 3): those of the frame in which the mean is largest; `end`: the mean in the last.
+    """
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         return {"mean": float("inf"), "p99": float("inf"), "max": float("inf")}
-    gap = 1e3 * np.linalg.norm(a - b, axis=1)
+    gap = 1e3 * np.linalg.norm(a - b, axis=-1)
+    if gap.ndim == 2:
+        worst = int(gap.mean(1).argmax())
+        return {**distance(a[worst], b[worst]), "end": float(gap[-1].mean())}
     return {"mean": float(gap.mean()), "p99": float(np.percentile(gap, 99)), "max": float(gap.max())}
+
+
+def crossed(film: np.ndarray, faces: np.ndarray) -> dict[str, int] | None:
+    """(edge, face) pairs that pass through each other: the most in a frame of a film (T, V, 3), and in the last.
+
+    None for what is no film, or not finite.
+    """
+    if film.ndim != 3 or not np.isfinite(film).all():
+        return None
+    counts = [intersections(frame, faces) for frame in film]
+    return {"most": max(counts), "end": counts[-1]}
 
 
 def cheapest(rows: Sequence[dict], within: float = NEAR) -> dict | None:
@@ -35,7 +54,7 @@ def deciding(kept: Any, engines: Sequence[str]) -> dict[str, list[dict]]:
         peer = engine_summary(kept, engine, None, "default", every=True)
         near = peer and peer.get("cheapest_within_2mm")
         if near:
-            order = [s for s in SWEEPS[engine][:-2]]
+            order = [s for s in kept.sweeps[engine][:-2]]
             at = order.index(near["setting"]) if near["setting"] in order else len(order)
             found[engine] = [near["setting"], *order[max(at - 1, 0) : at], *order[at + 1 : at + 2]]
     return found
@@ -50,19 +69,23 @@ def row_of(
     setting: dict,
     mine: str,
     every: bool,
+    spent: float | None = None,
 ) -> dict:
     """Figures of one setting: medians over all frames of all turns, ratios as medians of the turns that have ours.
 
-    mine: the name of our cheapest setting. Milliseconds are of those turns too, if there are any (every: of all).
+    mine: the name of our cheapest setting; spent: its median milliseconds in all turns, for turns older than it is.
+    Milliseconds are of those turns too, if there are any (every: of all).
     """
     shared = [turn for turn in turns if "ours" in turn]
     turns = turns if every or not shared else shared
     frames = np.concatenate([turn["cpu_ms"] for turn in turns])
     walls = np.concatenate([turn["ms"] for turn in turns])
     ratios, cheap = (
-        [float(np.median(t["cpu_ms"]) / np.median(t["ours"][name])) for t in shared]
+        [float(np.median(t["cpu_ms"]) / np.median(t["ours"][name])) for t in shared if name in t["ours"]]
         for name in ("default", mine)
     )
+    if not cheap and shared and spent:
+        cheap = [float(np.median(frames) / spent)]
     return {
         "setting": setting,
         "turns": len(turns),
@@ -89,14 +112,15 @@ def engine_summary(
 
     reference: our own limit (None: distances from it are those from the peer's); mine: our cheapest setting.
     """
-    sweep = [(s, kept.key(engine, s)) for s in SWEEPS[engine]]
+    sweep = [(s, kept.key(engine, s)) for s in kept.sweeps[engine]]
     run = [(s, key) for s, key in sweep if key in kept.turns]
     good = [(s, key) for s, key in run if "error" not in kept.turns[key][0]]
     if not good:
         return {"error": kept.turns[run[0][1]][0]["error"]} if run else None
-    if good[-1][0] != SWEEPS[engine][-1]:
-        return {"error": f"its limit, {told(SWEEPS[engine][-1])}, has not been run – run the bench again"}
-    ends = [kept.end(key) for _, key in good]
+    if any(key not in kept.turns for _, key in sweep[sweep.index(good[-1]) :]):
+        return {"error": f"its limit, {told(sweep[-1][0])}, has not been run – run the bench again"}
+    ends, turns = [kept.end(key) for _, key in good], own_turns(kept, mine)
+    spent = float(np.median(np.concatenate(turns))) if turns else None
     reference = ends[-1] if reference is None else reference
     rows = [
         row_of(
@@ -107,12 +131,20 @@ def engine_summary(
             setting=setting,
             mine=mine,
             every=every,
+            spent=spent,
         )
         for (setting, key), end in zip(good, ends, strict=True)
     ]
     floor = distance(ends[-2], ends[-1]) if len(ends) > 1 else None
+    for row, end in zip(rows, ends, strict=True):
+        row["crossings"] = crossed(end, kept.faces)
     found = cheapest(rows)
     candidates = [r for r in rows if not r["is_limit"]]
+    rested = min(
+        (r for r in candidates if r["own"].get("end", np.inf) <= NEAR),
+        key=lambda r: r["cpu_ms"],
+        default=None,
+    )
     best = min(candidates, key=lambda r: r["own"]["mean"], default=None)
     return {
         "version": kept.turns[good[-1][1]][0]["version"],
@@ -121,13 +153,22 @@ def engine_summary(
         "limit_from_ours": distance(ends[-1], reference),
         "rows": rows,
         "cheapest_within_2mm": found,
+        "cheapest_at_rest": rested,
         "best": best,
+        "refused": [
+            {"setting": told(s), "why": kept.turns[k][0]["error"]} for s, k in run if (s, k) not in good
+        ],
     }
+
+
+def own_turns(kept: Any, name: str) -> list[list[float]]:
+    """Milliseconds of every frame of one of our settings, turn by turn."""
+    return [t["ours"][name] for every in kept.turns.values() for t in every if name in t.get("ours", {})]
 
 
 def _mine(kept: Any, name: str, run: dict, end: np.ndarray) -> dict:
     """One of our settings: milliseconds of all kept turns, or of this run where there are none."""
-    turns = [t["ours"][name] for every in kept.turns.values() for t in every if name in t.get("ours", {})]
+    turns = own_turns(kept, name)
     frames = np.concatenate([*turns, *([] if turns else [run["cpu_ms"]])])
     return {
         "name": name,
@@ -136,6 +177,7 @@ def _mine(kept: Any, name: str, run: dict, end: np.ndarray) -> dict:
         "cpu_ms": float(np.median(frames)),
         "cpu_ms_quartiles": [float(np.percentile(frames, q)) for q in (25, 75)],
         "error": distance(run["positions"], end),
+        "crossings": crossed(run["positions"], kept.faces),
     }
 
 

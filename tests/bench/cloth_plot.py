@@ -16,6 +16,7 @@ COLOURS = {
     "Newton Style3D": (150, 90, 160),
     "MuJoCo Euler": (196, 120, 30),
     "MuJoCo discrete": (190, 60, 60),
+    "MuJoCo discrete, passive contact": (120, 30, 30),
     "Blender": (110, 110, 110),
 }
 
@@ -71,7 +72,7 @@ class Panel:
             self.draw.line(places, fill=colour, width=2 * FINE)
             for x, y in places:
                 self.draw.ellipse([x - r, y - r, x + r, y + r], fill=colour)
-            place = ((WIDE - 150) * FINE, (self.row * HIGH + HIGH - EDGE - 115 + 17 * n) * FINE)
+            place = ((WIDE - 250) * FINE, (self.row * HIGH + HIGH - EDGE - 115 + 17 * n) * FINE)
             self.draw.text(place, name, fill=colour, font=self.font)
 
 

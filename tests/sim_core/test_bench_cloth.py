@@ -1,6 +1,5 @@
 """The cloth bench's own figures: the README holds what was measured, and small runs have the figures' shape."""
 
-import json
 import re
 import sys
 from dataclasses import replace
@@ -40,11 +39,12 @@ def test_the_readme_holds_the_peers_figures(bench, monkeypatch) -> None:
     peers = import_module("cloth_peer_tables")
     for name in ("cloth_peer_tables", "cloth_figures", "cloth_sweeps", "mapping"):
         monkeypatch.delitem(sys.modules, name, raising=False)
-    results = json.loads(peers.FIGURES.read_text("utf-8"))
-    text, (begin, end) = peers.ROOM.read_text("utf-8"), peers.SHORT
+    results = peers.measured()
+    text, (begin, end) = (peers.ROOM / "README.md").read_text("utf-8"), peers.SHORT
     told = text.split(begin)[1].split(end)[0]
     assert peers.short(results) in told
-    assert peers.tables(results) in peers.README.read_text("utf-8")
+    assert peers.tables(peers.measured(published=True)) in peers.README.read_text("utf-8")
+    assert peers.tables(peers.measured(published=False)) in (peers.ROOM / "DETAILS.md").read_text("utf-8")
     least = min(p["cheapest_within_2mm"]["ratio_cheapest"] for p in results["hang_edge"]["peers"].values())
     assert f"within 2 mm, {least:.1f} (" in told
 
@@ -56,7 +56,7 @@ def test_a_peer_that_was_not_compared_or_never_came_near_is_told(bench, monkeypa
     far = {"cpu_ms": 50.0, "ratio": 12.5, "own": {"mean": 3.14}}
     assert peers.short_cell(None) == peers.short_cell({"error": "no module"}) == "not compared"
     told = peers.short_cell({"cheapest_within_2mm": None, "best": far, "limit_from_ours": {"mean": 0.5}})
-    assert told == "50 ms (never within 2 mm: 3.1), 12.5 / – times ours; limit 0.5 mm off"
+    assert told == "50 ms (never within 2 mm: 3.1), 12.5 / –; limit 0.5 mm off"
 
 
 def test_pages_of_the_room_name_files_and_tests_that_are_there() -> None:

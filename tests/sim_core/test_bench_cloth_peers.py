@@ -7,7 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-NAMES = ("cloth_against", "cloth_figures", "cloth_plot", "cloth_sweeps", "mapping", "peers")
+NAMES = (
+    "cloth_against",
+    "cloth_figures",
+    "cloth_folded",
+    "cloth_peer_tables",
+    "cloth_plot",
+    "cloth_sweeps",
+    "mapping",
+    "peers",
+)
 BENCH = Path(__file__).parents[1] / "bench"
 
 
@@ -79,7 +88,9 @@ def test_blender_is_told_its_own_gravity_and_the_lattice_of_our_stretch(bench):
 def test_only_qualities_that_blender_keeps_are_swept(bench):
     steps = bench["mapping"].blender_steps
     assert steps(12) == 13
-    assert all(steps(s["substeps"]) == s["substeps"] for s in bench["cloth_sweeps"].SWEEPS["Blender"])
+    sweeps = bench["cloth_sweeps"]
+    for every in (sweeps.SWEEPS, sweeps.SILK_SWEEPS, sweeps.LAYER_SWEEPS):
+        assert all(steps(s["substeps"]) == s["substeps"] for s in every["Blender"])
 
 
 def test_every_peer_is_swept_over_four_settings_beside_its_limit(bench):
@@ -100,6 +111,73 @@ def test_cheapest_is_the_fastest_near_its_limit_and_never_the_limit_itself(bench
 def test_a_run_that_is_not_finite_is_infinitely_far(bench):
     ends = np.zeros((4, 3)), np.full((4, 3), np.nan)
     assert bench["cloth_figures"].distance(*ends)["mean"] == np.inf
+
+
+def test_of_films_the_worst_frame_counts_and_the_last_is_told(bench):
+    still = np.zeros((3, 2, 3))
+    moved = still + np.array([0.0, 3e-3, 1e-3])[:, None, None] * np.eye(3)[0]
+    found = bench["cloth_figures"].distance(still, moved)
+    assert found["mean"] == pytest.approx(3.0)
+    assert found["end"] == pytest.approx(1.0)
+
+
+def test_crossings_of_a_film_are_the_most_in_a_frame_and_those_in_the_last(bench):
+    apart = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, 1], [0.3, 0.2, 1], [0.2, 0.3, 2]], float)
+    through = apart - np.array([[0, 0, 0]] * 3 + [[0, 0, 1.5]] * 3)
+    faces = np.array([[0, 1, 2], [3, 4, 5]])
+    found = bench["cloth_figures"].crossed(np.stack([apart, through, apart]), faces)
+    assert found["most"] == 2
+    assert found["end"] == 0
+    assert bench["cloth_figures"].crossed(apart, faces) is None
+
+
+def test_the_folded_sheet_begins_unstrained_outside_the_bar_and_itself(bench):
+    from sim_core.metrics import intersections
+
+    scene = bench["cloth_folded"].folded()
+    sheet, x = scene.sheet, scene.positions
+    lengths = np.linalg.norm(x[sheet.edges[:, 0]] - x[sheet.edges[:, 1]], axis=1)
+    rest = np.linalg.norm(sheet.rest[sheet.edges[:, 0]] - sheet.rest[sheet.edges[:, 1]], axis=1)
+    assert lengths == pytest.approx(rest)
+    assert scene.collider.distance(x).min() == pytest.approx(scene.contact.clearance)
+    assert intersections(x, sheet.faces) == 0
+    assert len(np.unique(sheet.rest[list(scene.pins), 1])) == 2
+
+
+def test_only_what_has_layers_is_told_of_them(bench):
+    sweeps = bench["cloth_sweeps"]
+    told = sweeps.given(sweeps.compared("folded"))
+    assert told["film"] == 1
+    assert told["thickness"] == pytest.approx(2 * told["clearance"])
+    assert "thickness" not in sweeps.given(sweeps.compared("hang_edge_silk"))
+
+
+def test_a_limit_that_was_broken_off_leaves_the_finest_that_was_reached(bench):
+    class Kept:
+        sweeps = {"peer": ({"substeps": 1}, {"substeps": 2}, {"substeps": 3})}
+        faces = np.array([[0, 1, 2]])
+
+        def __init__(self, last):
+            run = {"cpu_ms": [1.0], "ms": [1.0], "build_seconds": 0, "compile_seconds": 0, "version": "0"}
+            self.turns = {"1": [run], "2": [run], **({"3": [{"error": last}]} if last else {})}
+
+        def key(self, engine, setting):
+            return str(setting["substeps"])
+
+        def end(self, key):
+            return np.full((3, 3), float(key))
+
+    summed = bench["cloth_figures"].engine_summary
+    assert "has not been run" in summed(Kept(""), "peer", None, "default")["error"]
+    found = summed(Kept("TimeoutError: not reached in 2 s"), "peer", None, "default")
+    assert found["limit"] == "2"
+    assert found["refused"] == [{"setting": "3", "why": "TimeoutError: not reached in 2 s"}]
+
+
+def test_tables_tell_who_is_ahead(bench):
+    tables = bench["cloth_peer_tables"]
+    assert tables.least([(3.0, "a"), (2.0, "b")]) == "2.0 (b)"
+    assert tables.least([(3.0, "a"), (0.5, "b")]) == "b is 2.0 times as fast"
 
 
 class Played:
@@ -135,7 +213,7 @@ def test_turns_alternate_are_kept_and_a_missing_peer_is_named(bench, tmp_path, c
     assert against.run_turns(asked, engines, again, 2, inf, second)
     assert second.asked == []
     runs = [against.ours(asked, n) for n in (32, 64)]
-    own = {name: against.ours(asked, pace=pace) for name, pace in bench["cloth_sweeps"].OURS.items()}
+    own = {name: against.ours(asked, own=way) for name, way in asked.ours.items()}
     found = figures.summary(again, list(bench["cloth_sweeps"].SWEEPS), own, runs)
     mine = found["ours"]["cheapest_within_2mm"]
     assert mine["error"]["mean"] <= 2.0

@@ -74,7 +74,10 @@ def elastica(b: float, rho: float, length: float) -> np.ndarray:
 @pytest.mark.slow
 @pytest.mark.parametrize("load", [1.0, 8.0])
 def test_cantilever_bends_as_the_heavy_elastica(load: float) -> None:
-    """rho g L^3 / B = load; the whole curve within 2 % of the length."""
+    """rho g L^3 / B = load: the whole curve within 0.3 % of the length of one that begins between the two rows held.
+
+    Pins hold places and no slopes, so where between them the clamp sits is not said.
+    """
     length, rho = 0.1, 0.15
     b = rho * G * length**3 / load
     cloth = Material(rho, 3e3, 0.0, b, mass_damping=0.0, stiffness_damping=1e-5)
@@ -87,15 +90,16 @@ def test_cantilever_bends_as_the_heavy_elastica(load: float) -> None:
     held = np.flatnonzero(sheet.rest[:, 0] <= first[1] + 1e-9)
     start[held] = np.column_stack([sheet.rest[held, 0], np.zeros(len(held)), sheet.rest[held, 1]])
     end = drape(sheet, start, [Phase(1.4, damping=25.0)], pins=held.tolist())
-    # Two rows are held: the slope between them is that of the clamp in their middle.
     rows, line = middle_line(sheet, end.positions)
-    clamp = first[1] / 2
-    free = elastica(b, rho, length - clamp)
-    s = np.linspace(0, length - clamp, 401)
-    expected = np.column_stack([np.interp(rows[1:] - clamp, s, free[:, k]) for k in (0, 1)])
-    expected += [clamp, 0]
+
+    def error(clamp: float) -> float:
+        free = elastica(b, rho, length - clamp)
+        s = np.linspace(0, length - clamp, 401)
+        expected = np.column_stack([np.interp(rows[1:] - clamp, s, free[:, k]) for k in (0, 1)])
+        return float(np.linalg.norm(line[1:, :2] - expected - [clamp, 0], axis=1).max())
+
     assert end.rest_max < 1e-5
-    assert np.linalg.norm(line[1:, :2] - expected, axis=1).max() < 0.02 * length
+    assert min(map(error, np.linspace(0.0, first[1], 11))) < 0.003 * length
 
 
 def swing(times: np.ndarray, height: np.ndarray) -> float:

@@ -1,6 +1,7 @@
 """Solids and contact: exact distances, friction, nothing ends inside, layers do not pass each other."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -23,8 +24,10 @@ from sim_core.cloth import (
 )
 from sim_core.cloth.contact import (
     Mesh,
+    Push,
     Search,
     begin_pairs,
+    collide_samples,
     distances,
     finder_of,
     hash_points,
@@ -194,6 +197,58 @@ def test_grid_and_analytic_bar_hold_the_cloth_alike() -> None:
     assert ends[0].mean(0) == pytest.approx(
         ends[1].mean(0), abs=0.01
     )  # single folds part, the whole does not
+
+
+def bars(rng: np.random.Generator, *, sampled: bool) -> tuple[float, Solid]:
+    """Four thin bars side by side, nearer to each other than threads are long, and how far off them cloth falls [m]."""
+    aside, rise, radius = rng.uniform(-0.04, 0.05), rng.uniform(0.0, 0.03), rng.uniform(0.005, 0.012)
+    bars = Union(
+        tuple(
+            Capsule((0.022 * k - 0.033, 0.0, -0.06), (0.022 * k - 0.033, rise, 0.06), radius)
+            for k in range(4)
+        )
+    )
+    box = np.array([-0.12, -0.1, -0.15]), np.array([0.12, 0.12, 0.15])
+    return aside, GridSdf.sample(bars, *box, 0.008) if sampled else bars
+
+
+@pytest.mark.parametrize("pinned", [(), (0,), (0, 1), (0, 1, 2)])
+def test_no_corner_is_pushed_further_than_its_sample(pinned: tuple[int, ...]) -> None:
+    """A pinned one bears its part: the others would be thrown by a lever."""
+    x = np.array([[0.0, 5e-4, 0.0], [0.01, 5e-4, 0.0], [0.0, 5e-4, 0.01]])
+    v, lightness, before = np.full((3, 3), -1.0), np.array([2.0, 2.0, 2.0]), x.copy()
+    lightness[list(pinned)] = 0.0
+    push = Push(clearance=0.002, cap=4e-4, friction=0.0, dt=1e-4)
+    collide_samples(HalfSpace().packed(), lightness, x, v, np.array([[0, 1, 2]], np.int32), push)
+    moved = x[:, 1] - before[:, 1]
+    free = lightness > 0.0
+    assert moved[free] == pytest.approx(np.full(free.sum(), 4e-4))
+    assert v[free, 1] == pytest.approx(np.zeros(free.sum()))
+    assert not moved[~free].any()
+
+
+def heard(frames: list[np.ndarray], _: int, x: np.ndarray) -> None:
+    frames.append(np.array(x))
+
+
+def test_cloth_that_bears_on_midpoints_comes_to_rest() -> None:
+    """Most of it: how cloth falls is chance, and now and then a fold still creeps."""
+    rng = np.random.default_rng(3)
+    rest, faces = equilateral_sheet(0.3, 0.3, 0.018)
+    sheet = Sheet.of(rest, faces, Material(0.06, 300.0, bend=2e-6))
+    middle = rest - rest.mean(0)
+    still = Phase(4.0, damping=10.0, friction=0.45)
+    contact = Contact(clearance=0.003, sample_clearance=0.0015, thickness=0.0025)
+    moves: list[float] = []
+    for number in range(24):
+        aside, solid = bars(rng, sampled=number % 2 == 1)
+        start = np.column_stack([middle[:, 0] + aside, np.full(len(rest), 0.08), -middle[:, 1]])
+        frames: list[np.ndarray] = []
+        hear = partial(heard, frames)
+        drape(sheet, start, [still], collider=solid, contact=contact, on_frame=hear)
+        ways = np.linalg.norm(np.diff(frames[-13:], axis=0), axis=2)
+        moves.append(float(np.median(np.quantile(ways, 0.99, axis=1))))
+    assert np.sum(np.array(moves) > 10e-6) <= 6, np.round(1e6 * np.array(moves), 1)
 
 
 def test_two_layers_falling_on_each_other_stay_apart() -> None:

@@ -32,10 +32,12 @@ class Watch(NamedTuple):
     """Samples (S, 3) int32 and the steps (S,) int32 until which they sleep: as long as they cannot arrive.
 
     A vertex is stored as (i, i, i), a midpoint as (i, j, i) with weights 1/2, 1/2, a centroid as (i, j, k).
+    stirred: (V,) bool, vertices that samples have pushed since they were looked at, whom no sleep accounts for.
     """
 
     samples: np.ndarray
     wake: np.ndarray
+    stirred: np.ndarray
 
 
 @njit(error_model="numpy", inline="always")
@@ -85,12 +87,13 @@ def collide_vertices(packed, inverse_mass, x, v, near, push):
 @njit(cache=True, error_model="numpy")
 def collide_due_vertices(packed, inverse_mass, x, v, watch, step, push):
     """As `collide_vertices`, for those who are due; returns the furthest that one was pushed [m]."""
-    samples, wake, deepest = watch.samples, watch.wake, 0.0
+    samples, wake, stirred, deepest = watch.samples, watch.wake, watch.stirred, 0.0
     (kind, data, grid, later, blend), carries = fields_of(packed), len(packed.ways) > 0
     for s in range(len(samples)):
-        if wake[s] > step:
-            continue
         i = samples[s, 0]
+        if wake[s] > step and not stirred[i]:
+            continue
+        stirred[i] = False
         if inverse_mass[i] == 0.0:
             continue
         d, nx, ny, nz, speed, drift = distance_at(kind, data, grid, later, blend, x[i, 0], x[i, 1], x[i, 2])
@@ -130,29 +133,38 @@ def _middle(x, i, j, k):
 
 @njit(cache=True, error_model="numpy")
 def _push_middle(fields, inverse_mass, x, v, sample, out, push):
-    """Pushes a midpoint or centroid that is too near out; out: its distance [m] and the way, a unit vector or 0."""
-    d, nx, ny, nz = out
+    """Pushes a midpoint or centroid that is too near out, at least as fast as the surface moves.
+
+    out: its distance [m], the way, a unit vector or 0, and the surface's speed that way [m/s].
+
+    Its corners go by their lightness: shared out in any other way, what stops it may make them faster.
+    """
+    d, nx, ny, nz, speed = out
     i, k = sample[0], sample[2]
     w, count = (0.5, 2) if i == k else (1.0 / 3.0, 3)
     if nx * nx + ny * ny + nz * nz < 0.5:
         nx, ny, nz = _way_of_corners(fields, x, sample, count)
         if nx * nx + ny * ny + nz * nz < 0.5:
             return
-    way = min(push.clearance - d, push.cap) / (w * w * count)
-    vn = 0.0
+    lightest = light = vn = 0.0
     for a in range(count):
         u = sample[a]
+        lightest = max(lightest, inverse_mass[u])
         vn += w * (v[u, 0] * nx + v[u, 1] * ny + v[u, 2] * nz)
-    gain = max(-vn, 0.0) / (w * w * count)
+    if lightest == 0.0:
+        return
+    for a in range(count):  # a pinned one bears its part: the others would be thrown by a lever
+        light += inverse_mass[sample[a]] if inverse_mass[sample[a]] > 0.0 else lightest
+    way, gain = min(push.clearance - d, push.cap) / (w * light), max(speed - vn, 0.0) / (w * light)
     for a in range(count):
         u = sample[a]
-        if inverse_mass[u] > 0.0:
-            x[u, 0] += w * way * nx
-            x[u, 1] += w * way * ny
-            x[u, 2] += w * way * nz
-            v[u, 0] += w * gain * nx
-            v[u, 1] += w * gain * ny
-            v[u, 2] += w * gain * nz
+        share, more = way * inverse_mass[u], gain * inverse_mass[u]
+        x[u, 0] += share * nx
+        x[u, 1] += share * ny
+        x[u, 2] += share * nz
+        v[u, 0] += more * nx
+        v[u, 1] += more * ny
+        v[u, 2] += more * nz
 
 
 @njit(cache=True, error_model="numpy")
@@ -161,7 +173,7 @@ def _meet_middle(fields, inverse_mass, x, v, sample, push):
     px, py, pz, _ = _middle(x, sample[0], sample[1], sample[2])
     d, (nx, ny, nz), _ = signed_distance(fields, px, py, pz)
     if d < push.clearance:
-        _push_middle(fields, inverse_mass, x, v, sample, (d, nx, ny, nz), push)
+        _push_middle(fields, inverse_mass, x, v, sample, (d, nx, ny, nz, 0.0), push)
     return d - push.clearance
 
 
@@ -183,6 +195,8 @@ def settle_samples(packed, inverse_mass, x, v, watch, step, push):
             if wake[s] == step + 1:
                 if _meet_middle(fields, inverse_mass, x, v, samples[s], push) < 0.0:
                     inside += 1
+                    for c in range(3):
+                        watch.stirred[samples[s, c]] = True
         if inside == 0:
             return
 
@@ -193,17 +207,18 @@ def collide_due_samples(packed, inverse_mass, x, v, watch, step, awake, push):
 
     Returns the furthest that one was pushed [m].
     """
-    fields, samples, wake = fields_of(packed), watch.samples, watch.wake
+    fields, samples, wake, stirred = fields_of(packed), watch.samples, watch.wake, watch.stirred
     (kind, data, grid, later, blend), latest, deepest = fields, step + SOON if awake else step, 0.0
     for s in range(len(samples)):
         if wake[s] > latest:
             continue
         i, j, k = samples[s, 0], samples[s, 1], samples[s, 2]
         px, py, pz, _ = _middle(x, i, j, k)
-        d, nx, ny, nz, _, drift = distance_at(kind, data, grid, later, blend, px, py, pz)
+        d, nx, ny, nz, speed, drift = distance_at(kind, data, grid, later, blend, px, py, pz)
         if d < push.clearance:
             deepest = max(deepest, push.clearance - d)
-            _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz), push)
+            _push_middle(fields, inverse_mass, x, v, samples[s], (d, nx, ny, nz, speed), push)
+            stirred[i], stirred[j], stirred[k] = True, True, True
         fast = v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2
         fast = max(fast, v[j, 0] ** 2 + v[j, 1] ** 2 + v[j, 2] ** 2)
         fast = max(fast, v[k, 0] ** 2 + v[k, 1] ** 2 + v[k, 2] ** 2)

@@ -4,8 +4,9 @@ The six points of a triangle and its three neighbours, laid out flat, fix a quad
 ones over the triangle's plane are h = A kappa, so its curvature is kappa = A^-1 h and its energy
 area/2 kappa.D.kappa, D = diag(Bx, By, 2 sqrt(Bx By)) in (xx, yy, xy), x the weft's way and y the warp's: a plate
 without Poisson's effect. A triangle at a border, or one whose six points lie near a conic, takes the mean curvature
-of its neighbours, turned from their panels into its own. On equilateral rows this is
-what the hinges of Bergou et al. (2006) give at a third of their stiffness, but for nu = 0 instead of -1/3.
+of its neighbours, turned from their panels into its own. On equilateral rows this is what the hinges of Bergou et al.
+(2006) give at a third of their stiffness, but for nu = 0 instead of -1/3. That is half of convergence; the other half
+is `balance.py`.
 """
 
 from __future__ import annotations
@@ -13,24 +14,41 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
+from sim_core.cloth.sheet.balance import Patches, balance
+
 LEAST_RATIO = 0.12  # of the singular values of A; below, the six points say too little of the curvature
 TWIST = np.sqrt(np.array([1.0, 1.0, 2.0]))  # xy counts twice
 
 
 def bending_matrix(
-    corner: np.ndarray, faces: np.ndarray, face_edges: np.ndarray, edges: int, bend: np.ndarray, count: int
+    corner: np.ndarray,
+    faces: np.ndarray,
+    face_edges: np.ndarray,
+    edges: int,
+    bend: np.ndarray,
+    count: int,
+    *,
+    balanced: bool | None = False,
 ) -> sparse.csr_array:
     """Q (V, V) [N/m] from the corners of each face in its panel (F, 3, 2) [m]; edges: how many.
 
-    bend (F, 3) [N m]: against curvature xx, yy and (twice) xy.
+    bend (F, 3) [N m]: against curvature xx, yy and (twice) xy. balanced: so that constant curvatures push no vertex
+    (`balance.py`); None: unless the mesh is a lattice.
     """
     twin = _twins(face_edges, edges)
     curved, known = _curvatures(corner, faces, twin, count)
-    operator = _lent(curved, known, twin, _turns(corner, faces, twin))
+    turns = _turns(corner, faces, twin)
+    operator = _lent(curved, known, twin, turns)
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     weight = np.sqrt(area[:, None] * bend)
-    scaled = sparse.diags_array((weight * TWIST).ravel()) @ operator
+    scaled = sparse.csr_array(sparse.diags_array((weight * TWIST).ravel()) @ operator)
+    root = None
+    if balanced is not False:
+        root = balance(Patches(corner, faces, twin, turns, bend, scaled, count), lattices=balanced is True)
+    if root is not None:
+        found = len(faces)
+        scaled = sparse.bsr_array((root, np.arange(found), np.arange(found + 1))).tocsr() @ scaled
     matrix = sparse.csr_array(scaled.T @ scaled)
     # What rounding leaves of entries that cancel would cost the loops as much as any other.
     matrix.data[np.abs(matrix.data) < 1e-12 * np.abs(matrix.data).max(initial=0.0)] = 0.0

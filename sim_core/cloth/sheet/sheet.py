@@ -56,24 +56,31 @@ class Sheet:
     def of(rest: np.ndarray, faces: np.ndarray, material: Material) -> Sheet:
         """Assembles a sheet; rest: (V, 2) float [m], faces: (F, 3) int of either orientation.
 
+        Bending is balanced (`balance.py`) but on lattices, which would change a little at their sides alone.
         Raises SimCoreError on wrong shapes, non-finite coordinates, indices out of range, needles,
         unused vertices, faces that are there twice and edges with more than two faces.
         """
         rest, faces = _checked_indices(rest, faces)
         _check_twice(faces)
         corner = rest[faces]
-        return Sheet._assembled(rest, corner, faces, (material,), np.zeros(len(faces), np.int32))
+        return Sheet._assembled(rest, corner, faces, (material,), np.zeros(len(faces), np.int32), None)
 
     @staticmethod
     def of_corners(
-        corner: np.ndarray, faces: np.ndarray, materials: Sequence[Material], kind: np.ndarray
+        corner: np.ndarray,
+        faces: np.ndarray,
+        materials: Sequence[Material],
+        kind: np.ndarray,
+        *,
+        balanced: bool | None = False,
     ) -> Sheet:
         """Assembles panels that share vertices along welded seams.
 
         corner: (F, 3, 2) float [m], pattern coordinates of each face's corners; faces: (F, 3) int into the welded
         vertices; kind: (F,) which of `materials` each face is made of. Sides that two panels bring together should
         be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
-        coordinates of a welded vertex being those of the first face that names it. Raises SimCoreError as `of`.
+        coordinates of a welded vertex being those of the first face that names it. balanced: bending as `of` has it
+        (None: but on lattices); garments are as they were baked, without. Raises SimCoreError as `of`.
         """
         faces, kind = triangles("faces", faces), numeric_array("kind", kind, "expected whole numbers (F,)")
         corner = coordinates("corner", corner)
@@ -98,7 +105,7 @@ class Sheet:
         if not used.all():
             raise SimCoreError(f"faces: vertex {np.flatnonzero(~used)[0]} belongs to no face – remove it")
         rest, faces = _checked_indices(rest, faces)
-        return Sheet._assembled(rest, corner, faces, tuple(materials), np.asarray(kind, np.int32))
+        return Sheet._assembled(rest, corner, faces, tuple(materials), np.asarray(kind, np.int32), balanced)
 
     @staticmethod
     def _assembled(
@@ -107,6 +114,7 @@ class Sheet:
         faces: np.ndarray,
         materials: tuple[Material, ...],
         kind: np.ndarray,
+        balanced: bool | None,
     ) -> Sheet:
         for material in materials:
             instance_of("material", material, Material, "a Material is meant")
@@ -121,7 +129,7 @@ class Sheet:
             stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
         own, around, coupling = _membrane(stiffness, face_edges, len(edges))
         bend = np.array([material.bending() for material in materials])[kind]
-        bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest))
+        bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest), balanced=balanced)
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
         stencil = Stencil(
             inverse_mass=1 / mass,

@@ -98,11 +98,11 @@ class Engine:
         layered = len(s.faces) if self.shell.thickness else 0
         patches = patches_of(s.edges, s.faces[:layered], self.holds.same, s.corner[:layered])
         self.finder = finder_of(*layers)
-        vertices, middles = self._samples()
+        (vertices, middles), stirred = self._samples(), np.zeros(count, bool)
         self.touch = Touch(
             solid=self.packed,
-            vertices=Watch(vertices, np.zeros(len(vertices), np.int32)),
-            middles=Watch(middles, np.zeros(len(middles), np.int32)),
+            vertices=Watch(vertices, np.zeros(len(vertices), np.int32), stirred),
+            middles=Watch(middles, np.zeros(len(middles), np.int32), stirred),
             shell=self.shell,
             patches=patches,
             shapes=shapes_of(patches),

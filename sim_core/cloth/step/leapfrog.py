@@ -24,7 +24,7 @@ from sim_core.cloth.step.haste import LATE, passing_step
 from sim_core.cloth.step.kernels.banded import axes, band_limit
 from sim_core.cloth.step.kernels.leaps import arrive, leap, look_back
 
-SAMPLES_EVERY = 2  # substeps between two looks at midpoints and centroids (and always the last of a frame)
+SHARED = 0.5  # of the largest push of a vertex, that a sample is pushed by: a dozen of them move one vertex
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
@@ -97,22 +97,25 @@ def room_of(edges: int, vertices: int, longest: int, lanes: type | None = None) 
 
 @njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
 def _against_solids(touch, inverse, frame, steps, x, v, k):
-    """Vertices whenever they may touch, midpoints and centroids every few substeps and at the frame's end; returns how
-    far vertices may have been pushed [m].
+    """Vertices whenever they may touch, then midpoints and centroids; returns how far vertices may have been pushed
+    [m].
+
+    Vertices come first, and once more at a frame's end those whom samples have pushed: what bears on samples alone
+    slides without friction. Samples met in every second substep only shake the cloth at the highest frequency it has.
     """
     solid, shell, last, cap, dt = touch.solid, touch.shell, k == steps.count - 1, touch.shell.cap, steps.dt
-    pushed = 0.0
     if solid.kind[0] == MOVING:
         early, late = frame.body
         solid.blend[0] = early + (late - early) * (k + 1) / steps.count
         solid.blend[1] = (late - early) / (steps.count * dt)
-    if k % SAMPLES_EVERY == 0 or last:
-        middles, r = touch.middles, shell.sample_clearance
-        pushed = collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, cap, 0.0, dt))
-        if last:
-            settle_samples(solid, inverse, x, v, middles, k, Push(SETTLED * r, cap, 0.0, dt))
     push = Push(shell.clearance, cap, frame.friction, dt)
-    return pushed + collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
+    pushed = collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
+    middles, r, most = touch.middles, shell.sample_clearance, SHARED * cap
+    pushed += collide_due_samples(solid, inverse, x, v, middles, k, last, Push(r, most, 0.0, dt))
+    if last:
+        settle_samples(solid, inverse, x, v, middles, k, Push(SETTLED * r, cap, 0.0, dt))
+        collide_due_vertices(solid, inverse, x, v, touch.vertices, k, push)
+    return pushed
 
 
 @njit(error_model="numpy", inline="always")

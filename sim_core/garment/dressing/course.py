@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from sim_core.body.motion import eased
 from sim_core.body.pose import Pose
@@ -12,8 +12,10 @@ from sim_core.cloth.step import FRAME
 from sim_core.garment.outfit import Belt, Layer, Step
 from sim_core.garment.pattern import Spot, Tie
 
-__all__ = ["Course", "Moves", "Timed", "courses", "frames"]
+__all__ = ["Course", "Moves", "Timed", "brought_to_rest", "courses", "frames"]
 
+ROUGHLY = 8.0  # times what cloth may move at rest: about what is stirred up when its halves are let go
+SWAY = 0.8  # of the damping: critical for a metre of cloth, whose sway is what is left in the end
 Pinned = Spot | str
 
 
@@ -133,6 +135,23 @@ def courses(layer: Layer, pose: Pose) -> tuple[tuple[Course, ...], Moves]:
             timed.append(_timed(step, state, pose))
     cut()
     return tuple(runs), Moves(tuple(state.poses), _shares(state.poses))
+
+
+def brought_to_rest(runs: Sequence[Course], *, roughly: bool) -> tuple[Course, ...]:
+    """The step in which a layer comes to rest, for cloth that did so on a coarser mesh; roughly: until it moves ROUGHLY
+    times as much as it may in the end.
+
+    Its folds fall a little further, which sets all of it swaying: SWAY of the damping is about critical for that. Ties
+    and belts of the finer mesh lie between other vertices and are drawn to their length once more.
+    """
+    last = runs[-1]
+    end = last.steps[-1]
+    step, sewing = end.step, (1.0, 0.0) if last.ties or last.belts else end.sewing
+    if step.damping is not None:
+        step = replace(step, damping=SWAY * step.damping)
+    if roughly and step.still:
+        step = replace(step, still=ROUGHLY * step.still)
+    return (replace(last, steps=(replace(end, step=step, sewing=sewing),)),)
 
 
 def _joining(ties: Sequence[Tie], step: Step) -> tuple[Tie, ...]:

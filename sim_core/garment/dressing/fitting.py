@@ -12,9 +12,9 @@ from sim_core.body import Figure, Pose
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Moves, courses
 from sim_core.garment.dressing.places import nearest
-from sim_core.garment.dressing.sections import hull_girth, sections
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.pattern import Cloth
+from sim_core.garment.pattern.sections import hull_girth, sections
 from sim_core.garment.placement import Flat, Ground, Wrapped
 
 __all__ = ["check_fits", "first_positions"]

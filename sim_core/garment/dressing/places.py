@@ -9,10 +9,10 @@ import numpy as np
 
 from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
-from sim_core.garment.dressing.sections import hull_girth
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
 from sim_core.garment.pattern import SIDES, Cloth, Spot
+from sim_core.garment.pattern.sections import hull_girth
 from sim_core.metrics import components
 
 __all__ = ["Places", "belt_pairs", "nearest"]

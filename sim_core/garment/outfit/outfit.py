@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +23,8 @@ from sim_core.weave import Loom, Weave
 __all__ = ["Layer", "Outfit", "Program"]
 
 FILE_NAME = re.compile(r"\w([\w -]{0,78}\w)?")
+FINE = 0.009  # [m] mesh steps below which cloth is sewn and posed on a coarser mesh of the step
+COARSE = 0.015  # [m]; at twice that, folds are so coarse that finer ones pass through each other in them
 UNTANGLE = 40  # steps after each frame in which cloth that passed through itself is taken apart again
 
 
@@ -47,7 +49,9 @@ class Program:
 @dataclass(frozen=True)
 class Layer:
     """One garment of an outfit. weaves: the cloth's first, then those of panels by name; edge [m]: its mesh step;
-    seed: of the folds' irregularity; loom: remembers what its weaves are like, one for all layers of an outfit."""
+    seed: of the folds' irregularity; loom: remembers what its weaves are like, one for all layers of an outfit;
+    coarse [m]: the mesh step it is sewn and posed at (None: COARSE for cloth finer than FINE that is not tied, else its
+    own)."""
 
     name: str
     pattern: Pattern
@@ -58,6 +62,7 @@ class Layer:
     weaves: Mapping[str, Weave] = field(default_factory=dict)
     seed: int = 0
     loom: Loom = field(default_factory=Loom, repr=False, compare=False)
+    coarse: float | None = None
 
     def __post_init__(self) -> None:
         if not FILE_NAME.fullmatch(self.name):
@@ -68,6 +73,16 @@ class Layer:
     def weave_of(self, panel: str) -> Weave:
         """What a panel is cut from."""
         return self.weaves.get(panel, self.weave)
+
+    @cached_property
+    def first(self) -> Layer:
+        """What is sewn and posed: the same on a coarser mesh, or itself where that is not finer than it need be.
+
+        Nor where it is tied, unless `coarse` says so: a knot between other vertices pulls folds through each other.
+        """
+        tied = len(self.pattern.ties) > 0 or any(step.belt is not None for step in self.program.steps)
+        coarse = self.coarse or (COARSE if self.edge < FINE and not tied else self.edge)
+        return replace(self, edge=coarse) if coarse > self.edge else self
 
     @cached_property
     def cut(self) -> Cloth:
@@ -110,8 +125,6 @@ class Outfit:
 
     def coarser(self, edge: float) -> Outfit:
         """The same with every layer meshed at `edge` [m]."""
-        from dataclasses import replace
-
         return replace(self, layers=tuple(replace(layer, edge=edge) for layer in self.layers))
 
     def to_dict(self) -> dict[str, Any]:
@@ -128,6 +141,7 @@ class Outfit:
                     "weave": layer.weave.to_dict(),
                     "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},
                     "edge": layer.edge,
+                    **({} if layer.coarse is None else {"coarse": layer.coarse}),
                     "seed": layer.seed,
                     "place": repr(layer.place),
                     "program": repr(layer.program),

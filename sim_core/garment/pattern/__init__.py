@@ -4,6 +4,7 @@ from sim_core.garment.pattern.cloth import SIDES, Cloth, cut_cloth, unsided
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie
 from sim_core.garment.pattern.pattern import Pattern
+from sim_core.garment.pattern.transfer import Transfer
 
 __all__ = [
     "SIDES",
@@ -14,6 +15,7 @@ __all__ = [
     "Seam",
     "Spot",
     "Tie",
+    "Transfer",
     "cut_cloth",
     "measured",
     "unsided",

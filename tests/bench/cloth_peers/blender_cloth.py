@@ -12,10 +12,41 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mapping import blender_numbers
+from mapping import FRAME, blender_numbers
 
 VERSION = f"bpy {bpy.app.version_string}"
+MASS = 0.25  # of a vertex where the air brakes: its number ends at 10
+OUTER, ROUND = 0.001, 64  # [m] least that a collider keeps; corners of the bar
 DAMPINGS = ("tension_damping", "compression_damping", "shear_damping", "bending_damping", "air_damping")
+
+
+def meet(run, modifier, given, setting: dict) -> None:
+    """What the cloth meets: nothing, or itself and the bar, a mesh of a cylinder; its shape without strain is flat."""
+    touch = modifier.collision_settings
+    layered = "thickness" in given
+    touch.use_collision = touch.use_self_collision = layered
+    if not layered:
+        return
+    touch.collision_quality = setting["passes"]
+    touch.self_distance_min, touch.distance_min = float(given["thickness"]), float(given["clearance"]) - OUTER
+    touch.friction = touch.self_friction = touch.damping = 0.0
+    run.object.shape_key_add(name="begin")
+    flat = run.object.shape_key_add(name="flat")
+    rest = np.column_stack([given["rest"], 0 * given["rest"][:, 0]])
+    flat.data.foreach_set("co", rest.astype(np.float32).ravel())
+    flat.value = 0.0
+    modifier.settings.rest_shape_key = flat
+    ends, radius = given["bar"], float(given["bar_radius"])
+    bpy.ops.mesh.primitive_cylinder_add(
+        vertices=ROUND,
+        radius=radius,
+        depth=float(np.linalg.norm(ends[1] - ends[0])),
+        location=ends.mean(0).tolist(),
+        rotation=(0.0, float(np.pi / 2), 0.0),
+    )
+    bar = bpy.context.object
+    bar.modifiers.new("bar", "COLLISION")
+    bar.collision.thickness_outer, bar.collision.cloth_friction, bar.collision.damping = OUTER, 0.0, 0.0
 
 
 class BlenderCloth:
@@ -29,6 +60,7 @@ class BlenderCloth:
             float(given["stretch"]),
             float(given["bend"]),
             float(given["gravity"]),
+            MASS if "damping" in given else 1.0,
         )
         bpy.ops.wm.read_factory_settings(use_empty=True)
         self.scene, self.now = bpy.context.scene, 1
@@ -49,8 +81,11 @@ class BlenderCloth:
         for name in DAMPINGS:
             setattr(cloth, name, 0.0)
         cloth.vertex_group_mass, cloth.pin_stiffness = "pins", 1.0
-        modifier.collision_settings.use_collision = False
-        modifier.collision_settings.use_self_collision = False
+        meet(self, modifier, given, setting)
+        if "damping" in given:
+            cloth.air_damping = (
+                100 * MASS * float(given["damping"]) * FRAME
+            )  # 0.01 of it brakes a vertex, per frame
         if (
             abs(cloth.tension_stiffness / numbers["tension"] - 1) > 1e-5
             or cloth.quality != setting["substeps"]

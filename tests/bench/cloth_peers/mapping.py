@@ -43,7 +43,13 @@ def hinges(rest: np.ndarray, opposite: np.ndarray, edge: np.ndarray) -> tuple[np
 
 
 def blender_numbers(
-    rest: np.ndarray, faces: np.ndarray, mass: float, stretch: float, bend: float, gravity: float
+    rest: np.ndarray,
+    faces: np.ndarray,
+    mass: float,
+    stretch: float,
+    bend: float,
+    gravity: float,
+    vertex: float = 1.0,
 ) -> dict[str, float]:
     """Stiffnesses of Blender's springs. Its unit of time is the frame, of gravity 1000 m/frame^2, of mass the vertex.
 
@@ -56,9 +62,9 @@ def blender_numbers(
     edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
     length = float(np.linalg.norm(rest[edges[:, 0]] - rest[edges[:, 1]], axis=1).mean())
     height = length * SPRING_SHARE
-    to_frames = FRAME**2 * len(rest) / mass  # N/m to kg/frame^2 of vertices that weigh 1
+    to_frames = FRAME**2 * vertex * len(rest) / mass  # N/m to kg/frame^2 of vertices that weigh `vertex`
     return {
-        "mass": 1.0,
+        "mass": vertex,
         "tension": float(SPRING_SHARE * stretch * to_frames * length),
         "bending": float(30 * bend / height**2 * to_frames),
         "gravity": gravity * FRAME**2 / 1e-3,

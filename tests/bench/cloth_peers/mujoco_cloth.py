@@ -18,8 +18,24 @@ VERSION = f"mujoco {mujoco.__version__}"
 UNUSED = "contact constraint limit sensor actuation equality frictionloss eulerdamp midphase refsafe".split()
 
 
+ALONE = '<contact selfcollide="none" contype="0" conaffinity="0"/>'
+CONTACT = 0.004  # [s] time constant of a contact, critically damped
+
+
 def words(values: np.ndarray, form: str = "%.17g") -> str:
     return " ".join(form % v for v in np.ravel(values))
+
+
+def touching(given, setting: dict) -> tuple[float, str, str]:
+    """The radius [m] of the cloth, which is its clearance and half of what layers keep, its contacts, and the bar."""
+    radius = float(given["thickness"]) / 2
+    passive = str(setting.get("passive", False)).lower()
+    meets = f'<contact selfcollide="auto" condim="1" solref="{CONTACT!r} 1" passive="{passive}"/>'
+    bar = (
+        f'<geom type="capsule" fromto="{words(given["bar"])}" size="{float(given["bar_radius"])!r}" condim="1" '
+        f'solref="{CONTACT!r} 1"/>'
+    )
+    return radius, meets, bar
 
 
 class MujocoCloth:
@@ -28,19 +44,22 @@ class MujocoCloth:
     def __init__(self, given, setting: dict) -> None:
         self.count = setting["substeps"]
         x, pins = given["positions"], given["pins"]
+        layered = "thickness" in given
+        flat = np.column_stack([given["rest"], 0 * x[:, 0]]) if layered else x
         young, thickness = shell(float(given["stretch"]), float(given["poisson"]), float(given["bend"]))
-        flags = " ".join(f'{name}="disable"' for name in UNUSED)
+        unused = [name for name in UNUSED if not (layered and name in ("contact", "constraint", "refsafe"))]
+        flags = " ".join(f'{name}="disable"' for name in unused)
+        radius, meets, bar = touching(given, setting) if layered else (0.001, ALONE, "")
         option = (
             f'timestep="{FRAME / self.count!r}" gravity="0 {-float(given["gravity"])!r} 0" jacobian="sparse" '
             f'integrator="{setting["integrator"]}" solver="{setting.get("solver", "Newton")}" '
             f'iterations="1000" tolerance="{setting.get("tolerance", 1e-8)!r}"'
         )
-        text = f"""<mujoco><option {option}><flag {flags}/></option><size memory="4G"/><worldbody>
-        <flexcomp name="cloth" type="direct" dim="2" radius="0.001" mass="1" dof="full"
-         point="{words(x)}" element="{words(given["faces"], "%d")}">
-        <contact selfcollide="none" contype="0" conaffinity="0"/>
+        text = f"""<mujoco><option {option}><flag {flags}/></option><size memory="4G"/><worldbody>{bar}
+        <flexcomp name="cloth" type="direct" dim="2" radius="{radius!r}" mass="1" dof="full"
+         point="{words(flat)}" element="{words(given["faces"], "%d")}">{meets}
         <elasticity young="{young!r}" poisson="{float(given["poisson"])!r}" thickness="{thickness!r}"
-         elastic2d="both" damping="0"/>
+         elastic2d="both" damping="{float(given.get("stiffness_damping", 0.0))!r}"/>
         <pin id="{words(pins, "%d")}"/></flexcomp></worldbody></mujoco>"""
         self.model = mujoco.MjModel.from_xml_string(text)
         free = np.setdiff1d(np.arange(len(x)), pins)
@@ -48,10 +67,18 @@ class MujocoCloth:
         self.data = mujoco.MjData(self.model)
         self.faces, self.wind, self.air = given["faces"], given.get("wind"), float(given.get("air", 0.0))
         self.free = free
-        self.dofs = self.model.body_dofadr[self.model.flex_vertbodyid[free]][:, None] + np.arange(3)
+        self.bodies = self.model.flex_vertbodyid[free]
+        self.dofs = self.model.body_dofadr[self.bodies][:, None] + np.arange(3)
         self.speeds = np.zeros((len(x), 3))
+        self.model.dof_damping[self.dofs] = float(given.get("damping", 0.0)) * given["mass"][free][:, None]
         mujoco.mj_setConst(self.model, self.data)
         mujoco.mj_resetData(self.model, self.data)
+        self.model.flex_vert[pins] = x[
+            pins
+        ]  # the flat sheet is its shape without strain, this where it begins
+        self.data.qpos[
+            self.model.jnt_qposadr[self.model.body_jntadr[self.bodies]][:, None] + np.arange(3)
+        ] = (x - flat)[free]
 
     def warm(self) -> None:
         """Nothing is compiled at run time."""

@@ -22,6 +22,7 @@ wp.config.quiet = True
 wp.set_device("cpu")
 VERSION = f"newton {newton.__version__}, warp {wp.__version__}"
 KEPT = 0.998  # of the velocity, by Style3D in every step
+CONTACT = 50.0  # [N/m] of a contact, as stiff as the cloth
 
 
 @wp.kernel
@@ -60,6 +61,42 @@ def turned(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.where(area[:, None] > 0, faces, faces[:, [0, 2, 1]])
 
 
+def shells(given) -> dict:
+    """What VBD is told of layers: the distance they keep, and a half of it more that it looks."""
+    if "thickness" not in given:
+        return {"particle_enable_self_contact": False}
+    thickness = float(given["thickness"])
+    return {
+        "particle_enable_self_contact": True,
+        "particle_self_contact_margin": thickness,
+        "particle_self_contact_gap": thickness / 2,
+    }
+
+
+def add_bar(builder, ends: np.ndarray, radius: float) -> None:
+    """A still capsule along x between ends (2, 3) [m]."""
+    middle, half = ends.mean(0), float(np.linalg.norm(ends[1] - ends[0])) / 2
+    along_x = wp.quat_from_axis_angle(wp.vec3(0.0, 1.0, 0.0), float(np.pi / 2))  # a capsule lies along its z
+    place = wp.transform(wp.vec3(*map(float, middle)), along_x)
+    builder.add_shape_capsule(body=-1, xform=place, radius=radius, half_height=half)
+
+
+class Touch:
+    """What the cloth meets: the bar, found anew in every step, and how stiffly (no friction)."""
+
+    def __init__(self, model) -> None:
+        mass = float(model.particle_mass.numpy().max())
+        model.soft_contact_ke, model.soft_contact_mu = CONTACT, 0.0
+        model.soft_contact_kd = float(2 * np.sqrt(CONTACT * mass))  # [N s/m] critical: layers do not bounce
+        self.pipeline = newton.CollisionPipeline(model)
+        self.contacts = self.pipeline.contacts()
+
+    def met(self, state):
+        """The contacts of the particles with the bar."""
+        self.pipeline.collide(state, self.contacts)
+        return self.contacts
+
+
 class NewtonCloth:
     """One run; setting: substeps, iterations, and for Style3D linear (iterations of its conjugate gradients)."""
 
@@ -73,36 +110,41 @@ class NewtonCloth:
                 iterations=setting["iterations"], linear_iterations=setting["linear"]
             )
             self.solver = newton.solvers.SolverStyle3D(self.model, config=config)
-            self.solver.collision = None
+            if "thickness" in given:
+                self.solver.collision.radius = float(given["thickness"]) / 2  # of each of two layers
+            else:
+                self.solver.collision = None
         else:
+            layers = shells(given)
             self.solver = newton.solvers.SolverVBD(
-                self.model,
-                iterations=setting["iterations"],
-                particle_enable_self_contact=False,
-                particle_enable_tile_solve=False,
+                self.model, iterations=setting["iterations"], particle_enable_tile_solve=False, **layers
             )
+        self.touch = Touch(self.model) if "thickness" in given else None
         self.states = [self.model.state(), self.model.state()]
         self.control = self.model.control()
         self.wind = wp.vec3(*map(float, given["wind"])) if "wind" in given else None
         self.half = float(given.get("air", 0.0)) / 2
+        left = np.exp(-float(given.get("damping", 0.0)) * FRAME / self.count)
+        self.kept = float(left / (KEPT if style3d else 1.0))
         self.graph = None
 
     def _model(self, given):
         k, nu = float(given["stretch"]), float(given["poisson"])
         mu, lam = lame(k, nu)
         rest, faces, x = given["rest"], given["faces"], given["positions"]
+        flat = np.column_stack([rest, 0 * rest[:, 0]])  # VBD's shape without strain is the one it is told
         builder = newton.ModelBuilder(up_axis=newton.Axis.Y, gravity=(0.0, -float(given["gravity"]), 0.0))
         common = {
             "pos": wp.vec3(0.0, 0.0, 0.0),
             "rot": wp.quat_identity(),
             "vel": wp.vec3(0.0, 0.0, 0.0),
-            "vertices": x.tolist(),
+            "vertices": (x if self.style3d else flat).tolist(),
             "density": float(given["density"]),
             "tri_kd": 0.0,
             "tri_drag": 0.0,
             "tri_lift": 0.0,
             "edge_kd": 0.0,
-            "particle_radius": 1e-3,
+            "particle_radius": float(given.get("clearance", 1e-3)),
         }
         if self.style3d:
             newton.solvers.SolverStyle3D.register_custom_attributes(builder)
@@ -118,12 +160,16 @@ class NewtonCloth:
         else:
             indices = faces.ravel().tolist()
             builder.add_cloth_mesh(indices=indices, scale=1.0, tri_ke=mu, tri_ka=lam, edge_ke=1.0, **common)
+        if "bar" in given:
+            add_bar(builder, given["bar"], float(given["bar_radius"]))
         for pin in given["pins"]:
             builder.particle_mass[pin] = 0.0
             builder.particle_flags[pin] &= ~int(newton.ParticleFlags.ACTIVE)
         if not self.style3d:
             builder.color(include_bending=True)
-        return builder.finalize()
+        model = builder.finalize()
+        model.particle_q.assign(self.positions0)
+        return model
 
     def _bending(self, given) -> None:
         """Every hinge's own stiffness, by its edge and triangles."""
@@ -140,9 +186,10 @@ class NewtonCloth:
             now.clear_forces()
             args = [now.particle_q, now.particle_qd, self.model.tri_indices, self.wind, self.half]
             wp.launch(press, dim=len(self.model.tri_indices), inputs=[*args, now.particle_f])
-        self.solver.step(now, then, self.control, None, FRAME / self.count)
-        if self.style3d:
-            wp.launch(scale, dim=len(self.positions0), inputs=[then.particle_qd, 1.0 / KEPT])
+        contacts = None if self.touch is None else self.touch.met(now)
+        self.solver.step(now, then, self.control, contacts, FRAME / self.count)
+        if self.kept != 1.0:
+            wp.launch(scale, dim=len(self.positions0), inputs=[then.particle_qd, self.kept])
         self.states.reverse()
 
     def warm(self) -> None:

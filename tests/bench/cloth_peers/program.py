@@ -30,18 +30,26 @@ def opened(engine: str, given, setting: dict):
 
 
 def measured(engine: str, given, setting: dict) -> tuple[dict, np.ndarray]:
-    """Figures of a run, and its end (V, 3) [m]."""
+    """Figures of a run, and its end (V, 3) or, where `film` is asked for, all frames (T, V, 3) [m].
+
+    Raises TimeoutError for a run that takes more than `longest` seconds of the processor.
+    """
     begin = perf_counter()
     run, version = opened(engine, given, setting)
     built = perf_counter()
     run.warm()
     compiled = perf_counter()
-    wall, processor = [], []
+    wall, processor, film = [], [], []
+    longest, filmed = float(given.get("longest", np.inf)), bool(given.get("film", 0))
     for _ in range(int(given["frames"])):
         w, p = perf_counter(), process_time()
         run.frame()
         wall.append(1e3 * (perf_counter() - w))
         processor.append(1e3 * (process_time() - p))
+        if filmed:
+            film.append(run.positions())
+        if sum(processor) > 1e3 * longest:
+            raise TimeoutError(f"not reached in {longest:g} s of processor time")
     figures = {
         "ms": wall,
         "cpu_ms": processor,
@@ -49,7 +57,7 @@ def measured(engine: str, given, setting: dict) -> tuple[dict, np.ndarray]:
         "compile_seconds": compiled - built,
         "version": version,
     }
-    return figures, run.positions()
+    return figures, np.array(film) if filmed else run.positions()
 
 
 def main() -> int:

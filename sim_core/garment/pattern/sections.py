@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from sim_core.garment.pattern import Cloth
+from sim_core.garment.pattern.cloth import Cloth
 from sim_core.metrics import components
 
 __all__ = ["Section", "hull_girth", "sections"]
