@@ -1,0 +1,16 @@
+"""One frame of tracking in arrays, as numpy and as compiled loops."""
+
+from sim_core.track.engine.frames import FASTEST, KALMAN, NONE, ONE_EURO, Body, Frame, Rules, State, frame_step, kabsch
+
+__all__ = ["FASTEST", "KALMAN", "NONE", "ONE_EURO", "Body", "Frame", "Rules", "State", "compiled_step", "frame_step", "kabsch"]
+
+
+def compiled_step():
+    """`frame_step` as machine code; the numpy text itself where numba is not there."""
+    try:
+        from sim_core.track.engine.kernels import frame_kernel
+    except ModuleNotFoundError as error:
+        if error.name != "numba":
+            raise
+        return frame_step
+    return frame_kernel

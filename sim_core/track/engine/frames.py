@@ -1,0 +1,341 @@
+"""One frame of tracking, in arrays: filter, global alignment of the trunk, limbs under their bones' lengths, rotations.
+
+This is the numpy text of it; `kernels.py` holds the same steps as compiled loops, which give the same numbers to rounding
+five times as fast.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+__all__ = ["KALMAN", "NONE", "ONE_EURO", "Body", "Rules", "State", "FASTEST", "FAR", "Frame", "HALF", "TINY", "frame_step", "kabsch"]
+
+NONE, KALMAN, ONE_EURO = 0, 1, 2
+FAR = 0.05  # [m] of the trust in a place that nothing was seen of, for filters that keep none themselves
+TINY = 1e-12
+
+
+class Body(NamedTuple):
+    """Who is followed, as calibrated. bones (B, 2) parent and child, outwards; lengths (B,) [m]; directions (B, 3) of
+    the bones at rest, in the trunk's frame; torso (K,) joints; template (K, 3) [m] their places at rest about their
+    mean; looseness (K,) [m2]: how much each moves within the trunk, a variance an axis; incidence (J, B): -1 at a
+    bone's parent, +1 at its child; paths (J, B): 1 for the bones that lead from the root to a joint."""
+
+    bones: np.ndarray
+    lengths: np.ndarray
+    directions: np.ndarray
+    torso: np.ndarray
+    template: np.ndarray
+    looseness: np.ndarray
+    incidence: np.ndarray
+    paths: np.ndarray
+
+
+class State(NamedTuple):
+    """What goes on from frame to frame, changed in place. place, speed (J, 3) [m], [m/s] of the filter; spread (J, 3):
+    its variances of place, both and speed; misses (J,): rejected in a row; bound (J,) [m2]: the variance that the gate
+    went by before; tracked (J, 3) [m] after the last frame;
+    turns (B, 4): rotations of the bones from rest, quaternions with the real part first; trunk (3, 3) the trunk's."""
+
+    place: np.ndarray
+    speed: np.ndarray
+    spread: np.ndarray
+    misses: np.ndarray
+    bound: np.ndarray
+    tracked: np.ndarray
+    turns: np.ndarray
+    trunk: np.ndarray
+
+
+class Rules(NamedTuple):
+    """What a filter and the local step go by; see `TrackSettings`, where each is told with its unit."""
+
+    kind: int
+    noise: float
+    agility: float
+    gate: float
+    patience: int
+    fading: float
+    cutoff: float
+    cutoff_slope: float
+    m0: float
+    floor: float
+    iterations: int
+    prior: float
+    untwist: float
+
+
+class Frame(NamedTuple):
+    """What a frame gave. joints (J, 3) [m]; seen (J,) bool: measured and accepted; again (J,) bool: taken up anew;
+    turns (B, 4); trunk (3, 3); shift (3,) [m]: A = R B + T with B about its mean; m, delta (B,) [1], [m];
+    residual (J,) [m] between tracked and filtered joints; iterations; flips."""
+
+    joints: np.ndarray
+    seen: np.ndarray
+    again: np.ndarray
+    turns: np.ndarray
+    trunk: np.ndarray
+    shift: np.ndarray
+    m: np.ndarray
+    delta: np.ndarray
+    residual: np.ndarray
+    iterations: int
+    flips: int
+
+
+def square(vectors):
+    """Squared lengths (N,) of vectors (N, 3)."""
+    return vectors[:, 0] ** 2 + vectors[:, 1] ** 2 + vectors[:, 2] ** 2
+
+
+def column(values):
+    """Values (N,) as a column (N, 1) that goes beside vectors."""
+    return values.reshape(values.size, 1)
+
+
+def kabsch(covariance):
+    """The rotation (3, 3) that a covariance H (3, 3) = sum w b a' asks for, never a mirror image (Eq. 13-14)."""
+    u, _, vh = np.linalg.svd(covariance)
+    turn = np.dot(vh.T, u.T)
+    if np.linalg.det(turn) < 0.0:
+        vh[2] = -vh[2]
+        turn = np.dot(vh.T, u.T)
+    return turn
+
+
+def kalman(state, rules, joints, measured, step, drift):
+    """Gated constant-velocity Kalman filter, one a joint, its axes alike. Accepted, taken up anew, variance (J,)."""
+    noise, q = rules.noise**2, rules.agility
+    spread = state.spread
+    both = spread[:, 1] + step * spread[:, 2]
+    place = spread[:, 0] + step * (spread[:, 1] + both) + q * step**3 / 3.0
+    speed = spread[:, 2] + q * step
+    both = both + q * step**2 / 2.0
+    ahead = state.place + step * state.speed
+    reach = joints - ahead
+    need = place + noise
+    state.bound[:] = np.where(state.misses > 0, state.bound, need)  # doubt does not open the gate to the next outlier
+    inside = measured & (square(reach) <= rules.gate**2 * state.bound)
+    misses = np.where(inside, 0, state.misses + measured)
+    again = misses >= rules.patience
+    gain, lift = place / need * inside, both / need * inside
+    fade = math.exp(-step / rules.fading)
+    kept = drift + (state.speed - drift) * fade
+    state.place[:] = ahead + column(gain) * reach
+    state.speed[:] = np.where(column(inside), state.speed, kept) + column(lift) * reach
+    spread[:, 0] = place * (1.0 - gain)
+    spread[:, 1] = both * (1.0 - gain)
+    spread[:, 2] = speed - lift * both
+    if again.any():
+        for joint in np.flatnonzero(again):
+            state.place[joint] = joints[joint]
+            state.speed[joint] = drift
+            spread[joint, 0], spread[joint, 1], spread[joint, 2] = noise, 0.0, FASTEST**2
+            misses[joint] = 0
+    state.misses[:] = misses
+    return inside | again, again, spread[:, 0].copy()
+
+
+FASTEST = 3.0  # [m/s] a joint that was just taken up may be moving at
+
+
+def one_euro(state, rules, joints, measured, step, drift):
+    """One-Euro filter (Casiez, Roussel and Vogel 2012): the faster a joint, the less it is smoothed; no gate."""
+    turn = 2.0 * math.pi * step
+    rate = (joints - state.place) / step
+    slow = turn / (turn + 1.0)  # the speed's own cutoff is 1 Hz
+    speed = state.speed + slow * (rate - state.speed)
+    cutoff = rules.cutoff + rules.cutoff_slope * np.sqrt(square(speed))
+    share = turn * cutoff / (turn * cutoff + 1.0) * measured
+    state.speed[:] = np.where(column(measured), speed, drift)
+    state.place[:] = np.where(
+        column(measured), state.place + column(share) * (joints - state.place), state.place + step * drift
+    )
+    return measured.copy(), np.zeros(len(measured), np.bool_), np.where(measured, rules.noise**2 * share, FAR**2)
+
+
+def unfiltered(state, rules, joints, measured, step, drift):
+    """No filter: what is measured is taken, what is not goes along with the trunk."""
+    ahead = state.place + step * drift
+    place = np.where(column(measured), joints, ahead)
+    state.speed[:] = (place - state.place) / step
+    state.place[:] = place
+    return measured.copy(), np.zeros(len(measured), np.bool_), np.where(measured, rules.noise**2, FAR**2)
+
+
+def trunk_step(body, state, rules, seen, variance):
+    """Global alignment of the torso's points (Eq. 13-14) and the trunk's own bend. Joints (J, 3), variance (J,), R, T.
+
+    A point of the trunk is taken as far from its rigid place as it is loose, against how well it was seen.
+    """
+    there = state.place[body.torso]
+    spread = variance[body.torso]
+    trust = np.where(seen[body.torso], 1.0, 1e-9)
+    trust = trust / trust.sum()
+    middle, centre = trust @ there, trust @ body.template
+    shape = body.template - centre
+    weighted = shape * column(trust)
+    covariance = np.dot(weighted.T, there - middle)
+    size = (weighted * shape).sum()
+    turn = kabsch(covariance + rules.prior * size * state.trunk.T)
+    shift = middle - turn @ centre
+    rigid = np.dot(body.template, turn.T) + shift
+    share = (body.looseness + TINY) / (body.looseness + TINY + spread)
+    if not seen.all():  # what is not seen turns with the trunk
+        moved = np.dot(turn, state.trunk.T)
+        state.place[~seen] = middle + np.dot(state.place[~seen] - middle, moved.T)
+    joints = state.place.copy()
+    joints[body.torso] = rigid + column(share) * (there - rigid)
+    surer = variance.copy()
+    surer[body.torso] = spread * np.maximum(share, 1.0 / len(body.torso))
+    return joints, surer, turn, shift
+
+
+def limb_step(body, state, rules, joints, variance):
+    """Joints (J, 3) whose bones have their lengths, nearest to the given ones by their variances; iterations.
+
+    While M (Eq. 17) of any bone exceeds M0: one step of Newton's method on d_pro = d_true (Eq. 15-16) of all bones
+    together. Then every bone is laid on from the trunk outwards at its exact length.
+    """
+    child = body.bones[:, 1]
+    weight = variance / variance.max() + 1e-6 if variance.max() > 0.0 else np.ones(len(variance))
+    coupling = np.dot(body.incidence.T * weight, body.incidence)
+    way = np.maximum(np.sqrt(square(joints - state.tracked))[child], rules.floor)
+    rounds = 0
+    while True:
+        bone = np.dot(body.incidence.T, joints)
+        spacing = np.sqrt(square(bone))
+        along = bone / column(np.maximum(spacing, TINY))
+        excess = spacing - body.lengths
+        if rounds >= rules.iterations or (np.abs(excess) / way).max() <= rules.m0:
+            break
+        system = coupling * np.dot(along, along.T)
+        for k in range(len(excess)):
+            system[k, k] += 1e-6 * (1.0 + coupling[k, k])
+        push = np.linalg.solve(system, excess)
+        joints = joints - column(weight) * np.dot(body.incidence, column(push) * along)
+        rounds += 1
+    return joints, along, spacing, rounds
+
+
+def product(a, b):
+    """Products (N, 4) of quaternions (N, 4): the rotations b, then a."""
+    aw, ax, ay, az = a[:, 0], a[:, 1], a[:, 2], a[:, 3]
+    bw, bx, by, bz = b[:, 0], b[:, 1], b[:, 2], b[:, 3]
+    out = np.zeros((len(b), 4))
+    out[:, 0] = aw * bw - ax * bx - ay * by - az * bz
+    out[:, 1] = aw * bx + ax * bw + ay * bz - az * by
+    out[:, 2] = aw * by - ax * bz + ay * bw + az * bx
+    out[:, 3] = aw * bz + ax * by - ay * bx + az * bw
+    return out
+
+
+def turned(q, v):
+    """Vectors (N, 3) turned by unit quaternions (N, 4)."""
+    w, x, y, z = q[:, 0], q[:, 1], q[:, 2], q[:, 3]
+    a, b, c = v[:, 0], v[:, 1], v[:, 2]
+    p = 2.0 * (y * c - z * b)
+    r = 2.0 * (z * a - x * c)
+    s = 2.0 * (x * b - y * a)
+    out = np.zeros((len(v), 3))
+    out[:, 0] = a + w * p + y * s - z * r
+    out[:, 1] = b + w * r + z * p - x * s
+    out[:, 2] = c + w * s + x * r - y * p
+    return out
+
+
+def arcs(a, b):
+    """The shortest rotations (N, 4) from unit vectors a to unit vectors b, and 1 + cos of their angles (N,)."""
+    out = np.zeros((len(a), 4))
+    near = 1.0 + a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
+    out[:, 0] = near
+    out[:, 1] = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
+    out[:, 2] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
+    out[:, 3] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    if near.min() < 1e-8:
+        for k in np.flatnonzero(near < 1e-8):  # half a turn: about any axis across
+            x, y, z = a[k, 0], a[k, 1], a[k, 2]
+            out[k, 0] = 0.0
+            if abs(x) < 0.7:
+                out[k, 1], out[k, 2], out[k, 3] = 0.0, z, -y
+            else:
+                out[k, 1], out[k, 2], out[k, 3] = -z, 0.0, x
+    return out / column(np.sqrt((out * out).sum(axis=1))), near
+
+
+def quaternion_of(turn):
+    """The unit quaternion (1, 4) of a rotation (3, 3), by its greatest component."""
+    trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
+    out = np.zeros((1, 4))
+    best = 0
+    if trace < 0.0 or trace < max(turn[0, 0], turn[1, 1], turn[2, 2]):
+        best = 1
+        for k in range(1, 3):
+            if turn[k, k] > turn[best - 1, best - 1]:
+                best = k + 1
+    if best == 0:
+        out[0, 0] = 1.0 + trace
+        out[0, 1], out[0, 2], out[0, 3] = turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]
+    else:
+        i = best - 1
+        j, k = (i + 1) % 3, (i + 2) % 3
+        out[0, 0] = turn[k, j] - turn[j, k]
+        out[0, i + 1] = 1.0 + turn[i, i] - turn[j, j] - turn[k, k]
+        out[0, j + 1], out[0, k + 1] = turn[i, j] + turn[j, i], turn[i, k] + turn[k, i]
+    return out / math.sqrt((out * out).sum())
+
+
+def turn_step(body, state, rules, along, trunk, step):
+    """Rotations (B, 4) of the bones from rest: as before and with the trunk, then the shortest way to where each points.
+
+    A bone's points are collinear and say nothing of its twist: that is the last one, carried along, and wanders back
+    to the twist of the shortest way from the trunk; the less, the nearer that way is to half a turn.
+    """
+    now = quaternion_of(trunk) + np.zeros((len(along), 4))
+    moved = quaternion_of(np.dot(trunk, state.trunk.T))
+    before = product(moved, state.turns)
+    swing, _ = arcs(turned(before, body.directions), along)
+    turns = product(swing, before)
+    plain, near = arcs(turned(now, body.directions), along)
+    home = product(plain, now)
+    same = (home * turns).sum(axis=1)
+    share = (1.0 - math.exp(-step / rules.untwist)) * 0.5 * near
+    turns = turns + column(share * np.where(same < 0.0, -1.0, 1.0)) * home
+    return turns / column(np.sqrt((turns * turns).sum(axis=1)))
+
+
+def frame_step(body: Body, state: State, rules: Rules, joints: np.ndarray, measured: np.ndarray, step: float) -> Frame:
+    """Follows one frame: joints (J, 3) [m], finite everywhere, measured (J,) bool, step [s] since the last; `state`
+    goes on."""
+    drift = state.speed[body.torso].sum(axis=0) / len(body.torso)
+    if rules.kind == KALMAN:
+        seen, again, variance = kalman(state, rules, joints, measured, step, drift)
+    elif rules.kind == ONE_EURO:
+        seen, again, variance = one_euro(state, rules, joints, measured, step, drift)
+    else:
+        seen, again, variance = unfiltered(state, rules, joints, measured, step, drift)
+    shaped, surer, trunk, shift = trunk_step(body, state, rules, seen, variance)
+    near, along, spacing, rounds = limb_step(body, state, rules, shaped, surer)
+    bent = (spacing <= 1e-9) | (body.lengths <= 0.0)  # both ends in one place: the bone points as it did
+    if bent.any():
+        along = np.where(column(bent), turned(state.turns, body.directions), along)
+    root = body.bones[0, 0]
+    tracked = near[root] + np.dot(body.paths, column(body.lengths) * along)
+    turns = turn_step(body, state, rules, along, trunk, step)
+    said = np.sqrt(square(np.dot(body.incidence.T, state.place)))
+    delta = np.abs(body.lengths - said)
+    way = np.sqrt(square(tracked - state.tracked))[body.bones[:, 1]]
+    m = delta / np.maximum(way, rules.floor)
+    flips = (np.abs((turns * state.turns).sum(axis=1)) < HALF).sum()
+    flips += 0.5 * ((trunk * state.trunk).sum() - 1.0) < 0.0
+    state.tracked[:] = tracked
+    state.turns[:] = turns
+    state.trunk[:] = trunk
+    residual = np.sqrt(square(tracked - state.place))
+    return Frame(tracked, seen, again, turns, trunk, shift, m, delta, residual, rounds, flips)
+
+
+HALF = math.sqrt(0.5)  # the cosine of half a right angle: a quaternion's product for a turn of 90 degrees

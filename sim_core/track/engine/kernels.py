@@ -1,0 +1,392 @@
+"""The steps of `frames.py` as loops for numba: the same arithmetic, one frame in tens of microseconds.
+
+All of them lie in this file, since machine code that is kept knows only of the file it was made from. Variances and
+quaternions are handled number by number; joints are few.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from sim_core.track.engine.frames import FAR, FASTEST, HALF, KALMAN, ONE_EURO, TINY, Frame
+
+__all__ = ["frame_kernel"]
+
+
+@njit(cache=True)
+def filtered(state, rules, joints, measured, step, drift):
+    """Moves the filter's state on; accepted (J,), taken up anew (J,), variance (J,)."""
+    count = len(joints)
+    seen, again, variance = np.zeros(count, np.bool_), np.zeros(count, np.bool_), np.zeros(count)
+    place, speed = state.place, state.speed
+    noise, q = rules.noise**2, rules.agility
+    fade = math.exp(-step / rules.fading)
+    turn = 2.0 * math.pi * step
+    slow = turn / (turn + 1.0)
+    for j in range(count):
+        if rules.kind == KALMAN:
+            spread = state.spread[j]
+            both = spread[1] + step * spread[2]
+            far = spread[0] + step * (spread[1] + both) + q * step**3 / 3.0
+            fast = spread[2] + q * step
+            both = both + q * step**2 / 2.0
+            need = far + noise
+            away = 0.0
+            for k in range(3):
+                away += (joints[j, k] - (place[j, k] + step * speed[j, k])) ** 2
+            if state.misses[j] == 0:
+                state.bound[j] = need
+            inside = measured[j] and away <= rules.gate**2 * state.bound[j]
+            misses = 0 if inside else state.misses[j] + measured[j]
+            if misses >= rules.patience:
+                place[j], speed[j] = joints[j], drift
+                spread[0], spread[1], spread[2] = noise, 0.0, FASTEST**2
+                state.misses[j] = 0
+                seen[j] = again[j] = True
+                variance[j] = noise
+                continue
+            gain = far / need if inside else 0.0
+            lift = both / need if inside else 0.0
+            for k in range(3):
+                ahead = place[j, k] + step * speed[j, k]
+                reach = joints[j, k] - ahead
+                if not inside:
+                    speed[j, k] = drift[k] + (speed[j, k] - drift[k]) * fade
+                place[j, k] = ahead + gain * reach
+                speed[j, k] += lift * reach
+            spread[0], spread[1], spread[2] = far * (1.0 - gain), both * (1.0 - gain), fast - lift * both
+            state.misses[j] = misses
+            seen[j], variance[j] = inside, spread[0]
+            continue
+        seen[j] = measured[j]
+        variance[j] = FAR**2
+        if rules.kind == ONE_EURO:
+            if measured[j]:
+                size = 0.0
+                for k in range(3):
+                    speed[j, k] += slow * ((joints[j, k] - place[j, k]) / step - speed[j, k])
+                    size += speed[j, k] ** 2
+                cutoff = rules.cutoff + rules.cutoff_slope * math.sqrt(size)
+                share = turn * cutoff / (turn * cutoff + 1.0)
+                for k in range(3):
+                    place[j, k] += share * (joints[j, k] - place[j, k])
+                variance[j] = noise * share
+            else:
+                for k in range(3):
+                    speed[j, k] = drift[k]
+                    place[j, k] += step * drift[k]
+        else:
+            for k in range(3):
+                there = joints[j, k] if measured[j] else place[j, k] + step * drift[k]
+                speed[j, k] = (there - place[j, k]) / step
+                place[j, k] = there
+            if measured[j]:
+                variance[j] = noise
+    return seen, again, variance
+
+
+@njit(cache=True)
+def rotation(covariance):
+    """As `kabsch`."""
+    u, _, vh = np.linalg.svd(covariance)
+    turn = np.zeros((3, 3))
+    for attempt in range(2):
+        for i in range(3):
+            for j in range(3):
+                turn[i, j] = vh[0, i] * u[j, 0] + vh[1, i] * u[j, 1] + vh[2, i] * u[j, 2]
+        det = turn[0, 0] * (turn[1, 1] * turn[2, 2] - turn[1, 2] * turn[2, 1])
+        det -= turn[0, 1] * (turn[1, 0] * turn[2, 2] - turn[1, 2] * turn[2, 0])
+        det += turn[0, 2] * (turn[1, 0] * turn[2, 1] - turn[1, 1] * turn[2, 0])
+        if det >= 0.0 or attempt:
+            break
+        for k in range(3):
+            vh[2, k] = -vh[2, k]
+    return turn
+
+
+@njit(cache=True)
+def between(now, before):
+    """The rotation (3, 3) from one to the other."""
+    out = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                out[i, j] += now[i, k] * before[j, k]
+    return out
+
+
+@njit(cache=True)
+def carry_unseen(state, seen, turn, middle):
+    """What is not seen turns with the trunk."""
+    moved, place = between(turn, state.trunk), np.zeros(3)
+    for j in range(len(seen)):
+        if not seen[j]:
+            for i in range(3):
+                place[i] = middle[i]
+                for k in range(3):
+                    place[i] += moved[i, k] * (state.place[j, k] - middle[k])
+            state.place[j] = place
+
+
+@njit(cache=True)
+def aligned(body, state, rules, seen, variance):
+    """As `trunk_step`."""
+    torso, template = body.torso, body.template
+    size = len(torso)
+    trust = np.zeros(size)
+    total = 0.0
+    for n in range(size):
+        trust[n] = 1.0 if seen[torso[n]] else 1e-9
+        total += trust[n]
+    middle, centre = np.zeros(3), np.zeros(3)
+    for n in range(size):
+        trust[n] /= total
+        for k in range(3):
+            middle[k] += trust[n] * state.place[torso[n], k]
+            centre[k] += trust[n] * template[n, k]
+    covariance, extent = np.zeros((3, 3)), 0.0
+    for n in range(size):
+        for i in range(3):
+            shape = template[n, i] - centre[i]
+            extent += trust[n] * shape**2
+            for j in range(3):
+                covariance[i, j] += trust[n] * shape * (state.place[torso[n], j] - middle[j])
+    for i in range(3):
+        for j in range(3):
+            covariance[i, j] += rules.prior * extent * state.trunk[j, i]
+    turn = rotation(covariance)
+    shift = np.zeros(3)
+    for i in range(3):
+        shift[i] = middle[i] - (turn[i, 0] * centre[0] + turn[i, 1] * centre[1] + turn[i, 2] * centre[2])
+    carry_unseen(state, seen, turn, middle)
+    joints, surer = state.place.copy(), variance.copy()
+    for n in range(size):
+        j, loose = torso[n], body.looseness[n] + TINY
+        share = loose / (loose + variance[j])
+        for i in range(3):
+            rigid = shift[i]
+            rigid += turn[i, 0] * template[n, 0] + turn[i, 1] * template[n, 1] + turn[i, 2] * template[n, 2]
+            joints[j, i] = rigid + share * (joints[j, i] - rigid)
+        surer[j] = variance[j] * max(share, 1.0 / size)
+    return joints, surer, turn, shift
+
+
+@njit(cache=True)
+def solved(system, right):
+    """Solves a symmetric, positive definite system in place, by its factors L L'."""
+    size = len(right)
+    for i in range(size):
+        for j in range(i + 1):
+            total = system[i, j]
+            for k in range(j):
+                total -= system[i, k] * system[j, k]
+            system[i, j] = math.sqrt(max(total, TINY)) if i == j else total / system[j, j]
+    for i in range(size):
+        for k in range(i):
+            right[i] -= system[i, k] * right[k]
+        right[i] /= system[i, i]
+    for i in range(size - 1, -1, -1):
+        for k in range(i + 1, size):
+            right[i] -= system[k, i] * right[k]
+        right[i] /= system[i, i]
+
+
+@njit(cache=True)
+def lengthened(body, state, rules, joints, variance):
+    """As `limb_step`; `joints` are moved in place."""
+    bones, lengths = body.bones, body.lengths
+    count = len(bones)
+    along, spacing, excess = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
+    weight = np.ones(len(joints))
+    top = variance.max()
+    if top > 0.0:
+        for j in range(len(joints)):
+            weight[j] = variance[j] / top + 1e-6
+    way = np.zeros(count)
+    for b in range(count):
+        child, total = bones[b, 1], 0.0
+        for k in range(3):
+            total += (joints[child, k] - state.tracked[child, k]) ** 2
+        way[b] = max(math.sqrt(total), rules.floor)
+    system = np.zeros((count, count))
+    rounds = 0
+    while True:
+        worst = 0.0
+        for b in range(count):
+            parent, child = bones[b]
+            total = 0.0
+            for k in range(3):
+                along[b, k] = joints[child, k] - joints[parent, k]
+                total += along[b, k] ** 2
+            spacing[b] = math.sqrt(total)
+            for k in range(3):
+                along[b, k] /= max(spacing[b], TINY)
+            excess[b] = spacing[b] - lengths[b]
+            worst = max(worst, abs(excess[b]) / way[b])
+        if rounds >= rules.iterations or worst <= rules.m0:
+            break
+        for a in range(count):
+            for b in range(a + 1):
+                shared = 0.0
+                for x in range(2):
+                    for y in range(2):
+                        if bones[a, x] == bones[b, y]:
+                            shared += weight[bones[a, x]] if x == y else -weight[bones[a, x]]
+                if shared != 0.0:
+                    dot = 0.0
+                    for k in range(3):
+                        dot += along[a, k] * along[b, k]
+                    system[a, b] = shared * dot
+                else:
+                    system[a, b] = 0.0
+                if a == b:
+                    system[a, a] += 1e-6 * (1.0 + shared)
+        solved(system, excess)
+        for b in range(count):
+            parent, child = bones[b]
+            for k in range(3):
+                joints[parent, k] += weight[parent] * excess[b] * along[b, k]
+                joints[child, k] -= weight[child] * excess[b] * along[b, k]
+        rounds += 1
+    return along, spacing, rounds
+
+
+@njit(cache=True)
+def times(a, b, out):
+    """The product of two quaternions (4,)."""
+    w = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3]
+    x = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2]
+    y = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1]
+    z = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]
+    out[0], out[1], out[2], out[3] = w, x, y, z
+
+
+@njit(cache=True)
+def carried(q, v, out):
+    """A vector (3,) turned by a quaternion (4,)."""
+    p = 2.0 * (q[2] * v[2] - q[3] * v[1])
+    r = 2.0 * (q[3] * v[0] - q[1] * v[2])
+    s = 2.0 * (q[1] * v[1] - q[2] * v[0])
+    out[0] = v[0] + q[0] * p + q[2] * s - q[3] * r
+    out[1] = v[1] + q[0] * r + q[3] * p - q[1] * s
+    out[2] = v[2] + q[0] * s + q[1] * r - q[2] * p
+
+
+@njit(cache=True)
+def unit(q):
+    """A quaternion (4,) made as long as 1, in place."""
+    size = math.sqrt(q[0] ** 2 + q[1] ** 2 + q[2] ** 2 + q[3] ** 2)
+    for k in range(4):
+        q[k] /= size
+
+
+@njit(cache=True)
+def arc(a, b, out):
+    """As `arcs`, of one pair; 1 + cos of the angle."""
+    near = 1.0 + a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    out[0] = near
+    out[1], out[2], out[3] = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    if near < 1e-8:
+        out[0] = 0.0
+        if abs(a[0]) < 0.7:
+            out[1], out[2], out[3] = 0.0, a[2], -a[1]
+        else:
+            out[1], out[2], out[3] = -a[2], 0.0, a[0]
+    unit(out)
+    return near
+
+
+@njit(cache=True)
+def quaternion(turn):
+    """As `quaternion_of`, (4,)."""
+    trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
+    out = np.zeros(4)
+    i = 0
+    for k in range(1, 3):
+        if turn[k, k] > turn[i, i]:
+            i = k
+    if trace < 0.0 or trace < turn[i, i]:
+        j, k = (i + 1) % 3, (i + 2) % 3
+        out[0] = turn[k, j] - turn[j, k]
+        out[i + 1] = 1.0 + turn[i, i] - turn[j, j] - turn[k, k]
+        out[j + 1], out[k + 1] = turn[i, j] + turn[j, i], turn[i, k] + turn[k, i]
+    else:
+        out[0] = 1.0 + trace
+        out[1], out[2], out[3] = turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]
+    unit(out)
+    return out
+
+
+@njit(cache=True)
+def rotated(body, state, rules, along, trunk, step):
+    """As `turn_step`."""
+    count = len(along)
+    turns = np.zeros((count, 4))
+    now, moved = quaternion(trunk), quaternion(between(trunk, state.trunk))
+    before, swing, home, pointing = np.zeros(4), np.zeros(4), np.zeros(4), np.zeros(3)
+    back = 1.0 - math.exp(-step / rules.untwist)
+    for b in range(count):
+        times(moved, state.turns[b], before)
+        carried(before, body.directions[b], pointing)
+        arc(pointing, along[b], swing)
+        times(swing, before, turns[b])
+        carried(now, body.directions[b], pointing)
+        near = arc(pointing, along[b], swing)
+        times(swing, now, home)
+        same = home[0] * turns[b, 0] + home[1] * turns[b, 1] + home[2] * turns[b, 2] + home[3] * turns[b, 3]
+        share = back * 0.5 * near * (-1.0 if same < 0.0 else 1.0)
+        for k in range(4):
+            turns[b, k] += share * home[k]
+        unit(turns[b])
+    return turns
+
+
+@njit(cache=True)
+def frame_kernel(body, state, rules, joints, measured, step):
+    """As `frame_step`."""
+    count, bones = len(joints), len(body.bones)
+    drift = np.zeros(3)
+    for j in body.torso:
+        for k in range(3):
+            drift[k] += state.speed[j, k] / len(body.torso)
+    seen, again, variance = filtered(state, rules, joints, measured, step, drift)
+    near, surer, trunk, shift = aligned(body, state, rules, seen, variance)
+    along, spacing, rounds = lengthened(body, state, rules, near, surer)
+    m, delta, residual = np.zeros(bones), np.zeros(bones), np.zeros(count)
+    tracked = np.zeros((count, 3))
+    root = body.bones[0, 0]
+    tracked[root] = near[root]
+    for b in range(bones):
+        parent, child = body.bones[b]
+        if spacing[b] <= 1e-9 or body.lengths[b] <= 0.0:
+            carried(state.turns[b], body.directions[b], along[b])
+        way, said = 0.0, 0.0
+        for k in range(3):
+            tracked[child, k] = tracked[parent, k] + body.lengths[b] * along[b, k]
+            way += (tracked[child, k] - state.tracked[child, k]) ** 2
+            said += (state.place[child, k] - state.place[parent, k]) ** 2
+        delta[b] = abs(body.lengths[b] - math.sqrt(said))
+        m[b] = delta[b] / max(math.sqrt(way), rules.floor)
+    turns = rotated(body, state, rules, along, trunk, step)
+    flips, trace = 0, -1.0
+    for b in range(bones):
+        same = 0.0
+        for k in range(4):
+            same += turns[b, k] * state.turns[b, k]
+        flips += abs(same) < HALF
+    for i in range(3):
+        for k in range(3):
+            trace += trunk[i, k] * state.trunk[i, k]
+    flips += trace < 0.0
+    for j in range(count):
+        total = 0.0
+        for k in range(3):
+            total += (tracked[j, k] - state.place[j, k]) ** 2
+        residual[j] = math.sqrt(total)
+    state.tracked[:] = tracked
+    state.turns[:] = turns
+    state.trunk[:] = trunk
+    return Frame(tracked, seen, again, turns, trunk, shift, m, delta, residual, rounds, flips)
