@@ -8,7 +8,7 @@ from sim_core.track.feature_points import Binding, FeaturePoints, feature_points
 from sim_core.track.files import ENDINGS, MAPPINGS, load_mapping, read_bvh, read_recording, write_tracked
 from sim_core.track.recording import Recording
 from sim_core.track.settings import FILTERS, TrackSettings
-from sim_core.track.skeletons import FIGURE, KINECT, SKELETONS, TrackedSkeleton
+from sim_core.track.skeletons import KINECT, TrackedSkeleton, figure_skeleton
 from sim_core.track.summary import summary
 from sim_core.track.tracker import Tracked, TrackedFrame, Tracker, track
 
@@ -18,13 +18,11 @@ __all__ = [
     "Calibration",
     "Disturbance",
     "ENDINGS",
-    "FIGURE",
     "FILTERS",
     "FeaturePoints",
     "KINECT",
     "MAPPINGS",
     "Recording",
-    "SKELETONS",
     "TrackSettings",
     "Tracked",
     "TrackedFrame",
@@ -33,6 +31,7 @@ __all__ = [
     "align",
     "calibrate",
     "feature_points",
+    "figure_skeleton",
     "load_mapping",
     "read_bvh",
     "read_recording",

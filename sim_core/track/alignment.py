@@ -12,6 +12,7 @@ from sim_core.validation import finite, numeric_array
 
 __all__ = ["Alignment", "align"]
 
+SLIGHT = 1e-9  # of a prior that decides nothing but the twist
 FLAT = 1e-6  # of the greatest extent: below, a direction counts as none
 
 
@@ -71,10 +72,11 @@ def align(
     else:
         covariance = (shape / scale_b).T @ (weight[:, None] * (there / scale_a))
         mirrored = kind == "solid" and bool(np.linalg.det(covariance) < 0.0)
-        if previous is not None or kind == "collinear":
-            size = float(weight @ ((shape / scale_b) ** 2).sum(1))
-            covariance = covariance + (prior or 1e-3) * size * before.T
-        turn = kabsch(covariance)
+        size = float(weight @ ((shape / scale_b) ** 2).sum(1))
+        if kind == "collinear":  # a prior for what is left open alone; from its own answer it draws no more
+            turn = kabsch(covariance + SLIGHT * size * kabsch(covariance + SLIGHT * size * before.T).T)
+        else:
+            turn = kabsch(covariance if previous is None else covariance + prior * size * before.T)
     left = there - shape @ turn.T
     rms = float(np.sqrt(weight @ (left**2).sum(1)))
     return Alignment(turn, middle - turn @ centre, rms, kind, mirrored)

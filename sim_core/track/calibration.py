@@ -9,11 +9,12 @@ import numpy as np
 from sim_core.errors import SimCoreError
 from sim_core.track.engine import Body, kabsch
 from sim_core.track.skeletons import TrackedSkeleton
-from sim_core.validation import numeric_array
+from sim_core.validation import finite, numeric_array
 
 __all__ = ["Calibration", "calibrate"]
 
 ROUNDS = 8  # of the trunk's mean shape
+QUARTER, USUAL_RECALL = 0.25, 0.3  # [s]
 SHORT = 1.5  # of the noise: a bone that seems no longer than this is none
 ENOUGH = 1_000  # frames, spread over the motion, for the trunk
 
@@ -22,7 +23,8 @@ ENOUGH = 1_000  # frames, spread over the motion, for the trunk
 class Calibration:
     """skeleton; lengths (B,) [m] of its bones; rest (J, 3) [m]: a pose with just these lengths, against which
     rotations count; template (K, 3) [m]: the torso's joints at rest about their mean; looseness (K,) [m2]: how much
-    each moves within the trunk, as a variance an axis; noise [m] an axis of a joint, as bones of
+    each moves within the trunk, as a variance an axis; habit (J, 3) [m]: where each joint mostly is, in the trunk's
+    frame; recall (J,) [s] in which it comes back there; noise [m] an axis of a joint, as bones of
     constant length tell it; None: of fewer than 8 frames."""
 
     skeleton: TrackedSkeleton
@@ -30,19 +32,28 @@ class Calibration:
     rest: np.ndarray
     template: np.ndarray
     looseness: np.ndarray
+    habit: np.ndarray
+    recall: np.ndarray
     noise: float | None
 
     def body(self) -> Body:
         """As the engine takes it."""
         bones, count = self.skeleton.bones, len(self.skeleton.joints)
         incidence, paths = np.zeros((count, len(bones))), np.zeros((count, len(bones)))
+        one = np.arange(count)  # for joints that lie in one place
+        for (parent, child), length in zip(bones, self.lengths, strict=True):
+            one[child] = child if length > 0.0 else one[parent]
+        ends = one[bones]
         for number, (parent, child) in enumerate(bones):
-            incidence[parent, number], incidence[child, number] = -1.0, 1.0
+            incidence[ends[number, 0], number] -= 1.0
+            incidence[ends[number, 1], number] += 1.0
             paths[child] = paths[parent]
             paths[child, number] = 1.0
         torso = np.array(self.skeleton.torso, np.int64)
         return Body(
             np.ascontiguousarray(bones),
+            np.ascontiguousarray(ends),
+            one,
             np.ascontiguousarray(self.lengths),
             directions(self.rest, bones),
             torso,
@@ -50,6 +61,7 @@ class Calibration:
             np.ascontiguousarray(self.looseness),
             incidence,
             paths,
+            np.ascontiguousarray(self.recall),
         )
 
 
@@ -61,8 +73,9 @@ def directions(joints: np.ndarray, bones: np.ndarray) -> np.ndarray:
     return out / np.linalg.norm(out, axis=1)[:, None]
 
 
-def calibrate(skeleton: TrackedSkeleton, joints: np.ndarray) -> Calibration:
-    """Measures who is seen in frames of joints (T, J, 3) [m], NaN where one was not seen; any motion will do.
+def calibrate(skeleton: TrackedSkeleton, joints: np.ndarray, step: float = 1.0 / 30.0) -> Calibration:
+    """Measures who is seen in frames of joints (T, J, 3) [m], NaN where one was not seen, `step` [s] apart; any motion
+    will do.
 
     Noise lengthens a measured bone (a length of L is seen as L2 + 6 sigma2 in the mean square), so its share is taken
     off; outliers are left out by the median. A joint that is never seen gets no bone, and lies at its parent. Raises
@@ -77,8 +90,10 @@ def calibrate(skeleton: TrackedSkeleton, joints: np.ndarray) -> Calibration:
     lengths, noise = _lengths(frames, bones)
     shape, looseness = _trunk(frames[:, list(skeleton.torso)], noise or 0.0)
     rest = _rest(skeleton, frames, lengths)
-    turn, shift = _fitted(shape, rest[list(skeleton.torso)])
-    return Calibration(skeleton, lengths, rest, shape @ turn.T, looseness, noise)
+    turn, _ = _fitted(shape, rest[list(skeleton.torso)])
+    template = shape @ turn.T
+    habit, recall = _habit(skeleton, frames, template, rest, finite("step", step, above=0.0))
+    return Calibration(skeleton, lengths, rest, template, looseness, habit, recall, noise)
 
 
 def _lengths(frames: np.ndarray, bones: np.ndarray) -> tuple[np.ndarray, float | None]:
@@ -131,6 +146,38 @@ def _trunk(frames: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
         return shape, np.full(frames.shape[1], 0.01**2)
     own = np.quantile(loose, 0.9, axis=0) / 2.08  # of a chi-square of three degrees: a ninth in ten is 6.25 / 3
     return shape, np.maximum(own - noise**2, (1e-4) ** 2)
+
+
+def _habit(
+    skeleton: TrackedSkeleton, frames: np.ndarray, template: np.ndarray, rest: np.ndarray, step: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The mean place (J, 3) [m] of every joint about the trunk, and how long [s] a joint stays where it is (J,): after
+    that time t the correlation of its places is exp(-1/2), as exp(-t2 / 2 recall2) tells it a quarter second later."""
+    torso = list(skeleton.torso)
+    turn, shift = _fitted(template, rest[torso])
+    own, usual = (rest - shift) @ turn, np.full(len(rest), USUAL_RECALL)
+    whole = np.isfinite(frames[:, torso]).all((1, 2))
+    if not whole.any():
+        return own, usual
+    middle = frames[:, torso].mean(1, keepdims=True)
+    trunk = np.nan_to_num(frames[:, torso] - middle)
+    u, _, vh = np.linalg.svd(trunk.transpose(0, 2, 1) @ (template - template.mean(0)))
+    vh[np.linalg.det(u @ vh) < 0.0, 2] *= -1.0
+    there = (frames - middle) @ (u @ vh) + template.mean(0)
+    there[~whole] = np.nan
+    seen = np.isfinite(there[..., 0])
+    count = np.maximum(seen.sum(0), 1)
+    mean = np.where(seen[..., None], there, 0.0).sum(0) / count[:, None]
+    mean = np.where(seen.any(0)[:, None], mean, own)
+    lag = max(1, round(QUARTER / step))
+    if len(frames) >= 2 * lag + 8:
+        away = there - mean
+        spread = np.where(seen, np.nan_to_num(away**2).sum(2), 0.0).sum(0) / count
+        both = seen[lag:] & seen[:-lag]
+        product = np.where(both, np.nan_to_num(away[lag:] * away[:-lag]).sum(2), 0.0).sum(0)
+        kept = np.clip(product / np.maximum(both.sum(0), 1) / np.maximum(spread, 1e-12), 0.05, 0.995)
+        usual = lag * step / np.sqrt(-2.0 * np.log(kept))
+    return mean, usual
 
 
 def _onto(frames: np.ndarray, shape: np.ndarray) -> np.ndarray:

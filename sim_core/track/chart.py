@@ -35,6 +35,7 @@ def save_chart(path: Path, tracked: Tracked) -> None:
     ratio.plot(time, tracked.m.max(1), color=GREY, alpha=0.5, linewidth=0.8, label="greatest")
     ratio.set_ylabel("M")
     lost.step(time, tracked.lost.sum(1), color=GREY, where="mid")
+    lost.set_ylim(bottom=0.0)
     lost.set_ylabel("points lost")
     lost.set_xlabel("time [s]")
     for axes in (delta, ratio):

@@ -119,7 +119,7 @@ def _followed(recording: Recording, settings: TrackSettings) -> tuple[Tracked, f
     from sim_core.metrics import compile_clock
     from sim_core.track import Tracker, calibrate, track
 
-    calibration = calibrate(recording.skeleton, recording.joints)
+    calibration = calibrate(recording.skeleton, recording.joints, recording.step)
     with compile_clock(_tell_compiling):
         Tracker(calibration, settings).update(recording.joints[0], float(recording.time[0]))
     begin = perf_counter()

@@ -44,16 +44,12 @@ class Recording:
                 raise SimCoreError(f"{name}: beyond {FURTHEST:g} m – metres are meant; give the unit of the file")
 
     def disturbed(self, disturbance: Disturbance) -> Recording:
-        """As a worse sensor would have recorded it; joints that the source does not have go with those they lie at."""
-        joints = disturbance.of(self.joints)
-        for child in self.skeleton.bones[:, 1]:
-            if self.skeleton.joints[child] in self.left_out:
-                joints[:, child] = joints[:, self.skeleton.parents[child]]
-        return replace(self, joints=joints)
+        """As a worse sensor would have recorded it, every joint by itself."""
+        return replace(self, joints=disturbance.of(self.joints))
 
     @property
-    def rate(self) -> float:
-        """Frames a second, by the median step; of one frame: 0."""
+    def step(self) -> float:
+        """Seconds from frame to frame, the median; of a clock that tells none: a thirtieth."""
         steps = np.diff(self.time)
         steps = steps[np.isfinite(steps) & (steps > 0.0)]
-        return float(1.0 / np.median(steps)) if len(steps) else 0.0
+        return float(np.median(steps)) if len(steps) else 1.0 / 30.0

@@ -32,7 +32,7 @@ class TrackSettings:
     filter: str = "kalman"
     level: int = 2
     noise: float | None = None
-    agility: float = 20.0
+    agility: float = 40.0
     gate: float = 5.0
     patience: int = 3
     fading: float = 0.08

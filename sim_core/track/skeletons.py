@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from sim_core.body.joints import JOINTS as FIGURE_JOINTS
-from sim_core.body.joints import PARENTS as FIGURE_PARENTS
-
-__all__ = ["FIGURE", "KINECT", "SKELETONS", "TrackedSkeleton"]
+__all__ = ["KINECT", "TrackedSkeleton", "figure_skeleton"]
 
 
 @dataclass(frozen=True)
@@ -93,6 +90,11 @@ KINECT = TrackedSkeleton(
     "kinect", _NAMES, _numbers(tuple(_KINECT.values()), _NAMES), _numbers(_KINECT_TRUNK, _NAMES)
 )
 """The 25 joints of a Kinect v2, in the order of its software; 24 bones."""
-FIGURE = TrackedSkeleton("figure", FIGURE_JOINTS, FIGURE_PARENTS, _numbers(_FIGURE_TRUNK, FIGURE_JOINTS))
-"""The 21 joints of our own figure (`sim_core.body`)."""
-SKELETONS = {skeleton.name: skeleton for skeleton in (KINECT, FIGURE)}
+
+
+@lru_cache(maxsize=1)
+def figure_skeleton() -> TrackedSkeleton:
+    """The 21 joints of our own figure (`sim_core.body`, which is loaded only here)."""
+    from sim_core.body.joints import JOINTS, PARENTS
+
+    return TrackedSkeleton("figure", JOINTS, PARENTS, _numbers(_FIGURE_TRUNK, JOINTS))

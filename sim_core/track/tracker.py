@@ -20,7 +20,8 @@ __all__ = ["Tracked", "TrackedFrame", "Tracker", "track"]
 FIRST_STEP = 1.0 / 30.0  # [s] until the clock has told one
 LONGEST_STEP = 0.5  # [s]: after a longer gap every joint is taken up anew
 UNSEEN = 0.5  # [m] that a joint may be off that was not seen yet
-SLACK = 0.03  # [m] that a bone may be off besides its noise
+SLACK = 0.02  # [m] that a bone may be off besides its noise
+FRESH = 3  # frames at the start in which bones tell outliers, as nothing else can yet
 AHEAD = 0.5  # of the joints that have a twin must look swapped
 
 
@@ -110,6 +111,7 @@ class Tracker:
         self._state: State | None = None
         self._time = self._wall = 0.0
         self._step = FIRST_STEP
+        self._fresh = 0
 
     def update(self, joints: np.ndarray, time: float) -> TrackedFrame:
         """Follows the next frame: joints (J, 3) [m], y up, NaN (or anything not finite) where one was not seen; time
@@ -125,9 +127,14 @@ class Tracker:
         measured = np.isfinite(given).all(1) & (np.abs(given) < 1e6).all(1)
         given[~measured] = 0.0
         begin = self._state is None
+        step, late, gap = self._clocked(float(time), begin)
+        if begin:
+            self._calibrated(given, measured)
+        self._fresh = FRESH if begin or gap else self._fresh - 1
+        if self._fresh > 0 and self._rules.kind == KALMAN:
+            measured &= ~self._implausible(given, measured)
         if begin:
             self._begin(given, measured)
-        step, late, gap = self._clocked(float(time), begin)
         state = self._state
         assert state is not None
         swapped = self._rules.kind == KALMAN and not begin and self._put_back(given, measured, step)
@@ -170,13 +177,17 @@ class Tracker:
         self._step = step
         return step, False, False
 
-    def _begin(self, given: np.ndarray, measured: np.ndarray) -> None:
-        """Calibrates if need be, and stands where the first frame shows the person, at rest where it shows nothing."""
+    def _calibrated(self, given: np.ndarray, measured: np.ndarray) -> None:
+        """Knows who is followed, by the first frame if by nothing else."""
         if self.calibration is None:
             seen = np.where(measured[:, None], given, np.nan)
             self.calibration = calibrate(self.skeleton, seen[None])
         self._body = self.calibration.body()
         self._rules = self.settings.rules(self.calibration.noise)
+
+    def _begin(self, given: np.ndarray, measured: np.ndarray) -> None:
+        """Stands where the first frame shows the person, at rest where it shows nothing."""
+        assert self.calibration is not None
         count, bones = len(self.skeleton.joints), len(self.skeleton.bones)
         turns = np.zeros((bones, 4))
         turns[:, 0] = 1.0
@@ -187,6 +198,8 @@ class Tracker:
             np.zeros((count, 3)),
             np.zeros(count, np.int64),
             np.zeros(count),
+            np.zeros(count),
+            self.calibration.habit.copy(),
             place.copy(),
             turns,
             np.eye(3),
@@ -196,8 +209,6 @@ class Tracker:
 
     def _restart(self, state: State, given: np.ndarray, measured: np.ndarray) -> None:
         """Forgets where joints were and how they moved; those that are not seen go along with those that are."""
-        if self._rules.kind == KALMAN:
-            measured &= ~self._implausible(given, measured)
         if measured.any():
             state.place[:] += (given - state.place)[measured].mean(0)
             state.place[measured] = given[measured]
@@ -212,15 +223,18 @@ class Tracker:
         """Joints (J,) bool whose bones are not as long as they are: outliers where nothing else tells them yet."""
         bones, rules = self.skeleton.bones, self._rules
         found = np.linalg.norm(given[bones[:, 1]] - given[bones[:, 0]], axis=1)
-        wrong = np.abs(found - self._body.lengths) > SLACK + rules.gate * np.sqrt(2.0) * rules.noise
+        excess = np.abs(found - self._body.lengths)
+        wrong = excess > SLACK + 4.0 * np.sqrt(2.0) * rules.noise
         doubted = np.zeros(len(given), bool)
         while True:
-            told = wrong & (measured & ~doubted)[bones].all(1)
-            votes = np.bincount(bones[told].ravel(), minlength=len(given))
-            if votes.max() == 0:
+            both = (measured & ~doubted)[bones].all(1)
+            told = wrong & both
+            if not told.any():
                 return doubted
-            worst = np.flatnonzero(votes == votes.max())
-            doubted[worst[-1] if votes.max() > 1 else int(bones[told][0, 1])] = True
+            count = np.bincount(bones[both].ravel(), minlength=len(given))
+            mean = np.bincount(bones[both].ravel(), np.repeat(excess[both], 2), len(given)) / np.maximum(count, 1)
+            mean[np.setdiff1d(np.arange(len(given)), bones[told])] = 0.0
+            doubted[int(np.argmax(mean))] = True
 
     def _put_back(self, given: np.ndarray, measured: np.ndarray, step: float) -> bool:
         """Exchanges left and right again where a sensor took one for the other; whether it did."""
@@ -265,7 +279,7 @@ def track(
     """
     settings = settings or TrackSettings()
     if calibration is None:
-        calibration = calibrate(recording.skeleton, recording.joints)
+        calibration = calibrate(recording.skeleton, recording.joints, recording.step)
     tracker = Tracker(calibration, settings)
     frames = [
         tracker.update(joints, float(time)) for joints, time in zip(recording.joints, recording.time, strict=True)

@@ -11,20 +11,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["KALMAN", "NONE", "ONE_EURO", "Body", "Rules", "State", "FASTEST", "FAR", "Frame", "HALF", "TINY", "frame_step", "kabsch"]
+__all__ = ["KALMAN", "NONE", "ONE_EURO", "Body", "Rules", "State", "FASTEST", "FAR", "HABIT", "NEAR", "Frame", "HALF", "TINY", "frame_step", "kabsch"]
 
 NONE, KALMAN, ONE_EURO = 0, 1, 2
+NEAR = 0.02  # [m] that a joint may always be off: five of them are no outlier
+HABIT = 3.0  # [s] over which it is learnt where a joint mostly is
 FAR = 0.05  # [m] of the trust in a place that nothing was seen of, for filters that keep none themselves
 TINY = 1e-12
 
 
 class Body(NamedTuple):
-    """Who is followed, as calibrated. bones (B, 2) parent and child, outwards; lengths (B,) [m]; directions (B, 3) of
+    """Who is followed, as calibrated. bones (B, 2) parent and child, outwards; ends (B, 2): the same with joints that
+    lie in one place taken for one, whose number each has in `one` (J,); lengths (B,) [m]; directions (B, 3) of
     the bones at rest, in the trunk's frame; torso (K,) joints; template (K, 3) [m] their places at rest about their
     mean; looseness (K,) [m2]: how much each moves within the trunk, a variance an axis; incidence (J, B): -1 at a
-    bone's parent, +1 at its child; paths (J, B): 1 for the bones that lead from the root to a joint."""
+    bone's first end, +1 at the other; paths (J, B): 1 for the bones that lead from the root to a joint;
+    recall (J,) [s]: in which an unseen joint comes to where it mostly is."""
 
     bones: np.ndarray
+    ends: np.ndarray
+    one: np.ndarray
     lengths: np.ndarray
     directions: np.ndarray
     torso: np.ndarray
@@ -32,12 +38,14 @@ class Body(NamedTuple):
     looseness: np.ndarray
     incidence: np.ndarray
     paths: np.ndarray
+    recall: np.ndarray
 
 
 class State(NamedTuple):
     """What goes on from frame to frame, changed in place. place, speed (J, 3) [m], [m/s] of the filter; spread (J, 3):
     its variances of place, both and speed; misses (J,): rejected in a row; bound (J,) [m2]: the variance that the gate
-    went by before; tracked (J, 3) [m] after the last frame;
+    went by before; gone (J,) [s]: not seen for so long; habit (J, 3) [m]: where a joint mostly is, in the trunk's frame;
+    tracked (J, 3) [m] after the last frame;
     turns (B, 4): rotations of the bones from rest, quaternions with the real part first; trunk (3, 3) the trunk's."""
 
     place: np.ndarray
@@ -45,6 +53,8 @@ class State(NamedTuple):
     spread: np.ndarray
     misses: np.ndarray
     bound: np.ndarray
+    gone: np.ndarray
+    habit: np.ndarray
     tracked: np.ndarray
     turns: np.ndarray
     trunk: np.ndarray
@@ -117,7 +127,7 @@ def kalman(state, rules, joints, measured, step, drift):
     ahead = state.place + step * state.speed
     reach = joints - ahead
     need = place + noise
-    state.bound[:] = np.where(state.misses > 0, state.bound, need)  # doubt does not open the gate to the next outlier
+    state.bound[:] = np.where(state.misses > 0, state.bound, np.maximum(need, NEAR**2))  # doubt does not open the gate to the next outlier
     inside = measured & (square(reach) <= rules.gate**2 * state.bound)
     misses = np.where(inside, 0, state.misses + measured)
     again = misses >= rules.patience
@@ -139,7 +149,7 @@ def kalman(state, rules, joints, measured, step, drift):
     return inside | again, again, spread[:, 0].copy()
 
 
-FASTEST = 3.0  # [m/s] a joint that was just taken up may be moving at
+FASTEST = 2.5  # [m/s] a joint that was just taken up may be moving at
 
 
 def one_euro(state, rules, joints, measured, step, drift):
@@ -166,7 +176,24 @@ def unfiltered(state, rules, joints, measured, step, drift):
     return measured.copy(), np.zeros(len(measured), np.bool_), np.where(measured, rules.noise**2, FAR**2)
 
 
-def trunk_step(body, state, rules, seen, variance):
+def guess_unseen(body, state, seen, turn, middle, shift, step):
+    """What is not seen turns with the trunk, and comes to where it mostly is about the trunk, as swinging limbs do:
+    after a time t the share exp(-t2 / 2 recall2) of its way from there is left, a swing's own correlation."""
+    state.habit[seen] += (np.dot(state.place[seen] - shift, turn) - state.habit[seen]) * (step / (step + HABIT))
+    gone = state.gone
+    if seen.all():
+        gone[:] = 0.0
+        return
+    moved = np.dot(turn, state.trunk.T)
+    there = middle + np.dot(state.place - middle, moved.T)
+    usual = shift + np.dot(state.habit, turn.T)
+    left = np.exp(-step * (2.0 * gone + step) / (2.0 * body.recall**2))
+    there = usual + column(left) * (there - usual)
+    state.place[:] = np.where(column(seen), state.place, there)
+    gone[:] = np.where(seen, 0.0, gone + step)
+
+
+def trunk_step(body, state, rules, seen, variance, step):
     """Global alignment of the torso's points (Eq. 13-14) and the trunk's own bend. Joints (J, 3), variance (J,), R, T.
 
     A point of the trunk is taken as far from its rigid place as it is loose, against how well it was seen.
@@ -184,14 +211,22 @@ def trunk_step(body, state, rules, seen, variance):
     shift = middle - turn @ centre
     rigid = np.dot(body.template, turn.T) + shift
     share = (body.looseness + TINY) / (body.looseness + TINY + spread)
-    if not seen.all():  # what is not seen turns with the trunk
-        moved = np.dot(turn, state.trunk.T)
-        state.place[~seen] = middle + np.dot(state.place[~seen] - middle, moved.T)
+    guess_unseen(body, state, seen, turn, middle, shift, step)
     joints = state.place.copy()
-    joints[body.torso] = rigid + column(share) * (there - rigid)
+    joints[body.torso] = rigid + column(share) * (joints[body.torso] - rigid)
     surer = variance.copy()
     surer[body.torso] = spread * np.maximum(share, 1.0 / len(body.torso))
     return joints, surer, turn, shift
+
+
+def pooled(body, joints, variance):
+    """Joints (J, 3) and variances (J,): those that lie in one place are measurements of one, by their variances."""
+    trust = 1.0 / (variance + TINY)
+    total = np.bincount(body.one, trust, len(trust))[body.one]
+    mean = np.zeros(joints.shape)
+    for axis in range(3):
+        mean[:, axis] = np.bincount(body.one, trust * joints[:, axis], len(trust))[body.one] / total
+    return mean, 1.0 / total
 
 
 def limb_step(body, state, rules, joints, variance):
@@ -201,7 +236,7 @@ def limb_step(body, state, rules, joints, variance):
     together. Then every bone is laid on from the trunk outwards at its exact length.
     """
     child = body.bones[:, 1]
-    weight = variance / variance.max() + 1e-6 if variance.max() > 0.0 else np.ones(len(variance))
+    weight = variance / variance.max() + 1e-6 if variance.max() > TINY else np.ones(len(variance))
     coupling = np.dot(body.incidence.T * weight, body.incidence)
     way = np.maximum(np.sqrt(square(joints - state.tracked))[child], rules.floor)
     rounds = 0
@@ -317,7 +352,9 @@ def frame_step(body: Body, state: State, rules: Rules, joints: np.ndarray, measu
         seen, again, variance = one_euro(state, rules, joints, measured, step, drift)
     else:
         seen, again, variance = unfiltered(state, rules, joints, measured, step, drift)
-    shaped, surer, trunk, shift = trunk_step(body, state, rules, seen, variance)
+    shaped, surer, trunk, shift = trunk_step(body, state, rules, seen, variance, step)
+    if (body.ends != body.bones).any():
+        shaped, surer = pooled(body, shaped, surer)
     near, along, spacing, rounds = limb_step(body, state, rules, shaped, surer)
     bent = (spacing <= 1e-9) | (body.lengths <= 0.0)  # both ends in one place: the bone points as it did
     if bent.any():

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.track.engine.frames import FAR, FASTEST, HALF, KALMAN, ONE_EURO, TINY, Frame
+from sim_core.track.engine.frames import FAR, FASTEST, HABIT, HALF, KALMAN, NEAR, ONE_EURO, TINY, Frame
 
 __all__ = ["frame_kernel"]
 
@@ -38,7 +38,7 @@ def filtered(state, rules, joints, measured, step, drift):
             for k in range(3):
                 away += (joints[j, k] - (place[j, k] + step * speed[j, k])) ** 2
             if state.misses[j] == 0:
-                state.bound[j] = need
+                state.bound[j] = max(need, NEAR**2)
             inside = measured[j] and away <= rules.gate**2 * state.bound[j]
             misses = 0 if inside else state.misses[j] + measured[j]
             if misses >= rules.patience:
@@ -119,20 +119,32 @@ def between(now, before):
 
 
 @njit(cache=True)
-def carry_unseen(state, seen, turn, middle):
-    """What is not seen turns with the trunk."""
-    moved, place = between(turn, state.trunk), np.zeros(3)
+def guess(body, state, seen, turn, middle, shift, step):
+    """As `guess_unseen`."""
+    moved, there = between(turn, state.trunk), np.zeros(3)
     for j in range(len(seen)):
-        if not seen[j]:
+        place, habit, gone = state.place[j], state.habit[j], state.gone[j]
+        if seen[j]:
             for i in range(3):
-                place[i] = middle[i]
+                own = 0.0
                 for k in range(3):
-                    place[i] += moved[i, k] * (state.place[j, k] - middle[k])
-            state.place[j] = place
+                    own += turn[k, i] * (place[k] - shift[k])
+                habit[i] += (own - habit[i]) * (step / (step + HABIT))
+            state.gone[j] = 0.0
+            continue
+        left = math.exp(-step * (2.0 * gone + step) / (2.0 * body.recall[j] ** 2))
+        for i in range(3):
+            usual, ahead = shift[i], middle[i]
+            for k in range(3):
+                usual += turn[i, k] * habit[k]
+                ahead += moved[i, k] * (place[k] - middle[k])
+            there[i] = usual + left * (ahead - usual)
+        state.place[j] = there
+        state.gone[j] = gone + step
 
 
 @njit(cache=True)
-def aligned(body, state, rules, seen, variance):
+def aligned(body, state, rules, seen, variance, step):
     """As `trunk_step`."""
     torso, template = body.torso, body.template
     size = len(torso)
@@ -161,7 +173,7 @@ def aligned(body, state, rules, seen, variance):
     shift = np.zeros(3)
     for i in range(3):
         shift[i] = middle[i] - (turn[i, 0] * centre[0] + turn[i, 1] * centre[1] + turn[i, 2] * centre[2])
-    carry_unseen(state, seen, turn, middle)
+    guess(body, state, seen, turn, middle, shift, step)
     joints, surer = state.place.copy(), variance.copy()
     for n in range(size):
         j, loose = torso[n], body.looseness[n] + TINY
@@ -172,6 +184,22 @@ def aligned(body, state, rules, seen, variance):
             joints[j, i] = rigid + share * (joints[j, i] - rigid)
         surer[j] = variance[j] * max(share, 1.0 / size)
     return joints, surer, turn, shift
+
+
+@njit(cache=True)
+def pool(body, joints, variance):
+    """As `pooled`, in place."""
+    one, count = body.one, len(joints)
+    total, mean = np.zeros(count), np.zeros((count, 3))
+    for j in range(count):
+        trust = 1.0 / (variance[j] + TINY)
+        total[one[j]] += trust
+        for k in range(3):
+            mean[one[j], k] += trust * joints[j, k]
+    for j in range(count):
+        variance[j] = 1.0 / total[one[j]]
+        for k in range(3):
+            joints[j, k] = mean[one[j], k] / total[one[j]]
 
 
 @njit(cache=True)
@@ -197,17 +225,17 @@ def solved(system, right):
 @njit(cache=True)
 def lengthened(body, state, rules, joints, variance):
     """As `limb_step`; `joints` are moved in place."""
-    bones, lengths = body.bones, body.lengths
+    bones, lengths = body.ends, body.lengths
     count = len(bones)
     along, spacing, excess = np.zeros((count, 3)), np.zeros(count), np.zeros(count)
     weight = np.ones(len(joints))
     top = variance.max()
-    if top > 0.0:
+    if top > TINY:
         for j in range(len(joints)):
             weight[j] = variance[j] / top + 1e-6
     way = np.zeros(count)
     for b in range(count):
-        child, total = bones[b, 1], 0.0
+        child, total = body.bones[b, 1], 0.0
         for k in range(3):
             total += (joints[child, k] - state.tracked[child, k]) ** 2
         way[b] = max(math.sqrt(total), rules.floor)
@@ -353,7 +381,12 @@ def frame_kernel(body, state, rules, joints, measured, step):
         for k in range(3):
             drift[k] += state.speed[j, k] / len(body.torso)
     seen, again, variance = filtered(state, rules, joints, measured, step, drift)
-    near, surer, trunk, shift = aligned(body, state, rules, seen, variance)
+    near, surer, trunk, shift = aligned(body, state, rules, seen, variance, step)
+    apart = True
+    for b in range(bones):
+        apart &= body.ends[b, 0] == body.bones[b, 0] and body.ends[b, 1] == body.bones[b, 1]
+    if not apart:
+        pool(body, near, surer)
     along, spacing, rounds = lengthened(body, state, rules, near, surer)
     m, delta, residual = np.zeros(bones), np.zeros(bones), np.zeros(count)
     tracked = np.zeros((count, 3))
@@ -367,7 +400,7 @@ def frame_kernel(body, state, rules, joints, measured, step):
         for k in range(3):
             tracked[child, k] = tracked[parent, k] + body.lengths[b] * along[b, k]
             way += (tracked[child, k] - state.tracked[child, k]) ** 2
-            said += (state.place[child, k] - state.place[parent, k]) ** 2
+            said += (state.place[body.ends[b, 1], k] - state.place[body.ends[b, 0], k]) ** 2
         delta[b] = abs(body.lengths[b] - math.sqrt(said))
         m[b] = delta[b] / max(math.sqrt(way), rules.floor)
     turns = rotated(body, state, rules, along, trunk, step)
