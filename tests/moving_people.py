@@ -58,7 +58,9 @@ class Person:
                 out[:, joint] = out[:, parent] + turns[parent].apply(np.tile(offset, (count, 1)))
         return out
 
-    def bvh(self, order: str = "ZYX", *, unit: float = 0.01, everywhere: bool = False, decimals: int = 9) -> str:
+    def bvh(
+        self, order: str = "ZYX", *, unit: float = 0.01, everywhere: bool = False, decimals: int = 9
+    ) -> str:
         """The same as a BVH file: rotation channels in that order, lengths in that unit [m]; everywhere: position
         channels on every joint; joints without children become end sites, but those that would turn."""
         lines = ["HIERARCHY"]
@@ -69,7 +71,9 @@ class Person:
         lines += [" ".join(f"{value:.{decimals}f}" for value in row) for row in rows]
         return "\n".join(lines) + "\n"
 
-    def _write(self, lines: list[str], columns: list, joint: int, depth: int, how: tuple[str, float, bool]) -> None:
+    def _write(
+        self, lines: list[str], columns: list, joint: int, depth: int, how: tuple[str, float, bool]
+    ) -> None:
         order, unit, everywhere = how
         pad, offset = "\t" * depth, np.array(OFFSETS[NAMES[joint]][1])
         shown = " ".join(f"{value:.9f}" for value in offset / unit)

@@ -88,7 +88,9 @@ def _points(name: str, value: object) -> np.ndarray:
         raise SimCoreError(f"{name}: shape {array.shape} – points (N, 3) are meant, one or more")
     if not np.isfinite(array).all():
         row = int(np.flatnonzero(~np.isfinite(array).all(1))[0])
-        raise SimCoreError(f"{name}: point {row} is not finite – leave it out, or give it weight 0 and a place")
+        raise SimCoreError(
+            f"{name}: point {row} is not finite – leave it out, or give it weight 0 and a place"
+        )
     return array
 
 

@@ -117,7 +117,9 @@ def _lengths(frames: np.ndarray, bones: np.ndarray) -> tuple[np.ndarray, float |
     if noise2 < 1e-8:  # less than a tenth of a millimetre: bones that are what they are
         return lengths, float(np.sqrt(noise2))
     squares = squares - 6.0 * noise2
-    return np.where(squares > SHORT**2 * noise2, np.sqrt(np.maximum(squares, 0.0)), 0.0), float(np.sqrt(noise2))
+    return np.where(squares > SHORT**2 * noise2, np.sqrt(np.maximum(squares, 0.0)), 0.0), float(
+        np.sqrt(noise2)
+    )
 
 
 def _trunk(frames: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
@@ -144,7 +146,9 @@ def _trunk(frames: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
     loose = (away**2).mean(2)
     if len(whole) < 8:
         return shape, np.full(frames.shape[1], 0.01**2)
-    own = np.quantile(loose, 0.9, axis=0) / 2.08  # of a chi-square of three degrees: a ninth in ten is 6.25 / 3
+    own = (
+        np.quantile(loose, 0.9, axis=0) / 2.08
+    )  # of a chi-square of three degrees: a ninth in ten is 6.25 / 3
     return shape, np.maximum(own - noise**2, (1e-4) ** 2)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sim_core.validation.arguments import ending, number, whole
@@ -57,16 +56,27 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(
-        "motion", type=ending(".bvh", ".npz", ".csv", ".json"), metavar="MOTION", help=".bvh, .npz, .csv, .json"
+        "motion",
+        type=ending(".bvh", ".npz", ".csv", ".json"),
+        metavar="MOTION",
+        help=".bvh, .npz, .csv, .json",
     )
     parser.add_argument(
-        "--noise", type=number(0, 1000, " mm"), default=0.0, metavar="MM", help="noise of every joint, an axis [mm]"
+        "--noise",
+        type=number(0, 1000, " mm"),
+        default=0.0,
+        metavar="MM",
+        help="noise of every joint, an axis [mm]",
     )
     parser.add_argument(
         "--dropout", type=number(0, 1), default=0.0, metavar="P", help="the share of joints that are not seen"
     )
     parser.add_argument(
-        "--outliers", type=number(0, 1), default=0.0, metavar="P", help="the share of joints measured 30 cm away"
+        "--outliers",
+        type=number(0, 1),
+        default=0.0,
+        metavar="P",
+        help="the share of joints measured 30 cm away",
     )
     parser.add_argument("--seed", type=whole(0, 2**32), default=0, metavar="N", help="of these three (0)")
     parser.add_argument("--filter", choices=FILTERS, help="kalman: for sensors; one-euro: for a viewer; none")
@@ -78,10 +88,15 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument("--mapping", metavar="NAME", help="cmu, mixamo, figure, default, or a file (.toml)")
     parser.add_argument(
-        "--unit", type=number(1e-9, 1e6, " m"), metavar="M", help="metres that a unit of the file's lengths is"
+        "--unit",
+        type=number(1e-9, 1e6, " m"),
+        metavar="M",
+        help="metres that a unit of the file's lengths is",
     )
     parser.add_argument("--out", type=ending(".npz"), metavar="FILE.npz", help="write what was tracked")
-    parser.add_argument("--plot", type=ending(".png"), metavar="FILE.png", help="draw errors, M and lost points over time")
+    parser.add_argument(
+        "--plot", type=ending(".png"), metavar="FILE.png", help="draw errors, M and lost points over time"
+    )
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 

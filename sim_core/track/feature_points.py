@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.track.skeletons import TrackedSkeleton
 from sim_core.track.settings import MOST_LEVEL
+from sim_core.track.skeletons import TrackedSkeleton
 from sim_core.validation import integer, points
 
 __all__ = ["Binding", "FeaturePoints", "feature_points"]
@@ -17,7 +17,7 @@ __all__ = ["Binding", "FeaturePoints", "feature_points"]
 @dataclass(frozen=True)
 class FeaturePoints:
     """X = W J. matrix (P, J) float64, W; torso (P,) bool: X1, the others are X2; ends (P, 2) the joints that a point
-    lies between, twice the same for a joint; bone (P,) the bone it goes with, whose rotation it has, -1: the trunk's."""
+    lies between, twice the same for a joint; bone (P,) the bone whose rotation it has, -1: the trunk's."""
 
     matrix: np.ndarray
     torso: np.ndarray
@@ -72,7 +72,9 @@ class Binding:
         """
         body, worn = points("body", body), points("worn", worn)
         if body.shape != worn.shape:
-            raise SimCoreError(f"worn: {len(worn)} points – give one for each of the {len(body)} feature points")
+            raise SimCoreError(
+                f"worn: {len(worn)} points – give one for each of the {len(body)} feature points"
+            )
         return Binding(worn - body)
 
     def carried(self, body: np.ndarray, turns: np.ndarray) -> np.ndarray:

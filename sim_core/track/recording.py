@@ -39,9 +39,13 @@ class Recording:
             raise SimCoreError(f"time: shape {time.shape} – seconds (T,) are meant, one frame or more")
         for name, array in (("joints", joints), ("truth", joints if self.truth is None else self.truth)):
             if array.shape != wanted:
-                raise SimCoreError(f"{name}: shape {array.shape} – {wanted} is meant, of the {self.skeleton.name}")
+                raise SimCoreError(
+                    f"{name}: shape {array.shape} – {wanted} is meant, of the {self.skeleton.name}"
+                )
             if (np.abs(array[np.isfinite(array)]) > FURTHEST).any():
-                raise SimCoreError(f"{name}: beyond {FURTHEST:g} m – metres are meant; give the unit of the file")
+                raise SimCoreError(
+                    f"{name}: beyond {FURTHEST:g} m – metres are meant; give the unit of the file"
+                )
 
     def disturbed(self, disturbance: Disturbance) -> Recording:
         """As a worse sensor would have recorded it, every joint by itself."""

@@ -22,7 +22,7 @@ class TrackedSkeleton:
 
     @cached_property
     def bones(self) -> np.ndarray:
-        """Bones (B, 2) int64, parent and child of each, from the trunk outwards: a bone comes after those it hangs on."""
+        """Bones (B, 2) int64, parent and child of each, outwards: a bone comes after those it hangs on."""
         depth = [0] * len(self.joints)
         for joint in self._outwards():
             parent = self.parents[joint]
@@ -76,7 +76,15 @@ _KINECT = {
     "HandTipRight": "HandRight",
     "ThumbRight": "WristRight",
 }
-_KINECT_TRUNK = ("SpineBase", "SpineMid", "SpineShoulder", "ShoulderLeft", "ShoulderRight", "HipLeft", "HipRight")
+_KINECT_TRUNK = (
+    "SpineBase",
+    "SpineMid",
+    "SpineShoulder",
+    "ShoulderLeft",
+    "ShoulderRight",
+    "HipLeft",
+    "HipRight",
+)
 _FIGURE_TRUNK = ("pelvis", "spine_1", "spine_2", "spine_3")
 _FIGURE_TRUNK += tuple(f"{name}_{side}" for name in ("clavicle", "shoulder", "hip") for side in "lr")
 

@@ -13,7 +13,7 @@ from sim_core.track.feature_points import FeaturePoints, feature_points
 from sim_core.track.recording import Recording
 from sim_core.track.settings import TrackSettings
 from sim_core.track.skeletons import KINECT, TrackedSkeleton
-from sim_core.validation import numeric_array
+from sim_core.validation import FURTHEST, numeric_array
 
 __all__ = ["Tracked", "TrackedFrame", "Tracker", "track"]
 
@@ -53,8 +53,8 @@ class TrackedFrame:
 
 @dataclass(frozen=True)
 class Tracked:
-    """A recording followed: the arrays of `TrackedFrame`, frame by frame (T, ...), and truth (T, P, 3) [m] of the points
-    where it is known (NaN where not, None: nowhere)."""
+    """A recording followed: the arrays of `TrackedFrame`, frame by frame (T, ...), and truth (T, P, 3) [m] of the
+    points where it is known (NaN where not, None: nowhere)."""
 
     calibration: Calibration
     feature_points: FeaturePoints
@@ -124,7 +124,7 @@ class Tracker:
             raise SimCoreError(
                 f"joints: shape {given.shape} – ({len(self.skeleton.joints)}, 3) is meant, of the {self.skeleton.name}"
             )
-        measured = np.isfinite(given).all(1) & (np.abs(given) < 1e6).all(1)
+        measured = np.asarray((np.abs(given) < FURTHEST).all(1))  # NaN is not
         given[~measured] = 0.0
         begin = self._state is None
         step, late, gap = self._clocked(float(time), begin)
@@ -132,7 +132,7 @@ class Tracker:
             self._calibrated(given, measured)
         self._fresh = FRESH if begin or gap else self._fresh - 1
         if self._fresh > 0 and self._rules.kind == KALMAN:
-            measured &= ~self._implausible(given, measured)
+            measured = measured & ~self._implausible(given, measured)
         if begin:
             self._begin(given, measured)
         state = self._state
@@ -232,7 +232,9 @@ class Tracker:
             if not told.any():
                 return doubted
             count = np.bincount(bones[both].ravel(), minlength=len(given))
-            mean = np.bincount(bones[both].ravel(), np.repeat(excess[both], 2), len(given)) / np.maximum(count, 1)
+            mean = np.bincount(bones[both].ravel(), np.repeat(excess[both], 2), len(given)) / np.maximum(
+                count, 1
+            )
             mean[np.setdiff1d(np.arange(len(given)), bones[told])] = 0.0
             doubted[int(np.argmax(mean))] = True
 
@@ -282,7 +284,8 @@ def track(
         calibration = calibrate(recording.skeleton, recording.joints, recording.step)
     tracker = Tracker(calibration, settings)
     frames = [
-        tracker.update(joints, float(time)) for joints, time in zip(recording.joints, recording.time, strict=True)
+        tracker.update(joints, float(time))
+        for joints, time in zip(recording.joints, recording.time, strict=True)
     ]
     points = tracker.feature_points
     truth = None if recording.truth is None else points.of(recording.truth)
@@ -290,5 +293,8 @@ def track(
         calibration,
         points,
         truth=truth,
-        **{name: np.array([getattr(one, name) for one in frames]) for name in TrackedFrame.__dataclass_fields__},
+        **{
+            name: np.array([getattr(one, name) for one in frames])
+            for name in TrackedFrame.__dataclass_fields__
+        },
     )

@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 from moving_people import person
 
-from sim_core.track import KINECT, Disturbance, Recording, Tracked, TrackSettings, feature_points, read_recording, track
+from sim_core.track import (
+    KINECT,
+    Disturbance,
+    Recording,
+    Tracked,
+    TrackSettings,
+    feature_points,
+    read_recording,
+    track,
+)
 
 WALK = Path(__file__).parents[2].parent / "shared" / "data" / "motion" / "cmu_12_01_walk.bvh"
 ARM = [KINECT.joints.index(f"{name}Left") for name in ("Elbow", "Wrist", "Hand", "HandTip", "Thumb")]
@@ -68,7 +77,10 @@ def test_noise_of_10_mm_an_axis_leaves_12(clip: Recording, seed: int) -> None:
     assert tracked.calibration.noise == pytest.approx(NOISE, rel=0.15)
     assert tracked.bone_error() <= 1e-9
     unfiltered = track(clip.disturbed(Disturbance(NOISE, seed=seed)), TrackSettings(filter="none"))
-    raw = np.linalg.norm(feature_points(KINECT).of(clip.disturbed(Disturbance(NOISE, seed=seed)).joints) - tracked.truth, axis=2)
+    raw = np.linalg.norm(
+        feature_points(KINECT).of(clip.disturbed(Disturbance(NOISE, seed=seed)).joints) - tracked.truth,
+        axis=2,
+    )
     assert rmse(tracked) < rmse(unfiltered) < 1e3 * np.sqrt((raw**2).mean())
 
 
@@ -102,7 +114,9 @@ def test_half_a_second_without_an_arm_is_told_and_bounded(clip: Recording, start
 def test_dropout_is_bridged(clip: Recording) -> None:
     tracked = track(clip.disturbed(Disturbance(NOISE, dropout=0.02, seed=3)))
     assert rmse(tracked) <= 12.5
-    assert 0.02 < tracked.lost[:, :25].mean() < 0.04 or tracked.lost[:, :25].mean() == pytest.approx(0.02, abs=0.005)
+    assert 0.02 < tracked.lost[:, :25].mean() < 0.04 or tracked.lost[:, :25].mean() == pytest.approx(
+        0.02, abs=0.005
+    )
 
 
 @pytest.mark.parametrize("rate", [5.0, 60.0, 120.0])

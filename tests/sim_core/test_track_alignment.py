@@ -118,7 +118,9 @@ def test_the_twist_of_collinear_points_stays_with_a_prior() -> None:
     turns, before, fits, free = [], np.eye(3), [], []
     loose = np.eye(3)
     for frame in range(600):
-        swing = Rotation.from_euler("ZX", [40.0 * np.sin(frame / 12.0), 25.0 * np.sin(frame / 19.0)], degrees=True)
+        swing = Rotation.from_euler(
+            "ZX", [40.0 * np.sin(frame / 12.0), 25.0 * np.sin(frame / 19.0)], degrees=True
+        )
         target = swing.apply(rod) + 0.001 * random.standard_normal(rod.shape)
         found = align(target, rod, previous=before)
         direction = found.rotation @ along

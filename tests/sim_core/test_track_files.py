@@ -1,4 +1,4 @@
-"""Motion files: any BVH hierarchy as scipy moves it, mapped to a Kinect's joints; arrays and streams; defects by line."""
+"""Motion files: any BVH hierarchy as scipy moves it, mapped to a Kinect's joints; arrays, streams, defects by line."""
 
 from __future__ import annotations
 
@@ -76,7 +76,12 @@ def test_end_sites_turn_with_their_joint(tmp_path: Path) -> None:
     [
         ("HIERARCHY", "HIERARCHIE", (1, 1), "HIERARCHY should stand"),
         ("  OFFSET 0 0 0", "  OFFSET 0 0", (5, 3), "the offset's z is meant"),
-        ("Zrotation Xrotation Yrotation\n  JOINT", "Zrotation Wrotation Yrotation\n  JOINT", (5, 54), "Wrotation"),
+        (
+            "Zrotation Xrotation Yrotation\n  JOINT",
+            "Zrotation Wrotation Yrotation\n  JOINT",
+            (5, 54),
+            "Wrotation",
+        ),
         ("CHANNELS 3 Zrotation Xrotation", "CHANNELS 3 Zrotation Zrotation", (9, 26), "a second time"),
         ("CHANNELS 3 Z", "CHANNELS x Z", (9, 14), "the number of channels"),
         ("JOINT Chest", "JOINT", (6, 8), "name of a joint"),
@@ -90,7 +95,9 @@ def test_end_sites_turn_with_their_joint(tmp_path: Path) -> None:
         ("0 91 0 0 0 0 90 0 0\n", "", (19, 19), "1 frames of numbers – 'Frames:' says 2"),
     ],
 )
-def test_defects_are_told_with_line_and_column(tmp_path: Path, old: str, new: str, place: tuple, told: str) -> None:
+def test_defects_are_told_with_line_and_column(
+    tmp_path: Path, old: str, new: str, place: tuple, told: str
+) -> None:
     assert old in SMALL
     path = written(tmp_path, SMALL.replace(old, new, 1))
     with pytest.raises(FileProblem) as caught:
@@ -104,12 +111,12 @@ def test_defects_are_told_with_line_and_column(tmp_path: Path, old: str, new: st
 @pytest.mark.parametrize("cut", range(0, len(SMALL), 17))
 def test_a_file_cut_anywhere_is_refused_in_one_line(tmp_path: Path, cut: int) -> None:
     path = written(tmp_path, SMALL[:cut] or "\n")
-    try:
+    if len(SMALL) - cut < 3:  # the last digit's line end, and the last digit but one
         read_bvh(path)
-    except FileProblem as problem:
-        assert str(problem).count("\n") == 0
-    else:
-        assert len(SMALL) - cut < 3
+        return
+    with pytest.raises(FileProblem) as caught:
+        read_bvh(path)
+    assert "\n" not in str(caught.value)
 
 
 def test_any_hierarchy_is_mapped_and_what_is_left_out_is_named(tmp_path: Path) -> None:
@@ -153,7 +160,9 @@ def test_every_mapping_names_joints_of_a_kinect_and_is_found_by_its_marks() -> N
     assert load_mapping("figure").fits(JOINTS)
     assert not load_mapping("default").fits(JOINTS)
     missing = set(KINECT.joints) - set(load_mapping("figure").joints)
-    assert missing == {"Head"} | {f"{part}{side}" for part in ("Hand", "HandTip", "Thumb") for side in ("Left", "Right")}
+    assert missing == {"Head"} | {
+        f"{part}{side}" for part in ("Hand", "HandTip", "Thumb") for side in ("Left", "Right")
+    }
 
 
 @pytest.mark.parametrize(
@@ -185,7 +194,9 @@ def test_arrays_are_read_by_the_names_of_joints(tmp_path: Path) -> None:
     np.savez(path, joints=joints[:, order], joint_names=names, time=np.arange(4) / 30.0)
     recording = read_recording(path)
     assert np.array_equal(recording.joints, joints, equal_nan=True)
-    np.savez(path, joints=random.normal(size=(4, 21, 3)), joint_names=np.array(JOINTS), time=np.arange(4) / 30.0)
+    np.savez(
+        path, joints=random.normal(size=(4, 21, 3)), joint_names=np.array(JOINTS), time=np.arange(4) / 30.0
+    )
     assert "Head" in read_recording(path).left_out
     for wrong in ({"joints": joints[0]}, {"time": np.arange(3)}, {"joint_names": names[:5]}):
         np.savez(path, **({"joints": joints, "joint_names": names, "time": np.arange(4)} | wrong))

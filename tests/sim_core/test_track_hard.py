@@ -60,7 +60,7 @@ def test_frame_by_frame_and_at_once_give_the_same_bits(tmp_path: Path, name: str
     clip = recorded("dance", tmp_path).disturbed(Disturbance(0.01, 0.03, 0.02, seed=4))
     settings = TrackSettings(filter=name, compiled=compiled)
     whole = track(clip, settings)
-    tracker = Tracker(calibrate(KINECT, clip.joints), settings)
+    tracker = Tracker(calibrate(KINECT, clip.joints, clip.step), settings)
     for number, (joints, time) in enumerate(zip(clip.joints, clip.time, strict=True)):
         one = tracker.update(joints, float(time))
         for field in TrackedFrame.__dataclass_fields__:
@@ -124,7 +124,9 @@ def test_exchanged_sides_are_put_back_and_told(tmp_path: Path, frames: int) -> N
     joints = noisy(clip).joints
     twins = [KINECT.joints.index(_other(name)) for name in KINECT.joints]
     joints[50 : 50 + frames] = joints[50 : 50 + frames][:, twins]
-    tracked = track(Recording(KINECT, clip.time, joints, clip.truth), calibration=calibrate(KINECT, clip.joints))
+    tracked = track(
+        Recording(KINECT, clip.time, joints, clip.truth), calibration=calibrate(KINECT, clip.joints)
+    )
     sound(tracked)
     assert tracked.swapped[50 : 50 + frames].all()
     assert tracked.swapped.sum() == frames
@@ -168,7 +170,9 @@ def test_clocks_that_stand_or_run_back_are_told(tmp_path: Path, name: str) -> No
     time[60:] -= 1.0
     time[80] = np.nan
     tracked = track(
-        Recording(KINECT, time, noisy(clip).joints, clip.truth), TrackSettings(filter=name), calibrate(KINECT, clip.joints)
+        Recording(KINECT, time, noisy(clip).joints, clip.truth),
+        TrackSettings(filter=name),
+        calibrate(KINECT, clip.joints),
     )
     sound(tracked)
     assert set(np.flatnonzero(tracked.clock)) == {40, 60, 80}
@@ -288,7 +292,11 @@ def test_rotations_of_bones_point_where_bones_do_and_do_not_twist(tmp_path: Path
     assert np.abs(turned - along).max() <= 1e-9
     unit = along / np.linalg.norm(along, axis=2, keepdims=True)
     before, now = tracked.rotations[:-1], tracked.rotations[1:]
-    vector = before[..., :1] * now[..., 1:] - now[..., :1] * before[..., 1:] - np.cross(now[..., 1:], before[..., 1:])
+    vector = (
+        before[..., :1] * now[..., 1:]
+        - now[..., :1] * before[..., 1:]
+        - np.cross(now[..., 1:], before[..., 1:])
+    )
     real = (before * now).sum(2)
     twist = 2.0 * np.degrees(np.abs(np.arctan2((vector * unit[1:]).sum(2), real)))
     twist = np.minimum(twist, 360.0 - twist)

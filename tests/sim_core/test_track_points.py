@@ -41,7 +41,9 @@ def test_each_level_halves_every_bone(level: int, count: int) -> None:
         assert (~points.torso).sum() == 72
     for bone, (parent, child) in enumerate(KINECT.bones):
         inner = found[:, (points.bone == bone) & (np.arange(count) >= 25)]
-        steps = np.diff(np.concatenate([joints[:, parent, None], inner, joints[:, child, None]], axis=1), axis=1)
+        steps = np.diff(
+            np.concatenate([joints[:, parent, None], inner, joints[:, child, None]], axis=1), axis=1
+        )
         assert np.allclose(steps, (joints[:, child] - joints[:, parent])[:, None] / 2**level, atol=1e-12)
 
 

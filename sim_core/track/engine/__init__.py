@@ -1,8 +1,22 @@
 """One frame of tracking in arrays, as numpy and as compiled loops."""
 
-from sim_core.track.engine.frames import FASTEST, KALMAN, NONE, ONE_EURO, Body, Frame, Rules, State, frame_step, kabsch
+from sim_core.track.engine.frames import frame_step
+from sim_core.track.engine.rotations import kabsch
+from sim_core.track.engine.values import FASTEST, KALMAN, NONE, ONE_EURO, Body, Frame, Rules, State
 
-__all__ = ["FASTEST", "KALMAN", "NONE", "ONE_EURO", "Body", "Frame", "Rules", "State", "compiled_step", "frame_step", "kabsch"]
+__all__ = [
+    "FASTEST",
+    "KALMAN",
+    "NONE",
+    "ONE_EURO",
+    "Body",
+    "Frame",
+    "Rules",
+    "State",
+    "compiled_step",
+    "frame_step",
+    "kabsch",
+]
 
 
 def compiled_step():

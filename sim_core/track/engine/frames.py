@@ -1,119 +1,32 @@
 """One frame of tracking, in arrays: filter, global alignment of the trunk, limbs under their bones' lengths, rotations.
 
-This is the numpy text of it; `kernels.py` holds the same steps as compiled loops, which give the same numbers to rounding
-five times as fast.
+This is the numpy text of it; `kernels.py` holds the same steps as compiled loops, which give the same numbers to
+rounding, several times as fast.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["KALMAN", "NONE", "ONE_EURO", "Body", "Rules", "State", "FASTEST", "FAR", "HABIT", "NEAR", "Frame", "HALF", "TINY", "frame_step", "kabsch"]
+from sim_core.track.engine.rotations import arcs, column, kabsch, product, quaternion_of, square, turned
+from sim_core.track.engine.values import (
+    FAR,
+    FASTEST,
+    HABIT,
+    HALF,
+    KALMAN,
+    NEAR,
+    ONE_EURO,
+    TINY,
+    Body,
+    Frame,
+    Rules,
+    State,
+)
 
-NONE, KALMAN, ONE_EURO = 0, 1, 2
-NEAR = 0.02  # [m] that a joint may always be off: five of them are no outlier
-HABIT = 3.0  # [s] over which it is learnt where a joint mostly is
-FAR = 0.05  # [m] of the trust in a place that nothing was seen of, for filters that keep none themselves
-TINY = 1e-12
-
-
-class Body(NamedTuple):
-    """Who is followed, as calibrated. bones (B, 2) parent and child, outwards; ends (B, 2): the same with joints that
-    lie in one place taken for one, whose number each has in `one` (J,); lengths (B,) [m]; directions (B, 3) of
-    the bones at rest, in the trunk's frame; torso (K,) joints; template (K, 3) [m] their places at rest about their
-    mean; looseness (K,) [m2]: how much each moves within the trunk, a variance an axis; incidence (J, B): -1 at a
-    bone's first end, +1 at the other; paths (J, B): 1 for the bones that lead from the root to a joint;
-    recall (J,) [s]: in which an unseen joint comes to where it mostly is."""
-
-    bones: np.ndarray
-    ends: np.ndarray
-    one: np.ndarray
-    lengths: np.ndarray
-    directions: np.ndarray
-    torso: np.ndarray
-    template: np.ndarray
-    looseness: np.ndarray
-    incidence: np.ndarray
-    paths: np.ndarray
-    recall: np.ndarray
-
-
-class State(NamedTuple):
-    """What goes on from frame to frame, changed in place. place, speed (J, 3) [m], [m/s] of the filter; spread (J, 3):
-    its variances of place, both and speed; misses (J,): rejected in a row; bound (J,) [m2]: the variance that the gate
-    went by before; gone (J,) [s]: not seen for so long; habit (J, 3) [m]: where a joint mostly is, in the trunk's frame;
-    tracked (J, 3) [m] after the last frame;
-    turns (B, 4): rotations of the bones from rest, quaternions with the real part first; trunk (3, 3) the trunk's."""
-
-    place: np.ndarray
-    speed: np.ndarray
-    spread: np.ndarray
-    misses: np.ndarray
-    bound: np.ndarray
-    gone: np.ndarray
-    habit: np.ndarray
-    tracked: np.ndarray
-    turns: np.ndarray
-    trunk: np.ndarray
-
-
-class Rules(NamedTuple):
-    """What a filter and the local step go by; see `TrackSettings`, where each is told with its unit."""
-
-    kind: int
-    noise: float
-    agility: float
-    gate: float
-    patience: int
-    fading: float
-    cutoff: float
-    cutoff_slope: float
-    m0: float
-    floor: float
-    iterations: int
-    prior: float
-    untwist: float
-
-
-class Frame(NamedTuple):
-    """What a frame gave. joints (J, 3) [m]; seen (J,) bool: measured and accepted; again (J,) bool: taken up anew;
-    turns (B, 4); trunk (3, 3); shift (3,) [m]: A = R B + T with B about its mean; m, delta (B,) [1], [m];
-    residual (J,) [m] between tracked and filtered joints; iterations; flips."""
-
-    joints: np.ndarray
-    seen: np.ndarray
-    again: np.ndarray
-    turns: np.ndarray
-    trunk: np.ndarray
-    shift: np.ndarray
-    m: np.ndarray
-    delta: np.ndarray
-    residual: np.ndarray
-    iterations: int
-    flips: int
-
-
-def square(vectors):
-    """Squared lengths (N,) of vectors (N, 3)."""
-    return vectors[:, 0] ** 2 + vectors[:, 1] ** 2 + vectors[:, 2] ** 2
-
-
-def column(values):
-    """Values (N,) as a column (N, 1) that goes beside vectors."""
-    return values.reshape(values.size, 1)
-
-
-def kabsch(covariance):
-    """The rotation (3, 3) that a covariance H (3, 3) = sum w b a' asks for, never a mirror image (Eq. 13-14)."""
-    u, _, vh = np.linalg.svd(covariance)
-    turn = np.dot(vh.T, u.T)
-    if np.linalg.det(turn) < 0.0:
-        vh[2] = -vh[2]
-        turn = np.dot(vh.T, u.T)
-    return turn
+__all__ = ["frame_step"]
 
 
 def kalman(state, rules, joints, measured, step, drift):
@@ -127,7 +40,9 @@ def kalman(state, rules, joints, measured, step, drift):
     ahead = state.place + step * state.speed
     reach = joints - ahead
     need = place + noise
-    state.bound[:] = np.where(state.misses > 0, state.bound, np.maximum(need, NEAR**2))  # doubt does not open the gate to the next outlier
+    state.bound[:] = np.where(
+        state.misses > 0, state.bound, np.maximum(need, NEAR**2)
+    )  # doubt does not open the gate to the next outlier
     inside = measured & (square(reach) <= rules.gate**2 * state.bound)
     misses = np.where(inside, 0, state.misses + measured)
     again = misses >= rules.patience
@@ -149,9 +64,6 @@ def kalman(state, rules, joints, measured, step, drift):
     return inside | again, again, spread[:, 0].copy()
 
 
-FASTEST = 2.5  # [m/s] a joint that was just taken up may be moving at
-
-
 def one_euro(state, rules, joints, measured, step, drift):
     """One-Euro filter (Casiez, Roussel and Vogel 2012): the faster a joint, the less it is smoothed; no gate."""
     turn = 2.0 * math.pi * step
@@ -164,7 +76,11 @@ def one_euro(state, rules, joints, measured, step, drift):
     state.place[:] = np.where(
         column(measured), state.place + column(share) * (joints - state.place), state.place + step * drift
     )
-    return measured.copy(), np.zeros(len(measured), np.bool_), np.where(measured, rules.noise**2 * share, FAR**2)
+    return (
+        measured.copy(),
+        np.zeros(len(measured), np.bool_),
+        np.where(measured, rules.noise**2 * share, FAR**2),
+    )
 
 
 def unfiltered(state, rules, joints, measured, step, drift):
@@ -179,7 +95,9 @@ def unfiltered(state, rules, joints, measured, step, drift):
 def guess_unseen(body, state, seen, turn, middle, shift, step):
     """What is not seen turns with the trunk, and comes to where it mostly is about the trunk, as swinging limbs do:
     after a time t the share exp(-t2 / 2 recall2) of its way from there is left, a swing's own correlation."""
-    state.habit[seen] += (np.dot(state.place[seen] - shift, turn) - state.habit[seen]) * (step / (step + HABIT))
+    state.habit[seen] += (np.dot(state.place[seen] - shift, turn) - state.habit[seen]) * (
+        step / (step + HABIT)
+    )
     gone = state.gone
     if seen.all():
         gone[:] = 0.0
@@ -256,75 +174,8 @@ def limb_step(body, state, rules, joints, variance):
     return joints, along, spacing, rounds
 
 
-def product(a, b):
-    """Products (N, 4) of quaternions (N, 4): the rotations b, then a."""
-    aw, ax, ay, az = a[:, 0], a[:, 1], a[:, 2], a[:, 3]
-    bw, bx, by, bz = b[:, 0], b[:, 1], b[:, 2], b[:, 3]
-    out = np.zeros((len(b), 4))
-    out[:, 0] = aw * bw - ax * bx - ay * by - az * bz
-    out[:, 1] = aw * bx + ax * bw + ay * bz - az * by
-    out[:, 2] = aw * by - ax * bz + ay * bw + az * bx
-    out[:, 3] = aw * bz + ax * by - ay * bx + az * bw
-    return out
-
-
-def turned(q, v):
-    """Vectors (N, 3) turned by unit quaternions (N, 4)."""
-    w, x, y, z = q[:, 0], q[:, 1], q[:, 2], q[:, 3]
-    a, b, c = v[:, 0], v[:, 1], v[:, 2]
-    p = 2.0 * (y * c - z * b)
-    r = 2.0 * (z * a - x * c)
-    s = 2.0 * (x * b - y * a)
-    out = np.zeros((len(v), 3))
-    out[:, 0] = a + w * p + y * s - z * r
-    out[:, 1] = b + w * r + z * p - x * s
-    out[:, 2] = c + w * s + x * r - y * p
-    return out
-
-
-def arcs(a, b):
-    """The shortest rotations (N, 4) from unit vectors a to unit vectors b, and 1 + cos of their angles (N,)."""
-    out = np.zeros((len(a), 4))
-    near = 1.0 + a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2]
-    out[:, 0] = near
-    out[:, 1] = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
-    out[:, 2] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
-    out[:, 3] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    if near.min() < 1e-8:
-        for k in np.flatnonzero(near < 1e-8):  # half a turn: about any axis across
-            x, y, z = a[k, 0], a[k, 1], a[k, 2]
-            out[k, 0] = 0.0
-            if abs(x) < 0.7:
-                out[k, 1], out[k, 2], out[k, 3] = 0.0, z, -y
-            else:
-                out[k, 1], out[k, 2], out[k, 3] = -z, 0.0, x
-    return out / column(np.sqrt((out * out).sum(axis=1))), near
-
-
-def quaternion_of(turn):
-    """The unit quaternion (1, 4) of a rotation (3, 3), by its greatest component."""
-    trace = turn[0, 0] + turn[1, 1] + turn[2, 2]
-    out = np.zeros((1, 4))
-    best = 0
-    if trace < 0.0 or trace < max(turn[0, 0], turn[1, 1], turn[2, 2]):
-        best = 1
-        for k in range(1, 3):
-            if turn[k, k] > turn[best - 1, best - 1]:
-                best = k + 1
-    if best == 0:
-        out[0, 0] = 1.0 + trace
-        out[0, 1], out[0, 2], out[0, 3] = turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]
-    else:
-        i = best - 1
-        j, k = (i + 1) % 3, (i + 2) % 3
-        out[0, 0] = turn[k, j] - turn[j, k]
-        out[0, i + 1] = 1.0 + turn[i, i] - turn[j, j] - turn[k, k]
-        out[0, j + 1], out[0, k + 1] = turn[i, j] + turn[j, i], turn[i, k] + turn[k, i]
-    return out / math.sqrt((out * out).sum())
-
-
 def turn_step(body, state, rules, along, trunk, step):
-    """Rotations (B, 4) of the bones from rest: as before and with the trunk, then the shortest way to where each points.
+    """Rotations (B, 4) of the bones from rest: as before and with the trunk, then the shortest way to where each goes.
 
     A bone's points are collinear and say nothing of its twist: that is the last one, carried along, and wanders back
     to the twist of the shortest way from the trunk; the less, the nearer that way is to half a turn.
@@ -342,7 +193,9 @@ def turn_step(body, state, rules, along, trunk, step):
     return turns / column(np.sqrt((turns * turns).sum(axis=1)))
 
 
-def frame_step(body: Body, state: State, rules: Rules, joints: np.ndarray, measured: np.ndarray, step: float) -> Frame:
+def frame_step(
+    body: Body, state: State, rules: Rules, joints: np.ndarray, measured: np.ndarray, step: float
+) -> Frame:
     """Follows one frame: joints (J, 3) [m], finite everywhere, measured (J,) bool, step [s] since the last; `state`
     goes on."""
     drift = state.speed[body.torso].sum(axis=0) / len(body.torso)
@@ -373,6 +226,3 @@ def frame_step(body: Body, state: State, rules: Rules, joints: np.ndarray, measu
     state.trunk[:] = trunk
     residual = np.sqrt(square(tracked - state.place))
     return Frame(tracked, seen, again, turns, trunk, shift, m, delta, residual, rounds, flips)
-
-
-HALF = math.sqrt(0.5)  # the cosine of half a right angle: a quaternion's product for a turn of 90 degrees

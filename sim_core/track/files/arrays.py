@@ -33,7 +33,12 @@ def read_arrays(path: Path, mapping: JointMapping | None = None, unit: float | N
         joints, time = found["joints"].astype(float), np.atleast_1d(found["time"]).astype(float)
     except (TypeError, ValueError) as error:
         raise FileProblem(f"{path}: joints or time: no numbers – {REMEDY}") from error
-    if joints.ndim != 3 or joints.shape[1:] != (len(names), 3) or time.shape != joints.shape[:1] or not len(time):
+    if (
+        joints.ndim != 3
+        or joints.shape[1:] != (len(names), 3)
+        or time.shape != joints.shape[:1]
+        or not len(time)
+    ):
         shapes = f"joints {joints.shape}, joint_names ({len(names)},), time {time.shape}"
         raise FileProblem(f"{path}: {shapes} – {REMEDY}")
     joints[~np.isfinite(joints)] = np.nan

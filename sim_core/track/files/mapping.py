@@ -1,4 +1,4 @@
-"""Which joints of a source are which of a Kinect's: mapping files (TOML), by name or found by what they are marked with."""
+"""Which joints of a source are which of a Kinect's: mapping files (TOML), by name or found by their marks."""
 
 from __future__ import annotations
 
@@ -68,13 +68,17 @@ class JointMapping:
                 out[:, joint] = places[:, sources].mean(1)
             elif joint == KINECT.root:
                 out[:, joint] = places[:, 0]
-                told.append(f"{KINECT.joints[joint]} is {shown(names[0])}, the first joint: none has a name for it")
+                told.append(
+                    f"{KINECT.joints[joint]} is {shown(names[0])}, the first joint: none has a name for it"
+                )
             else:
                 out[:, joint] = out[:, KINECT.parents[joint]]
                 left_out.append(KINECT.joints[joint])
         scale = unit if unit is not None else self.unit if self.unit is not None else unit_of(out)
         if left_out:
-            told.append(f"mapping {self.name!r} finds no {', '.join(left_out)}: each lies at the joint it hangs on")
+            told.append(
+                f"mapping {self.name!r} finds no {', '.join(left_out)}: each lies at the joint it hangs on"
+            )
         joints = out * scale
         return Recording(KINECT, time, joints, joints.copy(), tuple(left_out), tuple(told))
 

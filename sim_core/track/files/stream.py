@@ -43,14 +43,18 @@ class _Row:
         value = self.cells["joint"]
         found = _JOINTS.get(str(value).strip().lower())
         if found is None:
-            raise self.problem("joint", f"{shown(value)} – a Kinect's joint is meant, such as SpineBase or 0 to 24")
+            raise self.problem(
+                "joint", f"{shown(value)} – a Kinect's joint is meant, such as SpineBase or 0 to 24"
+            )
         return found
 
     def seen(self) -> bool:
         value = self.cells.get("state", "")
         found = STATES.get(str(value).strip().lower().replace(" ", "").replace("_", ""))
         if found is None:
-            raise self.problem("state", f"{shown(value)} – tracked, inferred or nottracked (2, 1, 0) is meant")
+            raise self.problem(
+                "state", f"{shown(value)} – tracked, inferred or nottracked (2, 1, 0) is meant"
+            )
         return found > 0
 
 
@@ -67,7 +71,9 @@ def read_json_stream(path: Path) -> Recording:
     """The frames of a JSON stream: an array of {"time", "joint", "x", "y", "z", "state"}."""
     value = read_json(path, WHAT)
     if not isinstance(value, list):
-        raise FileProblem(f"{path}: {shown(value)} – an array of rows is meant, {{time, joint, x, y, z, state}}")
+        raise FileProblem(
+            f"{path}: {shown(value)} – an array of rows is meant, {{time, joint, x, y, z, state}}"
+        )
     return _recording(path, _json_rows(path, value))
 
 
