@@ -47,6 +47,7 @@ WALK = ROOT.parent / "shared" / "data" / "motion" / "cmu_12_01_walk.bvh"
 NOISE = 0.01  # [m] an axis
 LEVELS, THRESHOLDS = (0, 1, 2, 3, 4), (0.01, 0.1, 0.5, 2.0, 1e9)
 LIMITS = {"clean": 3.0, "noise": 12.0, "outliers": 12.5}  # [mm]
+TICKS = (20, 50, 100, 200, 500)  # [us]
 COMPILED, PLAIN = 0.25e-3, 1e-3  # [s] a frame of 97 points
 
 
@@ -244,6 +245,8 @@ def plot(figures: dict, path: Path) -> None:
                 axes.plot(*there, marker=marker, linestyle=style, color=colour, label=label, fillstyle="none")
         axes.set_title(name, fontsize="medium")
         axes.set_xscale("log")
+        axes.minorticks_off()
+        axes.set_xticks(TICKS, [f"{tick}" for tick in TICKS])
         axes.set_xlabel("CPU time a frame [us]")
     axes.legend(title="o levels 0-4, x M0,\n□ numpy", frameon=False, fontsize="small")
     figure.supylabel("error, RMS [mm], 10 mm noise an axis", fontsize="medium")
