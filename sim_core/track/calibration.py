@@ -15,6 +15,8 @@ __all__ = ["Calibration", "calibrate"]
 
 ROUNDS = 8  # of the trunk's mean shape
 QUARTER, USUAL_RECALL = 0.25, 0.3  # [s]
+UNKNOWN_BEND, LEAST_BEND = 0.01, 1e-4  # [m] that a joint moves within the trunk
+FEW = 8  # frames, or more, tell a spread
 SHORT = 1.5  # of the noise: a bone that seems no longer than this is none
 ENOUGH = 1_000  # frames, spread over the motion, for the trunk
 
@@ -88,9 +90,12 @@ def calibrate(skeleton: TrackedSkeleton, joints: np.ndarray, step: float = 1.0 /
     frames[~np.isfinite(frames).all(2)] = np.nan
     bones = skeleton.bones
     lengths, noise = _lengths(frames, bones)
-    shape, looseness = _trunk(frames[:, list(skeleton.torso)], noise or 0.0)
+    torso = list(skeleton.torso)
+    if not np.isfinite(frames[:, torso]).any():
+        raise SimCoreError("joints: no frame shows a joint of the trunk – nothing to follow")
     rest = _rest(skeleton, frames, lengths)
-    turn, _ = _fitted(shape, rest[list(skeleton.torso)])
+    shape, looseness = _trunk(frames[:, torso], rest[torso], noise or 0.0)
+    turn, _ = _fitted(shape, rest[torso])
     template = shape @ turn.T
     habit, recall = _habit(skeleton, frames, template, rest, finite("step", step, above=0.0))
     return Calibration(skeleton, lengths, rest, template, looseness, habit, recall, noise)
@@ -108,7 +113,7 @@ def _lengths(frames: np.ndarray, bones: np.ndarray) -> tuple[np.ndarray, float |
         near = 1.4826 * np.median(np.abs(known - middle))
         kept = known[np.abs(known - middle) <= 4.0 * near + 1e-12]
         lengths[bone], squares[bone] = middle, np.mean(kept**2)
-        if len(kept) >= 8:
+        if len(kept) >= FEW:
             spreads[bone] = np.var(kept)
     known = spreads[np.isfinite(spreads) & (lengths > 0.1)]
     if not len(known):
@@ -122,34 +127,53 @@ def _lengths(frames: np.ndarray, bones: np.ndarray) -> tuple[np.ndarray, float |
     )
 
 
-def _trunk(frames: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
-    """The mean shape (K, 3) of the torso's joints (T, K, 3), each frame turned onto it, and what they move in it."""
-    whole = frames[np.isfinite(frames).all((1, 2))]
-    if not len(whole):  # never all at once: from what is seen of each, as if the trunk stood still
-        count = np.isfinite(frames[..., 0]).sum(0)
-        if not count.any():
-            raise SimCoreError("joints: no frame shows a joint of the trunk – nothing to follow")
-        shape = np.nan_to_num(np.nansum(frames, axis=0) / np.maximum(count, 1)[:, None])
-        shape[count == 0] = shape[count > 0].mean(0)
-        return shape - shape.mean(0), np.full(frames.shape[1], 0.02**2)
-    whole = whole[:: -(-len(whole) // ENOUGH)]
-    centred = whole - np.median(whole, axis=1, keepdims=True)
-    shape = centred[0]
-    away = np.zeros(centred.shape)
-    for _ in range(ROUNDS if len(whole) > 1 else 1):
-        turned = _onto(centred, shape)
-        away = turned - np.median(turned, axis=0)
+def _trunk(frames: np.ndarray, begin: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:
+    """The mean shape (K, 3) of the torso's joints (T, K, 3), each frame turned onto it by what is seen of it, and how
+    loose each is in it; begin (K, 3): a shape to begin with."""
+    frames = frames[:: -(-len(frames) // ENOUGH)]
+    shape, unknown = begin - begin.mean(0), np.full(len(begin), UNKNOWN_BEND**2)
+    turns, shifts, known = _fits(shape, frames)
+    if not known.any():
+        return shape, unknown
+    for _ in range(ROUNDS if known.sum() > 1 else 1):
+        turns, shifts, known = _fits(shape, frames)
+        own = ((frames - shifts[:, None]) @ turns)[known]
+        away = np.nan_to_num(own - np.nanmedian(_seen_once(own, shape), axis=0))
         near = np.linalg.norm(away, axis=2).max(1)
-        kept = near <= 3.0 * np.median(near) + 1e-12
-        shape = turned[kept].mean(0)
-    shape = shape - shape.mean(0)
-    loose = (away**2).mean(2)
-    if len(whole) < 8:
-        return shape, np.full(frames.shape[1], 0.01**2)
-    own = (
-        np.quantile(loose, 0.9, axis=0) / 2.08
-    )  # of a chi-square of three degrees: a ninth in ten is 6.25 / 3
-    return shape, np.maximum(own - noise**2, (1e-4) ** 2)
+        kept = own[near <= 3.0 * np.median(near) + 1e-12]
+        count = np.isfinite(kept[..., :1]).sum(0)
+        shape = np.where(count > 0, np.nan_to_num(kept).sum(0) / np.maximum(count, 1), shape)
+        shape = shape - shape.mean(0)
+    if known.sum() < FEW:
+        return shape, unknown
+    loose = np.where(np.isfinite(own[..., 0]), (away**2).mean(2), np.nan)
+    tail = (
+        np.nanquantile(_seen_once(loose, unknown), 0.9, axis=0) / 2.08
+    )  # a tenth of a chi-square lies above 6.25 / 3
+    return shape, np.maximum(tail - noise**2, LEAST_BEND**2)
+
+
+def _seen_once(values: np.ndarray, instead: np.ndarray) -> np.ndarray:
+    """Values (T, K, ...) with a first frame more for those that no frame shows."""
+    never = np.isnan(values).all(0)
+    return np.concatenate([np.where(never, instead, np.nan)[None], values])
+
+
+def _fits(shape: np.ndarray, frames: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rotations (T, 3, 3) and shifts (T, 3) from a shape (K, 3) to frames (T, K, 3), by the joints that are seen; and
+    whether these, three or more, can tell it (T,)."""
+    seen = np.asarray(np.isfinite(frames).all(2))
+    share = seen / np.maximum(seen.sum(1), 1)[:, None]
+    there = np.where(seen[..., None], frames, 0.0)
+    middle, centre = (share[:, None] @ there)[:, 0], share @ shape
+    own = (shape - centre[:, None]) * share[..., None]
+    u, spread, vh = np.linalg.svd(own.transpose(0, 2, 1) @ (there - middle[:, None]))
+    turns = (u @ vh).transpose(0, 2, 1)
+    mirrored = np.linalg.det(turns) < 0.0
+    vh[mirrored, 2] *= -1.0
+    turns = (u @ vh).transpose(0, 2, 1)
+    known = (seen.sum(1) >= 3) & (spread[:, 1] > 1e-3 * spread[:, 0])
+    return turns, middle - (turns @ centre[..., None])[..., 0], known
 
 
 def _habit(
@@ -160,37 +184,22 @@ def _habit(
     torso = list(skeleton.torso)
     turn, shift = _fitted(template, rest[torso])
     own, usual = (rest - shift) @ turn, np.full(len(rest), USUAL_RECALL)
-    whole = np.isfinite(frames[:, torso]).all((1, 2))
-    if not whole.any():
-        return own, usual
-    middle = frames[:, torso].mean(1, keepdims=True)
-    trunk = np.nan_to_num(frames[:, torso] - middle)
-    u, _, vh = np.linalg.svd(trunk.transpose(0, 2, 1) @ (template - template.mean(0)))
-    vh[np.linalg.det(u @ vh) < 0.0, 2] *= -1.0
-    there = (frames - middle) @ (u @ vh) + template.mean(0)
-    there[~whole] = np.nan
-    seen = np.isfinite(there[..., 0])
+    turns, shifts, known = _fits(template, frames[:, torso])
+    there = (frames - shifts[:, None]) @ turns
+    there[~known] = np.nan
+    seen = np.asarray(np.isfinite(there[..., 0]))
     count = np.maximum(seen.sum(0), 1)
     mean = np.where(seen[..., None], there, 0.0).sum(0) / count[:, None]
     mean = np.where(seen.any(0)[:, None], mean, own)
     lag = max(1, round(QUARTER / step))
-    if len(frames) >= 2 * lag + 8:
+    if len(frames) >= 2 * lag + FEW:
         away = there - mean
         spread = np.where(seen, np.nan_to_num(away**2).sum(2), 0.0).sum(0) / count
         both = seen[lag:] & seen[:-lag]
         product = np.where(both, np.nan_to_num(away[lag:] * away[:-lag]).sum(2), 0.0).sum(0)
         kept = np.clip(product / np.maximum(both.sum(0), 1) / np.maximum(spread, 1e-12), 0.05, 0.995)
-        usual = lag * step / np.sqrt(-2.0 * np.log(kept))
+        usual = np.where(both.any(0), lag * step / np.sqrt(-2.0 * np.log(kept)), usual)
     return mean, usual
-
-
-def _onto(frames: np.ndarray, shape: np.ndarray) -> np.ndarray:
-    """Frames (T, K, 3), each moved onto a shape (K, 3)."""
-    middle, own = shape.mean(0), frames - frames.mean(1, keepdims=True)
-    u, _, vh = np.linalg.svd(own.transpose(0, 2, 1) @ (shape - middle))
-    mirrored = np.linalg.det(u @ vh) < 0.0
-    vh[mirrored, 2] *= -1.0
-    return own @ (u @ vh) + middle
 
 
 def _fitted(source: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -202,7 +211,7 @@ def _fitted(source: np.ndarray, target: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 def _rest(skeleton: TrackedSkeleton, frames: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """The first frame that shows most, with just these lengths."""
-    seen = np.isfinite(frames).all(2)
+    seen = np.asarray(np.isfinite(frames).all(2))
     frame = frames[int(np.argmax(seen.sum(1)))]
     out = np.zeros((len(skeleton.joints), 3))
     root = skeleton.root

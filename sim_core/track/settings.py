@@ -22,7 +22,8 @@ class TrackSettings:
     the trunk's bend and a joint's jump are believed (0: all of it); None: as the calibration found it.
 
     Kalman: agility [m2/s3], the density of the accelerations that are taken for real; gate [sigma]; patience: rejected
-    in a row until a joint is taken up anew; fading [s] in which an unseen joint comes to move with the trunk.
+    in a row until a joint is taken up anew; coasting: for so much of the time in which a joint comes back to where it
+    mostly is, an unseen one goes on as it moved.
     One-Euro: cutoff [Hz] at rest and its slope [1/m] with speed. Local step: m0 of Eq. 17; floor [m] of the way in
     its denominator; iterations at most. Rotations: prior of the last one against the spread of the points; untwist
     [s] in which a bone's twist wanders back to the shortest way from the trunk. compiled: as machine code where numba
@@ -35,7 +36,7 @@ class TrackSettings:
     agility: float = 40.0
     gate: float = 5.0
     patience: int = 3
-    fading: float = 0.08
+    coasting: float = 1.0
     cutoff: float = 3.0
     cutoff_slope: float = 10.0
     m0: float = 0.1
@@ -56,7 +57,7 @@ class TrackSettings:
         for name, least, most in (
             ("agility", 1e-6, 1e6),
             ("gate", 0.1, 1e6),
-            ("fading", 1e-3, 1e6),
+            ("coasting", 1e-3, 1e3),
             ("cutoff", 1e-3, 1e3),
             ("cutoff_slope", 0.0, 1e3),
             ("m0", 0.0, 1e9),
@@ -79,7 +80,7 @@ class TrackSettings:
             float(self.agility),
             float(self.gate),
             int(self.patience),
-            float(self.fading),
+            float(self.coasting),
             float(self.cutoff),
             float(self.cutoff_slope),
             float(self.m0),

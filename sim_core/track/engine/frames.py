@@ -29,7 +29,7 @@ from sim_core.track.engine.values import (
 __all__ = ["frame_step"]
 
 
-def kalman(state, rules, joints, measured, step, drift):
+def kalman(body, state, rules, joints, measured, step, drift):
     """Gated constant-velocity Kalman filter, one a joint, its axes alike. Accepted, taken up anew, variance (J,)."""
     noise, q = rules.noise**2, rules.agility
     spread = state.spread
@@ -44,11 +44,11 @@ def kalman(state, rules, joints, measured, step, drift):
         state.misses > 0, state.bound, np.maximum(need, NEAR**2)
     )  # doubt does not open the gate to the next outlier
     inside = measured & (square(reach) <= rules.gate**2 * state.bound)
-    misses = np.where(inside, 0, state.misses + measured)
+    misses = np.where(inside | ~measured, 0, state.misses + 1)
     again = misses >= rules.patience
     gain, lift = place / need * inside, both / need * inside
-    fade = math.exp(-step / rules.fading)
-    kept = drift + (state.speed - drift) * fade
+    fade = np.exp(-step / (rules.coasting * body.recall))
+    kept = drift + (state.speed - drift) * column(fade)
     state.place[:] = ahead + column(gain) * reach
     state.speed[:] = np.where(column(inside), state.speed, kept) + column(lift) * reach
     spread[:, 0] = place * (1.0 - gain)
@@ -118,7 +118,7 @@ def trunk_step(body, state, rules, seen, variance, step):
     """
     there = state.place[body.torso]
     spread = variance[body.torso]
-    trust = np.where(seen[body.torso], 1.0, 1e-9)
+    trust = 1.0 / (spread + body.looseness + TINY)
     trust = trust / trust.sum()
     middle, centre = trust @ there, trust @ body.template
     shape = body.template - centre
@@ -200,7 +200,7 @@ def frame_step(
     goes on."""
     drift = state.speed[body.torso].sum(axis=0) / len(body.torso)
     if rules.kind == KALMAN:
-        seen, again, variance = kalman(state, rules, joints, measured, step, drift)
+        seen, again, variance = kalman(body, state, rules, joints, measured, step, drift)
     elif rules.kind == ONE_EURO:
         seen, again, variance = one_euro(state, rules, joints, measured, step, drift)
     else:

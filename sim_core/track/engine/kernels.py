@@ -18,13 +18,12 @@ __all__ = ["frame_kernel"]
 
 
 @njit(cache=True)
-def filtered(state, rules, joints, measured, step, drift):
+def filtered(body, state, rules, joints, measured, step, drift):
     """Moves the filter's state on; accepted (J,), taken up anew (J,), variance (J,)."""
     count = len(joints)
     seen, again, variance = np.zeros(count, np.bool_), np.zeros(count, np.bool_), np.zeros(count)
     place, speed = state.place, state.speed
     noise, q = rules.noise**2, rules.agility
-    fade = math.exp(-step / rules.fading)
     turn = 2.0 * math.pi * step
     slow = turn / (turn + 1.0)
     for j in range(count):
@@ -41,7 +40,7 @@ def filtered(state, rules, joints, measured, step, drift):
             if state.misses[j] == 0:
                 state.bound[j] = max(need, NEAR**2)
             inside = measured[j] and away <= rules.gate**2 * state.bound[j]
-            misses = 0 if inside else state.misses[j] + measured[j]
+            misses = 0 if inside or not measured[j] else state.misses[j] + 1
             if misses >= rules.patience:
                 place[j], speed[j] = joints[j], drift
                 spread[0], spread[1], spread[2] = noise, 0.0, FASTEST**2
@@ -49,6 +48,7 @@ def filtered(state, rules, joints, measured, step, drift):
                 seen[j] = again[j] = True
                 variance[j] = noise
                 continue
+            fade = math.exp(-step / (rules.coasting * body.recall[j]))
             gain = far / need if inside else 0.0
             lift = both / need if inside else 0.0
             for k in range(3):
@@ -122,7 +122,7 @@ def aligned(body, state, rules, seen, variance, step):
     trust = np.zeros(size)
     total = 0.0
     for n in range(size):
-        trust[n] = 1.0 if seen[torso[n]] else 1e-9
+        trust[n] = 1.0 / (variance[torso[n]] + body.looseness[n] + TINY)
         total += trust[n]
     middle, centre = np.zeros(3), np.zeros(3)
     for n in range(size):
@@ -261,7 +261,7 @@ def frame_kernel(body, state, rules, joints, measured, step):
     for j in body.torso:
         for k in range(3):
             drift[k] += state.speed[j, k] / len(body.torso)
-    seen, again, variance = filtered(state, rules, joints, measured, step, drift)
+    seen, again, variance = filtered(body, state, rules, joints, measured, step, drift)
     near, surer, trunk, shift = aligned(body, state, rules, seen, variance, step)
     apart = True
     for b in range(bones):

@@ -80,7 +80,7 @@ class Rules(NamedTuple):
     agility: float
     gate: float
     patience: int
-    fading: float
+    coasting: float
     cutoff: float
     cutoff_slope: float
     m0: float
