@@ -190,7 +190,7 @@ def _habit(
     seen = np.asarray(np.isfinite(there[..., 0]))
     count = np.maximum(seen.sum(0), 1)
     mean = np.where(seen[..., None], there, 0.0).sum(0) / count[:, None]
-    mean = np.where(seen.any(0)[:, None], mean, own)
+    mean = np.where(np.asarray(seen.any(0))[:, None], mean, own)
     lag = max(1, round(QUARTER / step))
     if len(frames) >= 2 * lag + FEW:
         away = there - mean
