@@ -181,7 +181,9 @@ def rms(errors: np.ndarray) -> float:
 
 def alignment(peers: Peers | None, rounds: int) -> list[dict]:
     """25 points: ours as numpy and compiled, scipy's, RoMa's, in turns; errors of the rotation against the true one."""
-    from sim_core.track.engine.turn_kernels import rotation as compiled
+    from sim_core.track.engine import compiled_kabsch
+
+    compiled = compiled_kabsch()
 
     random = np.random.default_rng(0)
     source = random.normal(size=(25, 3)) * 0.4

@@ -13,6 +13,7 @@ __all__ = [
     "Frame",
     "Rules",
     "State",
+    "compiled_kabsch",
     "compiled_step",
     "frame_step",
     "kabsch",
@@ -28,3 +29,14 @@ def compiled_step():
             raise
         return frame_step
     return frame_kernel
+
+
+def compiled_kabsch():
+    """`kabsch` as machine code; numpy's own where numba is not there."""
+    try:
+        from sim_core.track.engine.turn_kernels import rotation
+    except ModuleNotFoundError as error:
+        if error.name != "numba":
+            raise
+        return kabsch
+    return rotation
