@@ -12,12 +12,12 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "dress", "figure")
+ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "track")
 ELSEWHERE = {
     "dress": "sim_core.garment.cli",
     "figure": "sim_core.body.cli",
 }  # commands that share another room
-BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure")
+BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure", "track")
 
 DESCRIPTION = """\
 The simulation core, one stage at a time: files in, files out.
@@ -27,6 +27,7 @@ The simulation core, one stage at a time: files in, files out.
   cloth    a mesh falls onto a collider under gravity
   dress    an outfit (TOML) becomes dressed garments, their model and picture
   figure   who wears a garment: poses drawn, and new figures from free body data
+  track    a motion (BVH, arrays, a sensor's stream) becomes points that follow the person
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed

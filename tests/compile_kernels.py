@@ -87,12 +87,23 @@ def light() -> None:
     bake_light(room, [spot], sampling=Sampling((4, 4)))
 
 
+def track() -> None:
+    """A few frames by every filter."""
+    from sim_core.track import KINECT, Recording, TrackSettings
+    from sim_core.track import track as follow
+
+    joints = np.random.default_rng(0).normal(size=(4, 25, 3))
+    for name in ("none", "kalman", "one-euro"):
+        follow(Recording(KINECT, np.arange(4) / 30.0, joints), TrackSettings(filter=name))
+
+
 ROOMS: dict[str, Callable[[], None]] = {
     "mesh": mesh,
     "weave": weave,
     "cloth": cloth,
     "garment": garment,
     "light": light,
+    "track": track,
 }
 
 
