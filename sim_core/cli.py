@@ -12,10 +12,11 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "dress", "figure")
+ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "motion")
 ELSEWHERE = {
     "dress": "sim_core.garment.cli",
     "figure": "sim_core.body.cli",
+    "motion": "sim_core.body.motion.cli",
 }  # commands that share another room
 BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure")
 
@@ -27,6 +28,7 @@ The simulation core, one stage at a time: files in, files out.
   cloth    a mesh falls onto a collider under gravity
   dress    an outfit (TOML) becomes dressed garments, their model and picture
   figure   who wears a garment: poses drawn, and new figures from free body data
+  motion   how figures move: motion files (TOML) drawn, measured, written as joints in time
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed

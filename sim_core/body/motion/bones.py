@@ -1,8 +1,8 @@
 """From points to turns: what each joint of a figure is turned by, when only points on a body are known.
 
-A bone says where it points, not how it is rolled. Its roll comes from what hangs on it: the pelvis's from hips and spine,
-the chest's from neck and collar bones or shoulders, an upper arm's and a thigh's from the plane in which elbow and knee
-bend; where a limb is nearly straight and the plane is lost, from the foot, or from the roll the bone had before.
+A bone says where it points, not how it is rolled. Its roll comes from what hangs on it: the pelvis's from hips and
+spine, the chest's from neck and collar bones or shoulders, an upper arm's and a thigh's from the plane in which elbow
+and knee bend; where a limb is nearly straight and the plane is lost, from the foot, or from the roll it had before.
 """
 
 from __future__ import annotations
@@ -126,7 +126,9 @@ def _spread_spine(
     for number, (name, end) in enumerate((("spine_1", "spine_2"), ("spine_2", "spine_3")), 1):
         world[:, at[name]] = pelvis @ _matrix(whole * number / 3.0)
         if {"spine_1", "spine_2"} <= set(points):
-            world[:, at[name]] = _aligned(world[:, at[name]], rest[end] - rest[name], points[end] - points[name])
+            world[:, at[name]] = _aligned(
+                world[:, at[name]], rest[end] - rest[name], points[end] - points[name]
+            )
 
 
 def _swung(
@@ -149,7 +151,9 @@ def _arm(
     rest: Mapping[str, np.ndarray],
     side: str,
 ) -> None:
-    collar, shoulder, elbow, wrist, tip = (f"{n}_{side}" for n in ("clavicle", "shoulder", "elbow", "wrist", "tip"))
+    collar, shoulder, elbow, wrist, tip = (
+        f"{n}_{side}" for n in ("clavicle", "shoulder", "elbow", "wrist", "tip")
+    )
     world[:, at[collar]] = _swung(world[:, at["spine_3"]], points, rest, collar, shoulder)
     parent = world[:, at[collar]]
     if elbow not in points or wrist not in points:
@@ -183,7 +187,9 @@ def _leg(
     shank = _aligned(thigh, at_rest[1], bones[1])
     world[:, at[knee]] = shank
     ahead = np.cross(shank[:, :, 0], [0.0, 1.0, 0.0])
-    turned = _unrolled((rest[toe] - rest[ankle]) if foot is not None else np.array([0.0, 0.0, 1.0]), foot, ahead)
+    turned = _unrolled(
+        (rest[toe] - rest[ankle]) if foot is not None else np.array([0.0, 0.0, 1.0]), foot, ahead
+    )
     world[:, at[ankle]] = world[:, at[toe]] = turned
 
 
@@ -231,7 +237,9 @@ def _hinged(
     clear = np.minimum(1.0, (np.linalg.norm(local, axis=1) / BENT) ** 2) * (sine > 1e-6)
     out, before = np.zeros_like(parent), None
     for row in range(len(upper)):
-        if foot is not None and np.linalg.norm(np.cross(foot[row], lower[row])) > 0.2 * np.linalg.norm(foot[row]):
+        if foot is not None and np.linalg.norm(np.cross(foot[row], lower[row])) > 0.2 * np.linalg.norm(
+            foot[row]
+        ):
             there = np.cross(foot[row], lower[row])
         elif before is not None:
             there = before @ hinge
@@ -241,9 +249,14 @@ def _hinged(
         if guess[:, 2] @ swung[row][:, 2] < 0.0 and foot is None:
             guess = swung[row]
         if clear[row] > 0.0:
-            plane = _axes(upper[row : row + 1], seen[row : row + 1])[0] @ _axes(u0[None], local[row : row + 1])[0].T
+            plane = (
+                _axes(upper[row : row + 1], seen[row : row + 1])[0]
+                @ _axes(u0[None], local[row : row + 1])[0].T
+            )
             roll = _rotvec((plane @ guess.T)[None])[0]
-            if np.linalg.norm(roll) < MOST_ROLL:  # a knee seen bent backward, by noise, says nothing of its plane
+            if (
+                np.linalg.norm(roll) < MOST_ROLL
+            ):  # a knee seen bent backward, by noise, says nothing of its plane
                 guess = _matrix(clear[row] * roll[None])[0] @ guess
         out[row] = before = guess
     return out

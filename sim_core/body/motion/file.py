@@ -30,7 +30,9 @@ class _Table(BaseModel):
 class _KeyTable(_Table):
     seconds: Number = Field(gt=0, le=60, description="how long it takes to come to the pose")
     pose: PoseTable = Field(description="name of a pose, or { name, joints, shift }")
-    early: Number = Field(0.0, ge=0, le=60, description="[s] by which its move begins before the last one ends")
+    early: Number = Field(
+        0.0, ge=0, le=60, description="[s] by which its move begins before the last one ends"
+    )
 
 
 class _CurveTable(_Table):
@@ -41,7 +43,9 @@ class _CurveTable(_Table):
     metres: list[Number] | None = Field(None, max_length=1000, description=f"of {ROOT}")
     scale: Number = Field(1.0, ge=-10, le=10)
     offset: Number = Field(0.0, ge=-180, le=180)
-    lag: Number = Field(0.5, ge=0, le=1, description="share of the period by which the right side comes later")
+    lag: Number = Field(
+        0.5, ge=0, le=1, description="share of the period by which the right side comes later"
+    )
     source: str = Field(min_length=3, max_length=400, description="where the values are from")
 
 
@@ -93,7 +97,9 @@ class _Reader:
         if not read.loop and not read.curve:
             for name in ("period", "pose", "rounds", "lead", "steps"):
                 if name in read.model_fields_set:
-                    raise self._wrong(name, "only a motion that repeats has one – add loop = true, or leave it out")
+                    raise self._wrong(
+                        name, "only a motion that repeats has one – add loop = true, or leave it out"
+                    )
             for k, key in enumerate(read.key, 1):
                 if key.early:
                     raise self._wrong(f"key.{k}.early", "only keys of a loop overlap – add loop = true")
@@ -105,7 +111,8 @@ class _Reader:
 
     def _loop(self, read: _MotionTable) -> Loop:
         keys = tuple(
-            Key(key.seconds, self._pose(f"key.{k}.pose", key.pose), key.early) for k, key in enumerate(read.key, 1)
+            Key(key.seconds, self._pose(f"key.{k}.pose", key.pose), key.early)
+            for k, key in enumerate(read.key, 1)
         )
         for k, key in enumerate(keys[1:], 2):
             if key.early > min(key.seconds, keys[k - 2].seconds):

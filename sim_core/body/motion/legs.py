@@ -77,9 +77,7 @@ def _turned(pose: Pose) -> bool:
 
 
 def _bones(skeleton: Skeleton, side: str) -> tuple[np.ndarray, np.ndarray]:
-    hip, knee, ankle = (
-        skeleton.heads[JOINTS.index(f"{joint}_{side}")] for joint in ("hip", "knee", "ankle")
-    )
+    hip, knee, ankle = (skeleton.heads[JOINTS.index(f"{joint}_{side}")] for joint in ("hip", "knee", "ankle"))
     return knee - hip, ankle - knee
 
 

@@ -109,7 +109,9 @@ def clearances(figure: Mannequin, poses: Sequence[Pose]) -> Clearances:
             key = f"{first} – {second}"
             found = min(
                 _distance(vertices, limbs[first], limbs[second], least[key]),
-                _distance(vertices, limbs[second], limbs[first], least[key]) if "trunk" not in second else NEAR,
+                _distance(vertices, limbs[second], limbs[first], least[key])
+                if "trunk" not in second
+                else NEAR,
             )
             if found < least[key]:
                 least[key], frame[key] = found, number

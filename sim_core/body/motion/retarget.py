@@ -1,9 +1,9 @@
 """A figure from motion: points or turns of another body become poses of a figure with bones of its own.
 
-Directions are taken over, lengths are the figure's; the root goes as far as its legs are long against the other's. Feet
-that stand are found by how they roll (`soles`): what touches the floor of a foot that stands does not move. They are set
-down flat on the floor, roll there without sliding, and the legs follow (`legs`); between stands they go back to what was
-seen. Joints beyond their limits are clamped, and told.
+Directions are taken over, lengths are the figure's; the root goes as far as its legs are long against the other's.
+Feet that stand are found by how they roll (`soles`): what touches the floor of a foot that stands does not move. They
+are set down on the floor, roll there without sliding, and the legs follow (`legs`); between stands they go back to
+what was seen. Joints beyond their limits are clamped, and told.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import distance_transform_edt, gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
-from sim_core.body.joints import JOINTS
+from sim_core.body.joints import JOINTS, PARENTS, product
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.motion.bones import named_points, rest_points, turns_of
@@ -78,7 +78,9 @@ def figure_from(
     skeleton = figure.skeleton
     at_rest = rest_points(skeleton)
     if rest is not None:
-        at_rest |= {name: place[0] for name, place in named_points(np.asarray(rest, float)[None], names).items()}
+        at_rest |= {
+            name: place[0] for name, place in named_points(np.asarray(rest, float)[None], names).items()
+        }
     local = turns_of(skeleton, own, at_rest)
     if turns:
         local = _with_turns(local, turns)
@@ -95,22 +97,22 @@ def figure_from(
 def _checked(points: np.ndarray, names: tuple[str, ...], rate: float) -> np.ndarray:
     points = np.asarray(points, float)
     if points.ndim != 3 or points.shape[1:] != (len(names), 3) or not len(points):
-        raise SimCoreError(f"joints: {points.shape} – expected (T, {len(names)}, 3), T at least 1: a point a name")
+        raise SimCoreError(
+            f"joints: {points.shape} – expected (T, {len(names)}, 3), T at least 1: a point a name"
+        )
     if not np.isfinite(rate) or rate <= 0.0:
         raise SimCoreError(f"rate: {rate} – give frames a second, above 0")
     lost = np.argwhere(~np.isfinite(points).all(2))
     if len(lost):
         frame, joint = lost[0]
         raise SimCoreError(
-            f"joints: {names[joint]} in frame {frame} is not finite ({len(lost)} in all) – fill or leave out lost points"
+            f"joints: {names[joint]} in frame {frame} is not finite ({len(lost)} in all) – fill lost points first"
         )
     return points
 
 
 def _with_turns(local: np.ndarray, turns: Mapping[str, np.ndarray]) -> np.ndarray:
     """The joints' rotations with some of them known in the world."""
-    from sim_core.body.joints import PARENTS
-
     world = np.zeros_like(local)
     out = local.copy()
     for joint, parent in enumerate(PARENTS):
@@ -136,7 +138,9 @@ def _poses(local: np.ndarray, way: np.ndarray, clamped: dict[str, tuple[float, i
     vectors = rotvec_of(local)
     out = []
     for row in range(len(local)):
-        pose = Pose.from_rotvecs({joint: vectors[row, k].tolist() for k, joint in enumerate(JOINTS)}, way[row].tolist())
+        pose = Pose.from_rotvecs(
+            {joint: vectors[row, k].tolist() for k, joint in enumerate(JOINTS)}, way[row].tolist()
+        )
         out.append(_clamped(pose, clamped))
     return out
 
@@ -194,7 +198,9 @@ class _Track:
         return self.ankle[:, 1] - np.asarray(self.sole.height(self.pitch))
 
 
-def _planted(figure: Mannequin, poses: list[Pose], rate: float) -> tuple[list[Pose], tuple[float, float], float]:
+def _planted(
+    figure: Mannequin, poses: list[Pose], rate: float
+) -> tuple[list[Pose], tuple[float, float], float]:
     """Poses whose feet stand on the floor y = 0 and do not slide while they do."""
     feet = _tracks(figure, poses)
     floor = _lowest(np.minimum(feet["l"].above, feet["r"].above), rate)
@@ -211,6 +217,8 @@ def _planted(figure: Mannequin, poses: list[Pose], rate: float) -> tuple[list[Po
             break
         for side, goal in goals.items():  # an ankle that cannot bend further lifts its heel
             goal.pitch += np.radians(_spread(stiff[side], rate))
+        tilt = _spread(stiff["hips"], rate)  # and a thigh that cannot go further back takes the pelvis along
+        poses = [_tilted(pose, float(angle)) for pose, angle in zip(poses, tilt, strict=True)]
         poses = _within_reach(figure, poses, goals, rate)
     return out, (float(stands["l"].mean()), float(stands["r"].mean())), missed
 
@@ -219,22 +227,45 @@ def _legged(
     figure: Mannequin, poses: list[Pose], goals: Mapping[str, _Track]
 ) -> tuple[list[Pose], float, dict[str, np.ndarray]]:
     """Poses with their feet where they are wanted, what the furthest is missed by [m], and by how many degrees (T,)
-    each ankle would have to bend up further than it goes."""
+    each ankle would have to bend up further than it goes, and a hip back."""
     out, missed = [], 0.0
-    stiff = {side: np.zeros(len(poses)) for side in SIDES}
+    stiff = {name: np.zeros(len(poses)) for name in (*SIDES, "hips")}
     places = {side: goal.placed for side, goal in goals.items()}
     for row, pose in enumerate(poses):
         holds = {
-            side: Foothold(places[side][row], pitched(float(goal.yaw[row]), float(goal.pitch[row])), goal.hinge[row])
+            side: Foothold(
+                places[side][row], pitched(float(goal.yaw[row]), float(goal.pitch[row])), goal.hinge[row]
+            )
             for side, goal in goals.items()
         }
         legged, off = legs_at(figure.skeleton, pose, holds)
         for side in SIDES:
             ankle = f"ankle_{side}"
             stiff[side][row] = max(0.0, LIMITS[ankle][0][0] - legged.vector(ankle)[0])
+            back = legged.vector(f"hip_{side}")[0] - LIMITS[f"hip_{side}"][0][1]
+            stiff["hips"][row] = max(stiff["hips"][row], back)
         out.append(legged)
         missed = max(missed, off)
     return out, missed, stiff
+
+
+def _tilted(pose: Pose, angle: float) -> Pose:
+    """The pelvis tilted forward by degrees, the spine above it as it was."""
+    if angle == 0.0:
+        return pose
+    forth, back = (
+        np.array(Pose.from_rotvecs({"pelvis": (a, 0.0, 0.0)}).turn("pelvis")) for a in (angle, -angle)
+    )
+    turns = dict(pose.turns) | {
+        "pelvis": _unit(product(np.array(pose.turn("pelvis")), forth)),
+        "spine_1": _unit(product(back, np.array(pose.turn("spine_1")))),
+    }
+    return Pose(tuple((joint, turns[joint]) for joint in JOINTS if joint in turns), pose.shift)
+
+
+def _unit(q: np.ndarray) -> tuple[float, float, float, float]:
+    w, x, y, z = (q / np.copysign(np.linalg.norm(q), q[0])).tolist()
+    return w, x, y, z
 
 
 def _spread(need: np.ndarray, rate: float) -> np.ndarray:
@@ -275,7 +306,9 @@ def _stands(foot: _Track, rate: float, slow: float) -> np.ndarray:
     above = foot.above - _lowest(foot.above, rate)
     if len(foot.pitch) < 3:
         return above < HIGH
-    places = gaussian_filter1d(np.column_stack([foot.rolled, above, TOES * foot.yaw]), STILL * rate, axis=0, mode="nearest")
+    places = gaussian_filter1d(
+        np.column_stack([foot.rolled, above, TOES * foot.yaw]), STILL * rate, axis=0, mode="nearest"
+    )
     speed = np.linalg.norm(np.gradient(places, axis=0), axis=1) * rate
     found = speed / slow + np.maximum(above - LOW, 0.0) / HIGH < 1.0
     found = _without(found, ~found, round(GAP * rate), True)
@@ -322,13 +355,17 @@ def _goals(foot: _Track, stands: np.ndarray, rate: float) -> _Track:
                 fade = 1.0 - float(minimum_jerk(abs(row - edge) / (span + 1.0)))
                 moved[row] += fade * (place - wanted[edge])
     wanted = wanted + moved
-    free = distance_transform_edt(~stands) if runs else np.full(count, np.inf)
+    free = distance_transform_edt(np.pad(~stands, 1))[
+        1:-1
+    ]  # frames to a stand, or to an end of what is known
     least = CLEAR * minimum_jerk(free / (CLEAR_IN * rate))
     wanted[:, 2] = np.where(stands, 0.0, np.maximum(wanted[:, 2], least))
     return _Track(foot.sole, foot.ankle, foot.pitch.copy(), wanted[:, 3], foot.hinge, wanted[:, :3])
 
 
-def _within_reach(figure: Mannequin, poses: list[Pose], goals: Mapping[str, _Track], rate: float) -> list[Pose]:
+def _within_reach(
+    figure: Mannequin, poses: list[Pose], goals: Mapping[str, _Track], rate: float
+) -> list[Pose]:
     """The root lowered, smoothly, where a foot would be out of reach."""
     skeleton = figure.skeleton
     need = np.zeros(len(poses))

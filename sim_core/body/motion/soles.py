@@ -1,8 +1,8 @@
 """Feet on a floor: the profile of a sole, and how far a foot goes that rolls over it without sliding.
 
-Perry's three rockers (Gait Analysis, 1992): a foot strikes on its heel and rolls over it, lies flat while the shank goes
-over it, and rolls on over its ball. A convex profile that rolls without sliding carries a point of the foot along by
-the integral of its height over the angle, whatever the profile.
+Perry's three rockers (Gait Analysis, 1992): a foot strikes on its heel and rolls over it, lies flat while the shank
+goes over it, and rolls on over its ball. A convex profile that rolls without sliding carries a point of the foot along
+by the integral of its height over the angle, whatever the profile.
 """
 
 from __future__ import annotations

@@ -54,9 +54,13 @@ class Steps:
 
     def __post_init__(self) -> None:
         if not 0.5 < self.off < 0.9:
-            raise SimCoreError(f"off: {self.off:g} – one foot stands always: give more than 0.5 and less than 0.9")
+            raise SimCoreError(
+                f"off: {self.off:g} – one foot stands always: give more than 0.5 and less than 0.9"
+            )
         if not 0.0 < self.flat[0] < self.flat[1] < self.off:
-            raise SimCoreError(f"flat: {list(self.flat)} – give two shares that rise between 0 and off = {self.off:g}")
+            raise SimCoreError(
+                f"flat: {list(self.flat)} – give two shares that rise between 0 and off = {self.off:g}"
+            )
 
 
 @dataclass(frozen=True)
@@ -247,7 +251,9 @@ class Footing:
                 way = self.holds(side, float(share)).ankle - joints[JOINTS.index(f"hip_{side}")]
                 flat = float(np.hypot(way[0], way[2]))
                 if flat >= longest[side]:
-                    raise SimCoreError("steps: the feet are further apart than legs – give hip curves of smaller scale")
+                    raise SimCoreError(
+                        "steps: the feet are further apart than legs – give hip curves of smaller scale"
+                    )
                 lower.append(-float(way[1]) - float(np.sqrt(longest[side] ** 2 - flat**2)))
             need[row] = max(lower)
         return need + _waves(SAMPLES).T @ self._lower
