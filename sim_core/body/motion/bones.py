@@ -40,7 +40,7 @@ KINECT = {
 }
 """Points of a Kinect v2 body by what they are called here."""
 NEEDED = ("pelvis", "hip_l", "hip_r", "knee_l", "knee_r", "ankle_l", "ankle_r", "shoulder_l", "shoulder_r")
-BENT = np.sin(np.radians(12.0))  # of a limb whose plane is known well; less of it counts for less
+BENT = np.sin(np.radians(8.0))  # of a limb whose plane is known well; less of it counts for less
 MOST_ROLL = 100.0  # [degrees] between the plane of a limb and what its roll was thought to be
 STEEP = 0.4  # of a foot's length seen from above, below which its yaw is in doubt
 OWN = (*JOINTS, "collar", "head", "tip_l", "tip_r")

@@ -13,9 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.optimize import linprog
 
 from sim_core.body.joints import JOINTS
+from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.motion.curves import minimum_jerk
 from sim_core.body.motion.legs import Foothold, legs_at, pitched, reach
@@ -36,6 +38,8 @@ SPARE = 0.002  # [m] that a leg could still stretch
 SHIFTS = np.arange(-5, 6) * 0.01  # [m] by which feet are tried further forward
 SAMPLES = np.arange(120) / 120  # shares at which legs must reach
 DIP = 0.006  # [m] of a wave a step by which the root is lower where legs are far apart
+LIFTS = 10  # times that heels are lifted at most
+ROOM = 0.5  # [degrees] that an ankle keeps from its limit
 MISSED = 5e-4  # [m] by which a foot may be missed
 
 
@@ -111,6 +115,9 @@ class Footing:
             self._feet[side] = _Foot(foot.sole, foot.raw, foot.pitch, stands)
         self._shift, self._lower = 0.0, np.zeros(3)
         self._settle()
+        for _ in range(LIFTS):
+            if not self._lift_heels():
+                break
 
     def pose(self, share: float, *, in_place: bool = False) -> Pose:
         """The pose after so many periods; in_place: without the way that the figure goes on, its sway kept."""
@@ -235,6 +242,24 @@ class Footing:
                 best = float(found.x[0]), shift, found.x
         assert best is not None
         self._shift, self._lower = best[1], best[2] if best[2].any() and best[0] > 0.0 else np.zeros(3)
+
+    def _lift_heels(self) -> bool:
+        """Lifts heels where an ankle would have to bend up further than it goes, and says whether it did."""
+        stiff = {side: np.zeros(len(SAMPLES)) for side in SIDES}
+        for row, share in enumerate(SAMPLES):
+            pose = self._set(float(share))[0]
+            for side in SIDES:
+                most = LIMITS[f"ankle_{side}"][0][0] + ROOM
+                stiff[side][row] = max(0.0, most - pose.vector(f"ankle_{side}")[0])
+        if not any(values.any() for values in stiff.values()):
+            return False
+        shares = np.arange(FINE + 1) / FINE
+        for side, foot in self._feet.items():
+            spread = gaussian_filter1d(maximum_filter1d(stiff[side], 9, mode="wrap"), 3.0, mode="wrap")
+            more = _periodic(np.r_[SAMPLES, 1.0], np.r_[spread, spread[0]])
+            pitch = _periodic(shares, foot.pitch(shares) + np.radians(more(shares)))
+            self._feet[side] = _Foot(foot.sole, foot.raw, pitch, foot.stands)
+        return True
 
     def _too_high(self) -> np.ndarray:
         """By how much [m] the root would have to be lower at SAMPLES for both legs to reach their feet."""
