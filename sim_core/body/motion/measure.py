@@ -7,17 +7,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from sim_core.body.joints import JOINTS
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.motion.loop import Loop
 from sim_core.body.motion.soles import sole_of
 from sim_core.body.pose import Pose
+from sim_core.body.skinning import SKINS
 from sim_core.metrics import FAR, surface_distance, winding
 
 __all__ = ["Clearances", "Ground", "Seam", "clearances", "ground", "seam"]
 
+LOW = 0.5  # [m] below which a joint is where what hangs on it may reach the floor
 TOUCHES = 0.003  # [m] above the floor a point of a sole touches it
 NEAR = 0.08  # [m] beyond which a clearance is not told further
 EDGE = 0.012  # [m] that the middle of a face may be away from where it is nearest
@@ -76,15 +78,28 @@ class Seam:
 
 def ground(figure: Mannequin, poses: Sequence[Pose], up: float = TOUCHES) -> Ground:
     """How feet of poses with their root travelling meet the floor; up [m]: how near a point is that touches it."""
-    frames = np.stack([figure.posed(pose) for pose in poses])
+    soles = [sole_of(figure, side).vertices for side in "lr"]
+    kept: dict[bytes, np.ndarray] = {}
+    frames = np.zeros((len(poses), sum(map(len, soles)), 3))
+    deepest = 0.0
+    for row, pose in enumerate(poses):
+        low = figure.skeleton.joints(pose)[:, 1] < LOW
+        if low.tobytes() not in kept:
+            kept[low.tobytes()] = np.flatnonzero(figure.weights[:, low].sum(1) > 0.0)
+        points = _posed(figure, np.concatenate([*soles, kept[low.tobytes()]]), pose)
+        frames[row] = points[: frames.shape[1]]
+        deepest = max(deepest, -float(points[:, 1].min()))
     slides, planted = [], []
-    for side in "lr":
-        points = frames[:, sole_of(figure, side).vertices]
+    for points in np.split(frames, [len(soles[0])], axis=1):
         touches = points[..., 1] <= up
         slides.append(_furthest(points[..., [0, 2]], touches))
         planted.append(float(touches.any(1).mean()))
-    deepest = max(0.0, -float(frames[..., 1].min()))
     return Ground((slides[0], slides[1]), deepest, (planted[0], planted[1]))
+
+
+def _posed(figure: Mannequin, vertices: np.ndarray, pose: Pose) -> np.ndarray:
+    """Some vertices (N,) of the posed figure, (N, 3) [m]: what is far from the floor need not be posed."""
+    return SKINS[figure.skin](figure.vertices[vertices], figure.weights[vertices], figure.skeleton, pose)
 
 
 def _furthest(points: np.ndarray, touches: np.ndarray) -> float:
@@ -142,7 +157,7 @@ def _distance(
     if not len(points):
         return least
     centres, normals = corners.mean(1), np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    away, nearest = cKDTree(centres).query(points)
+    away, nearest = KDTree(centres).query(points)
     behind = ((points - centres[nearest]) * normals[nearest]).sum(1) < 0.0
     chosen = (away < room) | behind
     if not chosen.any():

@@ -355,9 +355,8 @@ def _goals(foot: _Track, stands: np.ndarray, rate: float) -> _Track:
                 fade = 1.0 - float(minimum_jerk(abs(row - edge) / (span + 1.0)))
                 moved[row] += fade * (place - wanted[edge])
     wanted = wanted + moved
-    free = distance_transform_edt(np.pad(~stands, 1))[
-        1:-1
-    ]  # frames to a stand, or to an end of what is known
+    # Frames to a stand, or to an end of what is known.
+    free = np.asarray(distance_transform_edt(np.pad(~stands, 1)))[1:-1]
     least = CLEAR * minimum_jerk(free / (CLEAR_IN * rate))
     wanted[:, 2] = np.where(stands, 0.0, np.maximum(wanted[:, 2], least))
     return _Track(foot.sole, foot.ankle, foot.pitch.copy(), wanted[:, 3], foot.hinge, wanted[:, :3])
