@@ -125,7 +125,7 @@ def run(args: argparse.Namespace) -> int:
     if args.picture:
         from sim_core.picture import save_png
 
-        save_png(args.picture, strip(figure, poses))
+        save_png(args.picture, strip(figure, _differing(motion, poses)))
         facts |= {"picture": str(args.picture)}
     sys.stdout.write(_told(facts, args.json))
     return 0
@@ -197,6 +197,15 @@ def _played(
         return motion.times(rate), motion.poses(figure, rate=rate, in_place=in_place)
     poses = motion.poses(pose_named("display"))
     return np.arange(len(poses)) / RATE, poses
+
+
+def _differing(motion: Motion | Loop, poses: tuple[Pose, ...]) -> tuple[Pose, ...]:
+    """The poses of one period where further ones look the same, else all."""
+    from sim_core.body.motion.loop import Loop
+
+    if not isinstance(motion, Loop) or motion.steps is None or motion.steps.turn:
+        return poses
+    return poses[: len(poses) // motion.rounds + 1]
 
 
 def _write(path: Path, figure: Mannequin, times: np.ndarray, poses: tuple[Pose, ...]) -> None:
