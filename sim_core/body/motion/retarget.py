@@ -37,8 +37,8 @@ GAP = 0.07  # [s] for which it may seem not to
 EASE = 0.20  # [s] in which a foot goes over from where it was set to where it was seen
 LEG = 0.75  # [m]
 STRIDE = 1.4  # [s] within which a foot is on the floor once
-CLEAR = 0.02  # [m] that a swinging sole is above the floor at least
-CLEAR_IN = 0.10  # [s] in which it comes to be
+CLEAR = 0.012  # [m] that a swinging sole is above the floor at least
+CLEAR_IN = 0.035  # [s] in which it comes to be
 SMOOTH = 0.08  # [s] over which a root is lowered and a heel lifted
 LIFTS = 6  # times that heels are lifted at most
 
