@@ -12,10 +12,11 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "track")
+ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "motion", "track")
 ELSEWHERE = {
     "dress": "sim_core.garment.cli",
     "figure": "sim_core.body.cli",
+    "motion": "sim_core.body.motion.cli",
 }  # commands that share another room
 BENCHES = ("weave", "drafts", "mesh", "cloth", "field", "figure", "track")
 
@@ -27,6 +28,7 @@ The simulation core, one stage at a time: files in, files out.
   cloth    a mesh falls onto a collider under gravity
   dress    an outfit (TOML) becomes dressed garments, their model and picture
   figure   who wears a garment: poses drawn, and new figures from free body data
+  motion   how figures move: motion files (TOML) drawn, measured, written as joints in time
   track    a motion (BVH, arrays, a sensor's stream) becomes points that follow the person
   bench    time and error of the engines, side by side with a reference
 

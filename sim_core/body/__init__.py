@@ -4,7 +4,7 @@ from sim_core.body.beneath import HANDS, Beneath, Surface
 from sim_core.body.joints import JOINTS, OTHER_SIDE, PARENTS
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
-from sim_core.body.motion import Motion
+from sim_core.body.motion import Loop, Motion, load_motion
 from sim_core.body.pose import POSES, Pose, pose_named
 from sim_core.body.skeleton import Skeleton
 from sim_core.body.skinning import SKINS, dual_quaternion_skin, linear_skin
@@ -17,6 +17,7 @@ __all__ = [
     "Figure",
     "JOINTS",
     "LIMITS",
+    "Loop",
     "Mannequin",
     "Motion",
     "OTHER_SIDE",
@@ -29,5 +30,6 @@ __all__ = [
     "Surface",
     "dual_quaternion_skin",
     "linear_skin",
+    "load_motion",
     "pose_named",
 ]

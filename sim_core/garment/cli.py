@@ -25,7 +25,8 @@ Dresses what OUTFIT.toml says, layer by layer from the skin outwards, and writes
   --glb FILE.glb       a model of everything, the weaves' maps at true scale
   --picture FILE.png   a drawing from the front, the side and behind
   --study FILE.json    how far the drape depends on its mesh: dressed at several steps, each against the next finer
-  --motion FILE.npz    how it moves by the outfit's motion, 25 frames a second: wearer and layers, vertices by frame
+  --motion FILE.npz    how it moves by the outfit's motion, 25 frames a second: wearer and layers, vertices by frame;
+                       --motion FILE.toml beside it: by that motion file instead (`simcore motion --help`)
 
 An outfit file:
 
@@ -33,7 +34,7 @@ An outfit file:
   wearer = "mannequins/woman.npz"     # or a [stand] table: height, span, bar_radius in metres
   size = 1.0                          # how many times as tall the figure is
   pose = "display"                    # `simcore figure --list` lists them; or { name, joints, shift }
-  motion = "motions/bow.toml"         # [[key]] tables of seconds and pose
+  motion = "motions/walk.toml"        # how it moves once dressed; `simcore motion --help` teaches such files
 
   [[layer]]                           # from the skin outwards
   pattern = "patterns/beizi.toml"
@@ -69,7 +70,13 @@ def add_parser(subparsers: Any) -> None:
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help="where the garment goes")
     parser.add_argument("--glb", type=Path, metavar="FILE.glb", help="where its model goes")
     parser.add_argument("--picture", type=Path, metavar="FILE.png", help="where its picture goes")
-    parser.add_argument("--motion", type=Path, metavar="FILE.npz", help="where its motion goes")
+    parser.add_argument(
+        "--motion",
+        type=Path,
+        action="append",
+        metavar="FILE",
+        help="FILE.npz: where its motion goes; FILE.toml: the motion, instead of the outfit's",
+    )
     parser.add_argument(
         "--edge",
         type=number(0.002, 0.2, " m"),
@@ -97,8 +104,11 @@ def run(args: argparse.Namespace) -> int:
     from sim_core.garment import dress, load_outfit
     from sim_core.garment.dressing import forget
 
+    named, args.motion = _motions(args.motion or [])
     _check_kinds(args)
     outfit = load_outfit(args.outfit, args.content)
+    if named is not None:
+        outfit = _moved_by(outfit, named, args.outfit)
     if args.edge is not None:
         outfit = outfit.coarser(args.edge)
     if args.study is not None:
@@ -160,6 +170,34 @@ def _study(args: argparse.Namespace, outfit: Outfit) -> int:
 
 def _distance(apart: dict[str, float]) -> str:
     return f"mean {1000 * apart['mean_m']:.2f} mm, p99 {1000 * apart['p99_m']:.2f} mm"
+
+
+def _motions(paths: Sequence[Path]) -> tuple[Path | None, Path | None]:
+    """The motion file (.toml) and where the motion goes, of what --motion was given."""
+    named = [path for path in paths if path.suffix == ".toml"]
+    targets = [path for path in paths if path.suffix != ".toml"]
+    if len(named) > 1 or len(targets) > 1:
+        raise WrongArgument(
+            f"--motion: {' '.join(map(str, paths))} – give one FILE.toml and one FILE.npz at most"
+        )
+    if named and not targets:
+        raise WrongArgument(
+            f"--motion: {named[0]} says how it moves – add --motion FILE.npz, where its motion goes"
+        )
+    return (named or [None])[0], (targets or [None])[0]
+
+
+def _moved_by(outfit: Outfit, path: Path, source: Path) -> Outfit:
+    """The outfit with the motion of a file instead of its own."""
+    from dataclasses import replace
+
+    from sim_core.garment import load_motion
+
+    if outfit.wearer is None:
+        raise WrongArgument(
+            f"--motion: {source} has a stand, which does not move – give an outfit with a wearer"
+        )
+    return replace(outfit, motion=load_motion(path))
 
 
 def _check_kinds(args: argparse.Namespace) -> None:

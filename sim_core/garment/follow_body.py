@@ -121,11 +121,9 @@ def move(
 
     Raises SimCoreError where the outfit has no wearer or no motion, or a joint would be turned beyond its limit.
     """
-    if outfit.wearer is None or outfit.motion is None:
-        raise SimCoreError(
-            f'outfit {outfit.name}: nobody moves – give it a wearer and motion = "motions/….toml"'
-        )
-    body = np.stack([outfit.wearer.posed(pose) for pose in outfit.motion.poses(outfit.pose)])
+    poses = outfit.poses()
+    assert outfit.wearer is not None
+    body = np.stack([outfit.wearer.posed(pose) for pose in poses])
     gone: list[np.ndarray] = []
     for number, garment in enumerate(garments):
         frames = [garment.positions.astype(np.float32)]

@@ -66,3 +66,50 @@ def test_without_anny_it_says_where_figures_are_made(
     assert told.count("\n") == 1
     assert "where figures are made" in told
     assert not list(tmp_path.iterdir())
+
+
+WALK = WOMAN.parents[1] / "motions" / "walk.toml"
+
+
+def test_it_names_the_motions_that_ship(capsys: pytest.CaptureFixture[str]) -> None:
+    content = ["--content", str(WALK.parents[1])]
+    assert cli.main(["motion", "--list", *content]) == 0
+    told = capsys.readouterr().out
+    assert all(f"{name}.toml" in told for name in ("walk", "turn", "salute", "raised-sleeve"))
+    assert cli.main(["motion", "--list", "--json", *content]) == 0
+    assert json.loads(capsys.readouterr().out)["walk.toml"]["loop"] is True
+
+
+def test_it_draws_measures_and_writes_a_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out, picture = tmp_path / "walk.npz", tmp_path / "walk.png"
+    words = ["motion", str(WALK), "--figure", str(WOMAN), "--out", str(out), "--picture", str(picture)]
+    assert cli.main([*words, "--measure", "--rate", "50", "--in-place", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["period_s"] == 1.12
+    assert max(facts["slide_mm"].values()) < 5.0
+    assert facts["floor_mm"] < 5.0
+    assert min(facts["clearance_mm"].values()) > 0.0
+    assert facts["seam"]["place_mm"] < 1e-3
+    with Image.open(picture) as drawn:
+        assert drawn.size[0] > 1000
+    with np.load(out) as data:
+        assert set(data.files) == {"time", "joints", "joint_names", "turns", "shift"}
+        assert data["joints"].shape == (113, len(JOINTS), 3) == (len(data["time"]), *data["joints"].shape[1:])
+        assert tuple(data["joint_names"]) == JOINTS
+        assert data["time"][-1] == pytest.approx(2.24)
+        assert data["joints"][-1] == pytest.approx(data["joints"][0], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "MOTION.toml: missing"),
+        (["walk.npz", "--measure"], "a motion file ends in .toml"),
+        (["walk.toml"], "nothing to do – add --measure"),
+    ],
+)
+def test_what_cannot_be_meant_of_a_motion_ends_with_2(
+    words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["motion", *words]) == 2
+    assert told in capsys.readouterr().err

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import Figure, Motion, Pose, pose_named
+from sim_core.body import Figure, Loop, Motion, Pose, pose_named
 from sim_core.cli import main
 from sim_core.cloth import Capsule
 from sim_core.cloth.contact import solid_mesh
@@ -213,6 +213,32 @@ def test_a_motion_that_cannot_be_is_refused(tmp_path: Path) -> None:
     beyond = Motion(((0.08, Pose.from_rotvecs({"elbow_l": (0.0, -170.0, 0.0)})),))
     with pytest.raises(SimCoreError, match=r"motion\.1.*elbow_l"):
         beyond.poses(Pose())
+
+
+def test_an_outfit_names_a_motion_that_repeats(tmp_path: Path) -> None:
+    """The wearer comes into it from the pose of the outfit, then walks one whole loop on the spot."""
+    it = of(tmp_path, head='motion = "motions/walk.toml"')
+    assert isinstance(it.motion, Loop)
+    poses = it.poses()
+    lead, once = round(25 * it.motion.lead), len(it.motion.times())
+    assert len(poses) == lead + once
+    assert poses[0] == it.pose
+    assert poses[lead].quaternions() == pytest.approx(poses[-1].quaternions(), abs=1e-9)
+    with pytest.raises(SimCoreError, match="nobody moves"):
+        of(tmp_path).poses()
+
+
+def test_a_motion_of_the_command_needs_a_place_and_a_wearer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, walk = written(tmp_path), ASSETS / "motions" / "walk.toml"
+    for words, told in (
+        (["--motion", str(walk)], "says how it moves – add --motion FILE.npz"),
+        (["--motion", "a.npz", "--motion", "b.npz"], "give one FILE.toml and one FILE.npz at most"),
+        (["--motion", "a.glb"], "name a file that ends in .npz"),
+    ):
+        assert main(["dress", str(path), "--content", str(ASSETS), *words]) == 2
+        assert told in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sim_core.body import Figure, Mannequin, Motion, Pose, Stand, pose_named
+from sim_core.body import Figure, Mannequin, Pose, Stand, load_motion, pose_named
 from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
@@ -19,7 +19,6 @@ from sim_core.garment.outfit.outfit import UNTANGLE, Layer, Outfit, Program
 from sim_core.garment.outfit.steps import Belt, Step, Touch
 from sim_core.garment.outfit.tables import (
     LayerTable,
-    MotionTable,
     OutfitTable,
     Place,
     PoseTable,
@@ -64,19 +63,6 @@ def load_outfit(path: Path, content: Path | None = None) -> Outfit:
     folder = content or (path.parent.parent if path.parent.name == "outfits" else path.parent)
     reader = _Reader(path, folder)
     return reader.outfit(read)
-
-
-def load_motion(path: Path) -> Motion:
-    """The motion of a file. Raises FileProblem naming file, key, value and remedy."""
-    values = read_toml(path, "a motion file (TOML); it needs [[key]] tables of seconds and pose")
-    try:
-        read = MotionTable.model_validate(values)
-    except ValidationError as error:
-        raise FileProblem(f"{path}: {_first(error)}") from error
-    reader = _Reader(path, path.parent)
-    return Motion(
-        tuple((key.seconds, reader.pose(f"key.{k}.pose", key.pose)) for k, key in enumerate(read.key, 1))
-    )
 
 
 class _Reader:

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from sim_core.body.mannequin import Mannequin
-from sim_core.body.motion import Motion
+from sim_core.body.motion import Loop, Motion
 from sim_core.body.pose import T_POSE, Pose
 from sim_core.body.stand import Stand
 from sim_core.cloth import Contact
@@ -109,7 +109,7 @@ class Outfit:
     wearer: Mannequin | None = None
     stand: Stand | None = None
     pose: Pose = T_POSE
-    motion: Motion | None = None
+    motion: Motion | Loop | None = None
     title: Mapping[str, str] = field(default_factory=dict)
     source: str = field(default="", compare=False)
 
@@ -126,6 +126,20 @@ class Outfit:
     def coarser(self, edge: float) -> Outfit:
         """The same with every layer meshed at `edge` [m]."""
         return replace(self, layers=tuple(replace(layer, edge=edge) for layer in self.layers))
+
+    def poses(self) -> tuple[Pose, ...]:
+        """The wearer's poses at the begin and at the end of every frame of 1/25 s of its motion, from its pose on; of
+        a motion that repeats one whole loop, in place.
+
+        Raises SimCoreError where there is no wearer or no motion, or a joint would be turned beyond its limit.
+        """
+        if self.wearer is None or self.motion is None:
+            raise SimCoreError(
+                f'outfit {self.name}: nobody moves – give it a wearer and motion = "motions/….toml"'
+            )
+        if isinstance(self.motion, Loop):
+            return self.motion.course(self.pose, self.wearer)
+        return self.motion.poses(self.pose)
 
     def to_dict(self) -> dict[str, Any]:
         """What decides the result, as plain values."""

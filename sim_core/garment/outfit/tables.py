@@ -10,7 +10,7 @@ from sim_core.garment.outfit.outfit import FILE_NAME
 from sim_core.garment.outfit.steps import GRAVITY, Do
 from sim_core.garment.pattern.tables import Measure, SpotTable
 
-__all__ = ["LayerTable", "MotionTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
+__all__ = ["LayerTable", "OutfitTable", "ProgramTable", "StandTable", "StepTable"]
 
 
 def _names_a_file(name: str) -> str:
@@ -193,19 +193,10 @@ class OutfitTable(Table):
     size: Number = Field(1.0, ge=0.5, le=2.0, description="how many times as tall the figure is")
     stand: StandTable | None = None
     pose: PoseTable | None = Field(None, description="name of a pose, or { name, joints, shift }")
-    motion: str | None = Field(None, description="motion file, e.g. motions/raised-arms.toml")
+    motion: str | None = Field(
+        None, description="motion file, e.g. motions/walk.toml; see `simcore motion --help`"
+    )
     study: str | None = Field(
         None, description="what `simcore dress --study` wrote: `hall build` chooses mesh steps by it"
     )
     layer: list[LayerTable] = Field(min_length=1, max_length=20)
-
-
-class KeyTable(Table):
-    seconds: Number = Field(gt=0, le=60, description="how long it takes to come to the pose")
-    pose: PoseTable = Field(description="name of a pose, or { name, joints, shift }")
-
-
-class MotionTable(Table):
-    name: Name | None = None
-    title: Words = {}
-    key: list[KeyTable] = Field(min_length=1, max_length=1000)
