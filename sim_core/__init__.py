@@ -27,6 +27,7 @@ _ROOMS = {
     "mesh": ("MeshReport", "PanelMesh", "panel_mesh"),
     "cloth": ("Drape", "Material", "drape"),
     "garment": (
+        "Clip",
         "Garment",
         "Outfit",
         "Pattern",

@@ -102,6 +102,7 @@ class GlbFile:
     images: list[dict[str, Any]] = field(default_factory=list)
     materials: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)
+    animations: list[dict[str, Any]] = field(default_factory=list)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
@@ -110,7 +111,7 @@ class GlbFile:
         self.blob.extend(data)
         return len(self.views) - 1
 
-    def _accessor(self, array: np.ndarray, kind: str, component: int, target: int) -> int:
+    def _accessor(self, array: np.ndarray, kind: str, component: int, target: int | None = None) -> int:
         accessor = {
             "bufferView": self._view(array.tobytes(), target),
             "componentType": component,
@@ -188,13 +189,30 @@ class GlbFile:
         primitive = {"attributes": attributes, "indices": index, "material": material}
         self.meshes.append({"name": name, "primitives": [primitive]})
 
+    def move(self, mesh: int, ways: np.ndarray) -> None:
+        """Gives a mesh morph targets: ways (K, V, 3) [m] of its vertices."""
+        targets = [{"POSITION": self._accessor(way.astype("<f4"), "VEC3", FLOAT, VERTICES)} for way in ways]
+        if targets:
+            self.meshes[mesh]["primitives"][0]["targets"] = targets
+            self.meshes[mesh]["weights"] = [0.0] * len(targets)
+
+    def animate(self, name: str, times: np.ndarray, weights: np.ndarray) -> None:
+        """An animation of all meshes that have morph targets: times (T,) [s], weights (T, K) of the targets then."""
+        told = {
+            "input": self._accessor(times.astype("<f4"), "SCALAR", FLOAT),
+            "output": self._accessor(weights.astype("<f4").reshape(-1), "SCALAR", FLOAT),
+            "interpolation": "LINEAR",
+        }
+        moved = [number for number, mesh in enumerate(self.meshes) if "weights" in mesh]
+        channels = [{"sampler": 0, "target": {"node": number, "path": "weights"}} for number in moved]
+        self.animations.append({"name": name, "samplers": [told], "channels": channels})
+
     def bytes(self, name: str, extensions: list[str], generator: str = "sim_core.garment") -> bytes:
         """The finished file; `name` is the scene's, `extensions` are those its materials use."""
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
         numbers = range(len(self.meshes))
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": generator},
-            "extensionsUsed": extensions,
             "scene": 0,
             "scenes": [{"name": name, "nodes": list(numbers)}],
             "nodes": [{"name": self.meshes[k]["name"], "mesh": k} for k in numbers],
@@ -204,6 +222,10 @@ class GlbFile:
             "bufferViews": self.views,
             "buffers": [{"byteLength": len(self.blob)}],
         }
+        if extensions:
+            document["extensionsUsed"] = extensions
+        if self.animations:
+            document["animations"] = self.animations
         if self.images:
             document["images"] = self.images
             document["samplers"] = [{"magFilter": 9729, "minFilter": 9987, "wrapS": 10497, "wrapT": 10497}]

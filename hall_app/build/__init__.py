@@ -1,8 +1,8 @@
 """From an outfit to what the hall shows.
 
 encoding, film: pictures to films; look: what they and the models show of an outfit; trails: how what is worn beneath
-moved; outfit: one bake from inputs to record; command: `hall build`. Names are handed out when they are asked for
-(PEP 562).
+moved; motion: the clip of an outfit that moves; outfit: one bake from inputs to record; command: `hall build`.
+Names are handed out when they are asked for (PEP 562).
 """
 
 from importlib import import_module
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
+    from hall_app.build.motion import write_motion
     from hall_app.build.outfit import bake_outfit, budget, refuse_disorder
     from hall_app.build.trails import TrailLostError, Trails
 
@@ -22,6 +23,7 @@ __all__ = [
     "encode_film",
     "film_possible",
     "refuse_disorder",
+    "write_motion",
 ]
 
 _HOME = {
@@ -33,6 +35,7 @@ _HOME = {
     "encode_film": "encoding",
     "film_possible": "encoding",
     "refuse_disorder": "outfit",
+    "write_motion": "motion",
 }
 
 

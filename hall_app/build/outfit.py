@@ -15,6 +15,7 @@ import numpy as np
 from hall_app.build.encoding import film_possible
 from hall_app.build.film import Film, filming, stills
 from hall_app.build.look import Wardrobe
+from hall_app.build.motion import write_motion
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
@@ -82,6 +83,12 @@ def bake_outfit(
         took = time.perf_counter() - clock
         seconds["all"] = round(seconds["all"] + took - seconds["models"], 2)
         seconds["models"] = round(took, 2)
+    clock = time.perf_counter()
+    if write_motion(
+        wardrobe.outfit, garments, out, lambda share, label: progress(0.95 + 0.04 * share, label)
+    ):
+        seconds["motion"] = round(time.perf_counter() - clock, 2)
+        seconds["all"] = round(seconds["all"] + seconds["motion"], 2)
     record: dict[str, Any] = {**_record(key, garments, levels, seconds), "dressing": dressing}
     if steps:
         study = study_of(content, exhibit)
@@ -123,9 +130,11 @@ def _kept(
     if film and FILM[0] not in record[FILES]:
         return None
     for name in record[FILES]:
-        if not name.endswith(".glb"):  # models are made anew
+        if not name.endswith((".glb", ".clip")):  # models, and how they move, are made anew
             shutil.copyfile(former / name, out / name)
-    return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
+    seconds = dict(record["seconds"])
+    seconds["all"] -= seconds.pop("motion", 0.0)
+    return tuple(Garment.load(out / name) for name in layer_files(layers)), seconds
 
 
 def _dress(

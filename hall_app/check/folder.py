@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hall_app.check.files.bakes import bake_problems
 from hall_app.check.files.budget import budget_problems
+from hall_app.check.files.clips import clip_problems
 from hall_app.check.files.mannequins import figure_problems
 from hall_app.check.files.media import media_problems
 from hall_app.check.files.models import scale_problems
@@ -29,6 +30,7 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     media_problems,
     scale_problems,
     budget_problems,
+    clip_problems,
     reach_problems,
     backdrop_problems,
     bake_problems,

@@ -12,6 +12,7 @@ from hall_app.content.schema.exhibit import ExhibitFile
 from hall_app.content.schema.hall import HallFile
 
 BAKED = "baked/"  # written by hall build, absent before it
+MOTION = BAKED + "motion.clip"  # how an outfit with a motion moves, written by hall build
 SHEET = "media/pattern.svg"  # the flat pattern of an exhibit with an outfit, drawn by hall build --pattern
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}
 LEAVES = ("is a link that leaves the content folder", "copy the file itself into the folder")
@@ -30,6 +31,8 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
         yield "models.hall", file.models.hall
         if file.models.close:
             yield "models.close", file.models.close
+    if file.motion:
+        yield "motion", file.motion
     if file.thumbnail:
         yield "thumbnail", file.thumbnail
     for number, medium in enumerate(file.media, 1):

@@ -2,6 +2,7 @@
 
 import { createBeat } from "./picture/beat.js";
 import * as camera from "./look/camera.js";
+import { createClock } from "./look/clip/clock.js";
 import { createConnection } from "./visit/connection.js";
 import { framesDrawn, hooksPresent, requestRender } from "./viser/viser_adapter.js";
 import { LOAD_PATIENCE, loadClearance, loadHall, until, webglWorks } from "./visit/loading.js";
@@ -34,7 +35,8 @@ async function start() {
   const { door } = window.HALL; // it has been fetching since the first paint
   const [scene, texts] = await Promise.all([door.scene, door.texts]);
   const { lang } = door, parts = { visit: null, quality: null };
-  ui = createUi({ root: document.body, scene, texts, lang, actions: createActions(parts) });
+  const clock = createClock();
+  ui = createUi({ root: document.body, scene, texts, lang, actions: createActions(parts), clock });
   if (!webglWorks()) {
     ui.fail("webgl");
     return;
@@ -47,7 +49,7 @@ async function start() {
   const display = hooks ? "page" : "viser";
   const beat = createBeat((now) => frame(parts, now));
   const connection = createConnection({ view: window.HALL.view, tell: ui.connection, late: () => ui.fail("load") });
-  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk });
+  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk, clock });
   if (hooks) parts.quality = createQuality(() => {
     ui.quality(parts.quality);
     requestRender();
@@ -99,9 +101,9 @@ function firstLook(beat) {
 
 /** What tests and curious visitors may use: to read, and to go where the minimap goes. */
 function publish({ visit, quality }, display) {
-  const { goTo, pose, mode, ahead, disagreement, opened, near, closeupAt } = visit;
+  const { goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing } = visit;
   window.hall = Object.freeze({
-    goTo, pose, mode, ahead, disagreement, opened, near, closeupAt,
+    goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing,
     displayed: camera.displayed,
     display: () => display,
     quality: () => (quality ? { choice: quality.choice, level: quality.level } : null),

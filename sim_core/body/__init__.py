@@ -7,7 +7,7 @@ from sim_core.body.mannequin import Mannequin
 from sim_core.body.motion import Loop, Motion, load_motion
 from sim_core.body.pose import POSES, Pose, pose_named
 from sim_core.body.skeleton import Skeleton
-from sim_core.body.skinning import SKINS, dual_quaternion_skin, linear_skin
+from sim_core.body.skinning import LINEAR_JOINTS, SKINS, dual_quaternion_skin, linear_skin
 from sim_core.body.stand import Stand
 from sim_core.body.wearer import Figure
 
@@ -17,6 +17,7 @@ __all__ = [
     "Figure",
     "JOINTS",
     "LIMITS",
+    "LINEAR_JOINTS",
     "Loop",
     "Mannequin",
     "Motion",

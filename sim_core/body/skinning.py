@@ -15,7 +15,7 @@ from sim_core.body.joints import JOINTS, PARENTS, product
 from sim_core.body.pose import Pose
 from sim_core.body.skeleton import Skeleton
 
-__all__ = ["SKINS", "dual_quaternion_skin", "linear_arms_skin", "linear_skin"]
+__all__ = ["LINEAR_JOINTS", "SKINS", "dual_quaternion_skin", "linear_arms_skin", "linear_skin"]
 
 Skin = Callable[[np.ndarray, np.ndarray, Skeleton, Pose], np.ndarray]
 ARMS = [number for number, name in enumerate(JOINTS) if name[:-2] in ("shoulder", "elbow", "wrist")]
@@ -69,3 +69,5 @@ def _screws(skeleton: Skeleton, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
 
 SKINS: dict[str, Skin] = {"dual": dual_quaternion_skin, "linear arms": linear_arms_skin}
 """What a figure's file may name."""
+LINEAR_JOINTS: dict[str, tuple[int, ...]] = {"dual": (), "linear arms": tuple(ARMS)}
+"""Of each of them the joints whose moves are blended linearly; the others' as screws."""

@@ -1,6 +1,7 @@
 """Garments: patterns, outfits, dressing, the drape as a value, levels of detail and GLB. See README.md."""
 
 from sim_core.body import Stand
+from sim_core.garment.clip import Clip
 from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
 from sim_core.garment.follow_body import follow, move
 from sim_core.garment.garment import Garment
@@ -12,6 +13,7 @@ from sim_core.garment.pattern import Pattern
 from sim_core.garment.settled import Settled
 
 __all__ = [
+    "Clip",
     "Clothed",
     "Frame",
     "Garment",

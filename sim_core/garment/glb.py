@@ -14,7 +14,6 @@ from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Colour, Garment
 from sim_core.garment.pattern import unsided
-from sim_core.garment.slub import slub_normal
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals
 from sim_core.validation.files import written_whole
@@ -249,8 +248,30 @@ def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict
     cover = _coverage(maps)
     material = _silk(_dyed(dye, _mean_colour(maps)), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
-    normal = _once(textures, "normal", lambda: glb.texture(slub_normal(256), tile))
+    normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
     if cover < SHEER:
         material["alphaMode"] = "BLEND"
     return glb.material(material)
+
+
+def _slub_normal(pixels: int, *, depth: float = 1.2, seed: int = 7) -> np.ndarray:
+    """A tileable slub relief, what remains of a silk's weave seen from a few steps away: normal map (n, n, 3) uint8.
+
+    Threads that swell here and there, along u mostly; periodic both ways.
+    """
+    rng = np.random.default_rng(seed)
+    frequency = np.fft.fftfreq(pixels, 1 / pixels)
+    u, v = np.meshgrid(frequency, frequency)
+
+    def noise(along: float, across: float) -> np.ndarray:
+        window = np.exp(-((u / along) ** 2) - (v / across) ** 2) * (1 - np.exp(-(u**2 + v**2) / 4))
+        field = np.fft.ifft2(np.fft.fft2(rng.standard_normal((pixels, pixels))) * window).real
+        return field / field.std()
+
+    height = noise(5, 42) + 0.45 * noise(42, 5) + 0.25 * noise(60, 60)
+    du = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / 2
+    dv = (np.roll(height, -1, 0) - np.roll(height, 1, 0)) / 2
+    normal = np.stack([-depth * du, depth * dv, np.ones_like(height)], axis=-1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    return np.round(127.5 + 127.5 * normal).astype(np.uint8)

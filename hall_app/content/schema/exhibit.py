@@ -127,6 +127,9 @@ class ExhibitFile(Table):
     outfit: ContentPath | None = Field(
         None, description="outfit that hall build dresses, e.g. outfits/beizi.toml; either this or models"
     )
+    motion: ContentPath | None = Field(
+        None, description="clip its model in the hall moves by, e.g. motion.clip; at most 2 MB"
+    )
     show: Show = Field(Show.model_construct(), description="from how near the outfit is seen")
     body: Body = Field(description="rigid body")
     behaviours: tuple[Behaviour, ...] = Field(

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from hall_app.content.behaviours import kind_of
-from hall_app.content.files import BAKED, digest, is_there
+from hall_app.content.files import BAKED, MOTION, digest, is_there
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.schema.exhibit import Media, Record
@@ -32,6 +32,7 @@ TYPES = {
     ".mp3": "audio/mpeg",
     ".wav": "audio/wav",
     ".glb": "model/gltf-binary",
+    ".clip": "application/vnd.handress.clip",
 }
 
 # Names of the catalogue record's lines, Chinese and English.
@@ -124,9 +125,16 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "z": file.place.z,
         "facing": file.place.facing,
         "thumbnail": thumbnail(exhibit, baked),
+        "motion": _motion(exhibit, baked),
         "kind": kind_of(file.behaviours),
         "caption": file.caption.as_json() if file.caption else None,
     }
+
+
+def _motion(exhibit: Exhibit, baked: Path | None) -> str | None:
+    """Address of the clip its model moves by: the one its file names, else the one that was baked with it."""
+    path = exhibit.file.motion or (MOTION if exhibit.file.outfit is not None else None)
+    return _url(exhibit, path, baked) if path else None
 
 
 def thumbnail(exhibit: Exhibit, baked: Path | None) -> str | None:

@@ -3,13 +3,10 @@
 // stands still.
 
 import { requestRender, turnNode } from "../viser/viser_adapter.js";
+import { createPresence, inSight } from "./sight.js";
 
-const SIGHT = 9; // [m]
-const ASIDE = Math.cos((50 * Math.PI) / 180); // farther from the middle of the picture nobody sees it turn
-const PRESENT = 60e3; // [ms] after the last sign of life
 const CATCH_UP = 2; // [1/s] share of what it lags behind that is made up, so that no tick shows
 const SETTLED = 0.004; // [rad] of what stands: nearer to where it should be nobody sees it turn
-const LIFE = ["pointermove", "pointerdown", "keydown", "wheel", "touchstart"];
 
 const TURN = 2 * Math.PI;
 /** The same angle [rad] within half a turn of nought. */
@@ -20,15 +17,7 @@ export function createTurning(wake) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const told = new Map(); // id -> {angle, rate, at} of the last tick
   const shown = new Map(); // id -> angle
-  let seenAt = 0;
-  for (const sign of LIFE) addEventListener(sign, () => (seenAt = performance.now()), { capture: true, passive: true });
-
-  function inSight({ x, z }, from) {
-    const [dx, dz] = [x - from.x, z - from.z];
-    const away = Math.hypot(dx, dz);
-    const ahead = -Math.sin(from.yaw) * dx - Math.cos(from.yaw) * dz;
-    return away < SIGHT && ahead > ASIDE * away;
-  }
+  const present = createPresence();
 
   function turn({ id, facing }, { angle, rate, at }, dt) {
     const wanted = angle + (rate * (performance.now() - at)) / 1000;
@@ -47,7 +36,7 @@ export function createTurning(wake) {
   return {
     heard: ({ id, angle, rate }) => void told.set(id, { angle, rate, at: performance.now() }),
     frame(dt, scene, from) {
-      if (calm.matches || performance.now() - seenAt > PRESENT) return;
+      if (calm.matches || !present()) return;
       for (const exhibit of scene.exhibits) {
         const tick = told.get(exhibit.id);
         if (tick && exhibit.kind !== "still" && inSight(exhibit, from)) turn(exhibit, tick, dt);

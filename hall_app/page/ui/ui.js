@@ -25,14 +25,14 @@ const CHOICES = ["auto", ...LEVELS];
 const NARROW = "(max-width: 720px)"; // the open plan covers the way one wants to walk
 
 /**
- * createUi({root, scene, texts, lang, actions}) -> ui
+ * createUi({root, scene, texts, lang, actions, clock}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
+ * clock: of what moves. actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
  */
-export function createUi({ root, scene, texts, lang, actions }) {
+export function createUi({ root, scene, texts, lang, actions, clock }) {
   const words = createWords(texts, lang);
-  const parts = createParts({ words, scene, actions });
+  const parts = createParts({ words, scene, actions, clock });
   const overlay = arrange(parts);
   root.append(overlay);
   followLanguage(words, parts, overlay);
@@ -45,8 +45,8 @@ export function createUi({ root, scene, texts, lang, actions }) {
   return face(parts, overlay, words);
 }
 
-function createParts({ words, scene, actions }) {
-  const parts = { words, scene, covers: new Set() };
+function createParts({ words, scene, actions, clock }) {
+  const parts = { words, scene, clock, covers: new Set() };
   const music = createMusic(scene);
   const titleOf = (id) => words.pick(parts.scene.exhibits.find((exhibit) => exhibit.id === id)?.title);
   const choose = (next) => {
@@ -69,6 +69,7 @@ function createParts({ words, scene, actions }) {
     tools: createTools({
       words,
       music,
+      clock,
       scene,
       onList: () => parts.list.open(),
       onHelp: () => parts.help.open(),
@@ -190,7 +191,7 @@ function announceBay({ words, voice }, bay) {
   if (bay) voice?.say(words.t("stage.entered", { place: words.pick(bay.name) }));
 }
 
-/** Esc leaves the close-up (an open dialog takes Esc for itself), Enter opens what is near, ? shows the help. */
+/** Esc leaves the close-up (an open dialog has its own Esc), Enter opens what is near, P stops motion, ? shows the help. */
 function listenToKeys(parts, actions) {
   addEventListener("keydown", (event) => {
     const inside = parts.stage.parentElement.classList.contains("is-outside");
@@ -205,7 +206,8 @@ function listenToKeys(parts, actions) {
     ) {
       event.preventDefault();
       actions.open(parts.caption.id());
-    } else if (event.key === "?" && !event.target.closest?.("input, textarea")) parts.help.open();
+    } else if (event.code === "KeyP" && !event.repeat && !event.target.closest?.("input, textarea")) parts.clock.toggle();
+    else if (event.key === "?" && !event.target.closest?.("input, textarea")) parts.help.open();
   });
 }
 

@@ -2,6 +2,7 @@
 
 import { createAddress, linkedExhibit } from "./address.js";
 import * as camera from "../look/camera.js";
+import { createClips } from "../look/clip/clips.js";
 import { createCloseup } from "../look/closeup.js";
 import { createGaze } from "../look/gaze.js";
 import { createGlow } from "../look/glow.js";
@@ -23,12 +24,12 @@ const TEXT_PATIENCE = 15000; // [ms] an exhibit's text may take on a slow line
 const clamp = (value) => Math.max(-1, Math.min(1, value));
 
 /**
- * createVisit({scene, grid, display, ui, wake, connection}) -> visit
+ * createVisit({scene, grid, display, ui, wake, connection, clock}) -> visit
  *
- * display: "page" where this page places the camera, "viser" where the server does; wake(): draw on for a while;
+ * clock: of what moves by clips; display: "page" where this page places the camera, "viser" where the server does; wake(): draw on for a while;
  * connection(state, place): hears of the walk's.
  */
-export function createVisit({ scene, grid, display, ui, wake, connection }) {
+export function createVisit({ scene, grid, display, ui, wake, connection, clock }) {
   let entered = false, opened = null, near = null, headingThere = null;
   let stick = { forward: 0, right: 0, since: 0 };
   const walking = () => entered && !opened;
@@ -46,6 +47,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection }) {
   });
   gaze.yaw = scene.start.yaw;
   const turning = createTurning(wake);
+  const clips = createClips({ clock, wake });
   const glow = createGlow({ wake, onHover: (node) => ui.hover(node && !opened ? node.slice(EXHIBITS.length) : null) });
 
   const exhibitOf = (id) => scene.exhibits.find((exhibit) => exhibit.id === id);
@@ -196,7 +198,9 @@ export function createVisit({ scene, grid, display, ui, wake, connection }) {
     last = now;
     spot.note(now);
     if (walking()) step(dt, now);
-    if (display !== "page" || opened) return;
+    if (display !== "page") return;
+    clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened);
+    if (opened) return;
     camera.holdGestures();
     camera.fitLens();
     turning.frame(dt, scene, { ...walk.pose, yaw: gaze.yaw });
@@ -241,5 +245,6 @@ export function createVisit({ scene, grid, display, ui, wake, connection }) {
     opened: () => opened,
     near: () => near,
     closeupAt: closeup.drawnAt,
+    playing: clips.playing,
   };
 }

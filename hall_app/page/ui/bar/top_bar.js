@@ -92,16 +92,39 @@ function musicTool(words, music) {
   return button;
 }
 
-/** createTools({words, music, scene, onList, onHelp, onSurvey, onSettings}) -> {element, updateScene} */
-export function createTools({ words, music, scene, onList, onHelp, onSurvey, onSettings }) {
+/** What moves stands still or goes on; the same as the key P. */
+function motionTool(words, clock) {
+  const button = el(
+    "button",
+    { type: "button", class: "tool", testid: "motion", "aria-keyshortcuts": "P", on: { click: () => clock.toggle() } },
+    icon("pause"),
+    icon("play"),
+    words.text(el("span", { class: "tool-text" }), "bar.motion"),
+  );
+  const show = () => {
+    setLabel(button, words.t(clock.stopped ? "bar.motion_off" : "bar.motion_on"));
+    button.setAttribute("aria-pressed", String(!clock.stopped));
+  };
+  words.follow(show);
+  clock.watch(show);
+  return button;
+}
+
+/** createTools({words, music, clock, scene, onList, onHelp, onSurvey, onSettings}) -> {element, updateScene} */
+export function createTools({ words, music, clock, scene, onList, onHelp, onSurvey, onSettings }) {
   const one = (name, onClick, testid = name) => tool({ words, name, key: `bar.${name}`, testid, onClick });
   const list = one("list", onList);
   const survey = one("survey", onSurvey, "hall-survey");
   const settings = one("settings", onSettings);
   const help = one("help", onHelp);
-  const element = el("nav", { class: "tools glass" }, list, musicTool(words, music), survey, settings, help);
+  const motion = motionTool(words, clock);
+  const tools = [list, musicTool(words, music), motion, survey, settings, help];
+  const element = el("nav", { class: "tools glass" }, ...tools);
   words.follow(() => element.setAttribute("aria-label", words.t("bar.tools")));
-  const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);
+  const updateScene = (next) => {
+    setAttribute(survey, "hidden", !next.questionnaire);
+    setAttribute(motion, "hidden", !next.exhibits.some((exhibit) => exhibit.motion));
+  };
   updateScene(scene);
   return { element, updateScene };
 }

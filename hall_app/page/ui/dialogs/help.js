@@ -16,6 +16,7 @@ const SECTIONS = {
     [["Enter"], "open"],
     [["←", "→"], "turn"],
     [["+", "−"], "nearer"],
+    [["P"], "motion"],
     [["Esc"], "back"],
     [["?"], "show_help"],
   ],

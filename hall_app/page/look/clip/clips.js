@@ -1,0 +1,59 @@
+// Exhibits that move by a clip: each is fetched when it is first seen, read once, and plays where it is seen, in the hall
+// and in its close-up if that shows the same model.
+
+import { createPresence, inSight } from "../sight.js";
+import { readClip } from "./clip_file.js";
+import { createPlayback } from "./playback.js";
+
+const CLOSEUP = "/closeup";
+
+async function fetched(url) {
+  const answer = await fetch(url);
+  if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
+  return readClip(await answer.arrayBuffer());
+}
+
+/**
+ * createClips({clock, wake}) -> {frame(scene, {x, z, yaw}, opened), playing()}
+ *
+ * frame() is called ahead of every picture; opened: id of the exhibit in the close-up, or null. playing(): nodes that a
+ * clip has been written into.
+ */
+export function createClips({ clock, wake }) {
+  const present = createPresence();
+  const clips = new Map(); // address -> {clip: null while it comes, nodes: node -> playback}
+  clock.watch(() => wake());
+
+  function load(url) {
+    const entry = { clip: null, nodes: new Map() };
+    clips.set(url, entry);
+    fetched(url)
+      .then((clip) => {
+        entry.clip = clip;
+        wake();
+      })
+      .catch((error) => console.warn("an exhibit stands still:", error));
+    return entry;
+  }
+
+  function play({ motion }, node) {
+    if (clock.stopped && !clips.has(motion)) return; // nothing is fetched for who wants no motion
+    const { clip, nodes } = clips.get(motion) ?? load(motion);
+    if (!clip) return;
+    if (!nodes.has(node)) nodes.set(node, createPlayback(clip, node));
+    nodes.get(node).frame(clock.seconds(), true);
+    if (!clock.stopped) wake();
+  }
+
+  return {
+    frame(scene, from, opened) {
+      if (document.hidden || !present()) return;
+      for (const exhibit of scene.exhibits) {
+        if (!exhibit.motion) continue;
+        if (exhibit.id === opened) play(exhibit, CLOSEUP);
+        else if (opened === null && inSight(exhibit, from)) play(exhibit, `/exhibits/${exhibit.id}`);
+      }
+    },
+    playing: () => [...clips.values()].flatMap(({ nodes }) => [...nodes].filter(([, one]) => one.bound()).map(([node]) => node)),
+  };
+}

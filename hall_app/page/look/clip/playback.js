@@ -1,0 +1,121 @@
+// Plays a clip on the meshes of a model: writes their vertices in place, whole frames, as they were simulated and checked.
+// What nobody sees costs nothing; between two frames nothing is asked for.
+
+import { meshesOf, requestRender } from "../../viser/viser_adapter.js";
+import { normalsOf } from "./normals.js";
+import { createSkin } from "./skin.js";
+
+const AROUND = 0.15; // [m] more than the sampled frames of a figure reach
+const SAMPLES = 16; // frames of a figure that tell how far it reaches
+
+/** A node's name as three.js' loader writes it. */
+const loaded = (name) => name.replace(/\s/g, "_").replace(/[[\].:/]/g, "");
+
+/** The frame at a time [s]: round and round, or, of a clip that is no loop, to its end and from the begin again. */
+export const frameAt = ({ frames, period, rate }, seconds) =>
+  Math.min(frames - 1, Math.floor((((seconds % period) + period) % period) * rate + 1e-6));
+
+/** A mesh of the clip: its vertices and their directions in a frame. */
+function createSurface(mesh, place) {
+  const positions = new Float32Array(3 * mesh.count), normals = new Float32Array(3 * mesh.count);
+  return {
+    drawn: mesh.drawn.map(({ node, index }) => ({ name: loaded(node), index })),
+    positions,
+    normals,
+    place: (frame) => place(frame, positions),
+    shade: () => normalsOf(positions, mesh.faces, normals),
+  };
+}
+
+function byVertices({ steps, vertices, origin, step }, { begin, count }) {
+  return (frame, out) => {
+    const from = 3 * (frame * vertices + begin), [x, y, z] = origin;
+    for (let k = 0; k < 3 * count; k += 3) {
+      out[k] = x + step * steps[from + k];
+      out[k + 1] = y + step * steps[from + k + 1];
+      out[k + 2] = z + step * steps[from + k + 2];
+    }
+  };
+}
+
+/** {centre, radius} of a ball round a surface in these frames. */
+function ball(surface, frames, more) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const frame of frames) {
+    surface.place(frame);
+    surface.positions.forEach((value, k) => {
+      low[k % 3] = Math.min(low[k % 3], value);
+      high[k % 3] = Math.max(high[k % 3], value);
+    });
+  }
+  const centre = low.map((value, axis) => (value + high[axis]) / 2);
+  return { centre, radius: Math.hypot(...high.map((value, axis) => value - centre[axis])) + more };
+}
+
+/** Write a surface into the vertices of a drawn mesh. */
+function write({ positions, normals }, index, { geometry }) {
+  const place = geometry.attributes.position, shade = geometry.attributes.normal;
+  const to = place.array, lit = shade?.array;
+  for (let p = 0; p < index.length; p++) {
+    const from = 3 * index[p], at = 3 * p;
+    to[at] = positions[from]; to[at + 1] = positions[from + 1]; to[at + 2] = positions[from + 2];
+    if (!lit) continue;
+    lit[at] = normals[from]; lit[at + 1] = normals[from + 1]; lit[at + 2] = normals[from + 2];
+  }
+  place.needsUpdate = true;
+  if (shade) shade.needsUpdate = true;
+}
+
+/**
+ * createPlayback(clip, node) -> {frame(seconds, seen), bound()}; node: the scene's node of the model; clip: of readClip.
+ *
+ * frame() is called ahead of every picture, seconds: of the hall's clock, seen: whether a visitor can see it. viser makes
+ * new meshes whenever a model changes or its socket connects again: they are found anew. Returns whether it wrote a frame.
+ */
+export function createPlayback(clip, node) {
+  const surfaces = clip.meshes.map((mesh) => createSurface(mesh, byVertices(clip, mesh)));
+  if (clip.figure) surfaces.push(createSurface(clip.figure, createSkin(clip.figure, clip.poses)));
+  const every = Math.max(1, Math.floor(clip.frames / SAMPLES));
+  const sampled = Array.from({ length: Math.ceil(clip.frames / every) }, (_, k) => k * every);
+  const balls = surfaces.map((surface) => ball(surface, sampled, AROUND));
+  let bound = []; // [{mesh, surface, index}]
+  let shown = null;
+
+  /** True where the meshes are others than those that were written last. */
+  function bind() {
+    const meshes = meshesOf(node), found = [];
+    surfaces.forEach((surface, number) => {
+      for (const { name, index } of surface.drawn) {
+        const mesh = meshes.find((one) => one.name === name && one.geometry.attributes.position.count === index.length);
+        if (mesh) found.push({ mesh, geometry: mesh.geometry, surface, index, ball: balls[number] });
+      }
+    });
+    const same = found.length === bound.length && found.every((one, k) => one.geometry === bound[k].geometry);
+    if (same) return false;
+    bound = found;
+    for (const { geometry, ball: { centre, radius } } of bound) {
+      if (!geometry.boundingSphere) geometry.computeBoundingSphere();
+      geometry.boundingSphere.center.set(...centre);
+      geometry.boundingSphere.radius = radius;
+      geometry.boundingBox = null; // it would hide from the pointer what left it
+    }
+    return true;
+  }
+
+  return {
+    frame(seconds, seen) {
+      if (!seen || document.hidden) return false;
+      const now = frameAt(clip, seconds);
+      if (!bind() && now === shown) return false;
+      shown = now;
+      for (const surface of new Set(bound.map((one) => one.surface))) {
+        surface.place(now);
+        surface.shade();
+      }
+      for (const { surface, index, mesh } of bound) write(surface, index, mesh);
+      if (bound.length) requestRender();
+      return bound.length > 0;
+    },
+    bound: () => bound.length,
+  };
+}

@@ -1,0 +1,79 @@
+"""An outfit that names a motion: the clip that is baked beside the hall's model, and plays on it."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hall_app.build import write_motion
+from sim_core import metrics
+from sim_core.body import Motion, Pose
+from sim_core.garment import Clothed, Outfit, choose_detail, dress, load_outfit, write_glb
+from sim_core.garment.clip import Clip
+from sim_core.garment.levels import shown_figure
+from sim_core.garment.outfit import Step
+from sim_core.gltf import glb_parts
+
+pytestmark = pytest.mark.slow
+
+ASSETS = Path(__file__).parents[2] / "assets"
+SHORT = (
+    Step("sew", 0.48, (0.0, 1.5), 6.0, 0.0),
+    Step("weld"),
+    Step("settle", 0.12, (2.0, 9.81), 3.0, 0.15),
+    Step("pin", spots=("nape",)),
+    Step("pose", 0.2, damping=2.5, friction=0.1),
+    Step("release"),
+    Step("rest", 0.16, damping=10.0, friction=0.45),
+)
+
+
+@dataclass(frozen=True)
+class Maps:
+    albedo: np.ndarray
+    normal: np.ndarray
+    opacity: np.ndarray
+    size: tuple[float, float]
+
+
+def raising(outfit: Outfit) -> Outfit:
+    """Dressed in a second, then the arms are lifted a little and lowered again, in six frames."""
+    layers = tuple(
+        replace(layer, program=replace(layer.program, steps=SHORT), edge=0.05) for layer in outfit.layers
+    )
+    low, high = Pose.arms(10.0, 2.0), Pose.arms(7.0, 4.0)
+    return replace(outfit, layers=layers, pose=low, motion=Motion(((0.12, high), (0.12, low))))
+
+
+def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
+    outfit = raising(load_outfit(ASSETS / "outfits" / "beizi.toml"))
+    assert outfit.wearer is not None
+    garments = dress(outfit)
+    level = choose_detail(garments[-1], 0.01)
+    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
+    maps = Maps(flat, flat, np.full((32, 32), 255, np.uint8), (0.004, 0.005))
+    body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
+    figure = shown_figure(*body, garments[-1].positions, garments[-1].faces, triangles=1600)
+    write_glb(tmp_path / "hall.glb", [Clothed(level, maps)], precision="hall", figure=figure)
+    assert write_motion(outfit, garments, tmp_path, lambda share, label: None)
+    clip = Clip.load(tmp_path / "motion.clip")
+    assert (clip.frames, clip.loop, clip.rate) == (6, True, 25.0)
+    names = {drawn.node for mesh in clip.meshes for drawn in mesh.drawn}
+    document = glb_parts((tmp_path / "hall.glb").read_bytes()).document
+    figure_nodes = {drawn.node for drawn in clip.figure.drawn} if clip.figure else set()
+    assert {node["name"] for node in document["nodes"]} - names - figure_nodes == {"base"}
+    cloth = clip.names[0]
+    for frame in (0, 3, 5):
+        posed = outfit.wearer.posed(outfit.motion.poses(outfit.pose)[frame]) + [0.0, 0.025, 0.0]
+        found = metrics.penetration(
+            clip.positions(frame, cloth), clip.faces(cloth), posed, outfit.wearer.faces
+        )
+        assert found.vertices == 0
+    assert np.abs(clip.positions(3, cloth) - clip.positions(0, cloth)).max() > 0.005
+
+
+def test_an_outfit_without_a_motion_has_none(tmp_path: Path):
+    outfit = load_outfit(ASSETS / "outfits" / "beizi.toml")
+    assert not write_motion(outfit, (), tmp_path, lambda share, label: None)
+    assert not list(tmp_path.iterdir())
