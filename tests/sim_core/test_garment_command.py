@@ -40,7 +40,7 @@ def outfit(tmp_path: Path) -> Path:
 @contextmanager
 def frames_counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
     """How many frames each run of the engine simulates itself, rather than finding them done."""
-    module, counted = sys.modules["sim_core.garment.dressing.dress"], []
+    module, counted = sys.modules["sim_core.garment.dressing.runs"], []
     drape = module.drape  # type: ignore[attr-defined]
 
     def heard(*given, **more) -> Drape:
