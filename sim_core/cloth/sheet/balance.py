@@ -52,7 +52,7 @@ def balance(patches: Patches, *, lattices: bool = False) -> np.ndarray | None:
     are unless asked for."""
     if patches.operator.nnz == 0:
         return None
-    area, group = _areas(patches.corner), _groups(patches)
+    area, group = areas(patches.corner), _groups(patches)
     seen = _seen(patches)
     force, forces = _forces(patches, area)
     kinds = _kinds(patches, seen)
@@ -79,7 +79,8 @@ def balance(patches: Patches, *, lattices: bool = False) -> np.ndarray | None:
     return _roots(change)
 
 
-def _areas(corner: np.ndarray) -> np.ndarray:
+def areas(corner: np.ndarray) -> np.ndarray:
+    """Areas (F,) [m2] of triangles with these corners (F, 3, 2) [m]."""
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
@@ -160,7 +161,7 @@ def _lattice(patches: Patches, force: np.ndarray, inside: np.ndarray, seen: spar
         return False
     same &= (twin >= 0).all(1) & same[np.maximum(twin, 0) // 3].all(1)
     quiet = inside & (seen @ (~same).astype(float) == 0)
-    scale = np.abs(patches.operator.data).max() * np.sqrt(_areas(patches.corner).max())
+    scale = np.abs(patches.operator.data).max() * np.sqrt(areas(patches.corner).max())
     return not quiet.any() or bool(np.abs(force[quiet]).max() < ALIKE * scale)
 
 

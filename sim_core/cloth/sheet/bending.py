@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-from sim_core.cloth.sheet.balance import Patches, balance
+from sim_core.cloth.sheet.balance import Patches, areas, balance
 
 LEAST_RATIO = 0.12  # of the singular values of A; below, the six points say too little of the curvature
 TWIST = np.sqrt(np.array([1.0, 1.0, 2.0]))  # xy counts twice
@@ -39,9 +39,7 @@ def bending_matrix(
     curved, known = _curvatures(corner, faces, twin, count)
     turns = _turns(corner, faces, twin)
     operator = _lent(curved, known, twin, turns)
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    weight = np.sqrt(area[:, None] * bend)
+    weight = np.sqrt(areas(corner)[:, None] * bend)
     scaled = sparse.csr_array(sparse.diags_array((weight * TWIST).ravel()) @ operator)
     root = None
     if balanced is not False:

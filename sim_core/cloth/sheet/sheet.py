@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+from sim_core.cloth.sheet.balance import areas
 from sim_core.cloth.sheet.bending import bending_matrix
 from sim_core.cloth.sheet.material import Material
 from sim_core.errors import SimCoreError
@@ -120,7 +121,7 @@ class Sheet:
             instance_of("material", material, Material, "a Material is meant")
         _check_needles(corner)
         edges, face_edges = face_edge_table(faces)
-        area = _areas(corner)
+        area = areas(corner)
         mass, stiffness = np.zeros(len(rest)), np.zeros((len(faces), 3, 3))
         for number, material in enumerate(materials):
             own = np.flatnonzero(kind == number)
@@ -186,14 +187,9 @@ def _check_needles(corner: np.ndarray) -> None:
     small = np.flatnonzero(longest < SHORTEST**2)
     if len(small):
         raise SimCoreError(f"faces: face {small[0]} is smaller than {SHORTEST:g} m – lengths are metres")
-    thin = np.flatnonzero(_areas(corner) < 1e-3 * longest)
+    thin = np.flatnonzero(areas(corner) < 1e-3 * longest)
     if len(thin):
         raise SimCoreError(f"faces: face {thin[0]} is a needle or has no area – re-mesh the panel")
-
-
-def _areas(corner: np.ndarray) -> np.ndarray:
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
 def _edge_lengths2(corner: np.ndarray, face_edges: np.ndarray, count: int) -> np.ndarray:
