@@ -7,7 +7,7 @@ import sys
 import urllib.request
 
 import pytest
-from bench.browser import displayed, enter, pose, soon, stand_before
+from bench.browser import at_rest, displayed, enter, pose, soon, stand_before
 from bench.track import place, watch
 from full_matrix import by_day
 
@@ -342,7 +342,7 @@ def test_typing_never_walks(page):
         document.querySelector("#hall-ui").append(field);
         field.focus();
     }""")
-    before = displayed(page)
+    before = at_rest(page)
     page.keyboard.type("wasd wasd")
     page.wait_for_timeout(300)
     assert page.evaluate("() => document.querySelector('#probe').value") == "wasd wasd"
