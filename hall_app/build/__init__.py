@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
-    from hall_app.build.motion import write_motion
+    from hall_app.build.motion import play, write_motion
     from hall_app.build.outfit import bake_outfit, budget, refuse_disorder
     from hall_app.build.trails import TrailLostError, Trails
 
@@ -22,6 +22,7 @@ __all__ = [
     "budget",
     "encode_film",
     "film_possible",
+    "play",
     "refuse_disorder",
     "write_motion",
 ]
@@ -34,6 +35,7 @@ _HOME = {
     "budget": "outfit",
     "encode_film": "encoding",
     "film_possible": "encoding",
+    "play": "motion",
     "refuse_disorder": "outfit",
     "write_motion": "motion",
 }

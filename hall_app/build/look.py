@@ -14,13 +14,17 @@ from hall_app.build.film import Look, Part, Piece
 from hall_app.content.bakes.steps import HALL_BENEATH
 
 if TYPE_CHECKING:
-    from sim_core.garment import Garment, Layer, Outfit
+    from sim_core.body import Mannequin
+    from sim_core.garment import Garment, Layer, Outfit, Played
     from sim_core.garment.glb import Clothed, MapsLike
 
 __all__ = ["Wardrobe"]
 
 HALL_FIGURE = 1600  # triangles of a figure in the hall
 THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
+MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to the next
+TREAD = 0.06  # [m] above the ground that feet are looked at
+ROUND = 0.04  # [m] of its base round the feet of who walks
 PIXELS = 512  # of the weaves' maps
 
 
@@ -64,27 +68,41 @@ class Wardrobe:
         ]
         return self._look(pieces)
 
-    def write_models(self, garments: Sequence[Garment], folder: Path, budget: float) -> tuple[Garment, ...]:
+    def write_models(
+        self, garments: Sequence[Garment], folder: Path, budget: float, played: Played | None = None
+    ) -> tuple[Garment, ...]:
         """Writes close.glb, and hall.glb with each layer's cheapest level; returns these levels.
 
-        budget [m]: how far (p99) the outermost may deviate in the hall.
+        budget [m]: how far (p99) the outermost may deviate in the hall; played: how they move, which shows more of
+        their wearer.
         """
         from sim_core.garment import choose_detail
 
-        self._write(garments, folder / "close.glb", "close")
+        self._write(garments, folder / "close.glb", "close", (garments, played))
         levels = [choose_detail(garment, HALL_BENEATH) for garment in garments[:-1]]
         levels.append(choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels)))
-        self._write(levels, folder / "hall.glb", "hall")
+        self._write(levels, folder / "hall.glb", "hall", (garments, played))
         return tuple(levels)
 
-    def _write(self, garments: Sequence[Garment], path: Path, precision: Literal["close", "hall"]) -> None:
+    def _write(
+        self,
+        garments: Sequence[Garment],
+        path: Path,
+        precision: Literal["close", "hall"],
+        moved: tuple[Sequence[Garment], Played | None],
+    ) -> None:
+        """moved: the simulated garments, and how they move."""
         from sim_core.garment import Clothed, write_glb
 
         layers = [Clothed(garment, *maps) for garment, maps in zip(garments, self.maps, strict=True)]
-        write_glb(path, layers, precision=precision, figure=self._figure(layers, precision))
+        simulated, played = moved
+        over = layers
+        if played is not None:
+            over = [Clothed(garment, *maps) for garment, maps in zip(simulated, self.maps, strict=True)]
+        write_glb(path, layers, precision=precision, figure=self._figure(over, precision, played))
 
-    def _figure(self, layers: Sequence[Clothed], precision: str) -> Any:
-        """The wearer as far as no dense cloth hides it."""
+    def _figure(self, layers: Sequence[Clothed], precision: str, played: Played | None) -> Any:
+        """The wearer as far as no dense cloth hides it, as they stand and as they move."""
         from sim_core.garment.levels import shown_figure
 
         wearer = self.outfit.wearer
@@ -99,7 +117,12 @@ class Wardrobe:
             count += len(garment.positions)
         most = HALL_FIGURE if precision == "hall" else None
         body = wearer.posed(self.outfit.pose), wearer.faces
-        return shown_figure(*body, np.concatenate(points), np.concatenate(faces), triangles=most)
+        moments = [] if played is None else _moments(played, wearer)
+        cloth = np.concatenate(points), np.concatenate(faces)
+        shown = shown_figure(*body, *cloth, triangles=most, moments=moments)
+        reach = max((_reach(figure) for figure, _ in moments), default=0.0)
+        radius, height = shown.base
+        return replace(shown, base=(max(radius, reach + ROUND), height))
 
     def _parts(
         self, number: int, faces: np.ndarray, panel: np.ndarray, names: Sequence[str]
@@ -139,6 +162,20 @@ class Wardrobe:
         base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
         raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
         return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)
+
+
+def _moments(played: Played, wearer: Mannequin) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Where wearer and cloth are at some times of a motion."""
+    return [
+        (wearer.posed(played.poses[k]), np.concatenate([frames[k] for frames in played.frames]))
+        for k in range(0, len(played.poses), MOMENT)
+    ]
+
+
+def _reach(figure: np.ndarray) -> float:
+    """How far from the middle a figure (V, 3) steps [m]."""
+    low = figure[:, 1] < TREAD
+    return float(np.hypot(figure[low, 0], figure[low, 2]).max(initial=0.0))
 
 
 def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:

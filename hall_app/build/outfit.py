@@ -15,7 +15,7 @@ import numpy as np
 from hall_app.build.encoding import film_possible
 from hall_app.build.film import Film, filming, stills
 from hall_app.build.look import Wardrobe
-from hall_app.build.motion import write_motion
+from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
@@ -63,11 +63,23 @@ def bake_outfit(
     wardrobe = Wardrobe(_stepped(load_outfit(content.folder / exhibit.file.outfit, content.folder), steps))
     show = exhibit.file.show
     levels: list[Garment] = []
+    moving: dict[str, float] = {}
 
     def models(garments: Sequence[Garment]) -> None:
         for garment, name in zip(garments, layer_files(len(garments)), strict=True):
             garment.save(out / name)
-        levels.extend(wardrobe.write_models(garments, out, budget(show.nearest, show.hall_error_px)))
+        played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
+        fine = budget(show.nearest, show.hall_error_px)
+        levels.extend(wardrobe.write_models(garments, out, fine, played))
+        if played is not None:
+            told = write_motion(
+                wardrobe.outfit,
+                garments,
+                played,
+                out,
+                lambda share, label: progress(0.67 + 0.03 * share, label),
+            )
+            moving.update(told)
 
     dressing = dressing_key(content, exhibit)
     film = film and film_possible()
@@ -83,17 +95,12 @@ def bake_outfit(
         took = time.perf_counter() - clock
         seconds["all"] = round(seconds["all"] + took - seconds["models"], 2)
         seconds["models"] = round(took, 2)
-    clock = time.perf_counter()
-    if write_motion(
-        wardrobe.outfit, garments, out, lambda share, label: progress(0.95 + 0.04 * share, label)
-    ):
-        seconds["motion"] = round(time.perf_counter() - clock, 2)
-        seconds["all"] = round(seconds["all"] + seconds["motion"], 2)
     record: dict[str, Any] = {**_record(key, garments, levels, seconds), "dressing": dressing}
     if steps:
         study = study_of(content, exhibit)
         record["steps"] = [step.model_dump() for step in steps]
         record["study_fits"] = study is not None and study.inputs == study_inputs(wardrobe.outfit)
+    record["errors"] |= moving
     record["errors"]["hall_all_triangles"] = read_glb(out / "hall.glb").triangles
     record[FILES] = seal(out, RECORD)
     (out / RECORD).write_text(text_of(record), "utf-8")
@@ -132,9 +139,7 @@ def _kept(
     for name in record[FILES]:
         if not name.endswith((".glb", ".clip")):  # models, and how they move, are made anew
             shutil.copyfile(former / name, out / name)
-    seconds = dict(record["seconds"])
-    seconds["all"] -= seconds.pop("motion", 0.0)
-    return tuple(Garment.load(out / name) for name in layer_files(layers)), seconds
+    return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
 
 
 def _dress(

@@ -3,13 +3,14 @@
 from sim_core.body import Stand
 from sim_core.garment.clip import Clip
 from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
-from sim_core.garment.follow_body import follow, move
+from sim_core.garment.follow_body import follow
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.glb import Clothed, write_glb
 from sim_core.garment.levels import choose_detail
 from sim_core.garment.outfit import Layer, Outfit, load_motion, load_outfit
 from sim_core.garment.pattern import Pattern
+from sim_core.garment.play import Played, move, moving_errors
 from sim_core.garment.settled import Settled
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "Layer",
     "Outfit",
     "Pattern",
+    "Played",
     "Settled",
     "Stand",
     "check_fits",
@@ -31,5 +33,6 @@ __all__ = [
     "load_motion",
     "load_outfit",
     "move",
+    "moving_errors",
     "write_glb",
 ]

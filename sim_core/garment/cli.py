@@ -265,9 +265,10 @@ def _move(
     from sim_core.garment import move
 
     assert outfit.wearer is not None
-    body, frames = move(outfit, garments, progress=progress)
+    played = move(outfit, garments, progress=progress)
+    body = np.stack([outfit.wearer.posed(pose) for pose in played.poses])
     arrays = {"wearer": body.astype(np.float32), "wearer_faces": outfit.wearer.faces}
-    for garment, positions in zip(garments, frames, strict=True):
+    for garment, positions in zip(garments, played.frames, strict=True):
         arrays |= {garment.name: positions, f"{garment.name}_faces": garment.faces}
     with written_whole(path) as stream:
         np.savez_compressed(stream, **arrays)  # pyright: ignore[reportArgumentType]

@@ -10,17 +10,28 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 
 from sim_core.body import Beneath, Surface
-from sim_core.cloth import Contact, Drape, HalfSpace, MovingGrid, Pace, Phase, Solid, drape, moving_mesh
+from sim_core.cloth import (
+    Air,
+    Contact,
+    Drape,
+    HalfSpace,
+    Live,
+    MovingGrid,
+    Pace,
+    Phase,
+    Solid,
+    drape,
+    moving_mesh,
+)
 from sim_core.cloth.contact import hull_faces
 from sim_core.cloth.step import FRAME
 from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet, standing
-from sim_core.garment.outfit import Outfit
 from sim_core.garment.outfit.outfit import UNTANGLE
 from sim_core.validation import numeric_array
 
-__all__ = ["follow", "move"]
+__all__ = ["follow", "following"]
 
 DAMPING = 1.5  # [1/s] of cloth that hangs on someone who walks
 FASTEST = 8.0  # [m/s] that cloth may go where its wearer moves
@@ -31,11 +42,12 @@ SAME = 1e-3  # [m] that a layer beneath may be away at first from where the garm
 
 
 class Hooks(TypedDict, total=False):
-    """Who hears of the frames, and a file to go on from."""
+    """Who hears of the frames, a file to go on from, and what blows."""
 
     progress: Callable[[float, str], None] | None
     on_frame: Callable[[int, np.ndarray], None] | None
     checkpoint: Path | None
+    air: Air | None
 
 
 def follow(
@@ -61,7 +73,7 @@ def follow(
     wearer: `positions`, then what `on_frame` heard as that garment followed; of a wearer who stands still they may be
     left out. beside: a solid with exact distance that stands still there, such as a floor, HalfSpace().
     contact, damping: other than the garment's own. on_frame(index, positions (V, 3) float32) hears every frame;
-    checkpoint: file to go on from.
+    checkpoint: file to go on from; air: what blows, and brakes (None costs nothing).
     Raises SimCoreError before anything runs where the wearer's mesh is open or not finite, layers beneath are missing
     or others, there is no time to run, or the garment does not say what it was settled with and that is not given.
     """
@@ -110,38 +122,37 @@ def follow(
     )
 
 
-def move(
-    outfit: Outfit,
-    garments: Sequence[Garment],
+def following(
+    garment: Garment,
+    body: np.ndarray,
+    faces: np.ndarray,
     *,
-    progress: Callable[[float, str], None] | None = None,
-) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """The outfit's motion: the wearer's vertices (T, B, 3) [m], and of each dressed garment its vertices (T, V, 3)
-    float32 [m], at the begin and at the end of every frame of 1/25 s; layers follow over each other.
+    beneath: Sequence[np.ndarray] | None = None,
+    air: Air | None = None,
+) -> Live:
+    """The garment on its wearer as `follow` begins, to be stepped by whoever moves pins or ends when it will; `body` of
+    a step is the number of the frame.
 
-    Raises SimCoreError where the outfit has no wearer or no motion, or a joint would be turned beyond its limit.
+    Raises SimCoreError as `follow` does, and where the garment does not say what it was settled with.
     """
-    poses = outfit.poses()
-    assert outfit.wearer is not None
-    body = np.stack([outfit.wearer.posed(pose) for pose in poses])
-    gone: list[np.ndarray] = []
-    for number, garment in enumerate(garments):
-        frames = [garment.positions.astype(np.float32)]
-
-        def told(share: float, label: str, number: int = number, name: str = garment.name) -> None:
-            assert progress is not None
-            progress((number + share) / len(garments), f"{name}, {label}")
-
-        follow(
-            garment,
-            body,
-            outfit.wearer.faces,
-            beneath=gone or None,
-            progress=told if progress else None,
-            on_frame=lambda _, x, frames=frames: frames.append(x),
+    settled = garment.settled
+    if settled is None:
+        raise SimCoreError(
+            f"follow: garment {garment.name} does not say what it was settled with – bake it again"
         )
-        gone.append(np.stack(frames))
-    return body, tuple(gone)
+    sheet = garment_sheet(garment)
+    friction = sheet.material.friction if settled.last.friction is None else settled.last.friction
+    fastest = max(FASTEST, settled.contact.speed_limit)
+    return Live(
+        replace(sheet, material=replace(sheet.material, friction=friction)),
+        garment.positions,
+        damping=DAMPING,
+        collider=_wearer(garment, body, faces, beneath, None),
+        contact=replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE),
+        holds=settled.holds,
+        pace=QUICK if settled.even else None,
+        air=air,
+    )
 
 
 def _wearer(

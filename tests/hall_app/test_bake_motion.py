@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hall_app.build import write_motion
+from hall_app.build import play, write_motion
 from sim_core import metrics
 from sim_core.body import Motion, Pose
 from sim_core.garment import Clothed, Outfit, choose_detail, dress, load_outfit, write_glb
@@ -54,26 +54,32 @@ def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
     flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
     maps = Maps(flat, flat, np.full((32, 32), 255, np.uint8), (0.004, 0.005))
     body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-    figure = shown_figure(*body, garments[-1].positions, garments[-1].faces, triangles=1600)
+    played = play(outfit, garments, lambda share, label: None)
+    assert played is not None
+    moments = [(outfit.wearer.posed(played.poses[3]), played.frames[0][3])]
+    cloth = garments[-1].positions, garments[-1].faces
+    figure = shown_figure(*body, *cloth, triangles=1600, moments=moments)
     write_glb(tmp_path / "hall.glb", [Clothed(level, maps)], precision="hall", figure=figure)
-    assert write_motion(outfit, garments, tmp_path, lambda share, label: None)
-    clip = Clip.load(tmp_path / "motion.clip")
-    assert (clip.frames, clip.loop, clip.rate) == (6, True, 25.0)
+    write_glb(tmp_path / "close.glb", [Clothed(garments[-1], maps)], figure=shown_figure(*body, *cloth))
+    told = write_motion(outfit, garments, played, tmp_path, lambda share, label: None)
+    assert told["moving_frames"] == 6
+    assert told["moving_deepest_m"] == told["moving_self_intersections"] == told["moving_layer_order"] == 0
+    assert 0 < told["moving_area_strain_p95"] < 0.1
+    fine, clip = (Clip.load(tmp_path / name) for name in ("motion-close.clip", "motion.clip"))
+    assert fine.meshes[0].count == len(garments[-1].positions) > clip.meshes[0].count
+    assert (clip.frames, clip.loop, clip.rate) == (fine.frames, fine.loop, fine.rate) == (6, True, 25.0)
     names = {drawn.node for mesh in clip.meshes for drawn in mesh.drawn}
     document = glb_parts((tmp_path / "hall.glb").read_bytes()).document
     figure_nodes = {drawn.node for drawn in clip.figure.drawn} if clip.figure else set()
     assert {node["name"] for node in document["nodes"]} - names - figure_nodes == {"base"}
-    cloth = clip.names[0]
+    name = clip.names[0]
     for frame in (0, 3, 5):
-        posed = outfit.wearer.posed(outfit.motion.poses(outfit.pose)[frame]) + [0.0, 0.025, 0.0]
-        found = metrics.penetration(
-            clip.positions(frame, cloth), clip.faces(cloth), posed, outfit.wearer.faces
-        )
+        posed = outfit.wearer.posed(played.poses[frame]) + [0.0, 0.025, 0.0]
+        found = metrics.penetration(clip.positions(frame, name), clip.faces(name), posed, outfit.wearer.faces)
         assert found.vertices == 0
-    assert np.abs(clip.positions(3, cloth) - clip.positions(0, cloth)).max() > 0.005
+    assert np.abs(clip.positions(3, name) - clip.positions(0, name)).max() > 0.005
 
 
-def test_an_outfit_without_a_motion_has_none(tmp_path: Path):
-    outfit = load_outfit(ASSETS / "outfits" / "beizi.toml")
-    assert not write_motion(outfit, (), tmp_path, lambda share, label: None)
-    assert not list(tmp_path.iterdir())
+def test_an_outfit_without_a_motion_has_none():
+    outfit = replace(load_outfit(ASSETS / "outfits" / "beizi.toml"), motion=None)
+    assert play(outfit, (), lambda share, label: None) is None

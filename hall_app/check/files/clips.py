@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from hall_app.content.files import MOTION, is_there, made_by_build
+from collections.abc import Iterator
+from typing import Literal
+
+from hall_app.content.files import CLOSE_MOTION, MOTION, is_there, made_by_build
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 from sim_core.errors import SimCoreError
@@ -18,13 +21,23 @@ def clip_problems(content: Content) -> list[Problem]:
     return [
         problem
         for exhibit in content.exhibits
-        if (name := exhibit.file.motion or (MOTION if exhibit.file.outfit else None))
-        and is_there(exhibit.folder / name)
-        for problem in _of(exhibit, name)
+        for name, kind in _named(exhibit)
+        if is_there(exhibit.folder / name)
+        for problem in _of(exhibit, name, kind)
     ]
 
 
-def _of(exhibit: Exhibit, name: str) -> list[Problem]:
+def _named(exhibit: Exhibit) -> Iterator[tuple[str, Literal["hall", "close"]]]:
+    """The clips an exhibit may have, and which of its models each moves."""
+    if exhibit.file.motion:
+        yield exhibit.file.motion, "hall"
+    elif exhibit.file.outfit:
+        yield MOTION, "hall"
+    if exhibit.file.outfit:
+        yield CLOSE_MOTION, "close"
+
+
+def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Problem]:
     path = exhibit.folder / name
     fix = (
         f"run: hall build --exhibit {exhibit.id}"
@@ -40,7 +53,7 @@ def _of(exhibit: Exhibit, name: str) -> list[Problem]:
     if (size := path.stat().st_size) > LARGEST:
         what = f"{name} has {size / MB:.2f} MB, at most {LARGEST / MB:g} MB"
         found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
-    model = exhibit.model_path("hall")
+    model = exhibit.model_path(kind)
     meshes = _meshes(model.read_bytes()) if model is not None else None
     if meshes is None:
         return found  # another check names it

@@ -60,11 +60,12 @@ class Limit:
         return f"at least {write(self.least)}" if self.least is not None else ""
 
 
-def limits_of(worn: Worn, deviation: float, layers: int = 1) -> list[Limit]:
+def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = False) -> list[Limit]:
     """The limits asked of a garment, in the order in which they are told.
 
-    deviation: how far (p99) its model in the hall may be from the close one [m]; layers: of the outfit. Figures of what
-    is worn beneath bear its name: robe_area_strain_max.
+    deviation: how far (p99) its model in the hall may be from the close one [m]; layers: of the outfit; moving: whether
+    it goes through a motion, of whose frames the worst is told. Figures of what is worn beneath bear its name:
+    robe_area_strain_max.
     """
     found = [Limit(f"inside_{what}", 0) for what in ("vertices", "midpoints", "centroids", "edges")]
     if worn.sewn:
@@ -74,6 +75,9 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1) -> list[Limit]:
     found += [Limit("area_strain_p95", 0.03), Limit("area_strain_max", 0.10)]
     found += [Limit("rest_p99_m", 1e-4 if worn.on_stand else 1e-5)]
     found += [Limit("self_intersections", _crossings(worn)), Limit("layer_order", 0)]
+    if moving:
+        found += [Limit("moving_deepest_m", 1e-3), Limit("moving_self_intersections", _crossings(worn))]
+        found += [Limit("moving_layer_order", 0), Limit("moving_area_strain_p95", 0.04)]
     if worn.half:
         found.append(Limit("asymmetry_m", 0.010))
     if not worn.on_stand and not worn.beneath:

@@ -10,8 +10,10 @@ from typing import Any
 
 from hall_app.check.garments.limits import Worn, limits_of, writer
 from hall_app.check.garments.measurement import Measured, measured_again
+from hall_app.content.bakes.record import FILES
 from hall_app.content.bakes.steps import HALL_BENEATH, budget
 from hall_app.content.bakes.store import bake_fault, baked_here, key_now, layer_files, read_record
+from hall_app.content.files import BAKED, MOTION
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.loading import load
 from hall_app.content.schema.exhibit import Show
@@ -85,7 +87,9 @@ def figure_lines(exhibit: str, show: Show, record: Numbers, again: Measured) -> 
     """Each limit of the layers, the outermost first, against the record's figure; that is believed only where measuring
     again agrees."""
     told, lines, layers = _told(record), [], len(again.worn)
-    asked = [limits_of(worn, _deviation(worn, show), layers) for worn in again.worn[::-1]]
+    files = record.get(FILES)
+    moving = isinstance(files, dict) and MOTION.removeprefix(BAKED) in files
+    asked = [limits_of(worn, _deviation(worn, show), layers, moving=moving) for worn in again.worn[::-1]]
     for limit in [limit for limits in asked for limit in limits]:
         value, found = told.get(limit.name), again.figures.get(limit.name)
         if value is None:

@@ -42,6 +42,17 @@ ERRORS: dict[str, tuple[str, str, Callable[[float], str]]] = {
         _count,
     ),
     "self_intersections": ("布面自交", "Self-intersections of the cloth", _count),
+    "moving_deepest_m": ("行动中陷入身体最深", "While it moves: deepest in the body", _millimetres),
+    "moving_self_intersections": (
+        "行动中布面自交",
+        "While it moves: self-intersections of the cloth",
+        _count,
+    ),
+    "moving_area_strain_p95": (
+        "行动中面积应变（95 % 分位）",
+        "While it moves: area strain, 95th percentile",
+        _percent,
+    ),
     "rest_max_m": ("静止时每 1/25 秒的最大位移", "Greatest movement at rest in 1/25 s", _millimetres),
     "hall_triangles": ("展厅模型三角形", "Triangles of the hall model", _count),
     "hall_hausdorff_mean": ("展厅模型平均偏差", "Hall model, mean deviation", _millimetres),

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from hall_app.content.behaviours import kind_of
-from hall_app.content.files import BAKED, MOTION, digest, is_there
+from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.schema.exhibit import Media, Record
@@ -126,6 +126,7 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "facing": file.place.facing,
         "thumbnail": thumbnail(exhibit, baked),
         "motion": _motion(exhibit, baked),
+        "close_motion": _url(exhibit, CLOSE_MOTION, baked) if file.outfit is not None else None,
         "kind": kind_of(file.behaviours),
         "caption": file.caption.as_json() if file.caption else None,
     }

@@ -92,6 +92,7 @@ class Options(TypedDict, total=False):
     collider: Solid | MovingGrid | None
     contact: Contact | None
     pins: Sequence[int]
+    holds: Holds | None
     air: Air | None
     substeps: int | None
     integrator: str
@@ -102,7 +103,6 @@ class Options(TypedDict, total=False):
 class DrapeOptions(Options, total=False):
     """Of a `Setup` all but the sheet and its phases."""
 
-    holds: Holds | None
     down: Sequence[float]
 
 

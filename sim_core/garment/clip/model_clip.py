@@ -24,13 +24,15 @@ def model_clip(
     near: float = NEAR,
     rate: float = 25.0,
     loop: bool = False,
+    begin: int = 0,
 ) -> Clip:
     """The clip that a GLB plays.
 
     moved: of each garment vertices (T, V, 3) [m] as it followed, the first frame as it stands in the model; thinned or
-    split along seams the model may be. figure: who wears them, and a pose a frame, the first as in the model. lift [m]:
-    how far the model stands above them, on its base. near [m]: how far its vertices may lie from theirs: a thinned
-    layer over others is moved out of these.
+    split along seams the model may be. figure: who wears them, and a pose a frame, the first as in the model. begin:
+    the frame that the clip begins with; those before it only tell how the model stands. lift [m]: how far the model
+    stands above them, on its base. near [m]: how far its vertices may lie from theirs: a thinned layer over others is
+    moved out of these.
     Raises SimCoreError where the first frame is not the model's, and as `Clip.of` does.
     """
     up = np.array([0.0, lift, 0.0])
@@ -46,9 +48,9 @@ def model_clip(
     for name, nodes in drawn.items():
         used, own, corners = _compact(nodes, faces)
         if name in moved:
-            meshes.append(Moved(name, np.asarray(moved[name], float)[:, used] + up, corners, own))
+            meshes.append(Moved(name, np.asarray(moved[name], float)[begin:, used] + up, corners, own))
         elif figure is not None:
-            lifted = [pose.shifted(y=lift) for pose in poses]
+            lifted = [pose.shifted(y=lift) for pose in poses[begin:]]
             who = Skinned.of(mannequin, lifted, part=(used, corners), drawn=own)
     return Clip.of(meshes, figure=who, rate=rate, loop=loop)
 

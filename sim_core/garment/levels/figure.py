@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from sim_core.garment.glb import Shown
@@ -32,12 +34,16 @@ def shown_figure(
     *,
     triangles: int | None = None,
     rings: int = 2,
+    moments: Sequence[tuple[np.ndarray, np.ndarray]] = (),
 ) -> Shown:
     """The visible part of a figure with `rings` of faces around it.
 
-    triangles: thinned to that many (None: all are kept). Normals are the fine figure's.
+    triangles: thinned to that many (None: all are kept). Normals are the fine figure's. moments: where figure and cloth
+    are at other times, vertices (V, 3) and (C, 3) [m] each: what is seen then is shown, too.
     """
     visible = seen(vertices, cloth, cloth_faces, faces)
+    for figure, worn in moments:
+        visible |= seen(figure, worn, cloth_faces, faces)
     for _ in range(rings):
         visible[faces[visible[faces].any(1)]] = True
     kept = faces[visible[faces].all(1)]

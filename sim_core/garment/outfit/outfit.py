@@ -141,6 +141,16 @@ class Outfit:
             return self.motion.course(self.pose, self.wearer)
         return self.motion.poses(self.pose)
 
+    def repeats(self) -> int:
+        """How many frames of `poses` repeat for ever, those at the end; 0 of a motion that is gone through once.
+
+        A motion that ends in the pose it was begun in repeats.
+        """
+        poses = self.poses()
+        if self.wearer is not None and isinstance(self.motion, Loop):
+            return len(self.motion.times()) - 1
+        return len(poses) - 1 if len(poses) > 1 and poses[-1] == poses[0] else 0
+
     def to_dict(self) -> dict[str, Any]:
         """What decides the result, as plain values."""
         return {

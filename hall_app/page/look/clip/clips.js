@@ -1,5 +1,5 @@
 // Exhibits that move by a clip: each is fetched when it is first seen, read once, and plays where it is seen, in the hall
-// and in its close-up if that shows the same model.
+// and in its close-up, whose finer model has a clip of its own.
 
 import { createPresence, inSight } from "../sight.js";
 import { readClip } from "./clip_file.js";
@@ -36,7 +36,7 @@ export function createClips({ clock, wake }) {
     return entry;
   }
 
-  function play({ motion }, node) {
+  function play(motion, node) {
     if (clock.stopped && !clips.has(motion)) return; // nothing is fetched for who wants no motion
     const { clip, nodes } = clips.get(motion) ?? load(motion);
     if (!clip) return;
@@ -49,9 +49,10 @@ export function createClips({ clock, wake }) {
     frame(scene, from, opened) {
       if (document.hidden || !present()) return;
       for (const exhibit of scene.exhibits) {
-        if (!exhibit.motion) continue;
-        if (exhibit.id === opened) play(exhibit, CLOSEUP);
-        else if (opened === null && inSight(exhibit, from)) play(exhibit, `/exhibits/${exhibit.id}`);
+        const { id, motion, close_motion } = exhibit;
+        if (!motion) continue;
+        if (id === opened) play(close_motion ?? motion, CLOSEUP);
+        else if (opened === null && inSight(exhibit, from)) play(motion, `/exhibits/${id}`);
       }
     },
     playing: () => [...clips.values()].flatMap(({ nodes }) => [...nodes].filter(([, one]) => one.bound()).map(([node]) => node)),
