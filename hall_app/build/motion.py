@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hall_app.build.points import write_points
 from hall_app.content.files import BAKED, MOTION
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ OUT = 0.01  # [m] that a thinned layer may have been moved out of those beneath
 
 
 def write_motion(outfit: Outfit, garments: Sequence[Garment], folder: Path, progress: Progress) -> bool:
-    """Writes motion.clip beside hall.glb, for its vertices; whether the outfit names a motion.
+    """Writes motion.clip and motion.points beside hall.glb, for its vertices; whether the outfit names a motion.
 
     A motion that ends in the pose it begins with is a loop. Raises what `move` and `Clip` raise.
     """
@@ -46,4 +47,5 @@ def write_motion(outfit: Outfit, garments: Sequence[Garment], folder: Path, prog
         loop=loop,
     )
     clip.save(folder / MOTION.removeprefix(BAKED))
+    write_points(outfit.wearer, poses[:count], moved, folder, rate=RATE, loop=loop)
     return True

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from hall_app.build import write_motion
+from hall_app.content.models import TrackedMotion
 from sim_core import metrics
 from sim_core.body import Motion, Pose
 from sim_core.garment import Clothed, Outfit, choose_detail, dress, load_outfit, write_glb
@@ -58,6 +60,11 @@ def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
     write_glb(tmp_path / "hall.glb", [Clothed(level, maps)], precision="hall", figure=figure)
     assert write_motion(outfit, garments, tmp_path, lambda share, label: None)
     clip = Clip.load(tmp_path / "motion.clip")
+    tracked = TrackedMotion.load(tmp_path / "motion.points")
+    assert (tracked.frames, tracked.loop, tracked.rate) == (clip.frames, clip.loop, clip.rate)
+    for frame in (0, 3):  # on the base, as the model does
+        away = KDTree(clip.positions(frame, clip.names[0])).query(tracked.cloth[frame])[0]
+        assert away.max() < 0.06  # beside a vertex of the thinned model
     assert (clip.frames, clip.loop, clip.rate) == (6, True, 25.0)
     names = {drawn.node for mesh in clip.meshes for drawn in mesh.drawn}
     document = glb_parts((tmp_path / "hall.glb").read_bytes()).document
