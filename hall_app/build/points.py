@@ -106,10 +106,10 @@ def _bound(
     assert recording.truth is not None
     first = points.of(recording.truth[-len(frames)])
     found, near = KDTree(frames[0]).query(first, k=min(NEAREST, frames.shape[1]), distance_upper_bound=REACH)
-    some = np.unique(near[np.isfinite(found)])
+    some = np.unique(np.asarray(near)[np.isfinite(found)])
     if not len(some):
         return np.zeros(0, np.int64), np.zeros((len(frames), 0, 3))
     apart = np.linalg.norm(first[:, None] - frames[0, some], axis=2)
     point, vertex = linear_sum_assignment(np.where(apart <= REACH, apart, 1e3))
     kept = apart[point, vertex] <= REACH
-    return point[kept], frames[:, some[vertex[kept]]]
+    return np.asarray(point)[kept], frames[:, some[np.asarray(vertex)[kept]]]

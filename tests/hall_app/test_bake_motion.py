@@ -64,7 +64,7 @@ def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
     assert (tracked.frames, tracked.loop, tracked.rate) == (clip.frames, clip.loop, clip.rate)
     for frame in (0, 3):  # on the base, as the model does
         away = KDTree(clip.positions(frame, clip.names[0])).query(tracked.cloth[frame])[0]
-        assert away.max() < 0.06  # beside a vertex of the thinned model
+        assert (away < 0.5e-3).sum() >= 3  # vertices that the thinned model kept
     assert (clip.frames, clip.loop, clip.rate) == (6, True, 25.0)
     names = {drawn.node for mesh in clip.meshes for drawn in mesh.drawn}
     document = glb_parts((tmp_path / "hall.glb").read_bytes()).document

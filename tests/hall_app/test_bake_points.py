@@ -1,5 +1,6 @@
 """What was tracked of a wearer in motion: baked from the arrays of `track`, read back, and served beside the clip."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from moving_hall import FRAMES, RATE, box_points, write_moving_hall
 from hall_app.build import limb_bones, sensed, write_points
 from hall_app.check import check
 from hall_app.content import exhibit_json, load
+from hall_app.content.bakes import models_of
 from hall_app.content.models import TrackedError, TrackedMotion
 from sim_core.body import Mannequin, Motion, Pose, load_motion
 from sim_core.garment.levels import BASE
@@ -136,6 +138,19 @@ def test_damaged_ones_are_refused(walk: Walk):
             TrackedMotion.from_bytes(spoilt)
     with pytest.raises(TrackedError, match="beyond"):
         TrackedMotion.from_bytes(replace(walk.written, worn=walk.written.worn + 97).to_bytes())
+
+
+def test_what_moves_is_looked_at_closely_as_the_model_that_moves(tmp_path: Path):
+    folder = Path(shutil.copytree(ASSETS, tmp_path / "assets"))
+    content = load(folder)
+    exhibit = content.exhibit("beizi")
+    assert exhibit is not None
+    still = models_of(content, exhibit, None)
+    (exhibit.folder / "baked" / "motion.clip").write_bytes(b"any")
+    moving = models_of(content, exhibit, None)
+    assert still is not None
+    assert moving is not None
+    assert (still.close.name, moving.close.name) == ("close.glb", "hall.glb")
 
 
 @pytest.fixture

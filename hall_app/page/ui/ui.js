@@ -22,6 +22,7 @@ import { createWords } from "./words.js";
 
 // As judge.js has them, and the one that leaves it to the judge.
 const CHOICES = ["auto", ...LEVELS];
+const WRITTEN_IN = "input:not([type=checkbox], [type=radio]), textarea";
 const NARROW = "(max-width: 720px)"; // the open plan covers the way one wants to walk
 
 /**
@@ -144,7 +145,7 @@ function arrange(parts) {
   );
   const chrome = el("div", { class: "chrome", inert: true }, top, low, panel.element);
   const notices = el("div", { class: "announcements" }, connection.element, curtain.note, toasts.element, voice.element);
-  const around = [curtain.ground, parts.points.element, stage, chrome, enter.element, notices];
+  const around = [parts.points.element, curtain.ground, stage, chrome, enter.element, notices];
   // Who hears the page read meets viser's picture as the stage, which answers to keys; what is drawn has no words.
   document.getElementById("root")?.setAttribute("aria-hidden", "true");
   return el("main", { id: "hall-ui", class: "is-outside" }, ...around, ...dialogs);
@@ -207,7 +208,7 @@ function listenToKeys(parts, actions) {
     ) {
       event.preventDefault();
       actions.open(parts.caption.id());
-    } else if (event.code === "KeyP" && !event.repeat && !event.target.closest?.("input, textarea")) parts.clock.toggle();
+    } else if (event.code === "KeyP" && !event.repeat && !event.target.closest?.(WRITTEN_IN)) parts.clock.toggle();
     else if (event.key === "?" && !event.target.closest?.("input, textarea")) parts.help.open();
   });
 }

@@ -71,6 +71,7 @@ export function createPoints() {
     async show(url) {
       if (url === open && !failed) return;
       hide();
+      tell();
       open = url;
       if (!known.has(url)) known.set(url, fetched(url));
       try {
