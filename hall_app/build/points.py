@@ -13,7 +13,7 @@ from hall_app.content.models.tracked import TrackedMotion
 
 if TYPE_CHECKING:
     from sim_core.body import Mannequin, Pose
-    from sim_core.track import FeaturePoints, Recording, Tracked
+    from sim_core.track import Recording, Tracked
 
 __all__ = ["limb_bones", "sensed", "write_points"]
 
@@ -48,7 +48,7 @@ def write_points(
     tracked = track(recording, settings)
     count, up = len(poses), np.array([0.0, BASE[1], 0.0])
     points, skeleton = tracked.feature_points, recording.skeleton
-    worn, cloth = _bound(points, recording, moved)
+    worn, cloth = _bound(tracked, moved)
     limbs = limb_bones(tracked)
     written = TrackedMotion(
         points=tracked.points[-count:] + up,
@@ -94,17 +94,18 @@ def limb_bones(tracked: Tracked) -> np.ndarray:
     return np.flatnonzero(~trunk & (tracked.calibration.lengths > 0.0))
 
 
-def _bound(
-    points: FeaturePoints, recording: Recording, moved: Mapping[str, np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
+def _bound(tracked: Tracked, moved: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Numbers (Q,) of the feature points that have cloth within REACH, and the vertices (T, Q, 3) [m] that they are
-    bound to: in the first frame one to one, as near as they may be together; the cloth carries them on."""
+    bound to: in the first frame one to one, as near as they may be together; the cloth carries them on. Points of
+    bones that a figure lacks lie where others do, and have none."""
     from scipy.optimize import linear_sum_assignment
     from scipy.spatial import KDTree
 
     frames = np.concatenate([np.asarray(x, float) for x in moved.values()], axis=1)
-    assert recording.truth is not None
-    first = points.of(recording.truth[-len(frames)])
+    assert tracked.truth is not None
+    bone = tracked.feature_points.bone
+    there = np.flatnonzero((bone < 0) | (tracked.calibration.lengths[bone] > 0.0))
+    first = tracked.truth[-len(frames), there]
     found, near = KDTree(frames[0]).query(first, k=min(NEAREST, frames.shape[1]), distance_upper_bound=REACH)
     some = np.unique(np.asarray(near)[np.isfinite(found)])
     if not len(some):
@@ -112,4 +113,4 @@ def _bound(
     apart = np.linalg.norm(first[:, None] - frames[0, some], axis=2)
     point, vertex = linear_sum_assignment(np.where(apart <= REACH, apart, 1e3))
     kept = apart[point, vertex] <= REACH
-    return np.asarray(point)[kept], frames[:, some[np.asarray(vertex)[kept]]]
+    return there[np.asarray(point)[kept]], frames[:, some[np.asarray(vertex)[kept]]]
