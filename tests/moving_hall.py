@@ -25,12 +25,13 @@ def box_clip(model: bytes, *, drawn: tuple[Drawn, ...] | None = None) -> Clip:
 
 
 def box_points() -> TrackedMotion:
-    """Its corners as joints, with points between them; the upper ones are the trunk's, and cloth hangs beside four."""
+    """Its corners as joints, with points between them, as it stands and then sways; the upper ones are the trunk's, and
+    cloth hangs over four."""
     corner = np.array([[x, y, z] for y in (0.0, 1.2) for x in (-0.25, 0.25) for z in (-0.25, 0.25)])
     bones = np.array([(a, b) for a in range(8) for b in range(a) if (corner[a] != corner[b]).sum() == 1])
     rest = np.concatenate([corner, corner[bones].mean(1)])
-    frames = np.arange(FRAMES)
-    points = np.repeat(rest[None], FRAMES, axis=0)
+    frames = np.r_[0, np.arange(FRAMES)]
+    points = np.repeat(rest[None], len(frames), axis=0)
     points[:, :, 0] += 0.2 * np.sin(2 * np.pi * frames / FRAMES)[:, None] * rest[:, 1]
     worn = np.arange(4, 8)
     delta = 0.01 + 0.005 * np.sin(2 * np.pi * (frames[:, None] + np.arange(3)) / FRAMES)
@@ -49,6 +50,7 @@ def box_points() -> TrackedMotion:
         rounds=5,
         rate=RATE,
         loop=True,
+        begin=1,
     )
 
 

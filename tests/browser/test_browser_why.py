@@ -98,6 +98,7 @@ def test_the_page_reads_what_python_wrote(page):
         assert np.abs(np.array(told[name]) - getattr(made, name).ravel()).max() < within, name
     assert told["torso"] == np.flatnonzero(made.torso).tolist()
     assert told["bones"] == made.bones.tolist()
+    assert (told["rows"], told["begin"]) == (FRAMES + 1, 1)
     assert (told["frames"], told["rate"], told["m0"], told["noise"]) == (FRAMES, 25, 0.1, 0.01)
     assert not any(told["lost"])
 
@@ -215,7 +216,8 @@ def test_who_asks_for_less_motion_sees_them_stand(chromium, hall):
         page.mouse.move(150 + _, 300)
         page.wait_for_timeout(100)
     told = page.evaluate(BOTH)
-    assert told["frame"] == 0
+    assert told["frame"] == -1  # as it stands
+    assert page.locator("[data-testid=why-moment]").inner_text() == "Standing, before the motion"
     assert away(told).max() < 1.5
     assert not any(".clip" in url for url in asked)
     page.close()
@@ -228,7 +230,7 @@ def test_an_exhibit_without_them_has_no_such_tab(chromium, plain_hall):
 
 
 def test_they_lie_right_over_a_finer_model_that_stands(chromium, tmp_path):
-    """A curator's close-up of another model, which no clip goes with: they are those of the first frame."""
+    """A curator's close-up of another model, which no clip goes with: they stand as it does."""
     content = write_moving_hall(tmp_path / "content", points=True)
     home = content / "exhibits" / "box"
     (box,) = trimesh.load_scene(home / "box.glb").geometry.values()
@@ -244,7 +246,7 @@ def test_they_lie_right_over_a_finer_model_that_stands(chromium, tmp_path):
         alive(page, lambda: page.evaluate(DRAWN))
         page.wait_for_timeout(600)
         told = page.evaluate(BOTH)
-        assert told["frame"] == 0
+        assert told["frame"] == -1
         assert len(told["corners"]) > 24
         assert away(told).max() < 1.5
         page.close()

@@ -1,6 +1,5 @@
 """What was tracked of a wearer in motion: baked from the arrays of `track`, read back, and served beside the clip."""
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +10,6 @@ from moving_hall import FRAMES, RATE, box_points, write_moving_hall
 from hall_app.build import limb_bones, sensed, write_points
 from hall_app.check import check
 from hall_app.content import exhibit_json, load
-from hall_app.content.bakes import models_of
 from hall_app.content.models import TrackedError, TrackedMotion
 from sim_core.body import Mannequin, Motion, Pose, load_motion
 from sim_core.garment.levels import BASE
@@ -23,14 +21,15 @@ REACH = 0.15  # [m] from a feature point to its own on the garment
 
 
 class Walk:
-    """A figure that walks in place, in a robe that lies 2 cm outside its trunk and legs."""
+    """A figure that stands, then walks in place, in a robe that lies 2 cm outside its trunk and legs."""
 
     def __init__(self, folder: Path) -> None:
         self.wearer = Mannequin.load(ASSETS / "mannequins" / "woman.npz")
         loop = load_motion(ASSETS / "motions" / "walk.toml")
         assert not isinstance(loop, Motion)
         frames = round(loop.period * loop.rounds * RATE)
-        self.poses = loop.course(Pose.arms(10.0, 2.0), self.wearer)[-frames - 1 : -1]
+        stand = Pose.arms(10.0, 2.0)
+        self.poses = (stand, *loop.course(stand, self.wearer)[-frames - 1 : -1])
         skin = np.stack([self.wearer.posed(pose) for pose in self.poses])
         robe = np.flatnonzero((self.wearer.vertices[:, 1] > 0.3) & (self.wearer.vertices[:, 1] < 1.3))
         middle = skin.mean(1, keepdims=True) * [1, 0, 1]
@@ -39,9 +38,9 @@ class Walk:
         out /= np.linalg.norm(out, axis=2, keepdims=True)
         self.robe = (skin + 0.02 * out)[:, robe]
         self.written = write_points(
-            self.wearer, self.poses, {"1 robe": self.robe}, folder, rate=RATE, loop=True
+            self.wearer, self.poses, {"1 robe": self.robe}, folder, rate=RATE, loop=True, begin=1
         )
-        self.recording = sensed(self.wearer, self.poses, rate=RATE, loop=True)
+        self.recording, self.rows = sensed(self.wearer, self.poses, rate=RATE, loop=True, begin=1)
         self.tracked = track(self.recording, TrackSettings())
 
 
@@ -56,24 +55,27 @@ def walk(folder: Path) -> Walk:
 
 
 def test_they_are_the_arrays_of_the_tracker(walk: Walk):
-    count, found = len(walk.poses), walk.written
-    assert np.array_equal(found.points, walk.tracked.points[-count:] + UP)
-    limbs = limb_bones(walk.tracked)
-    assert np.array_equal(found.m, walk.tracked.m[-count:, limbs])
-    assert np.array_equal(found.delta, walk.tracked.delta[-count:, limbs])
-    assert np.array_equal(found.lost, walk.tracked.lost[-count:])
+    found, tracked, rows = walk.written, walk.tracked, walk.rows
+    assert np.array_equal(found.points, tracked.points[rows] + UP)
+    limbs = limb_bones(tracked)
+    assert np.array_equal(found.m, tracked.m[rows][:, limbs])
+    assert np.array_equal(found.delta, tracked.delta[rows][:, limbs])
+    assert np.array_equal(found.lost, tracked.lost[rows])
+    assert (rows[1:] == np.arange(len(tracked.time) - found.frames, len(tracked.time))).all()
     assert found.m0 == TrackSettings().m0
 
 
 def test_shapes_and_bounds(walk: Walk):
     found, count = walk.written, len(walk.poses)
     assert found.points.shape == (count, 97, 3)
+    assert (found.frames, found.begin) == (count - 1, 1)
     assert (found.torso.sum(), len(found.bones), len(found.limbs)) == (25, 24, 16)
     assert np.isfinite(found.m).all()
     assert found.m.min() >= 0.0
     assert 0.0 < np.median(found.delta) < 0.02
     assert not found.lost.any()
-    truth = walk.tracked.feature_points.of(walk.recording.truth[-count:]) + UP
+    assert walk.tracked.truth is not None
+    truth = walk.tracked.truth[walk.rows] + UP
     away = np.linalg.norm(found.points - truth, axis=2)
     assert np.sqrt((away**2).mean()) < 0.012
     assert away.max() < 0.06
@@ -82,10 +84,10 @@ def test_shapes_and_bounds(walk: Walk):
 
 
 def test_the_loop_closes_as_if_it_had_always_gone_on(walk: Walk):
-    count = len(walk.poses)
+    count = walk.written.frames
     assert np.abs(walk.tracked.points[-count:] - walk.tracked.points[-2 * count : -count]).max() < 1e-9
-    way = np.abs(np.diff(walk.written.points, axis=0)).max()
-    assert np.abs(walk.written.points[0] - walk.written.points[-1]).max() <= way
+    way = np.abs(np.diff(walk.written.points[1:], axis=0)).max()
+    assert np.abs(walk.written.points[1] - walk.written.points[-1]).max() <= way
 
 
 def test_points_of_the_garment_are_bound_one_to_one_and_carried(walk: Walk):
@@ -97,7 +99,8 @@ def test_points_of_the_garment_are_bound_one_to_one_and_carried(walk: Walk):
     vertex = first.argmin(1)
     assert len(np.unique(vertex)) == len(vertex)
     assert np.array_equal(found.cloth, robe[:, vertex])
-    truth = walk.tracked.feature_points.of(walk.recording.truth[-len(robe) :])[0] + UP
+    assert walk.tracked.truth is not None
+    truth = walk.tracked.truth[walk.rows[0]] + UP  # as it stands
     assert np.linalg.norm(found.cloth[0] - truth[found.worn], axis=1).max() <= REACH
     bone = walk.tracked.feature_points.bone
     thumbs = np.flatnonzero(walk.tracked.calibration.lengths[bone] == 0.0)
@@ -115,7 +118,7 @@ def test_the_file_is_small_and_holds_them(walk: Walk, folder: Path):
         assert np.abs(getattr(read, name) - getattr(written, name)).max() < within, name
     for name in ("torso", "bones", "worn", "limbs", "lost"):
         assert np.array_equal(getattr(read, name), getattr(written, name)), name
-    for name in ("noise", "m0", "rounds", "rate", "loop"):
+    for name in ("noise", "m0", "rounds", "rate", "loop", "begin"):
         assert getattr(read, name) == getattr(written, name), name
 
 
@@ -127,9 +130,9 @@ def test_a_motion_that_ends_stands_before_it_begins(tmp_path: Path):
     found = write_points(wearer, poses, {"far": nothing}, tmp_path, rate=RATE, loop=False)
     assert found.frames == len(poses)
     assert found.cloth.shape == (len(poses), 0, 3)  # nothing is worn
-    truth = sensed(wearer, poses, rate=RATE, loop=False).truth
-    assert truth is not None
-    joints = truth[-len(poses) :] + UP
+    recording, rows = sensed(wearer, poses, rate=RATE, loop=False)
+    assert recording.truth is not None
+    joints = recording.truth[rows] + UP
     assert np.sqrt(((found.points[:, :25] - joints) ** 2).sum(2).mean()) < 0.015
     assert TrackedMotion.load(tmp_path / "motion.points").cloth.shape == (len(poses), 0, 3)
 
@@ -141,19 +144,6 @@ def test_damaged_ones_are_refused(walk: Walk):
             TrackedMotion.from_bytes(spoilt)
     with pytest.raises(TrackedError, match="beyond"):
         TrackedMotion.from_bytes(replace(walk.written, worn=walk.written.worn + 97).to_bytes())
-
-
-def test_what_moves_is_looked_at_closely_as_the_model_that_moves(tmp_path: Path):
-    folder = Path(shutil.copytree(ASSETS, tmp_path / "assets"))
-    content = load(folder)
-    exhibit = content.exhibit("beizi")
-    assert exhibit is not None
-    still = models_of(content, exhibit, None)
-    (exhibit.folder / "baked" / "motion.clip").write_bytes(b"any")
-    moving = models_of(content, exhibit, None)
-    assert still is not None
-    assert moving is not None
-    assert (still.close.name, moving.close.name) == ("close.glb", "hall.glb")
 
 
 @pytest.fixture

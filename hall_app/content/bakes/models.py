@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hall_app.content.bakes.store import bake_folder
-from hall_app.content.files import BAKED, MOTION
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import read_glb
 
@@ -45,6 +44,4 @@ def models_of(
     folder = bake_folder(content, exhibit, data, stale=stale)
     if folder is None:
         return None
-    hall = folder / "hall.glb"
-    moves = (folder / MOTION.removeprefix(BAKED)).is_file()  # by a clip, which goes with that model alone
-    return ExhibitModels(hall, hall if moves else folder / "close.glb", folder)
+    return ExhibitModels(folder / "hall.glb", folder / "close.glb", folder)

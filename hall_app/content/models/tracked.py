@@ -33,7 +33,8 @@ class TrackedError(ValueError):
 
 @dataclass(frozen=True)
 class TrackedMotion:
-    """A motion as it was followed: frames at a rate [Hz], those of a clip.
+    """A motion as it was followed: rows at a rate [Hz], from the row `begin` on the frames of a clip; those before them
+    tell how the model stands that no clip moves.
 
     points (T, P, 3) [m], the joints ahead of the points between them; torso (P,) bool: X1, the others are X2; bones
     (B, 2): joints that each lies between; worn (Q,): numbers of the points that have one on the garments, and cloth
@@ -55,11 +56,12 @@ class TrackedMotion:
     rounds: int
     rate: float
     loop: bool
+    begin: int = 0
 
     @property
     def frames(self) -> int:
-        """How many there are."""
-        return len(self.points)
+        """How many the clip has."""
+        return len(self.points) - self.begin
 
     def to_bytes(self) -> bytes:
         """The file's bytes; places are rounded to STEP, M and Delta to theirs."""
@@ -76,12 +78,13 @@ class TrackedMotion:
             np.round(self.delta / DELTA_STEP),
             self.lost,
         )
-        body = b"".join(_planes(array.reshape(self.frames, -1)) for array in rows)
+        body = b"".join(_planes(array.reshape(len(self.points), -1)) for array in rows)
         header = {
             "format": FORMAT,
             "rate": self.rate,
             "loop": self.loop,
-            "frames": self.frames,
+            "rows": len(self.points),
+            "begin": self.begin,
             "points": self.points.shape[1],
             "torso": np.flatnonzero(self.torso).tolist(),
             "bones": self.bones.tolist(),
@@ -124,9 +127,9 @@ class TrackedMotion:
 
 
 def _read(header: dict[str, Any], packed: bytes) -> TrackedMotion:
-    frames, count = int(header["frames"]), int(header["points"])
-    if not (0 < frames <= MOST_FRAMES and 0 < count <= MOST_POINTS):
-        raise TrackedError(f"damaged ({frames} frames of {count} points)")
+    frames, begin, count = (int(header[name]) for name in ("rows", "begin", "points"))
+    if not (0 <= begin < frames <= MOST_FRAMES and 0 < count <= MOST_POINTS):
+        raise TrackedError(f"damaged ({frames} rows from {begin} on, of {count} points)")
     bones = _numbers(header["bones"], count).reshape(-1, 2)
     worn, limbs = _numbers(header["worn"], count), _numbers(header["limbs"], len(bones))
     torso = np.zeros(count, bool)
@@ -161,6 +164,7 @@ def _read(header: dict[str, Any], packed: bytes) -> TrackedMotion:
         rounds=int(header["rounds"]),
         rate=rate,
         loop=header["loop"] is True,
+        begin=begin,
     )
 
 

@@ -57,6 +57,6 @@ export function createClips({ clock, wake }) {
       }
     },
     playing: () => [...clips.values()].flatMap(({ nodes }) => [...nodes].filter(([, one]) => one.bound()).map(([node]) => node)),
-    shown: ({ motion }) => clips.get(motion)?.nodes.get(CLOSEUP)?.shown() ?? null,
+    shown: ({ motion, close_motion }) => clips.get(close_motion ?? motion)?.nodes.get(CLOSEUP)?.shown() ?? null,
   };
 }

@@ -1,4 +1,4 @@
-// Draws a frame of tracked points as a camera sees them: bones as thin lines, X1 red, X2 green, hollow ones of the garment.
+// Draws a row of tracked points as a camera sees them: bones as thin lines, X1 red, X2 green, hollow ones of the garment.
 // They are drawn over the picture, so cloth hides none.
 
 const RED = "#d8342c", GREEN = "#35c46a"; // as the paper has them; of unlike brightness, for who sees no red
@@ -35,7 +35,7 @@ function dot(pen, x, y, radius) {
   pen.arc(x, y, radius, 0, 7);
 }
 
-/** createDrawing(data) -> {draw(pen, size, matrix, frame, focal), at(frame)}; data: of readPoints, pen: a canvas' 2-D context. */
+/** createDrawing(data) -> {draw(pen, size, matrix, row, focal), drawn()}; data: of readPoints, pen: a canvas' 2-D context. */
 export function createDrawing(data) {
   const { count, worn, bones, torso, points, cloth, lost } = data;
   const own = new Float32Array(3 * count), garment = new Float32Array(3 * worn.length);
@@ -66,11 +66,11 @@ export function createDrawing(data) {
     for (const [stroke, width] of [[EDGE, 2.6], [colour, 1.3]]) Object.assign(pen, { strokeStyle: stroke, lineWidth: width }).stroke();
   }
 
-  function dots(pen, colour, mine, focal, frame) {
+  function dots(pen, colour, mine, focal, row) {
     for (const unseen of [true, false]) {
       pen.beginPath();
       for (let k = count - 1; k >= 0; k--) {
-        if (!mine(k) || Boolean(lost[frame * count + k]) !== unseen) continue;
+        if (!mine(k) || Boolean(lost[row * count + k]) !== unseen) continue;
         dot(pen, own[3 * k], own[3 * k + 1], radiusOf(own, k, focal) * (k < joints ? JOINT : 1));
       }
       Object.assign(pen, { strokeStyle: EDGE, lineWidth: 1.5, fillStyle: colour, globalAlpha: unseen ? 0.35 : 1 }).stroke();
@@ -80,14 +80,14 @@ export function createDrawing(data) {
   }
 
   return {
-    draw(pen, size, matrix, frame, focal) {
-      project(matrix, { places: points, from: 3 * count * frame, count }, size, own);
-      project(matrix, { places: cloth, from: 3 * worn.length * frame, count: worn.length }, size, garment);
+    draw(pen, size, matrix, row, focal) {
+      project(matrix, { places: points, from: 3 * count * row, count }, size, own);
+      project(matrix, { places: cloth, from: 3 * worn.length * row, count: worn.length }, size, garment);
       lines(pen, ties, TIE, 1);
       lines(pen, limbs, EDGE, 3);
       lines(pen, limbs, BONE, 1.25);
       for (const [colour, mine] of sets) rings(pen, colour, mine, focal);
-      for (const [colour, mine] of sets) dots(pen, colour, mine, focal, frame);
+      for (const [colour, mine] of sets) dots(pen, colour, mine, focal, row);
     },
     /** Where they were drawn last [px, px, m]. */
     drawn: () => ({ points: own, cloth: garment }),

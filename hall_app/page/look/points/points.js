@@ -20,17 +20,17 @@ async function fetched(url) {
  * createPoints() -> {element, show(url), hide(), draw(on), frame(shown), follow(act), told()}
  *
  * element: the canvas, to lie on the picture; draw(on): whether they are drawn; frame(shown): ahead of every picture, the
- * frame of the clip that the model in the close-up shows, null: it stands as it does in the first. act({data, frame,
- * failed}) hears of every change; told(): what a test may ask.
+ * frame of the clip that the model in the close-up shows, null: it stands. act({data, row, failed}) hears of every
+ * change; told(): what a test may ask.
  */
 export function createPoints() {
   const element = Object.assign(document.createElement("canvas"), { className: "points", hidden: true });
   element.setAttribute("aria-hidden", "true");
   const pen = element.getContext("2d");
   const known = new Map(); // address -> what is there, or a promise of it
-  let open = null, shown = null, frame = 0, on = true, failed = false, heard = () => {}, took = 0;
+  let open = null, shown = null, row = 0, on = true, failed = false, heard = () => {}, took = 0;
 
-  const tell = () => heard({ data: shown?.data ?? null, frame, failed });
+  const tell = () => heard({ data: shown?.data ?? null, row, failed });
 
   function fit({ clientWidth: width, clientHeight: height }) {
     const ratio = Math.min(SHARPEST, devicePixelRatio || 1);
@@ -49,7 +49,7 @@ export function createPoints() {
     if (!place || !shown) return;
     const { elements: lensed } = lens.projectionMatrix;
     const matrix = product(product(lensed, lens.matrixWorldInverse.elements), place);
-    shown.drawing.draw(pen, size, matrix, frame, (lensed[5] * size.height) / 2);
+    shown.drawing.draw(pen, size, matrix, row, (lensed[5] * size.height) / 2);
     took = performance.now() - began;
   }
 
@@ -62,7 +62,7 @@ export function createPoints() {
   }
 
   function hide() {
-    [open, shown, frame, failed] = [null, null, 0, false];
+    [open, shown, row, failed] = [null, null, 0, false];
     set();
   }
 
@@ -94,9 +94,10 @@ export function createPoints() {
     frame(now) {
       if (!shown) return;
       if (on) whenDrawn(paint); // viser may have made another scene
-      const next = Math.min(now ?? 0, shown.data.frames - 1);
-      if (next === frame) return;
-      frame = next;
+      const { begin, rows } = shown.data;
+      const next = now === null ? 0 : Math.min(begin + now, rows - 1);
+      if (next === row) return;
+      row = next;
       if (on) requestRender();
       tell();
     },
@@ -104,6 +105,6 @@ export function createPoints() {
       heard = act;
       tell();
     },
-    told: () => (element.hidden ? null : { frame, took, ...shown.drawing.drawn() }),
+    told: () => (element.hidden ? null : { frame: row - shown.data.begin, took, ...shown.drawing.drawn() }),
   };
 }

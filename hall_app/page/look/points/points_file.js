@@ -12,24 +12,26 @@ function measures(numbers, step, origin = [0]) {
 }
 
 /**
- * {rate, loop, frames, count, torso, bones, worn, limbs, noise, m0, rounds, points, cloth, m, delta, lost} of a file's bytes.
+ * {rate, loop, frames, begin, rows, count, torso, bones, worn, limbs, noise, m0, rounds, points, cloth, m, delta, lost} of a file's bytes.
  *
- * points: 3 · count numbers [m] a frame, cloth: 3 · worn.length; m [1], delta [m]: limbs.length a frame; torso: a Set of
- * points of X1; bones: [[joint, joint]]; worn: the points that have one on the garment; lost: count a frame, 0 or 1.
+ * Row `begin` is the clip's first frame; the ones before it tell how the model stands. points: 3 · count numbers [m] a
+ * row, cloth: 3 · worn.length; m [1], delta [m]: limbs.length; torso: a Set of points of X1; bones: [[joint, joint]];
+ * worn: the points that have one on the garment; lost: count a row, 0 or 1.
  * Throws where they are none.
  */
 export async function readPoints(buffer) {
-  const bytes = new Uint8Array(buffer), begin = MARK.length + 4;
-  if (bytes.length < begin || String.fromCharCode(...bytes.subarray(0, MARK.length)) !== MARK) throw new Error("no points");
+  const bytes = new Uint8Array(buffer), from = MARK.length + 4;
+  if (bytes.length < from || String.fromCharCode(...bytes.subarray(0, MARK.length)) !== MARK) throw new Error("no points");
   const length = new DataView(buffer).getUint32(MARK.length, true);
-  const header = JSON.parse(new TextDecoder().decode(bytes.subarray(begin, begin + length)));
+  const header = JSON.parse(new TextDecoder().decode(bytes.subarray(from, from + length)));
   if (header.format !== FORMAT) throw new Error("points of another format – load the page again");
-  const still = new Still(await inflated(bytes.subarray(begin + length)));
-  const { rate, loop, frames, points: count, bones, worn, limbs, noise, m0, rounds, origin, steps } = header;
-  const rows = (columns) => still.wholeNumbers(frames, columns);
-  const points = measures(rows(3 * count), steps.place, origin);
-  const cloth = measures(rows(3 * worn.length), steps.place, origin);
-  const m = measures(rows(limbs.length), steps.m), delta = measures(rows(limbs.length), steps.delta);
-  const lost = Uint8Array.from(rows(count)), torso = new Set(header.torso);
-  return { rate, loop, frames, count, torso, bones, worn, limbs, noise, m0, rounds, points, cloth, m, delta, lost };
+  const still = new Still(await inflated(bytes.subarray(from + length)));
+  const { rate, loop, rows, begin, points: count, bones, worn, limbs, noise, m0, rounds, origin, steps } = header;
+  const table = (columns) => still.wholeNumbers(rows, columns);
+  const points = measures(table(3 * count), steps.place, origin);
+  const cloth = measures(table(3 * worn.length), steps.place, origin);
+  const m = measures(table(limbs.length), steps.m), delta = measures(table(limbs.length), steps.delta);
+  const lost = Uint8Array.from(table(count)), torso = new Set(header.torso);
+  const told = { rate, loop, frames: rows - begin, begin, rows, count, torso, bones, worn, limbs, noise, m0, rounds };
+  return { ...told, points, cloth, m, delta, lost };
 }

@@ -1,6 +1,6 @@
 // A small chart over a motion: the median and the largest of several values a frame, a limit, and where it stands now.
 
-import { el, svg } from "../elements.js";
+import { el, setAttribute, svg } from "../elements.js";
 
 const WIDTH = 300, HEIGHT = 100; // of the drawing, which is stretched to its box
 
@@ -70,7 +70,11 @@ export function createChart(testid) {
   return {
     element,
     load,
-    at: (frame) => (cursor.style.left = `${(100 * x(frame)) / WIDTH}%`),
+    /** Below 0: nowhere along it. */
+    at(frame) {
+      setAttribute(cursor, "hidden", frame < 0);
+      cursor.style.left = `${(100 * x(frame)) / WIDTH}%`;
+    },
     label: (text) => drawing.setAttribute("aria-label", text),
     name: (text) => (name.textContent = text),
     values: (text) => (values.textContent = text),

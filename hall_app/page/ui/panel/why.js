@@ -6,11 +6,13 @@ import { el, setAttribute } from "../elements.js";
 const MM = 1e3; // of a metre
 const KINDS = ["torso", "limbs", "cloth"];
 
-/** The figures a motion is told by: M and Delta [mm] a frame, and their extremes. */
+/** What a motion is told by, a row each: M and Delta [mm]. */
 function figuresOf({ m, delta, limbs }) {
-  const own = summarised(m, limbs.length), away = summarised(delta.map((one) => one * MM), limbs.length);
-  return { m: own, delta: away };
+  return { m: summarised(m, limbs.length), delta: summarised(delta.map((one) => one * MM), limbs.length) };
 }
+
+/** The rows of a clip's frames alone. */
+const moving = ({ middle, most }, { begin }) => ({ middle: middle.slice(begin), most: most.slice(begin) });
 
 /** A page of the panel; points: of createPoints, clock: of what moves. */
 export function createWhyPage(words, { points, clock }) {
@@ -27,7 +29,7 @@ export function createWhyPage(words, { points, clock }) {
   const body = el("div", { class: "why-body", hidden: true }, ...told);
   const state = el("p", { class: "quiet", role: "status" });
   const element = el("div", { class: "why", testid: "why" }, state, body);
-  let url = null, entered = false, loaded = null, figures = null, now = { data: null, frame: 0, failed: false };
+  let url = null, entered = false, loaded = null, figures = null, now = { data: null, row: 0, failed: false };
 
   input.addEventListener("change", () => points.draw(input.checked));
   clock.watch((on) => setAttribute(stopped, "hidden", !on));
@@ -35,8 +37,9 @@ export function createWhyPage(words, { points, clock }) {
   function load() {
     const { data } = now;
     figures = figuresOf(data);
-    charts.m.load(figures.m, decades([data.m0 / 2, ...figures.m.middle, ...figures.m.most]), data.m0);
-    charts.delta.load(figures.delta, fromZero(figures.delta.most));
+    const m = moving(figures.m, data), delta = moving(figures.delta, data);
+    charts.m.load(m, decades([data.m0 / 2, ...m.middle, ...m.most]), data.m0);
+    charts.delta.load(delta, fromZero(delta.most));
     loaded = data;
   }
 
@@ -48,7 +51,7 @@ export function createWhyPage(words, { points, clock }) {
     const n = { torso: trunk, limbs: data.count - trunk, cloth: data.worn.length };
     for (const kind of KINDS) counts[kind].textContent = words.t(`why.${kind}`, { n: n[kind] });
     for (const [kind, digits] of [["m", 2], ["delta", 1]]) {
-      const { middle, most } = figures[kind], value = (one) => one.toFixed(digits);
+      const { middle, most } = moving(figures[kind], data), value = (one) => one.toFixed(digits);
       const spread = { low: value(Math.min(...middle)), high: value(Math.max(...middle)), most: value(Math.max(...most)) };
       charts[kind].name(words.t(`why.${kind}`));
       charts[kind].label(words.t(`why.${kind}_label`, { ...spread, m0: data.m0 }));
@@ -57,14 +60,14 @@ export function createWhyPage(words, { points, clock }) {
 
   /** What the model shows at this moment. */
   function point() {
-    const { data, frame } = now;
+    const { data, row } = now, frame = row - data.begin;
     for (const [kind, digits] of [["m", 2], ["delta", 1]]) {
       const { middle, most } = figures[kind];
       charts[kind].at(frame);
-      charts[kind].values(words.t(`why.${kind}_now`, { middle: middle[frame].toFixed(digits), most: most[frame].toFixed(digits) }));
+      charts[kind].values(words.t(`why.${kind}_now`, { middle: middle[row].toFixed(digits), most: most[row].toFixed(digits) }));
     }
     const seconds = { at: (frame / data.rate).toFixed(2), whole: (data.frames / data.rate).toFixed(2) };
-    moment.textContent = words.t("why.moment", { ...seconds, frame: frame + 1, frames: data.frames });
+    moment.textContent = words.t(frame < 0 ? "why.standing" : "why.moment", { ...seconds, frame: frame + 1, frames: data.frames });
   }
 
   function show(next, whole = true) {
