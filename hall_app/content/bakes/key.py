@@ -12,7 +12,7 @@ from hall_app.content.folder import Content, Exhibit
 __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key", "dressing_key"]
 
 # Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
-BAKE_VERSION = 9
+BAKE_VERSION = 10
 
 KEY_DIGITS = 16
 
