@@ -1,10 +1,11 @@
-"""The hall of plain boxes, whose box moves by a clip; and its check."""
+"""The hall of plain boxes, whose box moves by a clip, and what might have been tracked of it."""
 
 from pathlib import Path
 
 import numpy as np
 from plain_hall import write_plain_hall
 
+from hall_app.content.models import TrackedMotion
 from sim_core.garment.clip import Clip, Drawn, Moved, drawn_in
 from sim_core.gltf import glb_parts
 
@@ -23,12 +24,44 @@ def box_clip(model: bytes, *, drawn: tuple[Drawn, ...] | None = None) -> Clip:
     return Clip.of([Moved("box", positions, faces, found)], rate=RATE, loop=True)
 
 
-def write_moving_hall(folder: Path) -> Path:
-    """Write the folder and return it."""
+def box_points() -> TrackedMotion:
+    """Its corners as joints, with points between them, as it stands and then sways; the upper ones are the trunk's, and
+    cloth hangs over four."""
+    corner = np.array([[x, y, z] for y in (0.0, 1.2) for x in (-0.25, 0.25) for z in (-0.25, 0.25)])
+    bones = np.array([(a, b) for a in range(8) for b in range(a) if (corner[a] != corner[b]).sum() == 1])
+    rest = np.concatenate([corner, corner[bones].mean(1)])
+    frames = np.r_[0, np.arange(FRAMES)]
+    points = np.repeat(rest[None], len(frames), axis=0)
+    points[:, :, 0] += 0.2 * np.sin(2 * np.pi * frames / FRAMES)[:, None] * rest[:, 1]
+    worn = np.arange(4, 8)
+    delta = 0.01 + 0.005 * np.sin(2 * np.pi * (frames[:, None] + np.arange(3)) / FRAMES)
+    return TrackedMotion(
+        points=points,
+        torso=rest[:, 1] > 1.0,
+        bones=bones,
+        worn=worn,
+        cloth=points[:, worn] + [0.0, 0.1, 0.0],
+        limbs=np.arange(3),
+        m=delta / 0.02,
+        delta=delta,
+        lost=np.zeros(points.shape[:2], bool),
+        noise=0.01,
+        m0=0.1,
+        rounds=5,
+        rate=RATE,
+        loop=True,
+        begin=1,
+    )
+
+
+def write_moving_hall(folder: Path, *, points: bool = False) -> Path:
+    """Write the folder and return it; points: with what was tracked."""
     write_plain_hall(folder)
     home = folder / "exhibits" / "box"
     toml = (home / "exhibit.toml").read_text("utf-8")
     toml = toml.replace("models = {", 'motion = "sway.clip"\nmodels = {').replace(', "turn_slowly"', "")
     (home / "exhibit.toml").write_text(toml, "utf-8")
     box_clip((home / "box.glb").read_bytes()).save(home / "sway.clip")
+    if points:
+        box_points().save(home / "sway.points")
     return folder

@@ -1,7 +1,8 @@
 """From an outfit to what the hall shows.
 
 encoding, film: pictures to films; look: what they and the models show of an outfit; trails: how what is worn beneath
-moved; motion: the clip of an outfit that moves; outfit: one bake from inputs to record; command: `hall build`.
+moved; motion: the clip of an outfit that moves; points: what is
+tracked of its wearer; outfit: one bake from inputs to record; command: `hall build`.
 Names are handed out when they are asked for (PEP 562).
 """
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
     from hall_app.build.motion import play, write_motion
     from hall_app.build.outfit import bake_outfit, budget, refuse_disorder
+    from hall_app.build.points import limb_bones, sensed, write_points
     from hall_app.build.trails import TrailLostError, Trails
 
 __all__ = [
@@ -22,9 +24,12 @@ __all__ = [
     "budget",
     "encode_film",
     "film_possible",
+    "limb_bones",
     "play",
     "refuse_disorder",
+    "sensed",
     "write_motion",
+    "write_points",
 ]
 
 _HOME = {
@@ -37,7 +42,10 @@ _HOME = {
     "film_possible": "encoding",
     "play": "motion",
     "refuse_disorder": "outfit",
+    "limb_bones": "points",
+    "sensed": "points",
     "write_motion": "motion",
+    "write_points": "points",
 }
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hall_app.build.points import write_points
 from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION
 
 if TYPE_CHECKING:
@@ -33,8 +34,9 @@ def play(outfit: Outfit, garments: Sequence[Garment], progress: Progress) -> Pla
 def write_motion(
     outfit: Outfit, garments: Sequence[Garment], played: Played, folder: Path, progress: Progress
 ) -> dict[str, float]:
-    """Writes a clip beside each model in `folder`, for its vertices; returns the worst of all frames by the names of
-    the record: moving_deepest_m, of what is worn beneath robe_moving_deepest_m.
+    """Writes a clip beside each model in `folder`, for its vertices, and motion.points, what is tracked of the wearer;
+    returns the worst of all frames by the names of the record: moving_deepest_m, of what is worn beneath
+    robe_moving_deepest_m.
 
     Raises what `Clip` raises.
     """
@@ -56,6 +58,8 @@ def write_motion(
             rate=RATE,
             loop=played.loop,
         ).save(folder / clip.removeprefix(BAKED))
+    poses = (outfit.pose, *played.poses)
+    write_points(outfit.wearer, poses, moved, folder, rate=RATE, loop=played.loop, begin=1)
     worst = moving_errors(outfit, garments, played, progress=progress)
     errors: dict[str, float] = {}
     for number, (garment, told) in enumerate(zip(garments, worst, strict=True), 1):

@@ -21,6 +21,7 @@ from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
 from hall_app.content.bakes.steps import Step, budget, chosen_steps, study_of
 from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
+from hall_app.content.files import CLIP, TRACKED
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import read_glb
 
@@ -137,7 +138,7 @@ def _kept(
     if film and FILM[0] not in record[FILES]:
         return None
     for name in record[FILES]:
-        if not name.endswith((".glb", ".clip")):  # models, and how they move, are made anew
+        if not name.endswith((".glb", CLIP, TRACKED)):  # models, and how they move, are made anew
             shutil.copyfile(former / name, out / name)
     return tuple(Garment.load(out / name) for name in layer_files(layers)), dict(record["seconds"])
 

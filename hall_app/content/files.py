@@ -14,6 +14,10 @@ from hall_app.content.schema.hall import HallFile
 BAKED = "baked/"  # written by hall build, absent before it
 MOTION = BAKED + "motion.clip"  # how an outfit with a motion moves, written by hall build
 CLOSE_MOTION = BAKED + "motion-close.clip"  # the same of its close-up
+CLIP, TRACKED = (
+    ".clip",
+    ".points",
+)  # endings: what moves by a clip, and what was tracked of its wearer, beside it
 SHEET = "media/pattern.svg"  # the flat pattern of an exhibit with an outfit, drawn by hall build --pattern
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}
 LEAVES = ("is a link that leaves the content folder", "copy the file itself into the folder")
@@ -44,6 +48,11 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
             yield f"{name}.files[{index}]", path
         if medium.poster:
             yield f"{name}.poster", medium.poster
+
+
+def tracked_beside(motion: str) -> str:
+    """Where the points that were tracked of a clip's wearer lie: beside it, under its name."""
+    return motion.removesuffix(CLIP) + TRACKED
 
 
 def made_by_build(file: ExhibitFile, path: str) -> bool:

@@ -3,6 +3,7 @@
 import { createBeat } from "./picture/beat.js";
 import * as camera from "./look/camera.js";
 import { createClock } from "./look/clip/clock.js";
+import { createPoints } from "./look/points/points.js";
 import { createConnection } from "./visit/connection.js";
 import { framesDrawn, hooksPresent, requestRender } from "./viser/viser_adapter.js";
 import { LOAD_PATIENCE, loadClearance, loadHall, until, webglWorks } from "./visit/loading.js";
@@ -35,8 +36,8 @@ async function start() {
   const { door } = window.HALL; // it has been fetching since the first paint
   const [scene, texts] = await Promise.all([door.scene, door.texts]);
   const { lang } = door, parts = { visit: null, quality: null };
-  const clock = createClock();
-  ui = createUi({ root: document.body, scene, texts, lang, actions: createActions(parts), clock });
+  const clock = createClock(), points = createPoints();
+  ui = createUi({ root: document.body, scene, texts, lang, actions: createActions(parts), clock, points });
   if (!webglWorks()) {
     ui.fail("webgl");
     return;
@@ -49,7 +50,7 @@ async function start() {
   const display = hooks ? "page" : "viser";
   const beat = createBeat((now) => frame(parts, now));
   const connection = createConnection({ view: window.HALL.view, tell: ui.connection, late: () => ui.fail("load") });
-  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk, clock });
+  parts.visit = createVisit({ scene, grid, display, ui, wake: beat.wake, connection: connection.walk, clock, points });
   if (hooks) parts.quality = createQuality(() => {
     ui.quality(parts.quality);
     requestRender();
@@ -62,7 +63,7 @@ async function start() {
   parts.visit.settle();
   if (parts.quality?.choice === "auto") firstLook(beat);
   ui.ready();
-  publish(parts, display);
+  publish(parts, points, display);
 }
 
 /** Until the hall stands and the visitor is inside. What takes too long is said, and may still come. */
@@ -100,7 +101,7 @@ function firstLook(beat) {
 }
 
 /** What tests and curious visitors may use: to read, and to go where the minimap goes. */
-function publish({ visit, quality }, display) {
+function publish({ visit, quality }, points, display) {
   const { goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing } = visit;
   window.hall = Object.freeze({
     goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing,
@@ -109,6 +110,7 @@ function publish({ visit, quality }, display) {
     quality: () => (quality ? { choice: quality.choice, level: quality.level } : null),
     setQuality: (choice) => quality?.choose(choice),
     framesDrawn,
+    points: points.told,
     loadedAt: performance.now(),
   });
 }

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from hall_app.build import play, write_motion
+from hall_app.content.models import TrackedMotion
 from sim_core import metrics
 from sim_core.body import Motion, Pose
 from sim_core.garment import Clothed, Outfit, choose_detail, dress, load_outfit, write_glb
@@ -68,6 +70,11 @@ def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
     fine, clip = (Clip.load(tmp_path / name) for name in ("motion-close.clip", "motion.clip"))
     assert fine.meshes[0].count == len(garments[-1].positions) > clip.meshes[0].count
     assert (clip.frames, clip.loop, clip.rate) == (fine.frames, fine.loop, fine.rate) == (6, True, 25.0)
+    tracked = TrackedMotion.load(tmp_path / "motion.points")
+    assert (tracked.frames, tracked.loop, tracked.rate) == (clip.frames, clip.loop, clip.rate)
+    for frame in (0, 3):  # on the base, as the model does
+        away = KDTree(fine.positions(frame, fine.names[0])).query(tracked.cloth[frame])[0]
+        assert (away < 0.5e-3).sum() >= 3
     names = {drawn.node for mesh in clip.meshes for drawn in mesh.drawn}
     document = glb_parts((tmp_path / "hall.glb").read_bytes()).document
     figure_nodes = {drawn.node for drawn in clip.figure.drawn} if clip.figure else set()

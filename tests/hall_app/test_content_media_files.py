@@ -140,7 +140,7 @@ def test_media_that_are(house: Path, name: str):
 
 
 def test_what_is_checked_is_what_is_served():
-    assert {*FORMATS, *VIDEO, *AUDIO, ".glb", ".clip"} == set(TYPES)
+    assert {*FORMATS, *VIDEO, *AUDIO, ".glb", ".clip", ".points"} == set(TYPES)
 
 
 def test_thumbnail_poster_music_and_pictures_of_texts(house: Path):

@@ -159,10 +159,23 @@ def test_every_mapping_names_joints_of_a_kinect_and_is_found_by_its_marks() -> N
     assert load_mapping("mixamo").fits(("mixamorig:Hips", "mixamorig:Spine"))
     assert load_mapping("figure").fits(JOINTS)
     assert not load_mapping("default").fits(JOINTS)
-    missing = set(KINECT.joints) - set(load_mapping("figure").joints)
-    assert missing == {"Head"} | {
-        f"{part}{side}" for part in ("Hand", "HandTip", "Thumb") for side in ("Left", "Right")
-    }
+    assert set(KINECT.joints) - set(load_mapping("figure").joints) == {"ThumbLeft", "ThumbRight"}
+
+
+def test_a_figure_has_hands_and_a_head_where_its_marks_are_given() -> None:
+    names, marks = list(JOINTS), ["top", "tip_l", "tip_r"]
+    places = np.arange(3.0 * (len(names) + 3)).reshape(1, -1, 3)
+    mapping, time = load_mapping("figure"), np.zeros(1)
+    bare = mapping.applied(names, places[:, : len(names)], time, 1.0)
+    hands = {f"{part}{side}" for part in ("Hand", "HandTip", "Thumb") for side in ("Left", "Right")}
+    assert set(bare.left_out) == {"Head"} | hands
+    whole = mapping.applied([*names, *marks], places, time, 1.0)
+    assert set(whole.left_out) == {"ThumbLeft", "ThumbRight"}
+    of = dict(zip(KINECT.joints, whole.joints[0], strict=True))
+    tip, wrist = places[0, -2], places[0, names.index("wrist_l")]
+    assert np.array_equal(of["HandTipLeft"], tip)
+    assert np.array_equal(of["HandLeft"], (tip + wrist) / 2)
+    assert np.array_equal(of["Head"], places[0, -3])
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Literal
 
-from hall_app.content.files import CLOSE_MOTION, MOTION, is_there, made_by_build
+from hall_app.content.files import CLOSE_MOTION, MOTION, is_there, made_by_build, tracked_beside
 from hall_app.content.folder import Content, Exhibit
+from hall_app.content.models.tracked import TrackedError, TrackedMotion
 from hall_app.content.problems import Problem
 from sim_core.errors import SimCoreError
 from sim_core.garment import Clip
@@ -14,10 +15,11 @@ from sim_core.gltf import GlbError, glb_parts
 
 MB = 1_000_000
 LARGEST = 2 * MB
+LARGEST_POINTS = 200_000  # [bytes] of what was tracked: half a minute
 
 
 def clip_problems(content: Content) -> list[Problem]:
-    """Clips that cannot be read, are too large, or go with no mesh of their exhibit's model."""
+    """Clips that cannot be read, are too large, or go with no mesh of their exhibit's model; points likewise."""
     return [
         problem
         for exhibit in content.exhibits
@@ -53,6 +55,8 @@ def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Pro
     if (size := path.stat().st_size) > LARGEST:
         what = f"{name} has {size / MB:.2f} MB, at most {LARGEST / MB:g} MB"
         found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
+    if kind == "hall":
+        found += _tracked(exhibit, tracked_beside(name), clip, fix)
     model = exhibit.model_path(kind)
     meshes = _meshes(model.read_bytes()) if model is not None else None
     if meshes is None:
@@ -69,6 +73,25 @@ def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Pro
                 exhibit.toml, "motion", f"{name} moves no mesh of the model", "name what it draws: drawn_in"
             )
         )
+    return found
+
+
+def _tracked(exhibit: Exhibit, name: str, clip: Clip, fix: str) -> list[Problem]:
+    """Points beside a clip, if there are any, that cannot be read, are too large or of other frames."""
+    path = exhibit.folder / name
+    if not is_there(path):
+        return []
+    try:
+        tracked = TrackedMotion.load(path)
+    except (TrackedError, OSError) as error:
+        return [Problem(exhibit.toml, "motion", f"{name}: {error}", fix)]
+    found = []
+    if (tracked.frames, tracked.rate) != (clip.frames, clip.rate):
+        what = f"{name} has {tracked.frames} frames at {tracked.rate:g} Hz, the clip {clip.frames} at {clip.rate:g} Hz"
+        found.append(Problem(exhibit.toml, "motion", what, fix))
+    if (size := path.stat().st_size) > LARGEST_POINTS:
+        what = f"{name} has {size / 1000:.0f} kB, at most {LARGEST_POINTS / 1000:g} kB"
+        found.append(Problem(exhibit.toml, "motion", what, "use fewer frames"))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 
-from hall_app.content.files import BAKED, SHEET, TEXTS, exhibit_files, walk_files
+from hall_app.content.files import BAKED, SHEET, TEXTS, exhibit_files, tracked_beside, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
 from hall_app.content.views.markdown import pictures_in
@@ -39,6 +39,8 @@ def _built(name: str) -> bool:
 def _used(exhibit: Exhibit) -> set[str]:
     used = {"exhibit.toml", "LICENCE.txt", *TEXTS.values()}
     used.update(path for _, path in exhibit_files(exhibit.file))
+    if exhibit.file.motion:
+        used.add(tracked_beside(exhibit.file.motion))
     texts = (exhibit.text_zh, exhibit.text_en)
     used.update(posixpath.normpath(path) for text in texts for path in pictures_in(text))
     return used

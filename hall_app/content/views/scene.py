@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from hall_app.content.behaviours import kind_of
-from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there
+from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there, tracked_beside
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.schema.exhibit import Media, Record
@@ -33,6 +33,7 @@ TYPES = {
     ".wav": "audio/wav",
     ".glb": "model/gltf-binary",
     ".clip": "application/vnd.handress.clip",
+    ".points": "application/vnd.handress.points",
 }
 
 # Names of the catalogue record's lines, Chinese and English.
@@ -134,8 +135,20 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
 
 def _motion(exhibit: Exhibit, baked: Path | None) -> str | None:
     """Address of the clip its model moves by: the one its file names, else the one that was baked with it."""
-    path = exhibit.file.motion or (MOTION if exhibit.file.outfit is not None else None)
+    path = _clip(exhibit)
     return _url(exhibit, path, baked) if path else None
+
+
+def _clip(exhibit: Exhibit) -> str | None:
+    return exhibit.file.motion or (MOTION if exhibit.file.outfit is not None else None)
+
+
+def _points(exhibit: Exhibit, baked: Path | None) -> str | None:
+    """Address of what was tracked of the wearer in its clip, None where it has none or nobody was tracked."""
+    path = _clip(exhibit)
+    if path is None or _url(exhibit, path, baked) is None:
+        return None
+    return _url(exhibit, tracked_beside(path), baked)
 
 
 def thumbnail(exhibit: Exhibit, baked: Path | None) -> str | None:
@@ -171,6 +184,7 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
         "licence": file.licence,
         "questionnaire": file.questionnaire,
         "has_close": _has_close(exhibit, baked),
+        "points": _points(exhibit, baked),
     }
 
 

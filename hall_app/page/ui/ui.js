@@ -22,17 +22,18 @@ import { createWords } from "./words.js";
 
 // As judge.js has them, and the one that leaves it to the judge.
 const CHOICES = ["auto", ...LEVELS];
+const WRITTEN_IN = "input:not([type=checkbox], [type=radio]), textarea";
 const NARROW = "(max-width: 720px)"; // the open plan covers the way one wants to walk
 
 /**
- * createUi({root, scene, texts, lang, actions, clock}) -> ui
+ * createUi({root, scene, texts, lang, actions, clock, points}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * clock: of what moves. actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
+ * clock: of what moves; points: what was tracked of who moves. actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
  */
-export function createUi({ root, scene, texts, lang, actions, clock }) {
+export function createUi({ root, scene, texts, lang, actions, clock, points }) {
   const words = createWords(texts, lang);
-  const parts = createParts({ words, scene, actions, clock });
+  const parts = createParts({ words, scene, actions, clock, points });
   const overlay = arrange(parts);
   root.append(overlay);
   followLanguage(words, parts, overlay);
@@ -45,8 +46,8 @@ export function createUi({ root, scene, texts, lang, actions, clock }) {
   return face(parts, overlay, words);
 }
 
-function createParts({ words, scene, actions, clock }) {
-  const parts = { words, scene, clock, covers: new Set() };
+function createParts({ words, scene, actions, clock, points }) {
+  const parts = { words, scene, clock, points, covers: new Set() };
   const music = createMusic(scene);
   const titleOf = (id) => words.pick(parts.scene.exhibits.find((exhibit) => exhibit.id === id)?.title);
   const choose = (next) => {
@@ -82,6 +83,7 @@ function createParts({ words, scene, actions, clock }) {
     help: createHelp({ words, scene, onSurvey: hallSurvey }),
     panel: createPanel({
       words,
+      motion: { clock, points },
       onClose: actions.close,
       onSurvey: (detail) => parts.survey.open(detail.questionnaire, detail.id),
       onEnlarge: (pictures, index) => parts.viewer.open(pictures, index),
@@ -143,7 +145,7 @@ function arrange(parts) {
   );
   const chrome = el("div", { class: "chrome", inert: true }, top, low, panel.element);
   const notices = el("div", { class: "announcements" }, connection.element, curtain.note, toasts.element, voice.element);
-  const around = [curtain.ground, stage, chrome, enter.element, notices];
+  const around = [parts.points.element, curtain.ground, stage, chrome, enter.element, notices];
   // Who hears the page read meets viser's picture as the stage, which answers to keys; what is drawn has no words.
   document.getElementById("root")?.setAttribute("aria-hidden", "true");
   return el("main", { id: "hall-ui", class: "is-outside" }, ...around, ...dialogs);
@@ -206,7 +208,7 @@ function listenToKeys(parts, actions) {
     ) {
       event.preventDefault();
       actions.open(parts.caption.id());
-    } else if (event.code === "KeyP" && !event.repeat && !event.target.closest?.("input, textarea")) parts.clock.toggle();
+    } else if (event.code === "KeyP" && !event.repeat && !event.target.closest?.(WRITTEN_IN)) parts.clock.toggle();
     else if (event.key === "?" && !event.target.closest?.("input, textarea")) parts.help.open();
   });
 }

@@ -55,6 +55,17 @@ export function meshesOf(name) {
   return found;
 }
 
+/** From a node's own metres to three.js' world, 16 numbers; null while there is no such node. */
+export const placeOf = (name) => viser()?.nodeRefFromName?.[name]?.matrixWorld?.elements ?? null;
+
+const nobody = () => {};
+
+/** act(renderer, scene, camera) hears of every picture as soon as it is drawn, in the same frame; null: nobody does. */
+export function whenDrawn(act) {
+  const stage = scene();
+  if (stage && stage.onAfterRender !== (act ?? nobody)) stage.onAfterRender = act ?? nobody;
+}
+
 // What the renderer has drawn. three.js counts anew, in a new object, when a lost context comes back, and viser's test
 // points keep the old one: they are asked only until there is a renderer.
 const drawn = () => (renderer()?.info ?? window.__viserTestpoints?.rendererInfo)?.render;

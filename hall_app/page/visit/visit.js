@@ -24,12 +24,12 @@ const TEXT_PATIENCE = 15000; // [ms] an exhibit's text may take on a slow line
 const clamp = (value) => Math.max(-1, Math.min(1, value));
 
 /**
- * createVisit({scene, grid, display, ui, wake, connection, clock}) -> visit
+ * createVisit({scene, grid, display, ui, wake, connection, clock, points}) -> visit
  *
- * clock: of what moves by clips; display: "page" where this page places the camera, "viser" where the server does; wake(): draw on for a while;
+ * clock: of what moves by clips; points: what was tracked of who moves; display: "page" where this page places the camera, "viser" where the server does; wake(): draw on for a while;
  * connection(state, place): hears of the walk's.
  */
-export function createVisit({ scene, grid, display, ui, wake, connection, clock }) {
+export function createVisit({ scene, grid, display, ui, wake, connection, clock, points }) {
   let entered = false, opened = null, near = null, headingThere = null;
   let stick = { forward: 0, right: 0, since: 0 };
   const walking = () => entered && !opened;
@@ -200,6 +200,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock 
     if (walking()) step(dt, now);
     if (display !== "page") return;
     clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened);
+    points.frame(clips.shown(exhibitOf(opened) ?? {}));
     if (opened) return;
     camera.holdGestures();
     camera.fitLens();

@@ -3,7 +3,8 @@
 const MARK = "HALLCLIP", FORMAT = 1;
 const JOINTS = 21, POSE = 4 * JOINTS + 3; // [numbers] of a pose
 
-async function inflated(bytes) {
+/** What was deflated, by zlib. */
+export async function inflated(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -11,7 +12,7 @@ async function inflated(bytes) {
 const unzigzag = (value) => (value >>> 1) ^ -(value & 1);
 
 /** Takes arrays from the part that is the same in all frames, one after the other. */
-class Still {
+export class Still {
   constructor(bytes) { Object.assign(this, { bytes, at: 0 }); }
 
   take(size) {

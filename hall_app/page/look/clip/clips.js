@@ -5,7 +5,8 @@ import { createPresence, inSight } from "../sight.js";
 import { readClip } from "./clip_file.js";
 import { createPlayback } from "./playback.js";
 
-const CLOSEUP = "/closeup";
+/** The node of the model in the close-up. */
+export const CLOSEUP = "/closeup";
 
 async function fetched(url) {
   const answer = await fetch(url);
@@ -14,10 +15,11 @@ async function fetched(url) {
 }
 
 /**
- * createClips({clock, wake}) -> {frame(scene, {x, z, yaw}, opened), playing()}
+ * createClips({clock, wake}) -> {frame(scene, {x, z, yaw}, opened), playing(), shown(exhibit)}
  *
  * frame() is called ahead of every picture; opened: id of the exhibit in the close-up, or null. playing(): nodes that a
- * clip has been written into.
+ * clip has been written into; shown(): the frame that an exhibit shows in its close-up, null where its
+ * clip does not move that.
  */
 export function createClips({ clock, wake }) {
   const present = createPresence();
@@ -56,5 +58,6 @@ export function createClips({ clock, wake }) {
       }
     },
     playing: () => [...clips.values()].flatMap(({ nodes }) => [...nodes].filter(([, one]) => one.bound()).map(([node]) => node)),
+    shown: ({ motion, close_motion }) => clips.get(close_motion ?? motion)?.nodes.get(CLOSEUP)?.shown() ?? null,
   };
 }

@@ -67,7 +67,7 @@ function write({ positions, normals }, index, { geometry }) {
 }
 
 /**
- * createPlayback(clip, node) -> {frame(seconds, seen), bound()}; node: the scene's node of the model; clip: of readClip.
+ * createPlayback(clip, node) -> {frame(seconds, seen), bound(), shown()}; node: the scene's node of the model; clip: of readClip.
  *
  * frame() is called ahead of every picture, seconds: of the hall's clock, seen: whether a visitor can see it. viser makes
  * new meshes whenever a model changes or its socket connects again: they are found anew. Returns whether it wrote a frame.
@@ -117,5 +117,7 @@ export function createPlayback(clip, node) {
       return bound.length > 0;
     },
     bound: () => bound.length,
+    /** The frame that is in the meshes, null where there are none. */
+    shown: () => (bound.length ? shown : null),
   };
 }

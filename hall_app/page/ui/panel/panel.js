@@ -6,6 +6,7 @@ import { createDataPage } from "./data.js";
 import { createClip, createMediaPage } from "./media.js";
 import { createPicturesPage } from "./pictures.js";
 import { createTabs } from "./tabs.js";
+import { createWhyPage } from "./why.js";
 
 /** The one door for HTML: the server has sanitised the curator's text. Above it runs the film of "play_clip". */
 function createTextPage(words, onSounding) {
@@ -29,13 +30,14 @@ function createTextPage(words, onSounding) {
   };
 }
 
-function createPages(words, { onEnlarge, onSounding }) {
+function createPages(words, { onEnlarge, onSounding, motion }) {
   return {
     intro: createTextPage(words, onSounding),
     pictures: createPicturesPage(words, onEnlarge),
     film: createMediaPage(words, "video", onSounding),
     sound: createMediaPage(words, "audio", onSounding),
     data: createDataPage(words),
+    why: createWhyPage(words, motion),
   };
 }
 
@@ -85,8 +87,8 @@ function createFold(words, turn) {
   return { button, grip, set };
 }
 
-/** createPanel({words, onClose, onSurvey, onEnlarge, onSounding, onFold}) -> {element, show, update, hide, answered, detail} */
-export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding, onFold }) {
+/** createPanel({words, motion: {clock, points}, onClose, onSurvey, onEnlarge, onSounding, onFold}) -> {element, show, update, hide, answered, detail} */
+export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSounding, onFold }) {
   let detail = null;
   let returnTo = null;
   let watcher = null;
@@ -100,7 +102,7 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding, o
     icon("close"),
   );
   words.label(shut, "panel.close");
-  const pages = createPages(words, { onEnlarge, onSounding });
+  const pages = createPages(words, { onEnlarge, onSounding, motion });
   const tabs = createTabs(words, pages);
   const surveyText = el("span");
   const survey = el(
@@ -188,6 +190,7 @@ export function createPanel({ words, onClose, onSurvey, onEnlarge, onSounding, o
     const inside = element.contains(document.activeElement);
     if (inside) document.activeElement.blur();
     silence();
+    tabs.reset();
     element.hidden = true;
     detail = null;
     if (inside && returnTo?.isConnected) returnTo.focus({ preventScroll: true });

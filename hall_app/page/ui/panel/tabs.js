@@ -2,7 +2,11 @@
 
 import { el, setAttribute } from "../elements.js";
 
-/** createTabs(words, pages) -> {list, body, render(detail), select(name), reset()}; pages: {name: {element, filled, render, silence}} */
+/**
+ * createTabs(words, pages) -> {list, body, render(detail), select(name), reset()}
+ *
+ * pages: {name: {element, filled, render, silence, enter, leave}}; enter, leave: where it matters that the page is chosen.
+ */
 export function createTabs(words, pages) {
   const names = Object.keys(pages);
   let chosen = names[0];
@@ -36,6 +40,8 @@ export function createTabs(words, pages) {
   function select(name) {
     if (name !== chosen) {
       pages[chosen].silence();
+      pages[chosen].leave?.();
+      pages[name].enter?.();
       body.scrollTop = 0;
     }
     chosen = name;
