@@ -14,10 +14,8 @@ from hall_app.content.schema.hall import HallFile
 BAKED = "baked/"  # written by hall build, absent before it
 MOTION = BAKED + "motion.clip"  # how an outfit with a motion moves, written by hall build
 CLOSE_MOTION = BAKED + "motion-close.clip"  # the same of its close-up
-CLIP, TRACKED = (
-    ".clip",
-    ".points",
-)  # endings: what moves by a clip, and what was tracked of its wearer, beside it
+CLIP = ".clip"  # ending of what moves a model
+TRACKED = ".points"  # and of what was tracked of its wearer, beside it
 SHEET = "media/pattern.svg"  # the flat pattern of an exhibit with an outfit, drawn by hall build --pattern
 TEXTS = {"zh": "text.zh.md", "en": "text.en.md"}
 LEAVES = ("is a link that leaves the content folder", "copy the file itself into the folder")

@@ -10,18 +10,20 @@ import numpy as np
 from sim_core import metrics
 from sim_core.body.motion import RATE, Loop, minimum_jerk
 from sim_core.body.pose import Pose
-from sim_core.cloth import Air
+from sim_core.cloth import Air, Live
+from sim_core.cloth.step import FRAME
 from sim_core.garment.dressing import capped, layer_order
 from sim_core.garment.follow_body import following
 from sim_core.garment.garment import Garment
+from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.pins import Pins
 
 __all__ = ["Played", "move", "moving_errors"]
 
-ROUNDS = 6  # of a motion that repeats, at most
-BLENDED = 0.5  # [s] in which the end of a round is led into that of the one before
-NEAR = 0.03  # [m] that rounds lie apart there at most, if they come that near
+CLOSING = 0.5  # [s] at the end of a round in which cloth is drawn to where it was at that of the round before
+DRAW = 0.25  # share of what it is away that it is drawn in a frame
+GENTLY = 0.15  # [s] in which that is reached
 DAMPING = 3.0  # [1/s] beside the air's
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) [m], faces (F, 3)
@@ -32,8 +34,8 @@ class Played:
     """A motion as wearer and garments went through it, T frames at 1/25 s.
 
     poses: the wearer's; frames: of each garment, from the skin outwards, vertices (T, V, 3) float32 [m]; loop: whether
-    the first frame follows the last; apart [m]: how far the two rounds of a loop that were blended lay apart at most,
-    of each garment.
+    the first frame follows the last; apart [m]: of a loop, how far each garment was from where it began before that was
+    blended away.
     """
 
     poses: tuple[Pose, ...]
@@ -49,38 +51,33 @@ def move(
     place meets the wind of walking. They are pinned at nape and shoulders, as on a museum's figure.
 
     A motion that does not repeat is played once, from the pose the outfit was dressed in. Of one that repeats the
-    wearer comes into it and goes through round after round, until two follow each other that end alike, or ROUNDS are
-    over; the last of the two that came nearest is what is returned, a loop. Cloth never comes back to just where it
-    was, so its last half second is led, without a jump in speed, into that of the round before, which ended in the
-    instant that this one began with.
+    wearer comes into it and goes through two rounds; the second is what is returned, a loop. Cloth never comes back to
+    just where it was: in the last half second forces draw every vertex to where it was a round before, as simulated
+    cloth that touches what it touches, and what is left (`Played.apart`) is blended away. As the first round ended in
+    the instant that the second began with, the loop closes without a jump in place or speed.
     Raises SimCoreError where the outfit has no wearer or no motion, or a joint would be turned beyond its limit.
     """
     poses, again = outfit.poses(), outfit.repeats()
     assert outfit.wearer is not None
     lead = len(poses) - 1 - again
-    index = np.arange(lead + 1 + again * (ROUNDS if again else 0))
-    if again:
-        index[lead + 1 :] = lead + 1 + np.arange(again * ROUNDS) % again
+    index = np.concatenate([np.arange(len(poses)), np.arange(lead + 1, len(poses))[:again]])
     course = _Course(outfit, np.stack([outfit.wearer.posed(pose) for pose in poses]), index, lead, again)
     gone: list[np.ndarray] = []
-    ends, apart = [], []
+    apart = []
     for number, garment in enumerate(garments):
 
         def told(share: float, number: int = number, name: str = garment.name) -> None:
             if progress is not None:
                 progress((number + share) / len(garments), f"{name}, following")
 
-        frames, end, away = course.followed(garment, gone, told)
+        frames, away = course.followed(garment, gone, told)
         gone.append(frames)
-        ends.append(end)
         apart.append(away)
     if not again:
         return Played(poses, tuple(gone))
-    last = max(ends)  # all layers repeat from there on
-    chosen = slice(last - again + 1, last + 1)
-    return Played(
-        tuple(poses[k] for k in index[chosen]), tuple(frames[chosen] for frames in gone), True, tuple(apart)
-    )
+    chosen = slice(-again - 1, -1)
+    kept = tuple(frames[chosen] for frames in gone)
+    return Played(tuple(poses[k] for k in index[chosen]), kept, True, tuple(apart))
 
 
 @dataclass(frozen=True)
@@ -96,52 +93,48 @@ class _Course:
 
     def followed(
         self, garment: Garment, beneath: Sequence[np.ndarray], progress: Callable[[float], None]
-    ) -> tuple[np.ndarray, int, float]:
-        """Vertices (T, V, 3) of a garment in all frames, the frame from whose round on they repeat, and how far [m] two
-        rounds lay apart where they were blended."""
+    ) -> tuple[np.ndarray, float]:
+        """Vertices (T, V, 3) of a garment in all frames, the last as a round before, and how far [m] from there it was
+        before that was blended away."""
         wearer = self.outfit.wearer
         assert wearer is not None
         pins = Pins.of(garment, wearer, self.outfit.pose)
         body, air = self.once[self.index], _air(self.outfit)
         live = following(garment, body, wearer.faces, beneath=beneath or None, air=air)
         live.damping = DAMPING
-        frames, last = [garment.positions.astype(np.float32)], len(self.index) - 1
-        best, nearest = last, np.inf
+        mass = garment_sheet(garment).mass[:, None]
+        free = np.setdiff1d(np.arange(len(mass)), pins.vertices)
+        frames, last = [garment.positions], len(self.index) - 1
+        closing = min(round(CLOSING * RATE), self.again)
         for n in range(1, last + 1):
-            places = pins.places(body[n])
-            frames.append(
-                live.step(body=float(n), pins=pins.vertices.tolist(), targets=places).astype(np.float32)
-            )
+            pulls = None
+            if n > last - closing:
+                drawn = _draw(live, frames[n - 1 - self.again], frames[n - self.again], n - (last - closing))
+                pulls = free, (mass * drawn)[free]
+            held = pins.vertices.tolist()
+            frames.append(live.step(body=float(n), pins=held, targets=pins.places(body[n]), pulls=pulls))
             progress(n / last)
-            if self.again and n >= self.lead + 2 * self.again:
-                away = self._apart(frames, n)
-                if away < nearest:
-                    best, nearest = n, away
-                if away <= NEAR:
-                    break
+        gone = np.stack(frames).astype(np.float32)
         if not self.again:
-            return np.stack(frames), last, 0.0
-        return self._closed(frames, best), best, nearest
+            return gone, 0.0
+        return _closed(gone, self.again, closing)
 
-    @property
-    def _blended(self) -> int:
-        return min(round(BLENDED * RATE), self.again)
 
-    def _apart(self, frames: Sequence[np.ndarray], n: int) -> float:
-        """How far the round that ends with frame n lies from the one before in its last half second [m]."""
-        ends = range(n - self._blended + 2, n + 1)
-        return float(max(np.linalg.norm(frames[k] - frames[k - self.again], axis=1).max() for k in ends))
+def _draw(live: Live, before: np.ndarray, there: np.ndarray, number: int) -> np.ndarray:
+    """Accelerations (V, 3) [m/s2] in the frame of that number that draw a cloth to one which goes from `before` to
+    `there` (V, 3) [m] in it: critically damped, from nothing on."""
+    share = DRAW * float(minimum_jerk(number * FRAME / GENTLY))
+    away, faster = live.positions - before, live.velocities - (there - before) / FRAME
+    return -(share * away / FRAME + 1.6 * np.sqrt(share) * faster) / FRAME
 
-    def _closed(self, frames: Sequence[np.ndarray], n: int) -> np.ndarray:
-        """All frames, the round that ends with n led into the one before, and repeated from then on."""
-        out = np.stack([*frames[: n + 1], *[frames[n]] * (len(self.index) - 1 - n)])
-        count = self._blended
-        for k in range(1, count):
-            share, at = np.float32(minimum_jerk(k / count)), n + 1 - count + k
-            out[at] += share * (out[at - self.again] - out[at])
-        for at in range(n + 1, len(out)):
-            out[at] = out[at - self.again]
-        return out
+
+def _closed(frames: np.ndarray, again: int, closing: int) -> tuple[np.ndarray, float]:
+    """Frames (T, V, 3) whose last is blended to be that of a round before, and how far from there it was [m]."""
+    away = float(np.linalg.norm(frames[-1] - frames[-1 - again], axis=1).max())
+    for k in range(1, closing + 1):
+        at = len(frames) - 1 - closing + k
+        frames[at] += np.float32(minimum_jerk(k / closing)) * (frames[at - again] - frames[at])
+    return frames, away
 
 
 def _air(outfit: Outfit) -> Air:

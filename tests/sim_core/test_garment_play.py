@@ -89,7 +89,7 @@ def test_a_loop_closes_without_a_jump_in_place_or_speed(walked: Walked) -> None:
     bends = np.linalg.norm(np.diff(np.concatenate([x[-2:], x, x[:2]]), n=2, axis=0), axis=2)
     assert np.percentile(steps[-2:], 99) <= np.percentile(steps[:-2], 99, axis=1).max()
     assert np.percentile(bends[-2:], 99) <= np.percentile(bends[2:-2], 99, axis=1).max()
-    assert 0.0 < walked.played.apart[0] < 0.2
+    assert 0.0 < walked.played.apart[0] < 0.05
 
 
 def test_every_frame_is_measured(walked: Walked) -> None:
