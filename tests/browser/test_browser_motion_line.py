@@ -200,7 +200,9 @@ def test_a_clip_that_did_not_come_is_asked_for_again(chromium, hall):
     _, line, clip = hall
     page = chromium.new_page(viewport=VIEW)
     asked = []
-    page.route("**/sway.clip*", lambda route: route.continue_() if asked else (asked.append(1), route.abort()))
+    page.route(
+        "**/sway.clip*", lambda route: route.continue_() if asked else (asked.append(1), route.abort())
+    )
     enter(page, f"http://127.0.0.1:{line.port}/?lang=en")
     stand_before(page, "box")
     page.mouse.move(200, 100)

@@ -11,6 +11,7 @@ from sim_core.gltf import GlbError, glb_parts
 
 MB = 1_000_000
 LARGEST = 2 * MB
+LARGEST_OPEN = 50 * MB  # in every visitor's page
 
 
 def clip_problems(content: Content) -> list[Problem]:
@@ -39,6 +40,9 @@ def _of(exhibit: Exhibit, name: str) -> list[Problem]:
     found = []
     if (size := path.stat().st_size) > LARGEST:
         what = f"{name} has {size / MB:.2f} MB, at most {LARGEST / MB:g} MB"
+        found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
+    if (whole := clip.steps.nbytes) > LARGEST_OPEN:
+        what = f"{name} takes {whole / MB:.0f} MB in the page, at most {LARGEST_OPEN / MB:g} MB"
         found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
     model = exhibit.model_path("hall")
     meshes = _meshes(model.read_bytes()) if model is not None else None
