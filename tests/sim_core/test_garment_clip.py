@@ -5,13 +5,13 @@ import resource
 import struct
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from bench.clip_cases import striding, waving
+from plain_garments import plain_maps
 
 from sim_core.body import Mannequin
 from sim_core.cloth import Capsule, Contact
@@ -23,14 +23,6 @@ from sim_core.garment.clip import STEP, Clip, Drawn, Moved, Skinned, drawn_in, m
 from sim_core.gltf import glb_parts
 
 ROOT = Path(__file__).parents[2]
-
-
-@dataclass(frozen=True)
-class Maps:
-    albedo: np.ndarray
-    normal: np.ndarray
-    opacity: np.ndarray
-    size: tuple[float, float]
 
 
 @pytest.fixture(scope="module")
@@ -246,9 +238,7 @@ def test_no_changed_byte_of_a_frame_changes_a_vertex():
 def test_a_models_vertices_find_theirs(tmp_path: Path):
     """Split along a seam in the GLB: each twin finds the vertex it was welded from."""
     garment = Garment.load(ROOT / "assets" / "exhibits" / "beizi" / "baked" / "garment.npz")
-    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
-    maps = Maps(flat, flat, np.full((32, 32), 255, np.uint8), (0.004, 0.005))
-    write_glb(tmp_path / "a.glb", [Clothed(garment, maps)], precision="hall")
+    write_glb(tmp_path / "a.glb", [Clothed(garment, plain_maps())], precision="hall")
     model = (tmp_path / "a.glb").read_bytes()
     drawn = drawn_in(model, {"beizi": garment.positions})["beizi"]
     assert sum(len(one.index) for one in drawn) > len(garment.positions)
