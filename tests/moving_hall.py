@@ -1,4 +1,5 @@
-"""The hall of plain boxes, whose box moves by a clip, and what might have been tracked of it."""
+"""The hall of plain boxes, whose box moves by a clip, and what might have been tracked of it; one whose box somebody
+wears."""
 
 from pathlib import Path
 
@@ -6,10 +7,12 @@ import numpy as np
 from plain_hall import write_plain_hall
 
 from hall_app.content.models import TrackedMotion
-from sim_core.garment.clip import Clip, Drawn, Moved, drawn_in
+from sim_core.body import Mannequin, Pose
+from sim_core.garment.clip import Clip, Drawn, Moved, drawn_in, model_clip
 from sim_core.gltf import glb_parts
 
 FRAMES, RATE = 50, 25.0
+WOMAN = Path(__file__).parent.parent / "assets" / "mannequins" / "woman.npz"
 
 
 def box_clip(model: bytes, *, drawn: tuple[Drawn, ...] | None = None) -> Clip:
@@ -65,3 +68,33 @@ def write_moving_hall(folder: Path, *, points: bool = False) -> Path:
     if points:
         box_points().save(home / "sway.points")
     return folder
+
+
+def write_worn_hall(folder: Path) -> tuple[Path, Clip]:
+    """Write the folder, whose box sways round upon a figure that swings an arm; it, and the clip.
+
+    No two of the clip's frames have a vertex of the box's lid, or of the arm, in one place.
+    """
+    import trimesh
+
+    write_moving_hall(folder)
+    home, woman = folder / "exhibits" / "box", Mannequin.load(WOMAN)
+    angle = 2 * np.pi * np.arange(FRAMES) / FRAMES
+    round_ = np.stack([np.sin(angle), 0 * angle, 1 - np.cos(angle)], axis=1)
+    poses = [Pose.from_rotvecs({"shoulder_l": (0.0, 25.0 * x, -60.0 + 25.0 * z)}) for x, _, z in round_]
+    box = trimesh.creation.box((0.5, 1.0, 0.5))
+    box.apply_translation((0, 0.5, 0))
+    upper = woman.faces[(woman.vertices[woman.faces, 1] > 1.1).all(1)]
+    worn = trimesh.Trimesh(woman.posed(poses[0]), upper, process=False)
+    worn.remove_unreferenced_vertices()
+    scene = trimesh.Scene()
+    for name, mesh, colour in (("garment", box, [160, 60, 50, 255]), ("figure", worn, [200, 190, 180, 255])):
+        mesh.visual.vertex_colors = colour
+        scene.add_geometry(mesh, node_name=name, geom_name=name)
+    model = scene.export(file_type="glb")
+    (home / "box.glb").write_bytes(model)
+    moved = box.vertices + 0.2 * round_[:, None] * box.vertices[:, 1, None]
+    clip = model_clip(model, {"box": moved}, figure=(woman, poses), rate=RATE, loop=True)
+    assert clip.figure is not None
+    clip.save(home / "sway.clip")
+    return folder, clip

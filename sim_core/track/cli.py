@@ -91,7 +91,7 @@ def add_parser(subparsers: Any) -> None:
         "--unit",
         type=number(1e-9, 1e6, " m"),
         metavar="M",
-        help="metres that a unit of the file's lengths is",
+        help="metres that a unit of the file's lengths is (a stream: 1)",
     )
     parser.add_argument("--out", type=ending(".npz"), metavar="FILE.npz", help="write what was tracked")
     parser.add_argument(
@@ -102,6 +102,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Read, worsen, follow, write; returns the exit status."""
+    from sim_core.errors import FileProblem, SimCoreError
     from sim_core.track import Disturbance, TrackSettings, read_recording, save_chart, summary, write_tracked
     from sim_core.validation.files import check_target
 
@@ -116,7 +117,10 @@ def run(args: argparse.Namespace) -> int:
     if worse:
         recording = recording.disturbed(disturbance)
     chosen = args.filter or ("kalman" if worse or recording.truth is None else "none")
-    tracked, seconds = _followed(recording, TrackSettings(filter=chosen, level=args.level, m0=args.m0))
+    try:
+        tracked, seconds = _followed(recording, TrackSettings(filter=chosen, level=args.level, m0=args.m0))
+    except SimCoreError as error:
+        raise FileProblem(f"{args.motion}: {error}") from error
     facts = summary(tracked, seconds)
     if args.out is not None:
         write_tracked(args.out, tracked)

@@ -11,7 +11,10 @@ from sim_core.track.disturbance import Disturbance
 from sim_core.track.skeletons import TrackedSkeleton
 from sim_core.validation import FURTHEST, numeric_array
 
-__all__ = ["Recording"]
+__all__ = ["MOST_FRAMES", "Recording"]
+
+MOST_FRAMES = 200_000
+"""Frames of a recording: half an hour at 120 a second."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +23,8 @@ class Recording:
     known otherwise, as of a motion file by its own kinematics, NaN where not, None: nothing is known.
 
     left_out: joints of the skeleton that the source does not have; they lie at the joint that they hang on. told: what
-    else a reader has to say. Raises SimCoreError where shapes differ or a number is beyond a million.
+    else a reader has to say. Raises SimCoreError where shapes differ, a number is beyond a million, and for more than
+    MOST_FRAMES.
     """
 
     skeleton: TrackedSkeleton
@@ -37,6 +41,8 @@ class Recording:
         wanted = (len(time) if time.ndim == 1 else 0, len(self.skeleton.joints), 3)
         if time.ndim != 1 or not len(time):
             raise SimCoreError(f"time: shape {time.shape} – seconds (T,) are meant, one frame or more")
+        if len(time) > MOST_FRAMES:
+            raise SimCoreError(f"time: {len(time)} frames – at most {MOST_FRAMES}; cut the motion into parts")
         for name, array in (("joints", joints), ("truth", joints if self.truth is None else self.truth)):
             if array.shape != wanted:
                 raise SimCoreError(
@@ -54,6 +60,6 @@ class Recording:
     @property
     def step(self) -> float:
         """Seconds from frame to frame, the median; of a clock that tells none: a thirtieth."""
-        steps = np.diff(self.time)
-        steps = steps[np.isfinite(steps) & (steps > 0.0)]
+        steps = np.diff(self.time[np.isfinite(self.time)])
+        steps = steps[steps > 0.0]
         return float(np.median(steps)) if len(steps) else 1.0 / 30.0

@@ -23,6 +23,7 @@ UNSEEN = 0.5  # [m] that a joint may be off that was not seen yet
 SLACK = 0.02  # [m] that a bone may be off besides its noise
 FRESH = 3  # frames at the start in which bones tell outliers, as nothing else can yet
 AHEAD = 0.5  # of the joints that have a twin must look swapped
+MOST_POINTS = 50_000_000  # of all frames of a recording: 1.2 GB, and the truth as much
 
 
 @dataclass(frozen=True)
@@ -277,12 +278,19 @@ def track(
 ) -> Tracked:
     """Follows a whole recording, frame by frame as `Tracker.update` does.
 
-    calibration: of the person; None: by the recording itself. Raises SimCoreError as `calibrate` and `update` do.
+    calibration: of the person; None: by the recording itself. Raises SimCoreError as `calibrate` and `update` do, and
+    for more than MOST_POINTS points in all.
     """
     settings = settings or TrackSettings()
     if calibration is None:
         calibration = calibrate(recording.skeleton, recording.joints, recording.step)
     tracker = Tracker(calibration, settings)
+    count = len(tracker.feature_points.matrix)
+    if len(recording.time) * count > MOST_POINTS:
+        raise SimCoreError(
+            f"level: {settings.level}, {len(recording.time)} frames of {count} points – take a lower level, "
+            "or cut the motion into parts"
+        )
     frames = [
         tracker.update(joints, float(time))
         for joints, time in zip(recording.joints, recording.time, strict=True)

@@ -79,25 +79,28 @@ def read_json(path: Path, what: str) -> Any:
         raise FileProblem(f"{path}: not valid JSON ({error}) – give {what}") from error
 
 
-def read_text(path: Path, what: str) -> str:
-    """The text of a UTF-8 file, with or without a byte order mark; raises FileProblem as `read_toml` does."""
-    text = read_bytes(path, what)
+def read_text(path: Path, what: str, most: int = LARGEST_TEXT) -> str:
+    """The text of a UTF-8 file, with or without a byte order mark; raises FileProblem as `read_toml` does.
+
+    most: bytes that are read of it.
+    """
+    text = read_bytes(path, what, most)
     try:
         return text.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise FileProblem(f"{path}: not UTF-8 text – give {what}") from error
 
 
-def read_bytes(path: Path, what: str) -> bytes:
-    """What a file holds; raises FileProblem where it is missing, empty or larger than 16 MB."""
+def read_bytes(path: Path, what: str, most: int = LARGEST_TEXT) -> bytes:
+    """What a file holds; raises FileProblem where it is missing, empty or larger than `most` bytes."""
     try:
         with path.open("rb") as stream:
-            text = stream.read(LARGEST_TEXT + 1)
+            text = stream.read(most + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise FileProblem(f"{path}: {reason} – give the path of {what}") from error
-    if len(text) > LARGEST_TEXT:
-        raise FileProblem(f"{path}: larger than {LARGEST_TEXT // 1_000_000} MB – give {what}")
+    if len(text) > most:
+        raise FileProblem(f"{path}: larger than {most // 1_000_000} MB – give {what}")
     if not text.removeprefix(b"\xef\xbb\xbf").strip():
         raise FileProblem(f"{path}: the file is empty – give {what}")
     return text

@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from peers import peer_python
+from peers import add_peers, peer_python
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parent / "sim_core" / "drafts"
@@ -137,9 +137,7 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=FOLDER, help="drafts to be answered")
     parser.add_argument("--quick", action="store_true", help="nothing above 4,000 x 4,000")
     parser.add_argument("--json", type=Path, metavar="FILE")
-    parser.add_argument(
-        "--peers", type=Path, nargs="?", const=HERE.parents[1] / "build" / "peers", metavar="FOLDER"
-    )
+    add_peers(parser, "beside dtx_to_wif and pyweaving")
     args = parser.parse_args()
     told = answered(args.folder)
     found: dict = {"files": len(told), "answered": sum(not text for text in told.values()), "refused": {}}

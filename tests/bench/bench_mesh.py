@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 from mesh_cases import PANELS, PointSet, edge_for, errors, shape
 from mesh_figures import added, exponent, growing_exponents
-from peers import Peers, peer_python
+from peers import Peers, add_peers, peer_python
 from scipy.spatial import Delaunay
 
 from sim_core.mesh import panel_mesh, triangulate
@@ -206,14 +206,7 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="up to 6 000 points")
     parser.add_argument("--large", action="store_true", help="one and two million points too")
     parser.add_argument("--sizes", nargs="+", type=int, metavar="N", help="these numbers of points instead")
-    parser.add_argument(
-        "--peers",
-        nargs="?",
-        const=ROOT / "build" / "peers",
-        type=Path,
-        metavar="FOLDER",
-        help="with Triangle and gmsh",
-    )
+    add_peers(parser, "with Triangle and gmsh")
     parser.add_argument(
         "--only", choices=("growth", "panels", "growing", "corners", "cloth"), help="one part"
     )

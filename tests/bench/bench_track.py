@@ -21,7 +21,7 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 import numpy as np
-from peers import Peers, peer_python
+from peers import Peers, add_peers, peer_python
 from scipy.spatial.transform import Rotation
 
 from sim_core.track import (
@@ -268,14 +268,7 @@ def main() -> int:
     parser.add_argument(
         "--plot", type=Path, default=ROOT / "build" / "bench_track.png", help="build/bench_track.png"
     )
-    parser.add_argument(
-        "--peers",
-        nargs="?",
-        const=ROOT / "build" / "peers",
-        type=Path,
-        metavar="FOLDER",
-        help="with RoMa (torch)",
-    )
+    add_peers(parser, "with RoMa (torch)")
     args = parser.parse_args()
     rounds, seeds = (3, 2) if args.quick else (5, 6)
     peers = (

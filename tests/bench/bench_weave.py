@@ -19,13 +19,13 @@ from time import perf_counter
 import numpy as np
 import weave_particles
 import weave_sheet
+from peers import add_peers
 from scipy.optimize import nnls
 
 from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
 from sim_core.weave.draft import Draft
 from sim_core.weave.yarns import beam_stiffness
 
-ROOT = Path(__file__).parents[2]
 D = 1e-4
 ROUNDS = 5
 
@@ -113,14 +113,7 @@ def main() -> int:
         "--sheet", type=Path, help="draw the contact sheet of all weaves (PNG) and nothing else"
     )
     parser.add_argument("--large", action="store_true", help="also 400 x 400 by stage B, minutes")
-    parser.add_argument(
-        "--peers",
-        nargs="?",
-        const=ROOT / "build" / "peers",
-        type=Path,
-        metavar="FOLDER",
-        help="also TexGen, in an environment of its own (default: build/peers)",
-    )
+    add_peers(parser, "also TexGen")
     args = parser.parse_args()
     if args.sheet:
         weave_sheet.draw(args.sheet)

@@ -31,9 +31,8 @@ from typing import Any
 import numpy as np
 from cloth_figures import deciding, summary
 from cloth_sweeps import ENGINES, NAMES, Compared, Own, compared, given, told
-from peers import Peers, peer_python
+from peers import FOLDER, Peers, add_peers, peer_python
 
-ROOT = Path(__file__).parents[2]
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
 DEAR = 1000.0  # [ms a frame] what costs more has one turn, as a limit has
 MAPPING_VERSION = 2  # raise when a peer is given other numbers: what was kept is then run again
@@ -171,8 +170,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    folder = ROOT / "build" / "peers"
-    parser.add_argument("--peers", nargs="?", const=folder, default=folder, type=Path, metavar="FOLDER")
+    add_peers(parser, "where the peers are", FOLDER)
     parser.add_argument("--scene", choices=NAMES, action="append", help="default: all")
     parser.add_argument("--only", choices=ENGINES, action="append", help="one peer (may be repeated)")
     parser.add_argument("--rounds", type=int, default=3, help="turns of a setting")

@@ -18,7 +18,7 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from peers import Peers, peer_python
+from peers import Peers, add_peers, peer_python
 
 from sim_core.errors import SimCoreError
 from sim_core.mesh import panel_mesh
@@ -37,9 +37,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--json", type=Path, metavar="FILE")
-    parser.add_argument(
-        "--peers", nargs="?", type=Path, const=ROOT / "build" / "peers", metavar="FOLDER", help="beside gmsh"
-    )
+    add_peers(parser, "beside gmsh")
     parser.add_argument("--points", type=int, default=3000, help="of a panel beside gmsh")
     args = parser.parse_args()
     files = sorted(p for p in args.folder.rglob("*") if p.suffix.lower() in (".svg", ".dxf", ".json"))

@@ -1,5 +1,6 @@
 """Environments of the benches' own for the programs they compare with, and a process in one that takes turns."""
 
+import argparse
 import json
 import os
 import subprocess
@@ -12,6 +13,20 @@ import numpy as np
 
 HERE = Path(__file__).parent
 LIST = HERE / "peers.txt"
+FOLDER = HERE.parents[1] / "build" / "peers"
+
+
+def add_peers(parser: argparse.ArgumentParser, what: str, default: Path | None = None) -> None:
+    """`--peers [FOLDER]`, None without it; what: for its help."""
+    parser.add_argument(
+        "--peers",
+        nargs="?",
+        const=FOLDER,
+        default=default,
+        type=lambda text: Path(text).absolute(),
+        metavar="FOLDER",
+        help=f"{what}, in an environment of their own (default: build/peers)",
+    )
 
 
 def requirements(text: str, section: str) -> list[str]:
@@ -51,15 +66,19 @@ def peer_python(folder: Path, section: str = "mesh") -> Path:
 
 
 class Peers:
-    """A running program of the peers' environment: it is asked for one run at a time, so that engines take turns."""
+    """A running program of the peers' environment: it is asked for one run at a time, so that engines take turns.
+
+    What it leaves where it stands, as MuJoCo its log, is gone when it closes.
+    """
 
     def __init__(self, python: Path, program: Path = HERE / "mesh_peers.py", **environment: str) -> None:
         self.folder = tempfile.TemporaryDirectory()
         self.process = subprocess.Popen(
-            [str(python), str(program)],
+            [str(python.absolute()), str(program.absolute())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
+            cwd=self.folder.name,
             env={**os.environ, **environment},
         )
 
@@ -86,6 +105,8 @@ class Peers:
 
     def close(self) -> None:
         assert self.process.stdin is not None
+        assert self.process.stdout is not None
         self.process.stdin.close()
         self.process.wait()
+        self.process.stdout.close()
         self.folder.cleanup()

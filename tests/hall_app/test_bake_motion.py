@@ -1,10 +1,11 @@
 """An outfit that names a motion: the clip that is baked beside the hall's model, and plays on it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from plain_garments import SHORT, plain_maps
 from scipy.spatial import KDTree
 
 from hall_app.build import play, write_motion
@@ -14,35 +15,18 @@ from sim_core.body import Motion, Pose
 from sim_core.garment import Clothed, Outfit, choose_detail, dress, load_outfit, write_glb
 from sim_core.garment.clip import Clip
 from sim_core.garment.levels import shown_figure
-from sim_core.garment.outfit import Step
 from sim_core.gltf import glb_parts
 
 pytestmark = pytest.mark.slow
 
 ASSETS = Path(__file__).parents[2] / "assets"
-SHORT = (
-    Step("sew", 0.48, (0.0, 1.5), 6.0, 0.0),
-    Step("weld"),
-    Step("settle", 0.12, (2.0, 9.81), 3.0, 0.15),
-    Step("pin", spots=("nape",)),
-    Step("pose", 0.2, damping=2.5, friction=0.1),
-    Step("release"),
-    Step("rest", 0.16, damping=10.0, friction=0.45),
-)
-
-
-@dataclass(frozen=True)
-class Maps:
-    albedo: np.ndarray
-    normal: np.ndarray
-    opacity: np.ndarray
-    size: tuple[float, float]
+SHORTER = tuple(step for step in SHORT if step.do != "close")
 
 
 def raising(outfit: Outfit) -> Outfit:
     """Dressed in a second, then the arms are lifted a little and lowered again, in six frames."""
     layers = tuple(
-        replace(layer, program=replace(layer.program, steps=SHORT), edge=0.05) for layer in outfit.layers
+        replace(layer, program=replace(layer.program, steps=SHORTER), edge=0.05) for layer in outfit.layers
     )
     low, high = Pose.arms(10.0, 2.0), Pose.arms(7.0, 4.0)
     return replace(outfit, layers=layers, pose=low, motion=Motion(((0.12, high), (0.12, low))))
@@ -53,16 +37,16 @@ def test_the_clip_of_an_outfit_that_moves(tmp_path: Path):
     assert outfit.wearer is not None
     garments = dress(outfit)
     level = choose_detail(garments[-1], 0.01)
-    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
-    maps = Maps(flat, flat, np.full((32, 32), 255, np.uint8), (0.004, 0.005))
     body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
     played = play(outfit, garments, lambda share, label: None)
     assert played is not None
     moments = [(outfit.wearer.posed(played.poses[3]), played.frames[0][3])]
     cloth = garments[-1].positions, garments[-1].faces
     figure = shown_figure(*body, *cloth, triangles=1600, moments=moments)
-    write_glb(tmp_path / "hall.glb", [Clothed(level, maps)], precision="hall", figure=figure)
-    write_glb(tmp_path / "close.glb", [Clothed(garments[-1], maps)], figure=shown_figure(*body, *cloth))
+    write_glb(tmp_path / "hall.glb", [Clothed(level, plain_maps())], precision="hall", figure=figure)
+    write_glb(
+        tmp_path / "close.glb", [Clothed(garments[-1], plain_maps())], figure=shown_figure(*body, *cloth)
+    )
     told = write_motion(outfit, garments, played, tmp_path, lambda share, label: None)
     assert told["moving_frames"] == 6
     assert told["moving_deepest_m"] == told["moving_self_intersections"] == told["moving_layer_order"] == 0

@@ -8,7 +8,7 @@ from moving_hall import box_clip, write_moving_hall
 
 from hall_app.check import check
 from hall_app.content import load, scene_json
-from sim_core.garment.clip import Drawn
+from sim_core.garment.clip import Clip, Drawn, Moved
 
 
 @pytest.fixture
@@ -47,5 +47,10 @@ def test_a_clip_that_is_missing_or_damaged_or_of_another_model_is_named(folder: 
     assert "moves no mesh" in " ".join(motion_problems(folder))
     clip.write_bytes(data + b"\0" * 2_100_000)
     assert motion_problems(folder)
+    still = np.random.default_rng(0).uniform(0, 1, (1, 20_000, 3)).repeat(500, axis=0)
+    Clip.of([Moved("box", still, np.array([[0, 1, 2]]))], rate=25.0).save(
+        clip
+    )  # packs well, and takes much memory
+    assert "takes 60 MB in the page, at most 50 MB" in " ".join(motion_problems(folder))
     clip.unlink()
     assert "missing file sway.clip" in " ".join(motion_problems(folder))

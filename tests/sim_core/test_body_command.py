@@ -113,3 +113,15 @@ def test_what_cannot_be_meant_of_a_motion_ends_with_2(
 ) -> None:
     assert cli.main(["motion", *words]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_what_a_figure_cannot_do_is_told_with_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "bow.toml"
+    curve = '[[curve]]\njoint = "spine_1"\naxis = "x"\nat = [0, 50]\ndegrees = [0, 170]\nsource = "made up"\n'
+    file.write_text(f"period = 1.0\n{curve}", "utf-8")
+    assert cli.main(["motion", str(file), "--figure", str(WOMAN), "--measure"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"simcore motion: {file}: motion bow at ")
+    assert "spine_1 turned" in line

@@ -248,6 +248,9 @@ def test_keys_that_overlap_do_not_stop_between() -> None:
         (lambda: Curve("hip", "x", (0, 50), (0, 1, 2)), "at: 2 places for 3 values"),
         (lambda: Curve("hip", "x", (50, 20), (0, 1)), "give percentages that rise"),
         (lambda: Curve("hip", "x", (0, 100), (0, 1)), "there it begins again"),
+        (lambda: Curve("hip", "x", (0, 1e-9), (0, 1)), "rise by 0.01 or more"),
+        (lambda: Curve("hip", "x", (0, 50), (0, 1e308), 10.0), "degrees: .* comes to -360 to 360"),
+        (lambda: Curve("root", "y", (0, 50), (0, 11)), "metres: .* comes to -10 to 10"),
         (lambda: Steps(off=0.4), "off: 0.4 – one foot stands always"),
         (lambda: Steps(flat=(0.5, 0.3)), "flat: .* two shares that rise"),
         (lambda: Loop("x", 1.0, steps=Steps(turn=50.0)), "rounds: 1 times 50 degrees is no whole turn"),
@@ -300,6 +303,11 @@ CURVE = 'period = 1.0\n[[curve]]\njoint = "hip"\naxis = "x"\nat = [0, 50]\ndegre
             '[[key]]\nseconds = 1.0\nearly = 0.5\npose = "display"\n',
             r"key\.1\.early: only keys of a loop overlap",
         ),
+        (
+            "rounds = 100\n" + CURVE.replace("1.0", "60.0"),
+            "rounds: 100 periods take 6000 s – .* 600 s at most",
+        ),
+        ("[[key]]\nseconds = 60\npose = {}\n" * 11, "key: its keys take 660 s – .* 600 s at most"),
     ],
 )
 def test_a_faulty_file_is_told_by_file_key_value_and_remedy(tmp_path: Path, text: str, words: str) -> None:

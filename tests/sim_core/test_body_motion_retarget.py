@@ -11,6 +11,7 @@ import pytest
 from sim_core.body import JOINTS, Loop, Mannequin, Pose, load_motion
 from sim_core.body.motion import clearances, figure_from, ground
 from sim_core.errors import SimCoreError
+from sim_core.track import KINECT, TrackSettings, read_recording, track
 
 ROOT = Path(__file__).parents[2]
 CLIPS = ROOT.parent / "shared" / "data" / "motion"
@@ -199,6 +200,38 @@ def test_a_real_walk_is_walked(every: int) -> None:
     joints = np.stack([figure().skeleton.joints(pose) for pose in back.poses])
     way = np.ptp(joints[:, 0, 2]) / np.ptp(points[1::4, 0, 2])
     assert way == pytest.approx(back.scale, abs=0.02)
+
+
+@pytest.mark.parametrize("every", [1, 2, 4])
+def test_a_real_walk_is_walked_by_the_points_that_follow_it(every: int) -> None:
+    """Of a Kinect's joints nobody knows the T-pose; this capture's knees snap straight as a foot leaves the floor."""
+    path = CLIPS / "cmu_12_01_walk.bvh"
+    if not path.is_file():
+        pytest.skip(f"{path.name} is not in {CLIPS}: a clip that does not belong to the project")
+    followed = track(read_recording(path), TrackSettings("none"))
+    back = figure_from(figure(), followed.joints[::every], KINECT.joints, rate=120 / every)
+    met = ground(figure(), back.poses)
+    assert max(met.slide) < 0.005
+    assert met.deepest < 0.005
+
+
+@pytest.mark.parametrize(
+    ("joint", "at"), [("knee_l", "hip_l"), ("elbow_r", "shoulder_r"), ("ankle_l", "knee_l")]
+)
+def test_bones_without_length_go_along(joint: str, at: str) -> None:
+    _, joints = joints_of("walk")
+    flat = joints.copy()
+    flat[:, JOINTS.index(joint)] = flat[:, JOINTS.index(at)]
+    whole, back = (figure_from(figure(), points, JOINTS, rate=25, plant=False) for points in (joints, flat))
+    other = [name for name in JOINTS if name[-2:] != joint[-2:]]
+    for one, two in zip(whole.poses, back.poses, strict=True):
+        two.check()
+        assert (
+            np.abs(
+                np.subtract([one.vector(name) for name in other], [two.vector(name) for name in other])
+            ).max()
+            < 1e-6
+        )
 
 
 def bvh_joints(path: Path) -> tuple[list[str], np.ndarray, float]:

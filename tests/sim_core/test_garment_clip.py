@@ -1,13 +1,17 @@
 """Clips: what comes back is what was given within the error told, each frame by itself; damage is refused."""
 
+import json
+import resource
 import struct
-from dataclasses import dataclass
+import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from bench.clip_cases import striding, waving
+from plain_garments import plain_maps
 
 from sim_core.body import Mannequin
 from sim_core.cloth import Capsule, Contact
@@ -19,14 +23,6 @@ from sim_core.garment.clip import STEP, Clip, Drawn, Moved, Skinned, drawn_in, m
 from sim_core.gltf import glb_parts
 
 ROOT = Path(__file__).parents[2]
-
-
-@dataclass(frozen=True)
-class Maps:
-    albedo: np.ndarray
-    normal: np.ndarray
-    opacity: np.ndarray
-    size: tuple[float, float]
 
 
 @pytest.fixture(scope="module")
@@ -184,6 +180,48 @@ def test_damaged_files_are_refused_with_one_line(tmp_path: Path, woman):
         Clip.load(tmp_path / "none.clip")
 
 
+def told_otherwise(data: bytes, change: Callable[[dict], None]) -> bytes:
+    """A clip's bytes with another header, whose checksum is right."""
+    length = struct.unpack_from("<I", data, 8)[0]
+    header = json.loads(data[16 : 16 + length])
+    change(header)
+    text = json.dumps(header).encode()
+    return data[:8] + struct.pack("<II", len(text), zlib.crc32(text)) + text + data[16 + length :]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            lambda told: told["meshes"][0].update(vertices=1_000_000),
+            "1000000 vertices in 60 frames, 360 MB – at most",
+        ),
+        (lambda told: told["meshes"][0].update(faces=4_000_000, drawn=[]), "cut off or of another length"),
+        (
+            lambda told: told["meshes"][0].update(drawn=[{"node": "a", "vertices": 4_000_000}] * 50),
+            "claims 80. MB beside its frames, at most 64",
+        ),
+        (lambda told: told["figure"].update(vertices=4_000_000), "claims 216 MB beside its frames"),
+        (lambda told: told["figure"].update(name="sheet"), "its header is damaged .meshes."),
+        (lambda told: told["figure"].update(linear=[1]), "in a way that is not known"),
+        (lambda told: told.update(meshes=[]), "its header is damaged .meshes."),
+        (lambda told: told.update(origin=[1e300, 0, 0]), "its header is damaged .origin, step."),
+        (lambda told: told.update(sizes=[told["sizes"][0], *[10**12] * 60]), "its header is damaged .sizes."),
+    ],
+)
+def test_headers_that_claim_too_much_are_refused_before_it_is_made(woman, change, words: str):
+    data = Clip.of([waving(edge=0.2, frames=60)], figure=Skinned.of(woman, striding(60))).to_bytes()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(SimCoreError, match=words):
+        Clip.from_bytes(told_otherwise(data, change))
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 200_000  # [kB]
+
+
+def test_what_could_not_be_read_again_is_not_written():
+    with pytest.raises(SimCoreError, match=r"3 vertices in 100001 frames.*make several clips"):
+        Clip.of([Moved("dot", np.zeros((100_001, 3, 3)), np.array([[0, 1, 2]]))])
+
+
 def test_no_changed_byte_of_a_frame_changes_a_vertex():
     clip = Clip.of([waving(edge=0.1)])
     frame = clip.frame_bytes(3)
@@ -200,9 +238,7 @@ def test_no_changed_byte_of_a_frame_changes_a_vertex():
 def test_a_models_vertices_find_theirs(tmp_path: Path):
     """Split along a seam in the GLB: each twin finds the vertex it was welded from."""
     garment = Garment.load(ROOT / "assets" / "exhibits" / "beizi" / "baked" / "garment.npz")
-    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
-    maps = Maps(flat, flat, np.full((32, 32), 255, np.uint8), (0.004, 0.005))
-    write_glb(tmp_path / "a.glb", [Clothed(garment, maps)], precision="hall")
+    write_glb(tmp_path / "a.glb", [Clothed(garment, plain_maps())], precision="hall")
     model = (tmp_path / "a.glb").read_bytes()
     drawn = drawn_in(model, {"beizi": garment.positions})["beizi"]
     assert sum(len(one.index) for one in drawn) > len(garment.positions)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from plain_garments import SHORT
 from scipy.spatial import KDTree
 
 from sim_core import metrics
@@ -28,16 +29,6 @@ from sim_core.garment.placement import Flat, Ground
 from sim_core.metrics import winding
 
 ASSETS = Path(__file__).parents[2] / "assets"
-SHORT = (
-    Step("sew", 0.48, (0.0, 1.5), 6.0, 0.0),
-    Step("weld"),
-    Step("settle", 0.12, (2.0, 9.81), 3.0, 0.15),
-    Step("pin", spots=("nape",)),
-    Step("pose", 0.2, damping=2.5, friction=0.1),
-    Step("close", 0.12, damping=2.5),
-    Step("release"),
-    Step("rest", 0.16, damping=10.0, friction=0.45),
-)
 
 
 def outfit(name: str, edge: float) -> Outfit:

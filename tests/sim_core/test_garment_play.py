@@ -5,26 +5,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from plain_garments import SHORT
 
 from sim_core.body import Loop, Motion, Pose, load_motion
 from sim_core.body.motion import Curve
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Outfit, Played, dress, load_outfit, move, moving_errors
-from sim_core.garment.outfit import Step
 from sim_core.garment.pins import Pins
 
 pytestmark = pytest.mark.slow
 
 ASSETS = Path(__file__).parents[2] / "assets"
-SHORT = (
-    Step("sew", 0.48, (0.0, 1.5), 6.0, 0.0),
-    Step("weld"),
-    Step("settle", 0.12, (2.0, 9.81), 3.0, 0.15),
-    Step("pin", spots=("nape",)),
-    Step("pose", 0.2, damping=2.5, friction=0.1),
-    Step("release"),
-    Step("rest", 0.16, damping=10.0, friction=0.45),
-)
 
 
 def coarse(outfit: Outfit) -> Outfit:

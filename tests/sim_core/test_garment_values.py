@@ -2,7 +2,6 @@
 
 import json
 import struct
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
+from plain_garments import Maps, plain_maps
 
 from sim_core import metrics
 from sim_core.body import Beneath
@@ -21,21 +21,6 @@ from sim_core.garment import Clothed, Garment, Pattern, Settled, Stand, choose_d
 from sim_core.mesh import panel_mesh
 
 SHEET = 'name = "test"\nedge = 0.05\nsize = [0.4, 1.0]\n'
-
-
-@dataclass(frozen=True)
-class Maps:
-    albedo: np.ndarray
-    normal: np.ndarray
-    opacity: np.ndarray
-    size: tuple[float, float]
-
-
-def maps(opacity: int = 120) -> Maps:
-    flat = np.full((32, 32, 3), [128, 128, 255], np.uint8)
-    return Maps(
-        np.full((32, 32, 3), 200, np.uint8), flat, np.full((32, 32), opacity, np.uint8), (0.004, 0.005)
-    )
 
 
 def arched(edge: float = 0.02) -> Garment:
@@ -223,7 +208,7 @@ def accessor(document: dict, blob: bytes, number: int) -> np.ndarray:
 @pytest.mark.parametrize("precision", ["close", "hall"])
 def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
     garment, path = arched(0.04), tmp_path / "g.glb"
-    size = write_glb(path, [Clothed(garment, maps())], precision=precision)
+    size = write_glb(path, [Clothed(garment, plain_maps(120))], precision=precision)
     assert size == path.stat().st_size < 1_500_000
     document, blob = chunks(path)
     assert [node["name"] for node in document["nodes"]] == ["strip", "stand"]
@@ -256,7 +241,7 @@ def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
 
 @pytest.mark.parametrize("precision", ["close", "hall"])
 def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision) -> None:
-    dense = maps()
+    dense = plain_maps(120)
     dense.opacity[:] = 255
     dense.opacity[:8, :8] = 0
     write_glb(tmp_path / "g.glb", [Clothed(arched(0.04), dense)], precision=precision)
@@ -275,7 +260,7 @@ def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision)
 
 def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
     garment = arched(0.04)
-    write_glb(tmp_path / "g.glb", [Clothed(garment, maps())], precision="close")
+    write_glb(tmp_path / "g.glb", [Clothed(garment, plain_maps(120))], precision="close")
     scene = trimesh.load(tmp_path / "g.glb")
     assert isinstance(scene, trimesh.Scene)
     strip = scene.geometry["strip"]
@@ -287,7 +272,7 @@ def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
 
 def test_opaque_cloth_is_opaque_and_dye_is_the_mean_colour(tmp_path: Path) -> None:
     garment = Garment(**{**arched(0.05).__dict__, "dye": (0.7, 0.2, 0.1)})
-    write_glb(tmp_path / "g.glb", [Clothed(garment, maps(255))], precision="close")
+    write_glb(tmp_path / "g.glb", [Clothed(garment, plain_maps())], precision="close")
     document, blob = chunks(tmp_path / "g.glb")
     cloth = document["materials"][0]
     assert "alphaMode" not in cloth
@@ -304,8 +289,8 @@ def test_opaque_cloth_is_opaque_and_dye_is_the_mean_colour(tmp_path: Path) -> No
 
 def test_wrong_precision_and_maps_are_named(tmp_path: Path) -> None:
     with pytest.raises(SimCoreError, match="precision"):
-        write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), maps())], precision="middle")  # pyright: ignore[reportArgumentType]
-    wrong = Maps(maps().albedo, maps().normal, np.zeros((4, 4), np.uint8), (0.004, 0.004))
+        write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), plain_maps(120))], precision="middle")  # pyright: ignore[reportArgumentType]
+    wrong = Maps(plain_maps(120).albedo, plain_maps(120).normal, np.zeros((4, 4), np.uint8), (0.004, 0.004))
     with pytest.raises(SimCoreError, match="maps"):
         write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), wrong)])
     assert not (tmp_path / "g.glb").exists()

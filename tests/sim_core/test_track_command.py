@@ -105,6 +105,8 @@ def test_a_stream_has_no_truth(tmp_path: Path, capsys: pytest.CaptureFixture[str
         (["WALK", "--out", "x.csv"], 2, ".npz"),
         (["WALK", "--plot", "x.gif"], 2, ".png"),
         (["BAD"], 1, "line 1, column 1"),
+        (["WALK", "--dropout", "1"], 1, "walk.bvh: joints: no frame shows a joint of the trunk"),
+        (["LONG", "--level", "6"], 1, "long.npz: level: 6, 40000 frames of 1537 points – take a lower level"),
     ],
 )
 def test_what_cannot_be_done_is_told_in_one_line(
@@ -117,7 +119,12 @@ def test_what_cannot_be_done_is_told_in_one_line(
 ) -> None:
     bad = tmp_path / "bad.bvh"
     bad.write_text("nothing of the kind", "utf-8")
-    words = [{"WALK": str(walk), "BAD": str(bad)}.get(word, word) for word in words]
+    long, frames = tmp_path / "long.npz", 40_000
+    if "LONG" in words:
+        joints = np.broadcast_to(person("walk", 0.1).places()[0, :25], (frames, 25, 3)).astype(np.float32)
+        np.savez(long, joints=joints, joint_names=np.array(KINECT.joints), time=np.arange(frames) / 30.0)
+    given = {"WALK": str(walk), "BAD": str(bad), "LONG": str(long)}
+    words = [given.get(word, word) for word in words]
     try:
         found = cli.main(["track", *words])
     except SystemExit as ended:

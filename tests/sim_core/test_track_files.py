@@ -93,6 +93,9 @@ def test_end_sites_turn_with_their_joint(tmp_path: Path) -> None:
         ("0 91 0 0 0 0 90 0 0", "0 91 0 0 nan 0 90 0 0", (20, 10), "'nan' is not a finite number"),
         ("0 91 0 0 0 0 90 0 0", "0 91 0 0 0 0 90 0", (20, 17), "8 numbers – the hierarchy has 9"),
         ("0 91 0 0 0 0 90 0 0\n", "", (19, 19), "1 frames of numbers – 'Frames:' says 2"),
+        ("Frames: 2", "Frames: " + 13 * "0" + 5000 * "9", (17, 9), "a whole number from 0 to 200000"),
+        ("Frames: 2", "Frames: 7000000", (17, 9), "a whole number from 0 to 200000"),
+        ("End Site\n    {\n", "End Site Tip\n", (11, 7), "{ should stand"),
     ],
 )
 def test_defects_are_told_with_line_and_column(
@@ -106,6 +109,48 @@ def test_defects_are_told_with_line_and_column(
     assert message.startswith(f"{path}: line {place[0]}, column {place[1]}: ")
     assert told in message
     assert "\n" not in message
+
+
+def test_files_as_other_programs_write_them(tmp_path: Path) -> None:
+    """Line ends of Windows and of an old Mac, names of end sites, brackets on the line of a name."""
+    plain = read_bvh(written(tmp_path, SMALL))
+    changed = (
+        SMALL.replace("\n", "\r\n"),
+        SMALL.replace("\n", "\r"),
+        SMALL.replace("End Site", "End Site Head"),
+        SMALL.replace("Hips\n{\n", "Hips { ")
+        .replace("Chest\n  {\n", "Chest{")
+        .replace("Site\n    {", "Site {"),
+    )
+    for text in changed:
+        path = tmp_path / "other.bvh"
+        path.write_bytes(text.encode())
+        file = read_bvh(path)
+        assert (file.names, file.channels) == (plain.names, plain.channels)
+        assert np.array_equal(file.frames, plain.frames)
+
+
+def test_what_would_not_fit_into_memory_is_refused_at_the_door(tmp_path: Path) -> None:
+    deep = SMALL.replace("    End Site", "JOINT Chest { OFFSET 0 1 0\n" * 200 + "    End Site")
+    deep = deep.replace("}\nMOTION", "}\n" * 200 + "}\nMOTION").replace("Frames: 2", "Frames: 100000")
+    with pytest.raises(FileProblem, match="line 417, column 9: 100000 frames of 203 joints.*parts"):
+        read_bvh(written(tmp_path, deep))
+    short = deep.replace("100000", "2")
+    assert len(set(read_bvh(written(tmp_path, short)).names)) == 203  # all but three are called Chest
+    path, many = tmp_path / "long.npz", 200_001
+    np.savez(
+        path, joints=np.zeros((many, 25, 3), "i1"), joint_names=np.array(KINECT.joints), time=np.arange(many)
+    )
+    with pytest.raises(FileProblem, match=r"long.npz: time: 200001 frames – at most 200000"):
+        read_recording(path)
+
+
+def test_a_long_file_is_read(tmp_path: Path) -> None:
+    """Longer than any text that is written by hand: a block after the other."""
+    rows = "0 90 0 0 0 0 0 0 0\n" * 150_000
+    file = read_bvh(written(tmp_path, SMALL.split("0 90")[0].replace("Frames: 2", "Frames: 150000") + rows))
+    assert file.frames.shape == (150_000, 9)
+    assert (file.frames == file.frames[0]).all()
 
 
 @pytest.mark.parametrize("cut", range(0, len(SMALL), 17))
@@ -187,6 +232,8 @@ def test_a_figure_has_hands_and_a_head_where_its_marks_are_given() -> None:
         ("unit = -1\n[joints]\nSpineMid = 'a'", "unit"),
         ("scale = 1\n[joints]\nSpineMid = 'a'", "scale: unknown key"),
         ("joints = ", "not valid TOML"),
+        ("[joints]\nNeck = 'a + '", "joints.Neck: 'a . ' – a name is missing"),
+        ("[joints]\nNeck = ['a', 'b if ']", "joints.Neck: 'b if ' – a name is missing"),
     ],
 )
 def test_mapping_files_say_what_is_wrong(tmp_path: Path, text: str, told: str) -> None:
@@ -196,6 +243,17 @@ def test_mapping_files_say_what_is_wrong(tmp_path: Path, text: str, told: str) -
     assert "own.toml" in str(caught.value)
     with pytest.raises(FileProblem, match="no mapping"):
         load_mapping("nobody")
+
+
+def test_frames_that_are_no_motion_are_left_out_and_told(tmp_path: Path) -> None:
+    own = written(tmp_path, "skip = 1\n[joints]\nSpineBase = 'Hips'\n", "own.toml")
+    two = read_recording(written(tmp_path, SMALL), str(own))
+    assert len(two.time) == 1
+    assert "left out: 1, no motion, as mapping 'own' says" in two.told[0]
+    one = SMALL.replace("Frames: 2", "Frames: 1").replace("0 91 0 0 0 0 90 0 0\n", "")
+    kept = read_recording(written(tmp_path, one), str(own))
+    assert len(kept.time) == 1
+    assert "all kept" in kept.told[0]
 
 
 def test_arrays_are_read_by_the_names_of_joints(tmp_path: Path) -> None:
@@ -215,6 +273,12 @@ def test_arrays_are_read_by_the_names_of_joints(tmp_path: Path) -> None:
         np.savez(path, **({"joints": joints, "joint_names": names, "time": np.arange(4)} | wrong))
         with pytest.raises(FileProblem, match="joints"):
             read_recording(path)
+    for wrong in ({"joints": joints + 1j}, {"time": np.array(["a", "b", "c", "d"])}):
+        np.savez(path, **({"joints": joints, "joint_names": names, "time": np.arange(4)} | wrong))
+        with pytest.raises(FileProblem, match=f"{next(iter(wrong))}: .*no numbers"):
+            read_recording(path)
+    np.savez(path, joints=joints, joint_names=names, time=np.array([0.0, np.inf, np.inf, 0.1]))
+    assert read_recording(path).step == pytest.approx(0.1)
     np.savez(path, joints=joints)
     with pytest.raises(FileProblem, match="no array 'joint_names'"):
         read_recording(path)
@@ -242,6 +306,8 @@ def test_streams_are_frames_of_rows(tmp_path: Path) -> None:
         assert np.isnan(recording.joints[1:, top]).all()
         assert recording.truth is None
         assert any("HandTipLeft" in words for words in recording.told)
+        small = read_recording(path, unit=0.001)
+        assert np.allclose(small.joints, 0.001 * recording.joints, equal_nan=True)
 
 
 @pytest.mark.parametrize(
@@ -254,13 +320,16 @@ def test_streams_are_frames_of_rows(tmp_path: Path) -> None:
         ("time,joint,x,y,z\n\n0,Tail,1,2,3\n", "line 3, column 3: joint: 'Tail'"),
         ("time,joint,x,y,z,state\n0,SpineBase,1,2,3,asleep\n", "line 2, column 19: state: 'asleep'"),
         ("time,joint,x,y,z\n", "no row"),
+        ("\u00a0\n\u3000\n", "s.csv: the file is empty"),
+        ("time,joint,x,y,z\n0,SpineBase,1e9,2,3\n", "s.csv: joints: beyond 1e+06 m"),
     ],
 )
 def test_defects_of_streams_are_told_with_line_and_column(tmp_path: Path, text: str, told: str) -> None:
     with pytest.raises(FileProblem) as caught:
         read_recording(written(tmp_path, text, "s.csv"))
     assert told in str(caught.value)
-    for rows in ({}, [3], [{"time": 0}], [{"time": 0, "joint": "Head", "x": "a", "y": 0, "z": 0}]):
+    high = {"time": 0, "joint": "Head", "x": 10**400, "y": 0, "z": 0}
+    for rows in ({}, [3], [high], [{"time": 0}], [{"time": 0, "joint": "Head", "x": "a", "y": 0, "z": 0}]):
         with pytest.raises(FileProblem, match="s.json"):
             read_recording(written(tmp_path, json.dumps(rows), "s.json"))
 

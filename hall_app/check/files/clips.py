@@ -16,6 +16,7 @@ from sim_core.gltf import GlbError, glb_parts
 MB = 1_000_000
 LARGEST = 2 * MB
 LARGEST_POINTS = 200_000  # [bytes] of what was tracked: half a minute
+LARGEST_OPEN = 50 * MB  # in every visitor's page
 
 
 def clip_problems(content: Content) -> list[Problem]:
@@ -57,6 +58,9 @@ def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Pro
         found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
     if kind == "hall":
         found += _tracked(exhibit, tracked_beside(name), clip, fix)
+    if (whole := clip.steps.nbytes) > LARGEST_OPEN:
+        what = f"{name} takes {whole / MB:.0f} MB in the page, at most {LARGEST_OPEN / MB:g} MB"
+        found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
     model = exhibit.model_path(kind)
     meshes = _meshes(model.read_bytes()) if model is not None else None
     if meshes is None:

@@ -13,9 +13,12 @@ export function inSight({ x, z }, from) {
   return away < SIGHT && ahead > ASIDE * away;
 }
 
-/** createPresence() -> present(): whether the visitor has given a sign of life within the last minute. */
+/** createPresence() -> present(): whether the visitor has given a sign of life within the last minute, or just come back. */
 export function createPresence() {
   let seenAt = 0;
   for (const sign of LIFE) addEventListener(sign, () => (seenAt = performance.now()), { capture: true, passive: true });
+  document.addEventListener("visibilitychange", () => {
+    if (!document.hidden) seenAt = performance.now();
+  });
   return () => performance.now() - seenAt <= PRESENT;
 }

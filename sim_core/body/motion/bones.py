@@ -227,8 +227,9 @@ def _hinged(
     does. Where the limb is nearly straight its plane says little: the hinge is square to the foot, or rolls as it did
     in the frame before.
     """
-    upper, lower = (bone / np.maximum(np.linalg.norm(bone, axis=1, keepdims=True), 1e-9) for bone in bones)
     u0, v0 = (bone / np.linalg.norm(bone) for bone in rest)
+    upper = _along(bones[0], parent @ u0)
+    lower = _along(bones[1], upper)
     swung = _aligned(parent, u0, upper)
     cosine = np.clip((upper * lower).sum(1), -1.0, 1.0)
     bent = _matrix(np.degrees(_bend(u0, v0, hinge, cosine))[:, None] * hinge) @ v0
@@ -262,6 +263,12 @@ def _hinged(
     return out
 
 
+def _along(bones: np.ndarray, instead: np.ndarray) -> np.ndarray:
+    """Directions (T, 3) of bones; of those without length, which some bodies have, the ones given instead."""
+    length = np.linalg.norm(bones, axis=1, keepdims=True)
+    return np.where(length > 1e-9, bones / np.maximum(length, 1e-9), instead)
+
+
 def _bend(u: np.ndarray, v: np.ndarray, hinge: np.ndarray, cosine: np.ndarray) -> np.ndarray:
     """Angles (T,) [rad] about the hinge by which v is turned where it has that cosine (T,) with u, bent forward."""
     flat = v - (v @ hinge) * hinge
@@ -273,7 +280,11 @@ def _axes(along: np.ndarray, hinge: np.ndarray) -> np.ndarray:
     """Axes (T, 3, 3) in columns: along the bone, the hinge squared to it, and their cross product."""
     a = along / np.linalg.norm(along, axis=1, keepdims=True)
     b = hinge - (hinge * a).sum(1, keepdims=True) * a
-    b = b / np.linalg.norm(b, axis=1, keepdims=True)
+    size = np.linalg.norm(b, axis=1, keepdims=True)
+    if (size < 1e-9).any():  # a hinge along the bone says nothing: any across
+        b = np.where(size < 1e-9, np.cross(a, np.eye(3)[np.abs(a).argmin(1)]), b)
+        size = np.linalg.norm(b, axis=1, keepdims=True)
+    b = b / size
     return np.stack([a, b, np.cross(a, b)], axis=2)
 
 

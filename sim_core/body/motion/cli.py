@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sim_core.errors import FileProblem, WrongArgument
+from sim_core.errors import FileProblem, SimCoreError, WrongArgument
 from sim_core.validation.arguments import ending, number
 from sim_core.validation.files import check_target, written_whole
 
@@ -115,10 +115,14 @@ def run(args: argparse.Namespace) -> int:
 
     motion = load_motion(args.motion)
     figure = Mannequin.load(args.figure or args.content / FIGURE)
-    facts: dict[str, Any] = {"motion": str(args.motion), "figure": figure.name} | _facts(motion, figure)
-    if args.measure:
-        facts |= measured(motion, figure)
-    times, poses = _played(motion, figure, args.rate, args.in_place)
+    facts: dict[str, Any] = {"motion": str(args.motion), "figure": figure.name}
+    try:
+        facts |= _facts(motion, figure)
+        if args.measure:
+            facts |= measured(motion, figure)
+        times, poses = _played(motion, figure, args.rate, args.in_place)
+    except SimCoreError as error:  # what a figure cannot do
+        raise FileProblem(f"{args.motion}: {error}") from error
     if args.out:
         _write(args.out, figure, times, poses)
         facts |= {"out": str(args.out), "frames": len(poses)}

@@ -15,6 +15,8 @@ __all__ = ["ROOT", "Curve", "minimum_jerk"]
 
 ROOT = "root"  # stands for the root's way where a curve names what it moves
 WHOLE = 100.0  # per cent of a period
+NEAREST = 0.01  # per cent between two values: below it a spline overshoots without bounds
+MOST_DEGREES, MOST_METRES = 360.0, 10.0
 Vector = tuple[float, float, float]
 _AXES = "xyz"
 
@@ -56,12 +58,17 @@ class Curve:
             raise SimCoreError(
                 f"at: {len(self.at)} places for {len(self.values)} values – give as many, two or more"
             )
-        if any(b <= a for a, b in zip(self.at, self.at[1:], strict=False)):
-            raise SimCoreError(f"at: {list(self.at)} – give percentages that rise")
-        if self.at[0] < 0.0 or self.at[-1] >= WHOLE:
+        if not all(b - a >= NEAREST for a, b in zip(self.at, self.at[1:], strict=False)):
+            raise SimCoreError(f"at: {list(self.at)} – give percentages that rise by {NEAREST:g} or more")
+        if self.at[0] < 0.0 or self.at[-1] >= WHOLE or self.at[0] + WHOLE - self.at[-1] < NEAREST:
             raise SimCoreError(
                 f"at: {list(self.at)} – give 0 up to, but not with, 100: there it begins again"
             )
+        name, most = ("metres", MOST_METRES) if self.joint == ROOT else ("degrees", MOST_DEGREES)
+        for value in self.values:
+            if not abs(self.scale * value + self.offset) <= most:
+                told = f"{value:g} times {self.scale:g} and {self.offset:g}"
+                raise SimCoreError(f"{name}: {told} – give what comes to {-most:g} to {most:g}")
 
     @cached_property
     def _spline(self) -> CubicSpline:

@@ -18,6 +18,7 @@ from sim_core.validation.files import read_toml, shown
 __all__ = ["load_motion"]
 
 WHAT = "a motion file (TOML); it needs [[key]] tables of seconds and pose, or a period and [[curve]] tables"
+LONGEST = 600.0  # [s] of a motion
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 PoseTable = str | dict[str, Any]
 Words = dict[Literal["zh", "en"], str]
@@ -103,6 +104,7 @@ class _Reader:
             for k, key in enumerate(read.key, 1):
                 if key.early:
                     raise self._wrong(f"key.{k}.early", "only keys of a loop overlap – add loop = true")
+            self._short("key", "its keys", sum(key.seconds for key in read.key))
             poses = [self._pose(f"key.{k}.pose", key.pose) for k, key in enumerate(read.key, 1)]
             return Motion(tuple((key.seconds, pose) for key, pose in zip(read.key, poses, strict=True)))
         if "loop" in read.model_fields_set and not read.loop:
@@ -124,6 +126,7 @@ class _Reader:
             raise self._wrong("period", f"{read.period:g}, but the keys take {whole:g} s – leave it out")
         if not keys and read.period is None:
             raise self._wrong("period", "missing – give the seconds after which the curves repeat")
+        self._short("rounds", f"{read.rounds} periods", read.rounds * (whole if keys else read.period or 0.0))
         base = keys[-1].pose if keys else T_POSE
         if read.pose is not None:
             if keys:
@@ -179,6 +182,10 @@ class _Reader:
         except SimCoreError as error:
             where = f"{key}." if key else ""
             raise FileProblem(f"{self._path}: {where}{error}") from error
+
+    def _short(self, key: str, what: str, seconds: float) -> None:
+        if seconds > LONGEST:
+            raise self._wrong(key, f"{what} take {seconds:g} s – give a motion of {LONGEST:g} s at most")
 
     def _wrong(self, key: str, text: str) -> FileProblem:
         return FileProblem(f"{self._path}: {key}: {text}")

@@ -217,6 +217,8 @@ def _planted(
             break
         for side, goal in goals.items():  # an ankle that cannot bend further lifts its heel
             goal.pitch += np.radians(_spread(stiff[side], rate))
+            left, right = (_spread(np.maximum(sign * stiff[f"yaw_{side}"], 0.0), rate) for sign in (1, -1))
+            goal.hinge = _yawed(goal.hinge, left - right)  # one that cannot turn further turns the knee along
         tilt = _spread(stiff["hips"], rate)  # and a thigh that cannot go further back takes the pelvis along
         poses = [_tilted(pose, float(angle)) for pose, angle in zip(poses, tilt, strict=True)]
         poses = _within_reach(figure, poses, goals, rate)
@@ -227,9 +229,9 @@ def _legged(
     figure: Mannequin, poses: list[Pose], goals: Mapping[str, _Track]
 ) -> tuple[list[Pose], float, dict[str, np.ndarray]]:
     """Poses with their feet where they are wanted, what the furthest is missed by [m], and by how many degrees (T,)
-    each ankle would have to bend up further than it goes, and a hip back."""
+    each ankle would have to bend up, or turn either way, further than it goes, and a hip back."""
     out, missed = [], 0.0
-    stiff = {name: np.zeros(len(poses)) for name in (*SIDES, "hips")}
+    stiff = {name: np.zeros(len(poses)) for name in (*SIDES, "yaw_l", "yaw_r", "hips")}
     places = {side: goal.placed for side, goal in goals.items()}
     for row, pose in enumerate(poses):
         holds = {
@@ -241,7 +243,9 @@ def _legged(
         legged, off = legs_at(figure.skeleton, pose, holds)
         for side in SIDES:
             ankle = f"ankle_{side}"
-            stiff[side][row] = max(0.0, LIMITS[ankle][0][0] - legged.vector(ankle)[0])
+            up, yaw, _ = legged.vector(ankle)
+            stiff[side][row] = max(0.0, LIMITS[ankle][0][0] - up)
+            stiff[f"yaw_{side}"][row] = yaw - np.clip(yaw, *LIMITS[ankle][1])
             back = legged.vector(f"hip_{side}")[0] - LIMITS[f"hip_{side}"][0][1]
             stiff["hips"][row] = max(stiff["hips"][row], back)
         out.append(legged)
@@ -261,6 +265,13 @@ def _tilted(pose: Pose, angle: float) -> Pose:
         "spine_1": _unit(product(back, np.array(pose.turn("spine_1")))),
     }
     return Pose(tuple((joint, turns[joint]) for joint in JOINTS if joint in turns), pose.shift)
+
+
+def _yawed(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """Vectors (T, 3) turned about the upright by angles (T,) [degrees]."""
+    cosine, sine = np.cos(np.radians(angles)), np.sin(np.radians(angles))
+    x, y, z = vectors.T
+    return np.stack([cosine * x + sine * z, y, cosine * z - sine * x], axis=1)
 
 
 def _unit(q: np.ndarray) -> tuple[float, float, float, float]:
@@ -357,8 +368,15 @@ def _goals(foot: _Track, stands: np.ndarray, rate: float) -> _Track:
     wanted = wanted + moved
     # Frames to a stand, or to an end of what is known.
     free = np.asarray(distance_transform_edt(np.pad(~stands, 1)))[1:-1]
-    least = CLEAR * minimum_jerk(free / (CLEAR_IN * rate))
-    wanted[:, 2] = np.where(stands, 0.0, np.maximum(wanted[:, 2], least))
+    clear = np.asarray(minimum_jerk(free / (CLEAR_IN * rate)))
+    wanted[:, 2] = np.where(stands, 0.0, np.maximum(wanted[:, 2], CLEAR * clear))
+    # What is not yet clear of the floor, or no longer, hardly goes along it: a captured foot may start with a jerk.
+    for begin, end in runs:
+        for rows, edge in ((range(begin - 1, -1, -1), begin), (range(end, count), end - 1)):
+            for row in rows:
+                if clear[row] >= 1.0 or stands[row]:
+                    break
+                wanted[row, [0, 1, 3]] += (1.0 - clear[row]) * (wanted[edge] - wanted[row])[[0, 1, 3]]
     return _Track(foot.sole, foot.ankle, foot.pitch.copy(), wanted[:, 3], foot.hinge, wanted[:, :3])
 
 

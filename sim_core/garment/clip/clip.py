@@ -16,7 +16,7 @@ from sim_core.garment.clip.frame_code import STEP, FrameCode
 from sim_core.garment.clip.morphs import morph_glb
 from sim_core.garment.clip.skinned import Skinned
 from sim_core.validation import finite, numeric_array, triangles
-from sim_core.validation.files import written_whole
+from sim_core.validation.files import read_bytes, written_whole
 
 __all__ = ["Clip", "Moved"]
 
@@ -65,7 +65,7 @@ class Clip:
         step [m]: of the quantisation, at most 0.25 mm; finer by itself where the meshes are small. A figure is kept by
         its bones, or as one more mesh where that takes fewer bytes.
         Raises SimCoreError, naming mesh and remedy, for frames that do not agree, faces of vertices that there are not,
-        what is not finite, and meshes that span more than 65 535 steps.
+        what is not finite, meshes that span more than 65 535 steps, and more of them than a file may hold.
         """
         rate = finite("clip: rate", rate, least=RATES[0], most=RATES[1])
         given = [_checked(mesh) for mesh in meshes]
@@ -81,6 +81,7 @@ class Clip:
             given, figure = [*given, _by_vertices(figure)], None
         joined = np.concatenate([mesh.positions for mesh in given], axis=1)
         begins = np.cumsum([0, *(mesh.positions.shape[1] for mesh in given)])
+        clip_file.check_size(joined.shape[1], len(joined), clip_file.POSE if figure else 0)
         faces = np.concatenate([mesh.faces + begin for mesh, begin in zip(given, begins, strict=False)])
         low, high = joined.min((0, 1)), joined.max((0, 1))
         code = FrameCode.of(low, high, faces, joined.shape[1], step)
@@ -168,9 +169,9 @@ class Clip:
         """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
         path = Path(path)
         try:
-            return Clip.from_bytes(path.read_bytes())
-        except OSError as error:
-            raise FileProblem(f"{path}: {error.strerror or error} – give the path of a clip") from error
+            return Clip.from_bytes(read_bytes(path, "a clip that Clip.save wrote", clip_file.LARGEST))
+        except FileProblem:
+            raise
         except SimCoreError as error:
             raise FileProblem(f"{path}: {error}") from error
 

@@ -25,12 +25,15 @@ from sim_core.garment.clip.drawn import Drawn
 from sim_core.garment.clip.frame_code import LEVEL, STEP, FrameCode, inflated, zigzag
 from sim_core.garment.clip.skinned import WHOLE, Skinned
 
-__all__ = ["POSE", "Contents", "MeshEntry", "bones_bytes", "read", "written"]
+__all__ = ["LARGEST", "POSE", "Contents", "MeshEntry", "bones_bytes", "check_size", "read", "written"]
 
 FORMAT = 1
 MARK = b"HALLCLIP"
 POSE = 4 * (4 * len(JOINTS) + 3)  # [bytes] of a pose
-MOST_VERTICES, MOST_FRAMES, LARGEST = 1_000_000, 100_000, 4_000_000_000  # LARGEST [bytes] once unpacked
+MOST_VERTICES, MOST_FRAMES = 1_000_000, 100_000
+LARGEST = 256_000_000  # [bytes] of all frames once unpacked: 100 s of 15 000 vertices
+LARGEST_STILL = 64_000_000  # [bytes] likewise of what is the same in all frames
+FURTHEST = 1e6  # [m]
 REMEDY = "bake it again"
 
 
@@ -180,16 +183,18 @@ def _contents(header: dict[str, Any], still: bytes) -> Contents:
         counts = [mesh["vertices"], mesh["faces"], *(one["vertices"] for one in mesh["drawn"])]
         if not all(_is_count(count, 4 * MOST_VERTICES) for count in counts):
             raise SimCoreError(f"clip: its header is damaged (counts of {mesh['name']!r}) – {REMEDY}")
-    count = sum(mesh["vertices"] for mesh in meshes)
-    if not 0 < count <= MOST_VERTICES or count * 6 * len(header["sizes"]) > LARGEST:
-        raise SimCoreError(
-            f"clip: {count} vertices in {len(header['sizes']) - 1} frames – too many to be read"
-        )
+    if len({mesh["name"] for mesh in told}) != len(told) or not meshes:
+        raise SimCoreError(f"clip: its header is damaged (meshes) – {REMEDY}")
+    count, beside = sum(mesh["vertices"] for mesh in meshes), POSE if figure else 0
+    check_size(count, len(header["sizes"]) - 1, beside)
     whole = 16 * count + sum(
         4 * (3 * mesh["faces"] + sum(one["vertices"] for one in mesh["drawn"])) for mesh in told
     )
     joints = len(JOINTS)
     whole += 4 * 3 * joints + figure["vertices"] * (12 + 2 * joints) if figure else 0
+    if whole > LARGEST_STILL:
+        told = f"{whole / 1e6:.0f} MB beside its frames, at most {LARGEST_STILL / 1e6:.0f}"
+        raise SimCoreError(f"clip: its header claims {told} – {REMEDY}")
     reader = _Reader(inflated(still, whole, "its still part"))
     code = _code(header, reader, count)
     entries = tuple(
@@ -203,13 +208,21 @@ def _contents(header: dict[str, Any], still: bytes) -> Contents:
     return Contents(code, entries, who, rate, header["loop"] is True, error)
 
 
+def check_size(count: int, frames: int, beside: int) -> None:
+    """Raises SimCoreError where so many vertices in so many frames, and so many bytes beside each, are too many."""
+    size = (6 * count + beside) * frames
+    if count > MOST_VERTICES or frames > MOST_FRAMES or size > LARGEST:
+        most = f"at most {MOST_VERTICES}, {MOST_FRAMES} and {LARGEST / 1e6:.0f} MB; make several clips"
+        raise SimCoreError(f"clip: {count} vertices in {frames} frames, {size / 1e6:.0f} MB – {most}")
+
+
 def _faces(reader: _Reader, told: dict[str, Any]) -> np.ndarray:
     return reader.whole_numbers(told["faces"], 3, told["vertices"], f"mesh {told['name']!r}")
 
 
 def _code(header: dict[str, Any], reader: _Reader, count: int) -> FrameCode:
     origin, step = np.array(header["origin"], float), float(header["step"])
-    if origin.shape != (3,) or not np.isfinite(origin).all() or not 0.0 < step <= STEP:
+    if origin.shape != (3,) or not (np.abs(origin) < FURTHEST).all() or not 0.0 < step <= STEP:
         raise SimCoreError(f"clip: its header is damaged (origin, step) – {REMEDY}")
     order = reader.whole_numbers(count, 1, count, "its order")[:, 0]
     sources = reader.whole_numbers(count, 3, count, "its order")
@@ -230,7 +243,9 @@ def _figure(told: dict[str, Any], reader: _Reader) -> Skinned:
     shares = np.frombuffer(reader.take(2 * joints * count), "<u2").reshape(count, joints).astype(float)
     if not (np.isfinite(heads).all() and np.isfinite(rest).all() and shares.sum(1).all()):
         raise SimCoreError(f"clip: its figure is damaged – {REMEDY}")
-    if told["skin"] not in SKINS or told["parents"] != list(PARENTS):
+    skin = told["skin"]
+    known = skin in SKINS and told["parents"] == list(PARENTS) and told["linear"] == list(LINEAR_JOINTS[skin])
+    if not known:
         raise SimCoreError(f"clip: its figure goes in a way that is not known ({told['skin']!r}) – {REMEDY}")
     none = np.zeros((0, joints, 4), np.float32), np.zeros((0, 3), np.float32)
     weights = shares / shares.sum(1, keepdims=True)

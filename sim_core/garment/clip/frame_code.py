@@ -82,14 +82,16 @@ class FrameCode:
 
         Raises SimCoreError for a frame that is damaged.
         """
-        length = 6 * self.count
-        plain = [inflated(frame, length + beside, f"frame {k}") for k, frame in enumerate(frames)]
-        rest = np.stack([_unzigzag(_from_planes(data[:length], self.count)) for data in plain], axis=1)
-        found = np.zeros((self.count, len(frames), 3), np.int32)  # a row a vertex: all frames at once
-        for k, (vertex, (a, b, c)) in enumerate(zip(self.order.tolist(), self.sources.tolist(), strict=True)):
-            guess = 0 if a == vertex else found[a] + found[b] - found[c]
-            found[vertex] = (rest[k] + guess) & MOST_STEPS
-        return found.transpose(1, 0, 2).astype(np.uint16), [data[length:] for data in plain]
+        length, behind = 6 * self.count, []
+        found = np.zeros((self.count, len(frames), 3), np.uint16)  # a row a vertex: all frames at once
+        for k, frame in enumerate(frames):
+            plain = inflated(frame, length + beside, f"frame {k}")
+            found[self.order, k] = _unzigzag(_from_planes(plain[:length], self.count))
+            behind.append(plain[length:])
+        for vertex, (a, b, c) in zip(self.order.tolist(), self.sources.tolist(), strict=True):
+            if a != vertex:
+                found[vertex] += found[a] + found[b] - found[c]  # of 65 536 steps the next is the first
+        return np.ascontiguousarray(found.transpose(1, 0, 2)), behind
 
 
 def zigzag(values: np.ndarray) -> np.ndarray:
@@ -99,7 +101,8 @@ def zigzag(values: np.ndarray) -> np.ndarray:
 
 
 def _unzigzag(values: np.ndarray) -> np.ndarray:
-    return (values.astype(np.int32) >> 1) ^ -(values.astype(np.int32) & 1)
+    """Signed whole numbers of unsigned ones, as the unsigned ones of their bits."""
+    return (values >> 1) ^ -(values & 1)
 
 
 def _planes(values: np.ndarray) -> bytes:

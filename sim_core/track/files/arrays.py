@@ -29,10 +29,10 @@ def read_arrays(path: Path, mapping: JointMapping | None = None, unit: float | N
     """
     found = read_npz(path, NAMES, "a motion file", REMEDY)
     names = [str(name) for name in np.atleast_1d(found["joint_names"])]
-    try:
-        joints, time = found["joints"].astype(float), np.atleast_1d(found["time"]).astype(float)
-    except (TypeError, ValueError) as error:
-        raise FileProblem(f"{path}: joints or time: no numbers – {REMEDY}") from error
+    for name in ("joints", "time"):
+        if found[name].dtype.kind not in "iuf":
+            raise FileProblem(f"{path}: {name}: {found[name].dtype}, no numbers – {REMEDY}")
+    joints, time = found["joints"].astype(float), np.atleast_1d(found["time"]).astype(float)
     if (
         joints.ndim != 3
         or joints.shape[1:] != (len(names), 3)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from sim_core.track.files.words import Words
+from sim_core.track.recording import MOST_FRAMES
 from sim_core.validation.files import read_text, shown
 
 __all__ = ["END", "Bvh", "read_bvh"]
@@ -16,8 +17,10 @@ END = "/end"
 """What the name of an end site is, behind the name of the joint that it ends."""
 WHAT = "a BVH file (HIERARCHY, MOTION)"
 CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
+MOST_BYTES = 200_000_000  # ten minutes of a body with all its fingers
 MOST_JOINTS = 2_000
-MOST_FRAMES = 10_000_000
+MOST_PLACES = 10_000_000  # of all joints in all frames: 1 GB of places and turns
+BLOCK = 1_000_000  # characters of numbers that are read at once
 MOST_CHANNELS = 64  # of one joint
 
 
@@ -94,6 +97,18 @@ class _Tree:
     parents: list[int] = field(default_factory=list)
     offsets: list[tuple[float, ...]] = field(default_factory=list)
     channels: list[tuple[str, ...]] = field(default_factory=list)
+    times: dict[str, int] = field(default_factory=dict)  # that a name was given
+
+    def named(self, name: str, parent: int) -> int:
+        """A joint more, whose name is made its own; its number."""
+        known = name
+        while known in self.times:  # two end sites of one joint, or a file that names two joints alike
+            self.times[name] += 1
+            known = f"{name}#{self.times[name]}"
+        self.times[known] = 1
+        self.names.append(known)
+        self.parents.append(parent)
+        return len(self.names) - 1
 
 
 def read_bvh(path: Path) -> Bvh:
@@ -101,14 +116,14 @@ def read_bvh(path: Path) -> Bvh:
 
     Raises FileProblem naming file, line and column of what is wrong, and what should stand there.
     """
-    words = Words(path, read_text(path, WHAT))
+    words = Words(path, read_text(path, WHAT, MOST_BYTES))
     words.expect("HIERARCHY")
     tree = _Tree()
     while words.expect("ROOT", "MOTION") == "ROOT":
         _joint(words, tree, -1)
     if not tree.names:
         raise words.problem("MOTION before any ROOT – a hierarchy of joints is meant")
-    count, seconds = _clock(words)
+    count, seconds = _clock(words, len(tree.names))
     frames = _numbers(words, count, sum(map(len, tree.channels)))
     return Bvh(
         tuple(tree.names),
@@ -129,6 +144,7 @@ def _joint(words: Words, tree: _Tree, root: int) -> None:
             open_joints.append(_begin(words, tree, open_joints[-1]))
         elif word == "End":
             words.expect("Site")
+            words.rest_of_line()  # some give it a name
             parent = open_joints[-1]
             _add(words, tree, tree.names[parent] + END, parent)
             words.expect("{")
@@ -142,14 +158,10 @@ def _joint(words: Words, tree: _Tree, root: int) -> None:
 def _begin(words: Words, tree: _Tree, parent: int) -> int:
     """Reads name, offset and channels of a joint; its number."""
     name = words.rest_of_line()
-    inline = name.endswith("{")
-    if inline:
-        name = name[:-1].strip()
     if not name:
         raise words.problem("the name of a joint is missing")
     number = _add(words, tree, name, parent)
-    if not inline:
-        words.expect("{")
+    words.expect("{")
     tree.offsets.append(_offset(words))
     channels: list[str] = []
     if (words.peek() or "").upper() == "CHANNELS":
@@ -166,13 +178,7 @@ def _begin(words: Words, tree: _Tree, parent: int) -> int:
 def _add(words: Words, tree: _Tree, name: str, parent: int) -> int:
     if len(tree.names) >= MOST_JOINTS:
         raise words.problem(f"more than {MOST_JOINTS} joints")
-    known, again = name, 1
-    while known in tree.names:  # two end sites of one joint, or a file that names two joints alike
-        again += 1
-        known = f"{name}#{again}"
-    tree.names.append(known)
-    tree.parents.append(parent)
-    return len(tree.names) - 1
+    return tree.named(name, parent)
 
 
 def _offset(words: Words) -> tuple[float, ...]:
@@ -180,12 +186,15 @@ def _offset(words: Words) -> tuple[float, ...]:
     return tuple(words.number(f"the offset's {axis}") for axis in "xyz")
 
 
-def _clock(words: Words) -> tuple[int, float]:
-    """The number of frames and the seconds from one to the next."""
+def _clock(words: Words, joints: int) -> tuple[int, float]:
+    """The number of frames, of that many joints, and the seconds from one to the next."""
     words.expect("Frames:")
     count = words.whole("the number of frames", MOST_FRAMES)
     if count == 0:
         raise words.problem("no frames – a motion of one frame or more is meant")
+    if count * joints > MOST_PLACES:
+        told = f"{count} frames of {joints} joints, ends among them"
+        raise words.problem(f"{told} – at most {MOST_PLACES // joints}; cut the motion into parts")
     words.expect("Frame")
     words.expect("Time:")
     seconds = words.number("the frame time")
@@ -197,14 +206,9 @@ def _clock(words: Words) -> tuple[int, float]:
 def _numbers(words: Words, count: int, columns: int) -> np.ndarray:
     """The frames (T, C); what is missing, too much or no number is found again with its place."""
     text, begin = words.rest()
-    parts = text.split()
-    if len(parts) == count * columns:
-        try:
-            numbers = np.array(parts, float).reshape(count, columns)
-        except ValueError:
-            numbers = None
-        if numbers is not None and (np.abs(numbers) < 1e12).all():  # NaN is not
-            return numbers
+    numbers = _finite(text)
+    if numbers is not None and numbers.size == count * columns:
+        return numbers.reshape(count, columns)
     end = text.rstrip()
     frame, at = 0, begin
     for line in end.split("\n"):
@@ -223,6 +227,22 @@ def _numbers(words: Words, count: int, columns: int) -> np.ndarray:
         frame += bool(cells)
         at += len(line) + 1
     raise words.problem(f"{frame} frames of numbers – 'Frames:' says {count}", begin + len(end))
+
+
+def _finite(text: str) -> np.ndarray | None:
+    """All numbers of a text (N,), or None where one is none or not finite."""
+    found, at = [np.zeros(0)], 0
+    while at < len(text):
+        end = text.find("\n", at + BLOCK)
+        end = len(text) if end < 0 else end
+        try:
+            found.append(np.array(text[at:end].split(), float))
+        except ValueError:
+            return None
+        if not (np.abs(found[-1]) < 1e12).all():  # NaN is not
+            return None
+        at = end
+    return np.concatenate(found)
 
 
 def _place(line: str, number: int) -> int:

@@ -58,7 +58,11 @@ class JointMapping:
         told: list[str] = []
         skip = self.skip if len(places) > self.skip else 0
         if skip:
-            told.append(f"{skip} frame at the start left out: no motion, as mapping {self.name!r} says")
+            told.append(f"frames at the start left out: {skip}, no motion, as mapping {self.name!r} says")
+        elif self.skip:
+            told.append(
+                f"no frame behind the first {self.skip}, no motion as mapping {self.name!r} says: all kept"
+            )
         places, time = places[skip:], time[skip:]
         out = np.zeros((len(places), len(KINECT.joints), 3))
         left_out, order = [], [KINECT.root, *(int(child) for child in KINECT.bones[:, 1])]
@@ -135,6 +139,13 @@ def _both_sides(path: Path, table: Mapping[str, Any]) -> dict[str, tuple[str, ..
         choices = _texts(path, f"joints.{key}", value)
         for side in SIDES if "{" in key else ({},):
             joint, *filled = (_filled(text, side) for text in (key, *choices))
+            for text in filled:
+                names, given, condition = text.partition(" if ")
+                if not all(map(plain, [*names.split("+"), *([condition] if given else [])])):
+                    raise FileProblem(
+                        f"{path}: joints.{key}: {shown(text)} – a name is missing: "
+                        "'A', 'A + B' or 'A + B if C' is meant"
+                    )
             if joint not in KINECT.joints:
                 raise FileProblem(f"{path}: joints.{key}: no joint – there are {', '.join(KINECT.joints)}")
             out[joint] = tuple(filled)

@@ -41,5 +41,5 @@ def read_recording(path: Path, mapping: str | None = None, unit: float | None = 
     if kind in (".csv", ".json"):
         if chosen is not None:
             raise FileProblem(f"{path}: a stream names a Kinect's joints itself – leave the mapping away")
-        return (read_csv_stream if kind == ".csv" else read_json_stream)(path)
+        return (read_csv_stream if kind == ".csv" else read_json_stream)(path, 1.0 if unit is None else unit)
     raise FileProblem(f"{path}: no motion file – give one that ends with {', '.join(ENDINGS)}")

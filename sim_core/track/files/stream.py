@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.errors import FileProblem
+from sim_core.errors import FileProblem, SimCoreError
 from sim_core.track.recording import Recording
 from sim_core.track.skeletons import KINECT
 from sim_core.validation.files import read_json, read_text, shown
@@ -35,7 +35,7 @@ class _Row:
         value = self.cells[column]
         try:
             real = float(value) if not isinstance(value, bool) else np.nan
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise self.problem(column, f"{shown(value)} is no number") from None
         return real
 
@@ -58,28 +58,30 @@ class _Row:
         return found > 0
 
 
-def read_csv_stream(path: Path) -> Recording:
+def read_csv_stream(path: Path, unit: float = 1.0) -> Recording:
     """The frames of a CSV stream; raises FileProblem naming line and column of what is wrong.
 
     Any order of the columns, which the first line names; `state` may be missing. Rows of one time are one frame,
-    unless a joint comes again.
+    unless a joint comes again. unit [m]: of its lengths.
     """
-    return _recording(path, _csv_rows(path, read_text(path, WHAT)))
+    return _recording(path, _csv_rows(path, read_text(path, WHAT)), unit)
 
 
-def read_json_stream(path: Path) -> Recording:
+def read_json_stream(path: Path, unit: float = 1.0) -> Recording:
     """The frames of a JSON stream: an array of {"time", "joint", "x", "y", "z", "state"}."""
     value = read_json(path, WHAT)
     if not isinstance(value, list):
         raise FileProblem(
             f"{path}: {shown(value)} – an array of rows is meant, {{time, joint, x, y, z, state}}"
         )
-    return _recording(path, _json_rows(path, value))
+    return _recording(path, _json_rows(path, value), unit)
 
 
 def _csv_rows(path: Path, text: str) -> Iterator[_Row]:
     lines = text.splitlines()
-    first = next(number for number, line in enumerate(lines) if line.strip())
+    first = next((number for number, line in enumerate(lines) if line.strip()), None)
+    if first is None:
+        raise FileProblem(f"{path}: the file is empty – give {WHAT}")
     names = [name.strip().strip('"').lower() for name in lines[first].split(",")]
     for number, name in enumerate(names):
         if name not in COLUMNS or name in names[:number]:
@@ -122,7 +124,7 @@ def _json_rows(path: Path, rows: list[Any]) -> Iterator[_Row]:
         yield _Row(row, problem)
 
 
-def _recording(path: Path, rows: Iterator[_Row]) -> Recording:
+def _recording(path: Path, rows: Iterator[_Row], unit: float) -> Recording:
     times: list[float] = []
     frames: list[np.ndarray] = []
     there: set[int] = set()
@@ -138,7 +140,10 @@ def _recording(path: Path, rows: Iterator[_Row]) -> Recording:
             frames[-1][joint] = [row.number(axis) for axis in "xyz"]
             ever[joint] = True
     if not frames:
-        raise FileProblem(f"{path}: no row behind the first line – give {WHAT}")
+        raise FileProblem(f"{path}: no row of a joint – give {WHAT}")
     told = [name for name, once in zip(KINECT.joints, ever, strict=True) if not once]
     words = (f"never seen: {', '.join(told)}",) if told else ()
-    return Recording(KINECT, np.array(times), np.array(frames), None, (), words)
+    try:
+        return Recording(KINECT, np.array(times), np.array(frames) * unit, None, (), words)
+    except SimCoreError as error:
+        raise FileProblem(f"{path}: {error}") from error

@@ -22,6 +22,8 @@ class Words:
     text: str
 
     def __post_init__(self) -> None:
+        if "\r" in self.text:  # lines that end as on Windows, or on an old Mac
+            self.text = self.text.replace("\r\n", "\n").replace("\r", "\n")
         self._at = 0
         self.start = 0  # of the word read last
 
@@ -65,14 +67,16 @@ class Words:
     def whole(self, wanted: str, most: int) -> int:
         """The next word as a whole number from 0 to `most`."""
         word = self.next(wanted)
-        if not word.isdecimal() or not 0 <= int(word[:12]) <= most:
+        if not word.isdecimal() or len(word) > 12 or int(word) > most:
             raise self.problem(f"{shown(word)} – {wanted} is meant, a whole number from 0 to {most}")
         return int(word)
 
     def rest_of_line(self) -> str:
-        """What is left of the line, without blanks around it."""
+        """What is left of the line, or of it before a bracket, without blanks around it."""
         end = self.text.find("\n", self._at)
         end = len(self.text) if end < 0 else end
+        bracket = self.text.find("{", self._at, end)
+        end = end if bracket < 0 else bracket
         line = self.text[self._at : end]
         self.start, self._at = self._at + len(line) - len(line.lstrip()), end
         return line.strip()

@@ -1,5 +1,5 @@
-// Exhibits that move by a clip: each is fetched when it is first seen, read once, and plays where it is seen, in the hall
-// and in its close-up, whose finer model has a clip of its own.
+// Exhibits that move by a clip: each is fetched when it is first seen (again after a while where the line was lost), read
+// once, and plays where it is seen, in the hall and in its close-up, whose finer model has a clip of its own.
 
 import { createPresence, inSight } from "../sight.js";
 import { readClip } from "./clip_file.js";
@@ -7,11 +7,12 @@ import { createPlayback } from "./playback.js";
 
 /** The node of the model in the close-up. */
 export const CLOSEUP = "/closeup";
+const SOONEST = 2e3, LONGEST = 60e3; // [ms] until what did not come is asked for again, longer every time
 
 async function fetched(url) {
   const answer = await fetch(url);
   if (!answer.ok) throw new Error(`${url}: ${answer.status}`);
-  return readClip(await answer.arrayBuffer());
+  return answer.arrayBuffer();
 }
 
 /**
@@ -23,24 +24,32 @@ async function fetched(url) {
  */
 export function createClips({ clock, wake }) {
   const present = createPresence();
-  const clips = new Map(); // address -> {clip: null while it comes, nodes: node -> playback}
+  const clips = new Map(); // address -> {clip: null while it comes, nodes: node -> playback, tries, again: when [ms]}
   clock.watch(() => wake());
 
-  function load(url) {
-    const entry = { clip: null, nodes: new Map() };
-    clips.set(url, entry);
-    fetched(url)
-      .then((clip) => {
-        entry.clip = clip;
-        wake();
-      })
-      .catch((error) => console.warn("an exhibit stands still:", error));
-    return entry;
+  async function load(url, entry) {
+    const data = await fetched(url).catch((error) => {
+      console.warn("an exhibit stands still for now:", error);
+      entry.again = performance.now() + Math.min(LONGEST, SOONEST * 2 ** entry.tries++);
+    });
+    if (!data) return;
+    try {
+      entry.clip = await readClip(data);
+      wake();
+    } catch (error) {
+      console.warn("an exhibit stands still:", error);
+    }
   }
 
   function play(motion, node) {
     if (clock.stopped && !clips.has(motion)) return; // nothing is fetched for who wants no motion
-    const { clip, nodes } = clips.get(motion) ?? load(motion);
+    const entry = clips.get(motion) ?? { clip: null, nodes: new Map(), tries: 0, again: 0 };
+    clips.set(motion, entry);
+    if (performance.now() >= entry.again) {
+      entry.again = Infinity;
+      load(motion, entry);
+    }
+    const { clip, nodes } = entry;
     if (!clip) return;
     if (!nodes.has(node)) nodes.set(node, createPlayback(clip, node));
     nodes.get(node).frame(clock.seconds(), true);
