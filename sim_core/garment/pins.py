@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,52 +10,62 @@ from scipy.spatial import KDTree
 
 from sim_core.body import Mannequin, Pose
 from sim_core.garment.garment import Garment
+from sim_core.track import align
 
 __all__ = ["Pins"]
 
-LIES = 0.015  # [m] from the skin that cloth is pinned to at most
+LIES = 0.03  # [m] from the skin that cloth is pinned to at most
 ROUND = 0.02  # [m] about a spot that cloth is held in
+SKIN = 0.04  # [m] about a spot whose skin says how the spot goes
+
+
+@dataclass(frozen=True)
+class _Spot:
+    """Vertices (P,) of a garment that go together, where they are (P, 3) [m] on a figure whose vertices skin (S,) are
+    at rest (S, 3) [m]."""
+
+    vertices: np.ndarray
+    places: np.ndarray
+    skin: np.ndarray
+    rest: np.ndarray
 
 
 @dataclass(frozen=True)
 class Pins:
-    """vertices (P,) int64 of the garment that are held; corners (P, 3) int32: the face of the wearer each goes with;
-    ways (P, 3) [m]: how far it lies along two sides of that face, as shares of them, and off it."""
+    """Spots of a garment that are held on its wearer, each as one stiff piece: the rigid motion of the skin about it
+    (SVD alignment, Eq. 13-14 of the paper)."""
 
-    vertices: np.ndarray
-    corners: np.ndarray
-    ways: np.ndarray
+    spots: tuple[_Spot, ...]
 
     @staticmethod
     def of(garment: Garment, wearer: Mannequin, pose: Pose) -> Pins:
-        """At the nape and on both shoulders, as far as the garment lies there; a skirt or a scarf has none."""
+        """On both shoulders, as far as the garment lies there; a skirt or a scarf has none."""
         marks, body = wearer.landmarks(pose), wearer.posed(pose)
-        spots = [marks["nape"], *(0.5 * (marks["neck"] + marks[f"shoulder_{side}"]) for side in "lr")]
+        middles = [0.5 * (marks["neck"] + marks[f"shoulder_{side}"]) for side in "lr"]
         skin, cloth = KDTree(body), KDTree(garment.positions)
-        held: list[int] = []
-        for spot in spots:
-            _, top = skin.query(spot)
-            away, nearest = cloth.query(body[top])
-            if away <= LIES:
-                held += cloth.query_ball_point(garment.positions[nearest], ROUND)
-        vertices = np.unique(np.array(held, np.int64))
-        _, under = skin.query(garment.positions[vertices].reshape(-1, 3))
-        first = np.full(len(body), -1)
-        first[wearer.faces[::-1]] = np.arange(len(wearer.faces))[::-1, None]
-        corners = wearer.faces[first[under]].astype(np.int32)
-        origin, *sides = _frames(body, corners)
-        away = garment.positions[vertices] - origin
-        ways = np.linalg.solve(np.stack(sides, axis=2), away[:, :, None])[:, :, 0]
-        return Pins(vertices, corners, ways)
+        spots: list[_Spot] = []
+        for middle in middles:
+            top = body[skin.query(middle)[1]]
+            away, nearest = cloth.query(top)
+            if away > LIES:
+                continue
+            held = np.array(sorted(cloth.query_ball_point(garment.positions[nearest], ROUND)), np.int64)
+            held = np.setdiff1d(held, _held(spots))
+            near = np.array(sorted(skin.query_ball_point(top, SKIN)), np.int64)
+            spots.append(_Spot(held, garment.positions[held], near, body[near]))
+        return Pins(tuple(spots))
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The garment's vertices (P,) int64 that are held."""
+        return _held(self.spots)
 
     def places(self, body: np.ndarray) -> np.ndarray:
         """Where they are (P, 3) [m] on the wearer's posed vertices (B, 3) [m]."""
-        origin, *sides = _frames(body, self.corners)
-        return origin + np.einsum("pk,kpi->pi", self.ways, np.stack(sides))
+        moved = [np.zeros((0, 3))]
+        moved += [align(body[spot.skin], spot.rest).of(spot.places) for spot in self.spots]
+        return np.concatenate(moved)
 
 
-def _frames(body: np.ndarray, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """First corner (P, 3) of each face, its two sides from there, and its unit normal."""
-    a, b, c = (body[corners[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    return a, b - a, c - a, normal / np.linalg.norm(normal, axis=1, keepdims=True)
+def _held(spots: Sequence[_Spot]) -> np.ndarray:
+    return np.concatenate([np.zeros(0, np.int64), *(spot.vertices for spot in spots)])

@@ -48,7 +48,7 @@ def move(
     outfit: Outfit, garments: Sequence[Garment], *, progress: Callable[[float, str], None] | None = None
 ) -> Played:
     """Carries an outfit's dressed garments through its motion, each over those beneath it, in still air: who walks in
-    place meets the wind of walking. They are pinned at nape and shoulders, as on a museum's figure.
+    place meets the wind of walking. They are pinned on both shoulders, as on a museum's figure.
 
     A motion that does not repeat is played once, from the pose the outfit was dressed in. Of one that repeats the
     wearer comes into it and goes through two rounds; the second is what is returned, a loop. Cloth never comes back to
@@ -131,9 +131,10 @@ def _draw(live: Live, before: np.ndarray, there: np.ndarray, number: int) -> np.
 def _closed(frames: np.ndarray, again: int, closing: int) -> tuple[np.ndarray, float]:
     """Frames (T, V, 3) whose last is blended to be that of a round before, and how far from there it was [m]."""
     away = float(np.linalg.norm(frames[-1] - frames[-1 - again], axis=1).max())
-    for k in range(1, closing + 1):
-        at = len(frames) - 1 - closing + k
-        frames[at] += np.float32(minimum_jerk(k / closing)) * (frames[at - again] - frames[at])
+    count = min(closing, round(RATE * GENTLY))
+    for k in range(1, count + 1):
+        at = len(frames) - 1 - count + k
+        frames[at] += np.float32(minimum_jerk(k / count)) * (frames[at - again] - frames[at])
     return frames, away
 
 
