@@ -50,7 +50,7 @@ def test_lists_that_go_on_give_the_bits_of_lists_begun_anew() -> None:
     went_on = 0
     for _ in range(FRAMES):
         kept.frame(one)
-        went_on += kept.engine.near.kept[2] == 1.0
+        went_on += kept.engine.near.kept[1] == 1.0
         anew.frame(two)
         anew.engine.near.kept[:] = 0.0
     assert went_on > 0
