@@ -29,6 +29,7 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
+WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
 
 
 class Steps(NamedTuple):
@@ -139,7 +140,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes, looks, done = -1, touch.patches, touch.shapes, False, True
+    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
@@ -147,8 +148,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            looks = k >= look_layer
-            if looks:
+            if k >= look_layer:
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
@@ -165,10 +165,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
-        if looks and steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
+        watch = layers and steps.breaks and k % WATCH_EVERY == 0
+        if watch and steps.dt > LATE * passing_step(shell.thickness, here.v):
             done = False
             break
-        looks = False
         if late:
             arrive(layout, mesh, holds.limit, steps, room, here)
         if len(holds.pairs) > 0:
