@@ -8,8 +8,16 @@ import numpy as np
 import pytest
 
 from sim_core.cloth import Contact, Material, Phase, Sheet
-from sim_core.cloth.contact import Mesh, Patches, Search, begin_pairs, near_pairs_of, patches_of, shapes_of
-from sim_core.cloth.contact.layers.foresight import unsure_pairs
+from sim_core.cloth.contact import (
+    Mesh,
+    Patches,
+    Search,
+    begin_pairs,
+    near_pairs_of,
+    patches_of,
+    shapes_of,
+    unsure_pairs,
+)
 from sim_core.cloth.run import Run, Setup
 from sim_core.cloth.scenes import equilateral_sheet
 
