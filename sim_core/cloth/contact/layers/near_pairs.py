@@ -236,6 +236,8 @@ def no_pairs(near, how):
     """Empties the lists: the next look makes them anew."""
     near.now.count[:] = 0
     near.course.plan[1] = 0.0
+    if how.near > 0.0:  # when these are looked at may tell nothing of the frames before
+        near.course.bent[:] = 0.0
     near.kept[0], near.kept[1] = how.reach - how.thickness, 1.0 if how.near == 0.0 else 0.0
 
 
