@@ -274,7 +274,8 @@ Found = tuple[set[tuple[int, int]], set[tuple[int, int]]]
 def near(x: np.ndarray, mesh: Mesh, how: Search) -> Found:
     """The (vertex, face) pairs and the (edge, edge) pairs, lower first, that a search finds."""
     patches = patches_of(mesh.edges, mesh.faces, mesh.same, mesh.rest[mesh.faces])
-    found = begin_pairs(x, mesh, patches, shapes_of(patches), how, near_pairs_of(len(x))).now
+    lists = near_pairs_of(len(x), len(mesh.edges), len(patches.bay))
+    found = begin_pairs(x, mesh, patches, shapes_of(patches), how, lists).now
     _, points, crossings = found.count
     met = np.sort(found.crossings[:crossings, :2], axis=1)
     return {(int(v), int(f)) for v, f, _ in found.points[:points]}, {(int(a), int(b)) for a, b in met}

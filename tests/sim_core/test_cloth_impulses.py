@@ -40,7 +40,7 @@ def near_of(points: list[list[int]], crossings: list[list[int]]) -> Near:
         return np.array([[*pair, 0] for pair in pairs], np.int32).reshape(-1, 3)
 
     counts = np.array([0, len(points), len(crossings)])
-    return near_pairs_of(0).now._replace(points=awake(points), crossings=awake(crossings), count=counts)
+    return near_pairs_of(0, 0, 0).now._replace(points=awake(points), crossings=awake(crossings), count=counts)
 
 
 def met(gap: float, velocity: tuple[float, float, float], friction: float, kind: str) -> np.ndarray:

@@ -40,7 +40,7 @@ def untangled(x: np.ndarray, v: np.ndarray, mesh: Mesh, how: Untangling) -> tupl
     """Crossings before and after."""
     patches = patches_of(mesh.edges, mesh.faces, mesh.same, mesh.rest[mesh.faces])
     finder = finder_of(len(x), len(mesh.edges), len(mesh.faces))
-    memory = Memory(finder, no_crossings(), patches, shapes_of(patches), near_pairs_of(0).now.patches)
+    memory = Memory(finder, no_crossings(), patches, shapes_of(patches), near_pairs_of(0, 0, 0).now.patches)
     third = faces_at_edges(mesh.edges, mesh.faces)
     return untangle(x, v, mesh, third, Holds.of(len(x)), memory, how)[:2]
 

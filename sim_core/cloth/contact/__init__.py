@@ -9,6 +9,7 @@ from sim_core.cloth.contact.collisions import Push, collide_samples, collide_ver
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
 from sim_core.cloth.contact.layers.crossings import crossings_of, faces_at_edges, no_crossings, none_crosses
+from sim_core.cloth.contact.layers.foresight import unsure_pairs
 from sim_core.cloth.contact.layers.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
 from sim_core.cloth.contact.layers.pairs import Mesh, Search, finder_of, hash_points
 from sim_core.cloth.contact.layers.patches import Patches, patches_of, shapes_of
@@ -64,6 +65,7 @@ __all__ = [
     "shapes_of",
     "solid_mesh",
     "united",
+    "unsure_pairs",
     "untangle",
 ]
 

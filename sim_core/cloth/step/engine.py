@@ -94,9 +94,9 @@ class Engine:
             same=self.holds.same,
         )
         layers = (count, len(s.edges), len(s.faces)) if self.shell.thickness else (0, 0, 0)
-        self.near = near_pairs_of(layers[0])
         layered = len(s.faces) if self.shell.thickness else 0
         patches = patches_of(s.edges, s.faces[:layered], self.holds.same, s.corner[:layered])
+        self.near = near_pairs_of(layers[0], layers[1], len(patches.bay))
         self.finder = finder_of(*layers)
         (vertices, middles), stirred = self._samples(), np.zeros(count, bool)
         self.touch = Touch(

@@ -15,7 +15,7 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
-from sim_core.cloth.contact.layers.near_pairs import begin_pairs, go_on, likely_way, renew_pairs
+from sim_core.cloth.contact.layers.near_pairs import go_on, likely_way, no_pairs, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for, search_with
 from sim_core.cloth.contact.packed import MOVING, Packed
@@ -29,7 +29,7 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
-SURE_FOR = 2  # substeps for which a quick look has to be sure that the lists hold: a thorough one costs as much as 20
+WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
 
 
 class Steps(NamedTuple):
@@ -140,7 +140,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes, looks, done = -1, touch.patches, touch.shapes, False, True
+    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
@@ -148,17 +148,16 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            looks = k >= look_layer
-            if looks:
+            if k >= look_layer:
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
                     if go_on(near, how):
-                        how = search_with(how.thickness, how.edge, near.kept[0], near.kept[1])
+                        how = search_with(how.thickness, how.edge, near.kept[0])
                     else:
-                        near = begin_pairs(x, mesh, patches, shapes, how, near)
-                enough, push = SURE_FOR * steps.dt, pushed / steps.dt
-                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, (push, enough))
+                        no_pairs(near, how)
+                within = pushed / steps.dt, k * steps.dt, (steps.count - k) * steps.dt
+                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, within)
                 first = look_layer < 0 and solids  # when nobody knows yet how far they push
                 look_layer = k + 1 if first else k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt))
                 pushed = 0.0
@@ -166,10 +165,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
-        if looks and steps.breaks and steps.dt > LATE * passing_step(shell.thickness, here.v):
+        watch = layers and steps.breaks and k % WATCH_EVERY == 0
+        if watch and steps.dt > LATE * passing_step(shell.thickness, here.v):
             done = False
             break
-        looks = False
         if late:
             arrive(layout, mesh, holds.limit, steps, room, here)
         if len(holds.pairs) > 0:
@@ -179,5 +178,6 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         if bounded:
             bound(holds, x, v)
             mirror(holds, x, v)
+    near.course.plan[2] = steps.count * steps.dt
     state.x[:] = here.x  # lanes go to and fro between two arrays
     return near, done

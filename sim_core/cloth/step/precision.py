@@ -139,6 +139,6 @@ class Laned:
 
 def _counted_from(place: np.ndarray, near: NearPairs) -> None:
     """Where lists were looked for, in place, as seen from there (1, 3) [m]."""
-    if len(near.begun) and place.any():
-        near.begun[:] -= place
+    if len(near.course.begun) and place.any():
+        near.course.begun[:] -= place
         near.now.mark[:] -= place

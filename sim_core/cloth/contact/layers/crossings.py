@@ -9,7 +9,7 @@ from numba import njit
 
 from sim_core.cloth.contact.layers.near_pairs import listed_within
 from sim_core.cloth.contact.layers.pairs import hash_points, near_balls, within_box
-from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_patches
+from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, place_parts, place_patches
 from sim_core.cloth.contact.layers.patches import CONE
 
 FRESH = 0.8  # of the skin, that lists which have just been begun are sure of
@@ -161,14 +161,17 @@ def _patch_crossings(x, mesh, patches, shapes, parts, found):
 @njit(cache=True, error_model="numpy")
 def crossings_by_patches(x, mesh, patches, shapes, near, lists):
     """`crossings_of` a whole cloth: stretches that are flat cannot cross themselves. near (K, 4): working memory."""
-    (pairs, place), count = lists, 0
+    (pairs, place), count, placed, look = lists, 0, shapes.placed, shapes.look
     finite, along = place_patches(x, mesh, patches, shapes)
     if finite:
-        near, total = patch_pairs(patches, shapes, along, 0.0, near)
+        near, total = patch_pairs(shapes.box, shapes.order, along, 0.0, near)
         for k in range(total):
             p, q = near[k, 0], near[k, 1]
             if flat_pair(x, mesh, patches, shapes, p, q, CONE):
                 continue
+            for part in (p, q):
+                if placed[part, 1] != look[0]:
+                    place_parts(x, mesh, patches, shapes, part, False)
             found = pairs, place, count
             pairs, place, count = _patch_crossings(x, mesh, patches, shapes, (p, q), found)
             if p != q:
@@ -205,7 +208,7 @@ def none_crosses(x, mesh, third, near, thickness):
     asked, sure = _widest(x, mesh.faces) - thickness, listed_within(x, near)
     if not asked <= sure:
         if asked <= FRESH * near.kept[0]:
-            near.kept[2] = 0.0
+            near.kept[1] = 0.0
         return False
     for k in range(near.now.count[2]):
         for n in range(2):

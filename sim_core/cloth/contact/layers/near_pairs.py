@@ -13,21 +13,23 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
-from sim_core.cloth.contact.layers.patch_motion import apart, furthest, move_patches
-from sim_core.cloth.contact.layers.patch_places import (
-    between,
-    flat_pair,
-    patch_pairs,
-    place_patch,
-    place_patches,
-    turn_parts,
+from sim_core.cloth.contact.layers.foresight import (
+    STRAIN,
+    Course,
+    course_of,
+    on_course,
+    set_out,
+    strayed,
+    unsure_pairs,
 )
+from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
+from sim_core.cloth.contact.layers.patch_motion import apart, furthest, going_patches, move_patches
+from sim_core.cloth.contact.layers.patch_places import between, flat_pair, place_now, place_parts
 from sim_core.cloth.contact.layers.patches import WHOLE, grown
 from sim_core.cloth.contact.sleep import GAINED
 
 LATE = 0.6  # of what patches may move against each other, from where on their pairs are looked for anew
-SOON = 0.3  # likewise for those that are looked for along with others
+SOON = 0.5  # likewise for those that are looked for along with others
 KEEP, DROP, LOOK = 0, 1, 2  # what a pair of patches holds stays, is nothing, or is to be looked for
 
 
@@ -43,9 +45,10 @@ class Near(NamedTuple):
         np.ndarray
     )  # (K,) [m] how far the patches of each have moved against each other since they were looked for
     lasts: np.ndarray  # (K,) [m] how far they may, until they are to be
+    ways: np.ndarray  # (K, 2) how far they have by now [m], and how fast they may go on [m/s]
     count: np.ndarray  # (3,) int64 of pairs of patches, points, crossings
     mark: np.ndarray  # (V, 3) where the cloth was when `gone` was counted last
-    least: np.ndarray  # (2,) [m] how far any pair may move from there until it is due, and until it is late
+    least: np.ndarray  # (1,) [m] how far any pair may move from there
 
 
 class NearPairs(NamedTuple):
@@ -53,18 +56,16 @@ class NearPairs(NamedTuple):
 
     now: Near
     spare: Near
-    begun: np.ndarray  # (V, 3)
+    course: Course
     order: np.ndarray  # (K,) int32 working memory
-    kept: (
-        np.ndarray
-    )  # (3,) [m] the skin and the way ahead that the lists are looked for with; 1 while they hold
+    kept: np.ndarray  # (2,) [m] the skin that the lists are looked for with; 1 while they hold
     tally: (
         np.ndarray
-    )  # (4,) int64 looks, renewals, those of them among other pairs of patches, pairs looked for anew
+    )  # (5,) int64 looks, renewals, those among other pairs, pairs of patches looked at anew, and through
 
 
-def near_pairs_of(vertices: int) -> NearPairs:
-    """Empty lists, long enough for most cloths of so many vertices."""
+def near_pairs_of(vertices: int, edges: int, patches: int) -> NearPairs:
+    """Empty lists, long enough for most cloths of so many vertices, edges and patches."""
 
     def near() -> Near:
         many = 2 * vertices + 64
@@ -74,13 +75,16 @@ def near_pairs_of(vertices: int) -> NearPairs:
             patches=np.zeros((many, 5), np.int32),
             gone=np.zeros(many),
             lasts=np.zeros(many),
+            ways=np.zeros((many, 2)),
             count=np.zeros(3, np.int64),
             mark=np.zeros((vertices, 3)),
-            least=np.zeros(2),
+            least=np.zeros(1),
         )
 
     none = np.zeros(0, np.int32)
-    return NearPairs(near(), near(), np.zeros((vertices, 3)), none, np.zeros(3), np.zeros(5, np.int64))
+    return NearPairs(
+        near(), near(), course_of(vertices, edges, patches), none, np.zeros(2), np.zeros(5, np.int64)
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -119,7 +123,7 @@ def _sifted(x, mesh, patches, shapes, how, near):
     """Looks at the pairs of patches that are due: how far they may move until they are due again, and what to do with
     what they hold, into near.patches[:, 4]. Returns how many were due, and how many of them are to be looked through.
     """
-    pairs, gone, lasts, skin = near.patches, near.gone, near.lasts, how.reach - how.thickness
+    pairs, gone, lasts, ways, skin = near.patches, near.gone, near.lasts, near.ways, how.reach - how.thickness
     placed, look, box = shapes.placed, shapes.look, shapes.box
     corners, start = patches.corners, patches.corner_start
     due = through = 0
@@ -128,12 +132,11 @@ def _sifted(x, mesh, patches, shapes, how, near):
             pairs[k, 4] = KEEP
             continue
         p, q = pairs[k, 0], pairs[k, 1]
-        if placed[p, 0] != look[0]:
-            place_patch(x, mesh, patches, shapes, p)
-        if placed[q, 0] != look[0]:
-            place_patch(x, mesh, patches, shapes, q)
+        for part in (p, q):
+            if placed[part, 0] != look[0]:
+                place_now(x, mesh, patches, shapes, part)
         due += 1
-        pairs[k, 4], gone[k] = DROP, 0.0
+        pairs[k, 4], gone[k], ways[k, 0] = DROP, 0.0, 0.0
         lasts[k] = max(skin, between(x, corners, start, box, p, q) - how.thickness)
         if lasts[k] == skin and not flat_pair(x, mesh, patches, shapes, p, q, how.wide):
             pairs[k, 4] = LOOK
@@ -148,6 +151,7 @@ def _rebuilt(x, mesh, patches, shapes, how, old, out):
     """
     pairs, total, points, crossings = out.patches, out.count[0], out.points, out.crossings
     ends, old_points, old_crossings = old.patches, old.points, old.crossings
+    placed, look = shapes.placed, shapes.look
     first = second = 0
     for k in range(total):
         if pairs[k, 4] == KEEP:
@@ -159,33 +163,34 @@ def _rebuilt(x, mesh, patches, shapes, how, old, out):
                 crossings, second = _taken(old_crossings, start, ends[place, 3], crossings, second)
         elif pairs[k, 4] == LOOK:
             p, q = pairs[k, 0], pairs[k, 1]
-            turn_parts(x, mesh, patches, shapes, p)
-            turn_parts(x, mesh, patches, shapes, q)
-            points, first = points_on_faces(x, mesh, patches, shapes, how, (p, q), (points, first))
-            if p != q:
-                points, first = points_on_faces(x, mesh, patches, shapes, how, (q, p), (points, first))
+            for part in (p, q):
+                if placed[part, 1] != look[0]:
+                    place_parts(x, mesh, patches, shapes, part, how.near > 0.0)
+            for way in range(1 if p == q else 2):
+                both = (q, p) if way else (p, q)
+                points, first = points_on_faces(x, mesh, patches, shapes, how, both, (points, first))
             crossings, second = edges_on_edges(x, mesh, patches, shapes, how, (p, q), (crossings, second))
         pairs[k, 2], pairs[k, 3] = first, second
     out.count[1], out.count[2] = first, second
     out.mark[:] = x
-    return Near(points, crossings, pairs, out.gone, out.lasts, out.count, out.mark, out.least)
+    return Near(points, crossings, pairs, out.gone, out.lasts, out.ways, out.count, out.mark, out.least)
 
 
 @njit(cache=True, error_model="numpy")
 def likely_way(x, v, patches, shapes, seconds):
     """How far patches go against all of them as a whole in so many seconds [m], on average, if they go on so."""
-    move_patches(x, v, x, patches, shapes.moved)
+    going_patches(x, v, patches, shapes)
     return seconds * furthest(shapes.moved, WHOLE)[1]
 
 
 @njit(cache=True, error_model="numpy")
 def _lengthened(near, pairs, count):
     """`Near` of `count` pairs of patches, with room for what is told of each."""
-    gone, lasts = near.gone, near.lasts
+    gone, lasts, ways = near.gone, near.lasts, near.ways
     if len(gone) < count:
-        gone, lasts = np.zeros(2 * count), np.zeros(2 * count)
+        gone, lasts, ways = np.zeros(2 * count), np.zeros(2 * count), np.zeros((2 * count, 2))
     near.count[0] = count
-    return Near(near.points, near.crossings, pairs, gone, lasts, near.count, near.mark, near.least)
+    return Near(near.points, near.crossings, pairs, gone, lasts, ways, near.count, near.mark, near.least)
 
 
 @njit(cache=True, error_model="numpy")
@@ -217,9 +222,9 @@ def go_on(near, how):
 
     Only where edges are long: between short ones it depends on when they are looked at which pairs count as one sheet.
     """
-    skin, (before, ahead, holds) = how.reach - how.thickness, near.kept
-    like = 0.5 * before <= skin <= 1.5 * before and 0.5 * ahead <= how.ahead <= 1.25 * ahead
-    if holds == 0.0 or how.near > 0.0 or not like:
+    skin, (before, holds) = how.reach - how.thickness, near.kept
+    near.course.plan[1] = 0.0
+    if holds == 0.0 or how.near > 0.0 or not 0.5 * before <= skin <= 1.5 * before:
         return False
     near.now.points[: near.now.count[1], 2] = 0
     near.now.crossings[: near.now.count[2], 2] = 0
@@ -227,112 +232,98 @@ def go_on(near, how):
 
 
 @njit(cache=True, error_model="numpy")
-def begin_pairs(x, mesh, patches, shapes, how, near):
-    """All lists anew at x (V, 3); none where x is not finite: whoever checks the frame tells."""
-    finite, along = place_patches(x, mesh, patches, shapes)
+def no_pairs(near, how):
+    """Empties the lists: the next look makes them anew."""
     near.now.count[:] = 0
-    near.begun[:] = x
-    near.kept[0], near.kept[1], near.kept[2] = how.reach - how.thickness, how.ahead, 0.0
-    if not finite:
-        return near
-    pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.now.patches)
-    order = _in_order(pairs, count, shapes.start, near.order)
-    now = _lengthened(near.now, pairs, count)
-    now.gone[:count] = np.inf
-    _sifted(x, mesh, patches, shapes, how, now)
-    now = _rebuilt(x, mesh, patches, shapes, how, near.spare, now)
-    _margins(now)
-    near.kept[2] = 1.0 if how.near == 0.0 else 0.0
-    return NearPairs(now, near.spare, near.begun, order, near.kept, near.tally)
+    near.course.plan[1] = 0.0
+    if how.near > 0.0:  # when these are looked at may tell nothing of the frames before
+        near.course.bent[:] = 0.0
+    near.kept[0], near.kept[1] = how.reach - how.thickness, 1.0 if how.near == 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def begin_pairs(x, mesh, patches, shapes, how, near):
+    """All lists anew at x (V, 3), where the cloth stands; none where x is not finite, which others tell."""
+    no_pairs(near, how)
+    near.course.begun[:], near.course.going[:], near.course.allowed[:] = x, 0.0, 0.0
+    return _looked_through(x, near.course.going, mesh, patches, shapes, how, near, True)
 
 
 @njit(cache=True, error_model="numpy")
 def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold at velocities v (V, 3).
 
-    within: the speed [m/s] at which solids push at most, beside the velocities, and for how long [s] it is enough that
-    they hold: what a quick look is sure of for so long is not looked at thoroughly.
+    within: the speed [m/s] at which solids push at most, beside the velocities; of a frame, now and what is left [s].
     """
-    now, moved, (pushed, enough) = near.now, shapes.moved, within
+    now, moved, course, (pushed, time, left) = near.now, shapes.moved, near.course, within
     near.tally[0] += 1
-    calm = _calm_for(x, v, near.begun, now.mark, now.least, how.ahead, pushed)
-    if calm >= enough:  # without a look at any patch
-        return near, calm
-    move_patches(x, v, near.begun, patches, moved)
-    (far, total), (fast, _) = furthest(moved, 0), furthest(moved, WHOLE)
-    if not math.isfinite(total):
+    sure = on_course(x, v, mesh.edges, course, time, pushed)
+    if math.isnan(sure):
         now.count[:] = 0
-        near.kept[2] = 0.0
+        near.kept[1] = 0.0
         return near, 1.0
-    away = 2.0 * far > LATE * how.ahead
-    move_patches(x, v, now.mark, patches, moved)
-    late, worst = _soonest(now, moved, pushed)
-    if late or away:
-        near = _looked_through(x, mesh, patches, shapes, how, near, away)
-        moved[:, :WHOLE] = 0.0
-        _, worst = _soonest(near.now, moved, pushed)
-        _margins(near.now)
-        far = 0.0 if away else far
-    return near, max(0.0, min(worst, (0.5 * how.ahead - far) / (2.0 * (fast + pushed) + GAINED)))
+    fresh = sure <= 0.0
+    if now.count[0] == 0 and not fresh:
+        return near, sure
+    move_patches(x, v, now.mark, patches, shapes)
+    late = _gone_on(now, moved, pushed)
+    if fresh:
+        gone = time - course.plan[0] if course.plan[1] > 0.0 else 0.0
+        sure = set_out(x, v, mesh, patches, course, gone, left, how.edge)
+        course.plan[0], course.plan[1], course.plan[3], course.plan[4] = time, sure, time, time
+        sure = min(sure, STRAIN * how.edge / (2.0 * pushed + GAINED))
+    if late or fresh:
+        near = _looked_through(x, v, mesh, patches, shapes, how, near, fresh)
+        if fresh:
+            moved[:, :WHOLE] = 0.0
+            _gone_on(near.now, moved, pushed)
+    return near, max(0.0, min(_soonest(near.now), sure))
 
 
 @njit(cache=True, error_model="numpy")
-def _margins(near):
+def _margin(near):
     """How far the patches of any pair may move against each other now, into near.least."""
-    gone, lasts, due, late = near.gone, near.lasts, np.inf, np.inf
+    gone, lasts, late = near.gone, near.lasts, np.inf
     for k in range(near.count[0]):
-        due, late = min(due, LATE * lasts[k] - gone[k]), min(late, lasts[k] - gone[k])
-    near.least[0], near.least[1] = due, late
+        late = min(late, lasts[k] - gone[k])
+    near.least[0] = late
 
 
 @njit(cache=True, error_model="numpy")
 def listed_within(x, near):
     """Up to which gap [m] beyond the thickness all pairs at x (V, 3) are in the lists; less than 0: nobody knows."""
-    far = away = 0.0
-    mark, begun = near.now.mark, near.begun
+    far, mark, (begin, lasts, now) = 0.0, near.now.mark, near.course.plan[:3]
     for i in range(len(x)):
         far = max(
             far, (x[i, 0] - mark[i, 0]) ** 2 + (x[i, 1] - mark[i, 1]) ** 2 + (x[i, 2] - mark[i, 2]) ** 2
         )
-        away = max(
-            away, (x[i, 0] - begun[i, 0]) ** 2 + (x[i, 1] - begun[i, 1]) ** 2 + (x[i, 2] - begun[i, 2]) ** 2
-        )
-    if near.kept[2] == 0.0 or not 2.0 * math.sqrt(away) <= near.kept[1]:
+    away, _, _, _ = strayed(x, near.course.going, near.course, now - begin)
+    if near.kept[1] == 0.0 or not (away <= 1.0 and now - begin <= 1.000001 * lasts):
         return -1.0
-    return min(near.now.least[1], near.kept[0]) - 2.0 * math.sqrt(far)
+    return min(near.now.least[0], near.kept[0]) - 2.0 * math.sqrt(far)
 
 
 @njit(cache=True, error_model="numpy")
-def _calm_for(x, v, begun, mark, least, ahead, pushed):
-    """For how long [s] the lists hold by what the furthest and the fastest vertex say; 0 where they cannot tell."""
-    far = away = fast = 0.0
-    for i in range(len(x)):
-        far = max(
-            far, (x[i, 0] - mark[i, 0]) ** 2 + (x[i, 1] - mark[i, 1]) ** 2 + (x[i, 2] - mark[i, 2]) ** 2
-        )
-        away = max(
-            away, (x[i, 0] - begun[i, 0]) ** 2 + (x[i, 1] - begun[i, 1]) ** 2 + (x[i, 2] - begun[i, 2]) ** 2
-        )
-        fast = max(fast, v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
-    far, away, fast = math.sqrt(far), math.sqrt(away), math.sqrt(fast)
-    if not (2.0 * far <= least[0] and 2.0 * away <= LATE * ahead and math.isfinite(fast)):
-        return 0.0
-    speed = 2.0 * (2.0 * fast + pushed) + GAINED
-    return max(0.0, min((least[1] - 2.0 * far) / speed, (0.5 * ahead - away) / speed))
-
-
-@njit(cache=True, error_model="numpy")
-def _soonest(near, moved, pushed):
-    """Whether patches of any pair have moved against each other by LATE of what they may, and for how long [s] none
-    moves by all of it.
+def _gone_on(near, moved, pushed):
+    """How far the patches of each pair have moved against each other since the mark, and how fast they may go on, into
+    near.ways; whether any have by LATE of what they may.
     """
-    pairs, gone, lasts, late, soonest = near.patches, near.gone, near.lasts, False, 1.0
+    pairs, gone, lasts, ways, late = near.patches, near.gone, near.lasts, near.ways, False
     for k in range(near.count[0]):
         p, q = pairs[k, 0], pairs[k, 1]
-        way, fast = gone[k] + apart(moved, p, q, 0), 2.0 * (apart(moved, p, q, WHOLE) + pushed) + GAINED
-        late = late or not way <= LATE * lasts[k]
-        soonest = min(soonest, (lasts[k] - way) / fast)
-    return late, soonest
+        ways[k, 0] = gone[k] + apart(moved, p, q, 0)
+        ways[k, 1] = 2.0 * (apart(moved, p, q, WHOLE) + pushed) + GAINED
+        late = late or not ways[k, 0] <= LATE * lasts[k]
+    return late
+
+
+@njit(cache=True, error_model="numpy")
+def _soonest(near):
+    """For how long [s] no patches move against each other by all of what they may."""
+    lasts, ways, soonest = near.lasts, near.ways, 1.0
+    for k in range(near.count[0]):
+        soonest = min(soonest, (lasts[k] - ways[k, 0]) / ways[k, 1])
+    return soonest
 
 
 @njit(cache=True, error_model="numpy")
@@ -352,17 +343,20 @@ def _matched(now, pairs, count, start, order, out):
 
 
 @njit(cache=True, error_model="numpy")
-def _looked_through(x, mesh, patches, shapes, how, near, away):
-    """The lists with what is SOON due looked for anew, among other pairs of patches where these have gone too far."""
-    now, moved, order, pairs = near.now, shapes.moved, near.order, near.now.patches
+def _looked_through(x, v, mesh, patches, shapes, how, near, fresh):
+    """The lists with what is SOON due looked for anew; fresh: among those that are unsure from now on."""
+    now, order = near.now, near.order
     for k in range(now.count[0]):
-        now.gone[k] += apart(moved, pairs[k, 0], pairs[k, 1], 0)
+        now.gone[k] = now.ways[k, 0]
     near.tally[1] += 1
-    near.tally[2] += away
-    if away:
-        near.begun[:] = x
-        _, along = place_patches(x, mesh, patches, shapes)
-        pairs, count = patch_pairs(patches, shapes, along, how.reach + how.ahead, near.spare.patches)
+    near.tally[2] += fresh
+    if fresh:
+        until = near.course.plan[1], near.course.allowed
+        pairs, count = unsure_pairs(x, v, mesh, patches, shapes, how, until, near.spare.patches)
+        if count < 0:
+            now.count[:] = 0
+            near.kept[1] = 0.0
+            return near
         order = _in_order(pairs, count, shapes.start, order)
         spare = _lengthened(near.spare, pairs, count)
         order = _matched(now, pairs, count, shapes.start, order, spare)
@@ -373,6 +367,7 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
         if through == 0 and now.count[1] + now.count[2] == 0:
             near.tally[3] += due
             now.mark[:] = x
+            _margin(now)
             return near
         count = now.count[0]
         spare = _lengthened(near.spare, grown(near.spare.patches, count), count)
@@ -380,7 +375,9 @@ def _looked_through(x, mesh, patches, shapes, how, near, away):
         for k in range(count):
             pairs[k, 0], pairs[k, 1], pairs[k, 2] = now.patches[k, 0], now.patches[k, 1], k
             pairs[k, 4], spare.gone[k], spare.lasts[k] = now.patches[k, 4], now.gone[k], now.lasts[k]
+            spare.ways[k, 0], spare.ways[k, 1] = now.ways[k, 0], now.ways[k, 1]
     near.tally[3] += due
     near.tally[4] += through
     spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
-    return NearPairs(spare, now, near.begun, order, near.kept, near.tally)
+    _margin(spare)
+    return NearPairs(spare, now, near.course, order, near.kept, near.tally)

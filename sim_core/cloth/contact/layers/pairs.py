@@ -114,10 +114,7 @@ def _folded(rest, first, second, thickness):
 
 
 @njit(cache=True, error_model="numpy")
-def _vertex_near_face(x, i, faces, f, same, reach):
-    a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-    if same[i] == same[a] or same[i] == same[b] or same[i] == same[c]:
-        return False
+def _vertex_near_face(x, i, a, b, c, reach):
     u, v, w = triangle_weights(at(x, i), at(x, a), at(x, b), at(x, c))
     gap = 0.0
     for k in range(3):
@@ -126,10 +123,7 @@ def _vertex_near_face(x, i, faces, f, same, reach):
 
 
 @njit(cache=True, error_model="numpy")
-def _edges_near(x, edges, e, g, same, reach):
-    a, b, c, d = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
-    if same[a] == same[c] or same[a] == same[d] or same[b] == same[c] or same[b] == same[d]:
-        return False
+def _edges_near(x, a, b, c, d, reach):
     s, t = segment_parameters(at(x, a), at(x, b), at(x, c), at(x, d))
     gap = 0.0
     for k in range(3):
@@ -150,7 +144,6 @@ class Search(NamedTuple):
     near: float
     edge: float  # [m] length of the edges at rest, on average
     wide: float = CONE  # cosine of the angle that normals may be apart in a stretch that cannot meet itself
-    ahead: float = 0.01  # [m] further than the reach, in which pairs of patches are kept
 
 
 @njit(cache=True, error_model="numpy")
@@ -186,6 +179,65 @@ def near_balls(first, these, second, those, one, other, reach, out):
 
 
 @njit(error_model="numpy", inline="always")
+def _slab(x, patches, box, p, q):
+    """The way from the middle of patch p to that of q, its length, and how far q begins and p ends along it."""
+    corners, start = patches.corners, patches.corner_start
+    dx, dy, dz = (
+        box[q, 0] + box[q, 3] - box[p, 0] - box[p, 3],
+        box[q, 1] + box[q, 4] - box[p, 1] - box[p, 4],
+        box[q, 2] + box[q, 5] - box[p, 2] - box[p, 5],
+    )
+    high, low = -np.inf, np.inf
+    for n in range(start[p], start[p + 1]):
+        i = corners[n]
+        high = max(high, dx * x[i, 0] + dy * x[i, 1] + dz * x[i, 2])
+    for n in range(start[q], start[q + 1]):
+        i = corners[n]
+        low = min(low, dx * x[i, 0] + dy * x[i, 1] + dz * x[i, 2])
+    return (dx, dy, dz), math.sqrt(dx * dx + dy * dy + dz * dz), low, high
+
+
+@njit(cache=True, error_model="numpy")
+def _segments_beyond(edge, these, count, way, least):
+    """Which of the edges in these[:count] come beyond `least` along a way; how many, first in the list."""
+    kept, (dx, dy, dz) = 0, way
+    for a in range(count):
+        n = these[a]
+        along = dx * edge[n, 0] + dy * edge[n, 1] + dz * edge[n, 2]
+        along += abs(dx * edge[n, 7] + dy * edge[n, 8] + dz * edge[n, 9])
+        if along >= least:
+            these[kept] = n
+            kept += 1
+    return kept
+
+
+@njit(cache=True, error_model="numpy")
+def near_segments(first, these, second, those, edge, reach, own, out):
+    """Likewise of edges (E, 10) of which no plane across the way from middle to middle shows that they do not.
+
+    own: both are of one patch, and each pair is wanted once.
+    """
+    count, reach2 = 0, reach * reach
+    for a in range(these):
+        n = first[a]
+        px, py, pz, half = edge[n, 0], edge[n, 1], edge[n, 2], edge[n, 3] + reach
+        ux, uy, uz = edge[n, 7], edge[n, 8], edge[n, 9]
+        for b in range(a + 1 if own else 0, those):
+            m = second[b]
+            dx, dy, dz, span = edge[m, 0] - px, edge[m, 1] - py, edge[m, 2] - pz, half + edge[m, 3]
+            way2 = dx * dx + dy * dy + dz * dz
+            if way2 > span * span:
+                continue
+            left = way2 - abs(dx * ux + dy * uy + dz * uz)
+            left -= abs(dx * edge[m, 7] + dy * edge[m, 8] + dz * edge[m, 9])
+            if left > 0.0 and left * left > reach2 * way2:
+                continue
+            out[count, 0], out[count, 1] = n, m
+            count += 1
+    return count
+
+
+@njit(error_model="numpy", inline="always")
 def _square(a, n, b, m):
     return (a[n, 0] - b[m, 0]) ** 2 + (a[n, 1] - b[m, 1]) ** 2 + (a[n, 2] - b[m, 2]) ** 2
 
@@ -196,7 +248,7 @@ def _alike(a, n, b, m):
     return a[n, 4] * b[m, 4] + a[n, 5] * b[m, 5] + a[n, 6] * b[m, 6]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
 def points_on_faces(x, mesh, patches, shapes, how, parts, found):
     """Adds the (vertex, face) pairs of the vertices of patch p and the faces of patch q, parts = (p, q), to a list
     (K, 3) that holds some; returns it, a longer one where it was full, and how many there are.
@@ -207,21 +259,25 @@ def points_on_faces(x, mesh, patches, shapes, how, parts, found):
     mine, yours = shapes.some[0], shapes.some[1]
     these = within_box(vertex, patches.vertex_start[p], patches.vertex_start[p + 1], box, q, reach, mine)
     those = within_box(face, patches.face_start[q], patches.face_start[q + 1], box, p, reach, yours)
+    own, of, sheets = patches.vertices, patches.faces, near2 > 0.0
     for b in range(near_balls(mine, these, yours, those, vertex, face, reach, out)):
         n, m = out[b, 0], out[b, 1]
-        i, f, far = patches.vertices[n], patches.faces[m], reach
-        if _one_sheet(x, rest, i, faces[f, 0], near2, _alike(vertex, n, face, m)):
-            far = min(reach, _folded(rest, (i,), (faces[f, 0], faces[f, 1], faces[f, 2]), how.thickness))
+        i, f, far = own[n], of[m], reach
+        j, k, h = faces[f, 0], faces[f, 1], faces[f, 2]
+        if same[i] == same[j] or same[i] == same[k] or same[i] == same[h]:
+            continue
+        if sheets and _one_sheet(x, rest, i, j, near2, _alike(vertex, n, face, m)):
+            far = min(reach, _folded(rest, (i,), (j, k, h), how.thickness))
             if _square(vertex, n, face, m) > (face[m, 3] + far) ** 2:
                 continue
-        if _vertex_near_face(x, i, faces, f, same, far):
+        if _vertex_near_face(x, i, j, k, h, far):
             pairs = grown(pairs, count)
             pairs[count, 0], pairs[count, 1], pairs[count, 2] = i, f, 0
             count += 1
     return pairs, count
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy", inline="always")
 def edges_on_edges(x, mesh, patches, shapes, how, parts, found):
     """Likewise the (edge, edge) pairs of two patches, which may be one."""
     (p, q), (pairs, count) = parts, found
@@ -229,17 +285,23 @@ def edges_on_edges(x, mesh, patches, shapes, how, parts, found):
     edge, box, out, mine, yours = shapes.edge, shapes.box, shapes.close, shapes.some[0], shapes.some[1]
     these = within_box(edge, patches.edge_start[p], patches.edge_start[p + 1], box, q, reach, mine)
     those = within_box(edge, patches.edge_start[q], patches.edge_start[q + 1], box, p, reach, yours)
-    for b in range(near_balls(mine, these, yours, those, edge, edge, reach, out)):
+    if p != q:
+        (dx, dy, dz), size, low, high = _slab(x, patches, box, p, q)
+        margin = 1.000001 * reach * size
+        these = _segments_beyond(edge, mine, these, (dx, dy, dz), low - margin)
+        those = _segments_beyond(edge, yours, those, (-dx, -dy, -dz), -high - margin)
+    of, sheets = patches.edges, near2 > 0.0
+    for b in range(near_segments(mine, these, yours, those, edge, reach, p == q, out)):
         n, m = out[b, 0], out[b, 1]
-        if p == q and m <= n:
-            continue
-        e, g, far = patches.edges[n], patches.edges[m], reach
+        e, g, far = of[n], of[m], reach
         i, j, u, v = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
-        if _one_sheet(x, rest, i, u, near2, _alike(edge, n, edge, m)):
+        if same[i] == same[u] or same[i] == same[v] or same[j] == same[u] or same[j] == same[v]:
+            continue
+        if sheets and _one_sheet(x, rest, i, u, near2, _alike(edge, n, edge, m)):
             far = min(reach, _folded(rest, (i, j), (u, v), how.thickness))
             if _square(edge, n, edge, m) > (edge[n, 3] + edge[m, 3] + far) ** 2:
                 continue
-        if _edges_near(x, edges, e, g, same, far):
+        if _edges_near(x, i, j, u, v, far):
             pairs = grown(pairs, count)
             pairs[count, 0], pairs[count, 1], pairs[count, 2] = e, g, 0
             count += 1

@@ -28,13 +28,15 @@ def _turn(second, moments):
 
 
 @njit(cache=True, error_model="numpy")
-def _rigid(x, y, sign, patches, moved, first):
-    """How each patch moves as a whole, and what is left of that, into moved[:, first:first + WHOLE].
+def _rigid(x, y, sign, patches, shapes, first):
+    """How each busy patch moves as a whole, and what is left of that, into shapes.moved[:, first:first + WHOLE].
 
     Its vertices lie at x (V, 3) and go by y - x (sign -1) or by y (sign 0).
     """
-    corners, start = patches.corners, patches.corner_start
+    corners, start, moved, busy = patches.corners, patches.corner_start, shapes.moved, shapes.busy
     for p in range(len(start) - 1):
+        if not busy[p]:
+            continue
         share = 1.0 / (start[p + 1] - start[p])
         cx = cy = cz = ax = ay = az = 0.0
         for n in range(start[p], start[p + 1]):
@@ -77,10 +79,17 @@ def _rigid(x, y, sign, patches, moved, first):
 
 
 @njit(cache=True, error_model="numpy")
-def move_patches(x, v, mark, patches, moved):
-    """How patches have come from the mark (V, 3), and how they go, into Shapes.moved."""
-    _rigid(mark, x, -1.0, patches, moved, 0)
-    _rigid(x, v, 0.0, patches, moved, WHOLE)
+def move_patches(x, v, mark, patches, shapes):
+    """How busy patches have come from the mark (V, 3), and how they go, into Shapes.moved."""
+    _rigid(mark, x, -1.0, patches, shapes, 0)
+    _rigid(x, v, 0.0, patches, shapes, WHOLE)
+
+
+@njit(cache=True, error_model="numpy")
+def going_patches(x, v, patches, shapes):
+    """How all patches go, into Shapes.moved."""
+    shapes.busy[:] = True
+    _rigid(x, v, 0.0, patches, shapes, WHOLE)
 
 
 @njit(error_model="numpy", inline="always")

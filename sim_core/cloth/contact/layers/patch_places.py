@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.layers.patches import CRUSHED, grown
+from sim_core.cloth.contact.layers.patches import CRUSHED, HELD, grown
 
 
 @njit(cache=True, error_model="numpy")
@@ -29,21 +29,16 @@ def normals_of(x, faces, vertex):
             vertex[i, axis] *= scale
 
 
-@njit(cache=True, error_model="numpy")
-def place_patch(x, mesh, patches, shapes, p):
-    """Where a patch is at x (V, 3), if this look has not asked yet: its box and cone, its faces and edges.
-
-    Returns a sum over all of its coordinates, which is finite where they are.
-    """
-    if shapes.placed[p, 0] == shapes.look[0]:
-        return 0.0
+@njit(error_model="numpy", inline="always")  # calls would count references to every array of the records
+def place_now(x, mesh, patches, shapes, p):
+    """Where a patch is at x (V, 3): its box and cone; a sum of its coordinates, finite where they are."""
     shapes.placed[p, 0] = shapes.look[0]
     faces, edges, length2, box, cone = mesh.faces, mesh.edges, mesh.length2, shapes.box, shapes.cone
-    face, edge, of_face, of_edge = shapes.face, shapes.edge, patches.faces, patches.edges
+    face, of_face, of_edge = shapes.face, patches.faces, patches.edges
     lx = ly = lz = np.inf
     hx = hy = hz = -np.inf
     ax = ay = az = total = 0.0
-    third = 1.0 / 3.0
+    low2 = spare = np.inf
     for n in range(patches.face_start[p], patches.face_start[p + 1]):
         f = of_face[n]
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -51,20 +46,20 @@ def place_patch(x, mesh, patches, shapes, p):
         xk, yk, zk = x[k, 0], x[k, 1], x[k, 2]
         lx, ly, lz = min(lx, xi, xj, xk), min(ly, yi, yj, yk), min(lz, zi, zj, zk)
         hx, hy, hz = max(hx, xi, xj, xk), max(hy, yi, yj, yk), max(hz, zi, zj, zk)
-        cx, cy, cz = third * (xi + xj + xk), third * (yi + yj + yk), third * (zi + zj + zk)
-        total += cx + cy + cz  # NaN shows in a sum; min and max pass it over
-        size2 = max(
-            (xi - cx) ** 2 + (yi - cy) ** 2 + (zi - cz) ** 2,
-            (xj - cx) ** 2 + (yj - cy) ** 2 + (zj - cz) ** 2,
-            (xk - cx) ** 2 + (yk - cy) ** 2 + (zk - cz) ** 2,
-        )
+        total += xi + xj + xk + yi + yj + yk + zi + zj + zk  # NaN shows in a sum; min and max pass it over
         nx = (yj - yi) * (zk - zi) - (zj - zi) * (yk - yi)
         ny = (zj - zi) * (xk - xi) - (xj - xi) * (zk - zi)
         nz = (xj - xi) * (yk - yi) - (yj - yi) * (xk - xi)
-        scale = 1.0 / (math.sqrt(nx * nx + ny * ny + nz * nz) + 1e-30)
+        twice2 = nx * nx + ny * ny + nz * nz
+        longest2 = max(
+            (xj - xi) ** 2 + (yj - yi) ** 2 + (zj - zi) ** 2,
+            (xk - xi) ** 2 + (yk - yi) ** 2 + (zk - zi) ** 2,
+            (xk - xj) ** 2 + (yk - yj) ** 2 + (zk - zj) ** 2,
+        )
+        low2 = min(low2, twice2 / (longest2 + 1e-30))
+        scale = 1.0 / (math.sqrt(twice2) + 1e-30)
         nx, ny, nz = scale * nx, scale * ny, scale * nz
         ax, ay, az = ax + nx, ay + ny, az + nz
-        face[n, 0], face[n, 1], face[n, 2], face[n, 3] = cx, cy, cz, math.sqrt(size2)
         face[n, 4], face[n, 5], face[n, 6] = nx, ny, nz
     box[p, 0], box[p, 1], box[p, 2], box[p, 3], box[p, 4], box[p, 5] = lx, ly, lz, hx, hy, hz
     scale, least = 1.0 / (math.sqrt(ax * ax + ay * ay + az * az) + 1e-30), 1.0
@@ -75,22 +70,56 @@ def place_patch(x, mesh, patches, shapes, p):
         e = of_edge[n]
         i, j = edges[e, 0], edges[e, 1]
         size2 = (x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2
-        for c in range(3):
-            edge[n, c] = 0.5 * (x[i, c] + x[j, c])
-        edge[n, 3] = 0.5 * math.sqrt(size2)
+        spare = min(spare, math.sqrt(size2) - HELD * math.sqrt(length2[e]))
         if size2 < CRUSHED * length2[e]:
             least = -1.0
     cone[p, 0], cone[p, 1], cone[p, 2], cone[p, 3] = ax, ay, az, least
     cone[p, 4] = math.sqrt(max(0.0, 1.0 - least * least))
+    cone[p, 5], cone[p, 6], cone[p, 7] = math.acos(min(1.0, least)), math.sqrt(low2), spare
     return total
 
 
 @njit(cache=True, error_model="numpy")
-def turn_parts(x, mesh, patches, shapes, p):
-    """Where the vertices of a patch are at x (V, 3), and the normals there and at its edges, likewise."""
-    if shapes.placed[p, 1] == shapes.look[0]:
-        return
+def place_patch(x, mesh, patches, shapes, p):
+    """Likewise, if this look has not asked yet."""
+    if shapes.placed[p, 0] != shapes.look[0]:
+        place_now(x, mesh, patches, shapes, p)
+
+
+@njit(error_model="numpy", inline="always")
+def place_parts(x, mesh, patches, shapes, p, turned):
+    """Where the vertices, edges and faces of a patch are at x (V, 3), and, if turned, the normals there."""
     shapes.placed[p, 1] = shapes.look[0]
+    edges, faces, edge, face, vertex = mesh.edges, mesh.faces, shapes.edge, shapes.face, shapes.vertex
+    third = 1.0 / 3.0
+    for n in range(patches.face_start[p], patches.face_start[p + 1]):
+        f = patches.faces[n]
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        a = b = c = 0.0
+        for axis in range(3):
+            middle = third * (x[i, axis] + x[j, axis] + x[k, axis])
+            a, b, c = (
+                a + (x[i, axis] - middle) ** 2,
+                b + (x[j, axis] - middle) ** 2,
+                c + (x[k, axis] - middle) ** 2,
+            )
+            face[n, axis] = middle
+        face[n, 3] = math.sqrt(max(a, b, c))
+    for n in range(patches.edge_start[p], patches.edge_start[p + 1]):
+        i, j = edges[patches.edges[n], 0], edges[patches.edges[n], 1]
+        for c in range(3):
+            edge[n, c], edge[n, 7 + c] = 0.5 * (x[i, c] + x[j, c]), 0.5 * (x[j, c] - x[i, c])
+        edge[n, 3] = math.sqrt(edge[n, 7] ** 2 + edge[n, 8] ** 2 + edge[n, 9] ** 2)
+    for n in range(patches.vertex_start[p], patches.vertex_start[p + 1]):
+        for c in range(3):
+            vertex[n, c] = x[patches.vertices[n], c]
+    if turned:
+        _turn_parts(x, mesh, patches, shapes, p)
+
+
+@njit(cache=True, error_model="numpy")
+def _turn_parts(x, mesh, patches, shapes, p):
+    """The normals of vertices and edges of a patch at x (V, 3)."""
     if shapes.look[1] != shapes.look[0]:
         shapes.look[1] = shapes.look[0]
         normals_of(x, mesh.faces, shapes.vertex_normal)
@@ -100,13 +129,12 @@ def turn_parts(x, mesh, patches, shapes, p):
         for c in range(3):
             edge[n, 4 + c] = 0.5 * (normal[i, c] + normal[j, c])
     for n in range(patches.vertex_start[p], patches.vertex_start[p + 1]):
-        i = patches.vertices[n]
         for c in range(3):
-            vertex[n, c], vertex[n, 4 + c] = x[i, c], normal[i, c]
+            vertex[n, 4 + c] = normal[patches.vertices[n], c]
 
 
 @njit(cache=True, error_model="numpy")
-def _sort_along(box, along, order):
+def sort_along(box, along, order):
     """Puts order (P,), which holds each patch once, in order of box[:, along], equal ones by number (Shell 1959).
 
     From one time to the next it hardly changes.
@@ -132,14 +160,14 @@ def place_patches(x, mesh, patches, shapes):
     low, high, box, total = shapes.ends[0], shapes.ends[1], shapes.box, 0.0
     low[:], high[:] = np.inf, -np.inf
     for p in range(len(patches.face_start) - 1):
-        total += place_patch(x, mesh, patches, shapes, p)
+        total += place_now(x, mesh, patches, shapes, p)
         for c in range(3):
             low[c], high[c] = min(low[c], box[p, c]), max(high[c], box[p, 3 + c])
     along = 0
     for c in range(1, 3):
         if high[c] - low[c] > high[along] - low[along]:
             along = c
-    _sort_along(box, along, shapes.order)
+    sort_along(box, along, shapes.order)
     return math.isfinite(total), along
 
 
@@ -156,20 +184,25 @@ def flat_together(cone, p, q, wide):
     return narrow and cosine * between - sine * beside >= wide
 
 
-@njit(cache=True, error_model="numpy")
-def _joined(x, mesh, patches, shapes, p, q, wide):
-    """Whether two patches share a vertex, or one with a third that is flat together with both."""
-    start, beside, cone = patches.beside_start, patches.beside, shapes.cone
+@njit(error_model="numpy", inline="always")
+def are_beside(start, beside, p, q):
+    """Whether two patches share a vertex."""
     for k in range(start[p], start[p + 1]):
         if beside[k] == q:
             return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def _joined(x, mesh, patches, shapes, p, q, wide):
+    """Whether two patches share a vertex each with a third that is flat together with both."""
+    start, beside, cone = patches.beside_start, patches.beside, shapes.cone
     for k in range(start[p], start[p + 1]):
         r = beside[k]
-        for m in range(start[q], start[q + 1]):
-            if beside[m] == r and not patches.bay[r]:
-                place_patch(x, mesh, patches, shapes, r)
-                if flat_together(cone, p, r, wide) and flat_together(cone, q, r, wide):
-                    return True
+        if not patches.bay[r] and are_beside(start, beside, q, r):
+            place_patch(x, mesh, patches, shapes, r)
+            if flat_together(cone, p, r, wide) and flat_together(cone, q, r, wide):
+                return True
     return False
 
 
@@ -182,7 +215,11 @@ def flat_pair(x, mesh, patches, shapes, p, q, wide):
     return (
         not (patches.bay[p] or patches.bay[q])
         and flat_together(shapes.cone, p, q, wide)
-        and (p == q or _joined(x, mesh, patches, shapes, p, q, wide))
+        and (
+            p == q
+            or are_beside(patches.beside_start, patches.beside, p, q)
+            or _joined(x, mesh, patches, shapes, p, q, wide)
+        )
     )
 
 
@@ -209,12 +246,12 @@ def between(x, corners, start, box, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def patch_pairs(patches, shapes, along, reach, pairs):
-    """Pairs (K, 5) of patches p <= q, of which parts may come nearer than `reach` [m]; each is one with itself, too.
+def patch_pairs(box, order, along, reach, pairs):
+    """Pairs (K, 5) of patches p <= q whose boxes (P, 6) come nearer than `reach` [m]; each is one with itself, too.
 
-    along: the axis that shapes.order goes by. Returns the list, a longer one where it was full, and how many there are.
+    along: the axis that `order` goes by. Returns the list, a longer one where it was full, and how many there are.
     """
-    box, order, count = shapes.box, shapes.order, 0
+    count = 0
     for n in range(len(order)):
         p = order[n]
         pairs = grown(pairs, count + len(order) - n)

@@ -24,6 +24,7 @@ CONE = math.cos(
 BAY = math.radians(205.0)  # of cloth around a vertex at a rim, beyond which the outline turns inwards there
 WHOLE = 11  # numbers that tell how a patch moves
 CRUSHED = 0.5  # of its squared length at rest, below which an edge may lie in a fold that normals do not show
+HELD = 0.35  # of its length at rest, that an edge which was not crushed is foreseen to keep
 
 
 class Patches(NamedTuple):
@@ -37,6 +38,7 @@ class Patches(NamedTuple):
     vertex_start: np.ndarray
     corners: np.ndarray  # (N,) int32 all vertices that a patch's faces name, each once
     corner_start: np.ndarray  # (P + 1,)
+    sides: np.ndarray  # (E, 2) int32 the patches of the faces at each edge, lowest and highest
     beside: np.ndarray  # (N,) int32 the patches that share a vertex with each, without itself
     beside_start: np.ndarray  # (P + 1,)
     bay: (
@@ -49,14 +51,21 @@ class Shapes(NamedTuple):
 
     vertex_normal: np.ndarray  # (V, 3)
     face: np.ndarray  # (F, 7) in the order of Patches.faces: centre, radius of the ball around it, normal
-    edge: np.ndarray  # (E, 7) of Patches.edges: midpoint, half length, mean normal
+    edge: (
+        np.ndarray
+    )  # (E, 10) of Patches.edges: midpoint, half length, mean normal, and half the way along it
     vertex: np.ndarray  # (V, 7) of Patches.vertices: place, 0, normal
     box: np.ndarray  # (P, 6) lowest and highest corner
     cone: (
         np.ndarray
-    )  # (P, 5) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed)
+    )  # (P, 8) axis, cosine and sine of the half angle around it that holds all normals (-1, 0: crushed),
+    # that angle, the least height of a face [m], and how much shorter each edge may get until it is crushed [m]
     placed: np.ndarray  # (P, 2) int64 the look at which a patch was placed last, and its parts' normals
     look: np.ndarray  # (2,) int64 the number of looks, and the last at which the vertices' normals were taken
+    ahead: np.ndarray  # (P, 6) lowest and highest corner of where a patch is as long as pairs are foreseen
+    opened: np.ndarray  # (P, 7) of cones as long as pairs are foreseen: half angle, axis, how it turns [rad]
+    sheared: np.ndarray  # (P,) [m/s] the most by which an edge's ends go apart beside the patch's rotation
+    busy: np.ndarray  # (P,) bool: a patch of a pair that is not foreseen to stay apart
     order: np.ndarray  # (P,) by the low end along the longest way
     moved: (
         np.ndarray
@@ -115,7 +124,10 @@ def patches_of(
     count = len(same)
     if not len(faces):
         none, start = np.zeros(0, np.int32), np.zeros(1, np.int32)
-        return Patches(none, none, none, start, start, start, none, start, none, start, none.astype(bool))
+        sides = np.zeros((0, 2), np.int32)
+        return Patches(
+            none, none, none, start, start, start, none, start, sides, none, start, none.astype(bool)
+        )
     _, face_edges = face_edge_table(faces)
     flat = face_edges.ravel()
     by_edge = np.argsort(flat, kind="stable")
@@ -127,12 +139,14 @@ def patches_of(
     number = int(patch.max()) + 1
     of_vertex = np.full(count, number, np.int32)
     np.minimum.at(of_vertex, faces.ravel(), np.repeat(patch, 3))
-    of_edge = np.full(len(edges), number, np.int32)
+    of_edge, last = np.full(len(edges), number, np.int32), np.zeros(len(edges), np.int32)
     key = np.sort(edges, axis=1).astype(np.int64) @ [count, 1]
     where = np.argsort(key)
     for a, b in ((0, 1), (1, 2), (2, 0)):
         ends = np.sort(faces[:, [a, b]], axis=1).astype(np.int64) @ [count, 1]
-        np.minimum.at(of_edge, where[np.searchsorted(key[where], ends)], patch)
+        edge = where[np.searchsorted(key[where], ends)]
+        np.minimum.at(of_edge, edge, patch)
+        np.maximum.at(last, edge, patch)
 
     def sorted_by(owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         start = np.searchsorted(np.sort(owner), np.arange(number + 1))
@@ -154,6 +168,7 @@ def patches_of(
         vertex_start=vertex_start,
         corners=named[:, 1].astype(np.int32),
         corner_start=corner_start,
+        sides=np.column_stack([np.minimum(of_edge, last), last]),
         beside=near,
         beside_start=near_start,
         bay=bay,
@@ -201,12 +216,16 @@ def shapes_of(patches: Patches) -> Shapes:
     return Shapes(
         vertex_normal=np.zeros((vertices, 3)),
         face=np.zeros((faces, 7)),
-        edge=np.zeros((edges, 7)),
+        edge=np.zeros((edges, 10)),
         vertex=np.zeros((vertices, 7)),
         box=np.zeros((count, 6)),
-        cone=np.zeros((count, 5)),
+        cone=np.zeros((count, 8)),
         placed=np.zeros((count, 2), np.int64),
         look=np.zeros(2, np.int64),
+        ahead=np.zeros((count, 6)),
+        opened=np.zeros((count, 7)),
+        sheared=np.zeros(count),
+        busy=np.ones(count, bool),
         order=np.arange(count),
         moved=np.zeros((count, 2 * WHOLE)),
         start=np.zeros(count + 2, np.int64),

@@ -20,7 +20,6 @@ from sim_core.cloth.contact.sleep import asleep
 LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
 WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
 LEAST = 0.45  # of the skin, that calm cloth is looked through
-AHEAD = 0.01, 0.03  # [m] at least and at most further than the reach, in which pairs of patches are kept
 NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
@@ -132,16 +131,15 @@ def search_for(mesh, thickness, most, way):
     edges, length2, side = mesh.edges, mesh.length2, 0.0
     for e in range(len(edges)):
         side += math.sqrt(length2[e]) / len(edges)
-    skin, ahead = min(most, max(LEAST * most, 2.0 * way)), min(max(AHEAD[0], way), AHEAD[1])
-    return search_with(thickness, side, skin, ahead)
+    return search_with(thickness, side, min(most, max(LEAST * most, 2.0 * way)))
 
 
 @njit(cache=True, error_model="numpy")
-def search_with(thickness, side, skin, ahead):
-    """`Search` of a cloth whose edges are `side` [m] long, by so much skin, and patches by so much `ahead` [m]."""
+def search_with(thickness, side, skin):
+    """`Search` of a cloth whose edges are `side` [m] long, by so much skin [m]."""
     reach = thickness + skin
     # A V whose sides open by this angle is as wide as it has to be where they are an edge's height from its crease.
     opening = 2.0 * math.asin(min(1.0, (thickness + NEARER * skin) / (math.sqrt(3.0) * side)))
     wide = min(max(math.cos(math.pi - opening), WIDEST), CONE)
     # Where edges are long, what touches at rest shares a vertex, and any other pair within reach is one to keep apart.
-    return Search(thickness, reach, 3.5 * side if side < reach else 0.0, side, wide, ahead)
+    return Search(thickness, reach, 3.5 * side if side < reach else 0.0, side, wide)

@@ -1,0 +1,138 @@
+"""Pairs of patches that are no pairs, as the cloth goes: nothing of them comes within reach until it has strayed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from sim_core.cloth import Contact, Material, Phase, Sheet
+from sim_core.cloth.contact import (
+    Mesh,
+    Patches,
+    Search,
+    begin_pairs,
+    near_pairs_of,
+    patches_of,
+    shapes_of,
+    unsure_pairs,
+)
+from sim_core.cloth.run import Run, Setup
+from sim_core.cloth.scenes import equilateral_sheet
+
+SIDE, REACH = 0.02, 0.012
+HOW = Search(0.004, REACH, 0.0, SIDE, -0.5)
+
+
+class Cloth(NamedTuple):
+    """A sheet of some patches, as contact sees it."""
+
+    rest: np.ndarray  # (V, 2) [m]
+    mesh: Mesh
+    patches: Patches
+
+
+def cloth() -> Cloth:
+    rest, faces = equilateral_sheet(0.3, 0.3, SIDE)
+    edges = np.unique(np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0).astype(np.int32)
+    same, count = np.arange(len(rest), dtype=np.int32), len(rest)
+    length2 = ((rest[edges[:, 0]] - rest[edges[:, 1]]) ** 2).sum(1)
+    mesh = Mesh(np.ones(count), rest, edges, faces, length2, same)
+    return Cloth(rest, mesh, patches_of(edges, faces, same, rest[faces]))
+
+
+class Fold(NamedTuple):
+    """A sheet folded over, which turns and flies while its halves fly at each other."""
+
+    x: np.ndarray  # (V, 3) [m]
+    v: np.ndarray  # (V, 3) [m/s]
+    above: np.ndarray  # (V,) 0 in the lower half, 1 in the upper, between them in the bend
+
+
+def folded(rest: np.ndarray, radius: float, speed: float, rng: np.random.Generator) -> Fold:
+    bend = rest[:, 1].max() / 2
+    above = np.clip((rest[:, 1] - bend) / (np.pi * radius), 0.0, 1.0)
+    turned = np.pi * above
+    along = np.minimum(rest[:, 1], bend) - np.maximum(rest[:, 1] - bend - np.pi * radius, 0.0)
+    x = np.column_stack([rest[:, 0], radius * (1 - np.cos(turned)), along + radius * np.sin(turned)])
+    turn, fly = rng.normal(0, 2, 3), rng.normal(0, 3, 3)
+    return Fold(x, np.cross(turn, x) + fly - np.outer(above, [0.0, speed, 0.0]), above)
+
+
+def patch_of(count: int, of: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """The number of the patch of each of so many parts."""
+    numbers = np.zeros(count, np.int64)
+    numbers[of] = np.repeat(np.arange(len(start) - 1), np.diff(start))
+    return numbers
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_no_pair_does_not_come_within_reach(seed: int) -> None:
+    """Halves of a fold fly at each other until they are nearly within reach, and stray into it as far as they may."""
+    made, rng, seconds, stray = cloth(), np.random.default_rng(seed), 0.008, 0.004
+    rest, mesh, patches = made
+    radius = rng.uniform(0.018, 0.028)
+    x, v, above = folded(rest, radius, (2 * radius - REACH - stray) / seconds, rng)
+    allowed = np.full((len(patches.bay), 2), stray)
+    shapes, held = shapes_of(patches), np.zeros((64, 5), np.int32)
+    pairs, count = unsure_pairs(x, v, mesh, patches, shapes, HOW, (seconds, allowed), held)
+    unsure = {(int(p), int(q)) for p, q in pairs[:count, :2]}
+    vertex = patch_of(len(rest), patches.vertices, patches.vertex_start)
+    edge = patch_of(len(mesh.edges), patches.edges, patches.edge_start)
+    face = patch_of(len(mesh.faces), patches.faces, patches.face_start)
+    found: set[tuple[int, int]] = set()
+    for share in (0.5, 1.0):
+        there = x + share * seconds * v + share * stray * np.outer(1 - 2 * above, [0.0, 1.0, 0.0])
+        lists = near_pairs_of(len(rest), len(mesh.edges), len(patches.bay))
+        now = begin_pairs(there, mesh, patches, shapes, HOW, lists).now
+        _, points, crossings = now.count
+        met = [(vertex[i], face[f]) for i, f in now.points[:points, :2]]
+        met += [(edge[e], edge[g]) for e, g in now.crossings[:crossings, :2]]
+        found |= {(int(min(pair)), int(max(pair))) for pair in met}
+    assert len(found) > 10
+    assert found <= unsure
+
+
+def test_a_fold_at_rest_is_a_pair_only_where_it_is_bent() -> None:
+    made, rng = cloth(), np.random.default_rng(0)
+    rest, mesh, patches = made
+    counts = []
+    for speed in (0.0, 4.0):
+        x, v, _ = folded(rest, 0.02, speed, rng)
+        allowed, held = np.full((len(patches.bay), 2), 0.001), np.zeros((64, 5), np.int32)
+        _, count = unsure_pairs(x, v, mesh, patches, shapes_of(patches), HOW, (0.008, allowed), held)
+        counts.append(count)
+    assert counts[1] > 2 * counts[0]
+
+
+def test_cloth_that_hangs_has_no_pairs_and_is_seldom_looked_at() -> None:
+    """Held along a side it swings down without touching itself; a frame has more than a hundred substeps."""
+    rest, faces = equilateral_sheet(0.4, 0.4, SIDE)
+    sheet = Sheet.of(rest, faces, Material(0.05, 50.0, 0.3, 1e-5, 0.3, 1.0))
+    x = np.column_stack([rest[:, 0], np.zeros(len(rest)), rest[:, 1]])
+    pins = np.flatnonzero(rest[:, 1] < 1e-9).tolist()
+    run = Run(Setup(sheet, [Phase(20 / 25, (1.0, 1.0))], pins=pins, contact=Contact(thickness=0.003)))
+    state, pairs = run.begun(x, np.zeros_like(x)), 0
+    for _ in range(20):
+        run.frame(state)
+        pairs += int(run.engine.near.now.count[0])
+    looks, renewals, _, _, through = run.engine.near.tally
+    assert state.substeps > 20 * 50
+    assert looks < state.substeps / 8
+    assert renewals < 20 * 12
+    assert through == 0
+    assert pairs < 20 * 4
+
+
+def test_a_sheet_that_only_turns_and_flies_has_no_pairs() -> None:
+    """What all go along with, straight, brings nothing nearer."""
+    made = cloth()
+    rest, mesh, patches = made
+    x = np.column_stack([rest[:, 0], 0.01 * np.sin(20 * rest[:, 1]), rest[:, 1]])
+    v = np.cross(np.array([3.0, -8.0, 5.0]), x) + np.array([20.0, 5.0, -9.0])
+    allowed = np.full((len(patches.bay), 2), 0.001)
+    _, count = unsure_pairs(
+        x, v, mesh, patches, shapes_of(patches), HOW, (0.02, allowed), np.zeros((64, 5), np.int32)
+    )
+    assert count == 0
