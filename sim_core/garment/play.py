@@ -22,9 +22,9 @@ from sim_core.garment.pins import Pins
 __all__ = ["Played", "move", "moving_errors"]
 
 CLOSING = 0.5  # [s] at the end of a round in which cloth is drawn to where it was at that of the round before
-DRAW = 0.25  # share of what it is away that it is drawn in a frame
+DRAW = 0.9  # share of what it is away that it is drawn in a frame
 GENTLY = 0.15  # [s] in which that is reached
-DAMPING = 3.0  # [1/s] beside the air's
+DAMPING = 6.0  # [1/s] beside the air's
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) [m], faces (F, 3)
 
