@@ -24,7 +24,7 @@ __all__ = ["Played", "move", "moving_errors"]
 CLOSING = 0.5  # [s] at the end of a round in which cloth is drawn to where it was at that of the round before
 DRAW = 0.9  # share of what it is away that it is drawn in a frame
 GENTLY = 0.15  # [s] in which that is reached
-DAMPING = 6.0  # [1/s] beside the air's
+DAMPING = 5.0  # [1/s] beside the air's
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) [m], faces (F, 3)
 
