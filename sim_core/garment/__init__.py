@@ -3,15 +3,14 @@
 from sim_core.body import Stand
 from sim_core.garment.clip import Clip
 from sim_core.garment.dressing import Frame, check_fits, dress, layer_order
-from sim_core.garment.follow_body import follow
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.glb import Clothed, write_glb
 from sim_core.garment.levels import choose_detail
 from sim_core.garment.outfit import Layer, Outfit, load_motion, load_outfit
 from sim_core.garment.pattern import Pattern
-from sim_core.garment.play import Played, move, moving_errors
 from sim_core.garment.settled import Settled
+from sim_core.garment.worn import Played, follow, move, moving_errors
 
 __all__ = [
     "Clip",

@@ -11,7 +11,7 @@ from sim_core.body import Loop, Motion, Pose, load_motion
 from sim_core.body.motion import Curve
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Outfit, Played, dress, load_outfit, move, moving_errors
-from sim_core.garment.pins import Pins
+from sim_core.garment.worn import Pins
 
 pytestmark = pytest.mark.slow
 

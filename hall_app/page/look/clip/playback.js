@@ -11,6 +11,9 @@ const SAMPLES = 16; // frames of a figure that tell how far it reaches
 /** A node's name as three.js' loader writes it. */
 const loaded = (name) => name.replace(/\s/g, "_").replace(/[[\].:/]/g, "");
 
+/** Whether the loader has numbered a mesh, since the scene or another node has its name, too. */
+const renamed = (mesh, name) => mesh.name.startsWith(`${name}_`) && /^\d+$/.test(mesh.name.slice(name.length + 1));
+
 /** The frame at a time [s]: round and round, or, of a clip that is no loop, to its end and from the begin again. */
 export const frameAt = ({ frames, period, rate }, seconds) =>
   Math.min(frames - 1, Math.floor((((seconds % period) + period) % period) * rate + 1e-6));
@@ -86,7 +89,8 @@ export function createPlayback(clip, node) {
     const meshes = meshesOf(node), found = [];
     surfaces.forEach((surface, number) => {
       for (const { name, index } of surface.drawn) {
-        const mesh = meshes.find((one) => one.name === name && one.geometry.attributes.position.count === index.length);
+        const fits = (one) => one.geometry.attributes.position.count === index.length;
+        const mesh = meshes.find((one) => one.name === name && fits(one)) ?? meshes.find((one) => renamed(one, name) && fits(one));
         if (mesh) found.push({ mesh, geometry: mesh.geometry, surface, index, ball: balls[number] });
       }
     });

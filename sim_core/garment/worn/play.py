@@ -13,11 +13,11 @@ from sim_core.body.pose import Pose
 from sim_core.cloth import Air, Live
 from sim_core.cloth.step import FRAME
 from sim_core.garment.dressing import capped, layer_order
-from sim_core.garment.follow_body import following
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.outfit import Layer, Outfit
-from sim_core.garment.pins import Pins
+from sim_core.garment.worn.follow_body import following
+from sim_core.garment.worn.pins import Pins
 
 __all__ = ["Played", "move", "moving_errors"]
 

@@ -1,0 +1,7 @@
+"""Worn garments: carried on where they hang, with a wearer who moves, or through an outfit's motion to a loop."""
+
+from sim_core.garment.worn.follow_body import follow
+from sim_core.garment.worn.pins import Pins
+from sim_core.garment.worn.play import Played, move, moving_errors
+
+__all__ = ["Pins", "Played", "follow", "move", "moving_errors"]

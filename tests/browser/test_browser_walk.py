@@ -1,0 +1,34 @@
+"""The shipped coat walks: every part of its models goes by the clips that were baked with them."""
+
+import pytest
+from bench.browser import PATIENCE, enter, soon, stand_before
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+# A number a mesh of the node that tells where its vertices are.
+WHERE = """
+async (node) => {
+  const {meshesOf} = await import("/static/viser/viser_adapter.js");
+  const own = meshesOf(node).filter(({name}) => name && name !== "base");
+  return Object.fromEntries(own.map(({name, geometry}) =>
+    [name, geometry.attributes.position.array.reduce((sum, value, k) => sum + value * (1 + k % 7), 0)]));
+}
+"""
+
+
+@pytest.mark.parametrize(("address", "node"), [("", "/exhibits/beizi"), ("&exhibit=beizi", "/closeup")])
+def test_cloth_and_figure_walk_together(shipped_hall, chromium, address, node):
+    page = chromium.new_page(viewport={"width": 480, "height": 270})
+    enter(page, f"{shipped_hall.url}/?lang=en{address}")
+    if not address:
+        stand_before(page, "beizi")
+    page.wait_for_function("(node) => hall.playing().includes(node)", arg=node, timeout=PATIENCE)
+    before = page.evaluate(WHERE, node)
+    assert len(before) == 3  # coat, its bands, figure
+
+    def all_moved() -> bool:
+        now = page.evaluate(WHERE, node)
+        return all(abs(now[name] - before[name]) > 1e-3 for name in before)
+
+    soon(page, all_moved)
+    page.close()
