@@ -1,12 +1,13 @@
 """A garment on a walking figure, frame by frame: how deep it is in the body, whether it crosses itself, its strain.
 
-    python tests/bench/bench_walk.py [--motion assets/motions/walk.toml] [--rounds 1] [--garment FILE.npz]
-        [--every 1] [--json FILE] [--frames FILE.npz]
+    python tests/bench/bench_walk.py [--motion assets/motions/walk.toml] [--rounds 1] [--clip FILE.bvh]
+        [--garment FILE.npz] [--every 1] [--json FILE] [--frames FILE.npz]
 
 The garment is carried on by `follow` from where it came to rest: the wearer comes from the pose it was dressed in into
 the motion, then goes through whole loops in place (two strides of the walk each). Told a frame: the deepest vertex
 inside the body [mm], vertices, midpoints and centroids inside, pairs of cloth that cross, area strain (95th
-percentile), and time. Limits: 1 mm, no crossing, 4 %. The shown loop's frames are those after the lead.
+percentile), and time. Limits: 1 mm, no crossing, 4 %. The shown loop's frames are those after the lead. --clip: instead
+of a loop the motion of somebody else's file, tracked, brought onto the figure and held in place, its whole length.
 """
 
 from __future__ import annotations
@@ -22,7 +23,10 @@ import numpy as np
 
 from sim_core import metrics
 from sim_core.body import Loop, Mannequin, load_motion, pose_named
+from sim_core.body.motion import RATE, figure_from, minimum_jerk
+from sim_core.cloth.step import FRAME
 from sim_core.garment import Garment, follow
+from sim_core.track import KINECT, TrackSettings, read_recording, track
 
 ROOT = Path(__file__).resolve().parents[2]
 DEEPEST, STRAIN = 0.001, 0.04  # [m], share: the limits
@@ -35,6 +39,18 @@ def way(motion: Loop, figure: Mannequin, rounds: int) -> tuple[np.ndarray, int]:
     lead = len(poses) - once - 1
     poses += poses[-once:] * (rounds - 1)
     return np.stack([figure.posed(pose) for pose in poses]), lead
+
+
+def clip_way(path: Path, figure: Mannequin) -> tuple[np.ndarray, int]:
+    """The same of a motion file: tracked points move the figure, whose root's way along the floor is taken out."""
+    followed = track(read_recording(path), TrackSettings("none"))
+    rate = 1.0 / float(np.median(np.diff(followed.time)))
+    posed = figure_from(figure, followed.joints, KINECT.joints, rate=rate).poses
+    frames = np.clip(np.round(np.arange(0.0, len(posed) / rate, FRAME) * rate).astype(int), 0, len(posed) - 1)
+    walked = [posed[k].shifted(x=-posed[k].shift[0], z=-posed[k].shift[2]) for k in frames]
+    start, count = pose_named("display"), round(RATE)
+    lead = [start.towards(walked[0], float(minimum_jerk(k / count))) for k in range(count)]
+    return np.stack([figure.posed(pose) for pose in [*lead, *walked]]), count
 
 
 def measured(garment: Garment, x: np.ndarray, body: np.ndarray, faces: np.ndarray) -> dict[str, Any]:
@@ -55,6 +71,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--motion", type=Path, default=ROOT / "assets/motions/walk.toml")
+    parser.add_argument("--clip", type=Path, help="a motion file (BVH, npz, CSV, JSON) instead of a loop")
     parser.add_argument("--garment", type=Path, default=ROOT / "assets/exhibits/beizi/baked/garment.npz")
     parser.add_argument("--figure", type=Path, default=ROOT / "assets/mannequins/woman.npz")
     parser.add_argument(
@@ -64,11 +81,14 @@ def main() -> int:
     parser.add_argument("--json", type=Path)
     parser.add_argument("--frames", type=Path, help="keep the cloth's frames and the body's")
     arguments = parser.parse_args()
-    motion = load_motion(arguments.motion)
-    if not isinstance(motion, Loop):
-        parser.error(f"--motion: {arguments.motion} does not repeat")
     garment, figure = Garment.load(arguments.garment), Mannequin.load(arguments.figure)
-    body, lead = way(motion, figure, arguments.rounds)
+    if arguments.clip is not None:
+        body, lead = clip_way(arguments.clip, figure)
+    else:
+        motion = load_motion(arguments.motion)
+        if not isinstance(motion, Loop):
+            parser.error(f"--motion: {arguments.motion} does not repeat")
+        body, lead = way(motion, figure, arguments.rounds)
     frames, ends = [garment.positions.astype(np.float32)], [time.process_time()]
 
     def heard(index: int, x: np.ndarray) -> None:
