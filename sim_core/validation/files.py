@@ -79,10 +79,10 @@ def read_json(path: Path, what: str) -> Any:
         raise FileProblem(f"{path}: not valid JSON ({error}) – give {what}") from error
 
 
-def read_text(path: Path, what: str, most: int = LARGEST_TEXT) -> str:
+def read_text(path: Path, what: str, most: int | None = None) -> str:
     """The text of a UTF-8 file, with or without a byte order mark; raises FileProblem as `read_toml` does.
 
-    most: bytes that are read of it.
+    most: bytes that are read of it, LARGEST_TEXT if that is not said.
     """
     text = read_bytes(path, what, most)
     try:
@@ -91,8 +91,9 @@ def read_text(path: Path, what: str, most: int = LARGEST_TEXT) -> str:
         raise FileProblem(f"{path}: not UTF-8 text – give {what}") from error
 
 
-def read_bytes(path: Path, what: str, most: int = LARGEST_TEXT) -> bytes:
-    """What a file holds; raises FileProblem where it is missing, empty or larger than `most` bytes."""
+def read_bytes(path: Path, what: str, most: int | None = None) -> bytes:
+    """What a file holds; raises FileProblem where it is missing, empty or larger than `most` (LARGEST_TEXT) bytes."""
+    most = LARGEST_TEXT if most is None else most
     try:
         with path.open("rb") as stream:
             text = stream.read(most + 1)
