@@ -196,6 +196,7 @@ def test_a_tab_that_slept_shows_the_clocks_frame_at_once(tab, minutes):
     together(tab.follow())
 
 
+@pytest.mark.nightly
 def test_a_clip_that_did_not_come_is_asked_for_again(chromium, hall):
     _, line, clip = hall
     page = chromium.new_page(viewport=VIEW)

@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from bench.axe import violations
 from bench.browser import enter, settled, soon
+from full_matrix import by_day
 from moving_hall import FRAMES, box_points, write_moving_hall
 from running_hall import running_hall
 
@@ -190,7 +191,7 @@ def test_another_tab_ends_it(page):
     assert page.evaluate(HEARD) != "paint"
 
 
-@pytest.mark.parametrize("lang", ["zh", "en"])
+@pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
 def test_it_reads_in_both_languages_on_a_phone(chromium, hall, lang):
     page, _ = look_closely(chromium, hall, lang, viewport={"width": 360, "height": 740})
     page.locator("[data-testid=tab-why]").click()
@@ -223,12 +224,14 @@ def test_who_asks_for_less_motion_sees_them_stand(chromium, hall):
     page.close()
 
 
+@pytest.mark.nightly
 def test_an_exhibit_without_them_has_no_such_tab(chromium, plain_hall):
     page, _ = look_closely(chromium, plain_hall)
     assert page.locator("[data-testid=tab-why]").is_hidden()
     page.close()
 
 
+@pytest.mark.nightly
 def test_they_lie_right_over_a_finer_model_that_stands(chromium, tmp_path):
     """A curator's close-up of another model, which no clip goes with: they stand as it does."""
     content = write_moving_hall(tmp_path / "content", points=True)

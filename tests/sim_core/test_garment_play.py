@@ -86,8 +86,14 @@ def test_a_loop_closes_without_a_jump_in_place_or_speed(walked: Walked) -> None:
 
 def test_every_frame_is_measured(walked: Walked) -> None:
     heard: list[float] = []
+    few = [0, 5, 10, 15]
+    played = replace(
+        walked.played,
+        poses=tuple(walked.played.poses[k] for k in few),
+        frames=(walked.played.frames[0][few],),
+    )
     (told,) = moving_errors(
-        walked.outfit, walked.garments, walked.played, progress=lambda share, _: heard.append(share)
+        walked.outfit, walked.garments, played, progress=lambda share, _: heard.append(share)
     )
     lain = walked.garments[0].settled
     assert lain is not None
@@ -99,9 +105,9 @@ def test_every_frame_is_measured(walked: Walked) -> None:
     assert told["layer_order"] == 0.0
     assert told["area_strain_p95"] < 0.1
     assert heard[-1] == 1.0
-    sunk = walked.played.frames[0].copy()
-    sunk[7] *= np.float32(0.9)
-    (wrong,) = moving_errors(walked.outfit, walked.garments, replace(walked.played, frames=(sunk,)))
+    sunk = played.frames[0].copy()
+    sunk[2] *= np.float32(0.9)
+    (wrong,) = moving_errors(walked.outfit, walked.garments, replace(played, frames=(sunk,)))
     assert wrong["deepest_m"] > told["deepest_m"] + 0.002
     assert wrong["area_strain_p95"] > told["area_strain_p95"]
 
