@@ -47,18 +47,18 @@ def write_motion(
     assert outfit.wearer is not None
     layers = enumerate(zip(garments, played.frames, strict=True), 1)
     moved = {f"{number} {g.name}": np.concatenate([g.positions[None], x]) for number, (g, x) in layers}
+    poses = (outfit.pose, *played.poses)
     for model, clip in CLIPS.items():
         model_clip(
             (folder / model).read_bytes(),
             moved,
-            figure=(outfit.wearer, (outfit.pose, *played.poses)),
+            figure=(outfit.wearer, poses),
             begin=1,
             lift=BASE[1],
             near=OUT if len(garments) > 1 else 1e-4,
             rate=RATE,
             loop=played.loop,
         ).save(folder / clip.removeprefix(BAKED))
-    poses = (outfit.pose, *played.poses)
     write_points(outfit.wearer, poses, moved, folder, rate=RATE, loop=played.loop, begin=1)
     worst = moving_errors(outfit, garments, played, progress=progress)
     errors: dict[str, float] = {}

@@ -29,6 +29,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet, standing
 from sim_core.garment.outfit.outfit import UNTANGLE
+from sim_core.garment.settled import Settled
 from sim_core.validation import numeric_array
 
 __all__ = ["follow", "following"]
@@ -96,8 +97,7 @@ def follow(
     usual: dict[str, Any] = {"damping": DAMPING if damping is None else damping}
     if settled is not None:
         usual["friction"] = settled.last.friction
-        fastest = max(FASTEST, settled.contact.speed_limit)
-        contact = contact or replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE)
+        contact = contact or _touching(settled)
     if contact is None:
         raise SimCoreError(
             f"follow: garment {garment.name} does not say how it touches – give contact=Contact(…)"
@@ -142,17 +142,22 @@ def following(
         )
     sheet = garment_sheet(garment)
     friction = sheet.material.friction if settled.last.friction is None else settled.last.friction
-    fastest = max(FASTEST, settled.contact.speed_limit)
     return Live(
         replace(sheet, material=replace(sheet.material, friction=friction)),
         garment.positions,
         damping=DAMPING,
         collider=_wearer(garment, body, faces, beneath, None),
-        contact=replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE),
+        contact=_touching(settled),
         holds=settled.holds,
         pace=QUICK if settled.even else None,
         air=air,
     )
+
+
+def _touching(settled: Settled) -> Contact:
+    """How a garment touches a wearer who moves: as it was settled, but faster, and taken out of itself again."""
+    fastest = max(FASTEST, settled.contact.speed_limit)
+    return replace(settled.contact, speed_limit=fastest, untangle=UNTANGLE)
 
 
 def _wearer(

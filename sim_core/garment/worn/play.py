@@ -61,7 +61,7 @@ def move(
     assert outfit.wearer is not None
     lead = len(poses) - 1 - again
     index = np.concatenate([np.arange(len(poses)), np.arange(lead + 1, len(poses))[:again]])
-    course = _Course(outfit, np.stack([outfit.wearer.posed(pose) for pose in poses]), index, lead, again)
+    course = _Course(outfit, np.stack([outfit.wearer.posed(pose) for pose in poses]), index, again)
     gone: list[np.ndarray] = []
     apart = []
     for number, garment in enumerate(garments):
@@ -82,13 +82,12 @@ def move(
 
 @dataclass(frozen=True)
 class _Course:
-    """What an outfit's wearer goes through: its vertices once (T, B, 3) [m], of which frame n is index[n]; after `lead`
-    frames every `again` repeat (0: none do)."""
+    """What an outfit's wearer goes through: its vertices once (T, B, 3) [m], of which frame n is index[n]; the last
+    `again` frames are those before them once more (0: none are)."""
 
     outfit: Outfit
     once: np.ndarray
     index: np.ndarray
-    lead: int
     again: int
 
     def followed(
@@ -104,14 +103,13 @@ class _Course:
         live.damping = DAMPING
         mass = garment_sheet(garment).mass[:, None]
         free = np.setdiff1d(np.arange(len(mass)), pins.vertices)
-        frames, last = [garment.positions], len(self.index) - 1
+        held, frames, last = pins.vertices.tolist(), [garment.positions], len(self.index) - 1
         closing = min(round(CLOSING * RATE), self.again)
         for n in range(1, last + 1):
             pulls = None
             if n > last - closing:
                 drawn = _draw(live, frames[n - 1 - self.again], frames[n - self.again], n - (last - closing))
                 pulls = free, (mass * drawn)[free]
-            held = pins.vertices.tolist()
             frames.append(live.step(body=float(n), pins=held, targets=pins.places(body[n]), pulls=pulls))
             progress(n / last)
         gone = np.stack(frames).astype(np.float32)
