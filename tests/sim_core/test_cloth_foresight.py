@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from sim_core.cloth import Contact, Material, Phase, Sheet
+from sim_core import metrics
+from sim_core.cloth import Contact, Material, Phase, Sheet, drape
 from sim_core.cloth.contact import (
     Mesh,
     Patches,
@@ -20,6 +21,7 @@ from sim_core.cloth.contact import (
 )
 from sim_core.cloth.run import Run, Setup
 from sim_core.cloth.scenes import equilateral_sheet
+from sim_core.cloth.step import FRAME
 
 SIDE, REACH = 0.02, 0.012
 HOW = Search(0.004, REACH, 0.0, SIDE, -0.5)
@@ -136,3 +138,50 @@ def test_a_sheet_that_only_turns_and_flies_has_no_pairs() -> None:
         x, v, mesh, patches, shapes_of(patches), HOW, (0.02, allowed), np.zeros((64, 5), np.int32)
     )
     assert count == 0
+
+
+def square(count: int, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Rest (V, 2) [m] and faces of a square of so many vertices a side."""
+    u, w = np.meshgrid(*[np.linspace(-size / 2, size / 2, count)] * 2, indexing="ij")
+    a = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
+    faces = [np.stack([a, a + 1, a + count], 1), np.stack([a + 1, a + count + 1, a + count], 1)]
+    return np.column_stack([u.ravel(), w.ravel()]), np.concatenate(faces).astype(np.int32)
+
+
+def sheets(heights: list[float], count: int, size: float) -> tuple[Sheet, np.ndarray]:
+    """Level squares one over the other, each a little aside."""
+    rest, faces = square(count, size)
+    flat = np.concatenate([rest + [2 * size * k, 0.0] for k in range(len(heights))])
+    every = np.concatenate([faces + len(rest) * k for k in range(len(heights))])
+    places = [
+        np.column_stack(
+            [rest[:, 0] + 0.0013 * size * k, np.full(len(rest), y), rest[:, 1] + 0.0007 * size * k]
+        )
+        for k, y in enumerate(heights)
+    ]
+    return Sheet.of(flat, every, Material(0.1, 49.0, bend=5e-6)), np.concatenate(places)
+
+
+@pytest.mark.parametrize(("gap", "speed"), [(0.020, 2.0), (0.020, 3.0), (0.020, 5.0), (0.025, 5.0)])
+def test_a_sheet_that_is_struck_does_not_pass_through_the_next(gap: float, speed: float) -> None:
+    """The middle one was at rest when its pairs were foreseen, and flies from one substep to the other."""
+    sheet, x = sheets([0.0, 0.008, 0.008 + gap], 24, 0.3)
+    run = Run(Setup(sheet, [Phase(FRAME, (0.0, 0.0))], contact=Contact(thickness=0.0025)))
+    v, own = np.zeros_like(x), len(x) // 3
+    v[:own, 1] = speed
+    state = run.begun(x, v)
+    run.frame(state)
+    heights = state.positions[:, 1].reshape(3, own).mean(1)
+    assert (np.diff(heights) > 0.001).all()
+    assert metrics.intersections(state.positions, sheet.faces) == 0
+
+
+@pytest.mark.parametrize("gap", [0.06, 0.07, 0.08, 0.09, 0.1, 0.105, 0.11, 0.115, 0.13, 0.15])
+def test_sheets_that_meet_at_forty_metres_a_second_do_not_cross_themselves(gap: float) -> None:
+    """Whatever the instant of the frame in which they meet: where they crumple, what was flat is none any more."""
+    sheet, x = sheets([0.0, gap], 17, 0.3)
+    v, own = np.zeros_like(x), len(x) // 2
+    v[:own, 1], v[own:, 1] = 20.0, -20.0
+    contact = Contact(thickness=0.003, untangle=20, partly=True)
+    end = drape(sheet, x, [Phase(FRAME, (0.0, 0.0))], velocities=v, contact=contact)
+    assert metrics.intersections(end.positions, sheet.faces) == 0

@@ -205,7 +205,7 @@ def none_crosses(x, mesh, third, near, thickness):
     begun anew in the next frame then.
     """
     edges, same, pairs = mesh.edges, mesh.same, near.now.crossings
-    asked, sure = _widest(x, mesh.faces) - thickness, listed_within(x, near)
+    asked, sure = _widest(x, mesh.faces) - thickness, listed_within(x, mesh.edges, near)
     if not asked <= sure:
         if asked <= FRESH * near.kept[0]:
             near.kept[1] = 0.0

@@ -38,16 +38,14 @@ class Course(NamedTuple):
     taut: np.ndarray  # (E,) [1/m2] likewise, each edge's end against the other
     allowed: np.ndarray  # (P, 2) [m] how far vertices of each patch may, and edges' ends
     bent: np.ndarray  # (P, 2) [m/s2] at which those of each did so lately
-    plan: (
-        np.ndarray
-    )  # (5,) [s] of a frame: when that was, how long it holds, and now; when either is looked at next
+    plan: np.ndarray  # (3,) [s] of a frame: when that was, how long it holds, and now
 
 
 def course_of(vertices: int, edges: int, patches: int) -> Course:
     """Memory for V vertices, E edges and P patches."""
     begun, going = np.zeros((vertices, 3)), np.zeros((vertices, 3))
     allowed, bent = np.zeros((patches, 2)), np.zeros((patches, 2))
-    return Course(begun, going, np.zeros(vertices), np.zeros(edges), allowed, bent, np.zeros(5))
+    return Course(begun, going, np.zeros(vertices), np.zeros(edges), allowed, bent, np.zeros(3))
 
 
 @njit(cache=True, error_model="numpy")
@@ -91,27 +89,23 @@ def twisted(x, v, edges, course, seconds):
 
 @njit(cache=True, error_model="numpy")
 def on_course(x, v, edges, course, time, pushed):
-    """For how long [s] the cloth at x and v (V, 3) keeps to its course; 0 where it does not, NaN where x is not finite.
+    """For how long [s] the cloth at x and v (V, 3) keeps to its course as it goes now; 0 where it does not, NaN where x
+    is not finite.
 
-    What is sure to keep to it for longer is not looked at.
+    Who asks may not wait for as long as that: what is struck goes otherwise at once.
     """
-    plan = course.plan
-    gone, lasts = time - plan[0] if plan[1] > 0.0 else 0.0, plan[1]
-    if time >= plan[3] or lasts == 0.0:
-        far, fast, tightest, total = strayed(x, v, course, gone)
-        if not math.isfinite(total):
-            return math.nan
-        if far > STALE:
-            return 0.0
-        plan[3] = time + (1.0 - far) / (2.0 * fast + (2.0 * pushed + GAINED) * tightest + 1e-30)
-    if gone >= LATEST * lasts:
+    (begun, lasts), moving = (course.plan[0], course.plan[1]), 2.0 * pushed + GAINED
+    gone = time - begun if lasts > 0.0 else 0.0
+    far, fast, tightest, total = strayed(x, v, course, gone)
+    if not math.isfinite(total):
+        return math.nan
+    if far > STALE or gone >= LATEST * lasts:
         return 0.0
-    if time >= plan[4]:
-        far, fast, tautest = twisted(x, v, edges, course, gone)
-        if far > STALE:
-            return 0.0
-        plan[4] = time + (1.0 - far) / (2.0 * fast + (2.0 * pushed + GAINED) * tautest + 1e-30)
-    return max(1e-9, min(lasts - gone, plan[3] - time, plan[4] - time))
+    long = (1.0 - far) / (2.0 * fast + moving * tightest + 1e-30)
+    far, fast, tautest = twisted(x, v, edges, course, gone)
+    if far > STALE:
+        return 0.0
+    return max(1e-9, min(lasts - gone, long, (1.0 - far) / (2.0 * fast + moving * tautest + 1e-30)))
 
 
 @njit(cache=True, error_model="numpy")

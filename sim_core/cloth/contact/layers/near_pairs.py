@@ -20,6 +20,7 @@ from sim_core.cloth.contact.layers.foresight import (
     on_course,
     set_out,
     strayed,
+    twisted,
     unsure_pairs,
 )
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
@@ -270,7 +271,7 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     if fresh:
         gone = time - course.plan[0] if course.plan[1] > 0.0 else 0.0
         sure = set_out(x, v, mesh, patches, course, gone, left, how.edge)
-        course.plan[0], course.plan[1], course.plan[3], course.plan[4] = time, sure, time, time
+        course.plan[0], course.plan[1] = time, sure
         sure = min(sure, STRAIN * how.edge / (2.0 * pushed + GAINED))
     if late or fresh:
         near = _looked_through(x, v, mesh, patches, shapes, how, near, fresh)
@@ -290,15 +291,17 @@ def _margin(near):
 
 
 @njit(cache=True, error_model="numpy")
-def listed_within(x, near):
+def listed_within(x, edges, near):
     """Up to which gap [m] beyond the thickness all pairs at x (V, 3) are in the lists; less than 0: nobody knows."""
-    far, mark, (begin, lasts, now) = 0.0, near.now.mark, near.course.plan[:3]
+    far, mark, (begin, lasts, now) = 0.0, near.now.mark, near.course.plan
     for i in range(len(x)):
         far = max(
             far, (x[i, 0] - mark[i, 0]) ** 2 + (x[i, 1] - mark[i, 1]) ** 2 + (x[i, 2] - mark[i, 2]) ** 2
         )
-    away, _, _, _ = strayed(x, near.course.going, near.course, now - begin)
-    if near.kept[1] == 0.0 or not (away <= 1.0 and now - begin <= 1.000001 * lasts):
+    going, gone = near.course.going, now - begin
+    away, _, _, _ = strayed(x, going, near.course, gone)
+    bent, _, _ = twisted(x, going, edges, near.course, gone)
+    if near.kept[1] == 0.0 or not (away <= 1.0 and bent <= 1.0 and gone <= 1.000001 * lasts):
         return -1.0
     return min(near.now.least[0], near.kept[0]) - 2.0 * math.sqrt(far)
 
