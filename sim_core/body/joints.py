@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["JOINTS", "OTHER_SIDE", "PARENTS", "matrix_of", "product"]
+__all__ = ["JOINTS", "OTHER_SIDE", "PARENTS", "matrix_of", "product", "unit"]
 
 _TRUNK = {"pelvis": "", "spine_1": "pelvis", "spine_2": "spine_1", "spine_3": "spine_2", "neck": "spine_3"}
 _ARM = {"clavicle": "spine_3", "shoulder": "clavicle", "elbow": "shoulder", "wrist": "elbow"}
@@ -51,3 +51,9 @@ def product(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """The product (4,) of two quaternions: the rotation `second`, then `first`."""
     a, u, b, v = first[0], first[1:], second[0], second[1:]
     return np.r_[a * b - u @ v, a * v + b * u + np.cross(u, v)]
+
+
+def unit(q: np.ndarray) -> tuple[float, float, float, float]:
+    """A quaternion (4,) made one of a rotation, its real part not below nought."""
+    w, x, y, z = (q / np.copysign(np.linalg.norm(q), q[0])).tolist()
+    return w, x, y, z

@@ -1,13 +1,14 @@
 """A garment on a walking figure, frame by frame: how deep it is in the body, whether it crosses itself, its strain.
 
     python tests/bench/bench_walk.py [--motion assets/motions/walk.toml] [--rounds 1] [--clip FILE.bvh]
-        [--garment FILE.npz] [--every 1] [--json FILE] [--frames FILE.npz]
+        [--room 0.035] [--garment FILE.npz] [--every 1] [--json FILE] [--frames FILE.npz]
 
 The garment is carried on by `follow` from where it came to rest: the wearer comes from the pose it was dressed in into
 the motion, then goes through whole loops in place (two strides of the walk each). Told a frame: the deepest vertex
 inside the body [mm], vertices, midpoints and centroids inside, pairs of cloth that cross, area strain (95th
 percentile), and time. Limits: 1 mm, no crossing, 4 %. The shown loop's frames are those after the lead. --clip: instead
-of a loop the motion of somebody else's file, tracked, brought onto the figure and held in place, its whole length.
+of a loop the motion of somebody else's file, tracked, brought onto the figure and held in place, its whole length; its
+arms are kept `--room` from the trunk, since who was captured wore no coat.
 """
 
 from __future__ import annotations
@@ -41,11 +42,13 @@ def way(motion: Loop, figure: Mannequin, rounds: int) -> tuple[np.ndarray, int]:
     return np.stack([figure.posed(pose) for pose in poses]), lead
 
 
-def clip_way(path: Path, figure: Mannequin) -> tuple[np.ndarray, int]:
+def clip_way(path: Path, figure: Mannequin, room: float) -> tuple[np.ndarray, int]:
     """The same of a motion file: tracked points move the figure, whose root's way along the floor is taken out."""
     followed = track(read_recording(path), TrackSettings("none"))
     rate = 1.0 / float(np.median(np.diff(followed.time)))
-    posed = figure_from(figure, followed.joints, KINECT.joints, rate=rate).poses
+    moved = figure_from(figure, followed.joints, KINECT.joints, rate=rate, room=room)
+    print(f"arms raised by {moved.raised[0]:.1f} and {moved.raised[1]:.1f} degrees at most", flush=True)
+    posed = moved.poses
     frames = np.clip(np.round(np.arange(0.0, len(posed) / rate, FRAME) * rate).astype(int), 0, len(posed) - 1)
     walked = [posed[k].shifted(x=-posed[k].shift[0], z=-posed[k].shift[2]) for k in frames]
     start, count = pose_named("display"), round(RATE)
@@ -72,6 +75,7 @@ def main() -> int:
     )
     parser.add_argument("--motion", type=Path, default=ROOT / "assets/motions/walk.toml")
     parser.add_argument("--clip", type=Path, help="a motion file (BVH, npz, CSV, JSON) instead of a loop")
+    parser.add_argument("--room", type=float, default=0.035, help="[m] between arms and trunk in --clip")
     parser.add_argument("--garment", type=Path, default=ROOT / "assets/exhibits/beizi/baked/garment.npz")
     parser.add_argument("--figure", type=Path, default=ROOT / "assets/mannequins/woman.npz")
     parser.add_argument(
@@ -83,7 +87,7 @@ def main() -> int:
     arguments = parser.parse_args()
     garment, figure = Garment.load(arguments.garment), Mannequin.load(arguments.figure)
     if arguments.clip is not None:
-        body, lead = clip_way(arguments.clip, figure)
+        body, lead = clip_way(arguments.clip, figure, arguments.room)
     else:
         motion = load_motion(arguments.motion)
         if not isinstance(motion, Loop):

@@ -215,6 +215,75 @@ def test_a_real_walk_is_walked_by_the_points_that_follow_it(every: int) -> None:
     assert met.deepest < 0.005
 
 
+def test_arms_leave_the_room_that_a_coat_needs() -> None:
+    """An arm that swings along the trunk is held off it, smoothly; one that is far from it stays as it was seen."""
+    near = [
+        Pose.from_rotvecs({"shoulder_l": (0.0, 4.0 * np.sin(0.3 * k), -82.0), "shoulder_r": (0.0, 0.0, 35.0)})
+        for k in range(40)
+    ]
+    joints = np.stack([figure().skeleton.joints(pose) for pose in near])
+    seen, held = (
+        figure_from(figure(), joints, JOINTS, rate=25, plant=False, room=room) for room in (0.0, 0.06)
+    )
+    assert seen.raised == (0.0, 0.0)
+    pair = "left forearm – trunk and legs"
+    assert clearances(figure(), seen.poses[::5]).least[pair] < 0.04
+    assert (
+        clearances(figure(), held.poses[::5]).least[pair] > 0.055
+    )  # from vertices to the middles of faces: 60 mm
+    assert 2.0 < held.raised[0] < 30.0
+    assert held.raised[1] == 0.0
+    assert [pose.vector("shoulder_r") for pose in held.poses] == [
+        pose.vector("shoulder_r") for pose in seen.poses
+    ]
+    turned = np.array([pose.vector("shoulder_l") for pose in held.poses])
+    was = np.array([pose.vector("shoulder_l") for pose in seen.poses])
+    assert np.abs(np.diff(turned - was, axis=0)).max() < 2.0  # [degrees] a frame: nothing jerks
+    assert held.cramped == 0.0
+    for pose in held.poses:
+        pose.check()
+
+
+@pytest.mark.parametrize("name", ["woman", "man-167"])
+@pytest.mark.parametrize("raised", [0.0, 40.0, 70.0])
+def test_arms_that_are_far_from_the_trunk_stay(name: str, raised: float) -> None:
+    pose = Pose.from_rotvecs({"shoulder_l": (0.0, 0.0, raised), "shoulder_r": (0.0, 0.0, -raised)})
+    joints = figure(name).skeleton.joints(pose)[None]
+    seen, held = (
+        figure_from(figure(name), joints, JOINTS, rate=25, plant=False, room=r) for r in (0.0, 0.035)
+    )
+    assert held.raised == (0.0, 0.0)
+    assert held.cramped == 0.0
+    assert held.poses == seen.poses
+
+
+def test_our_own_raised_sleeve_is_not_raised_further() -> None:
+    poses, joints = joints_of("raised-sleeve")
+    held = figure_from(figure(), joints[::8], JOINTS, rate=25, plant=False, room=0.035)
+    assert held.raised == (0.0, 0.0)
+    assert len(poses) > 8
+
+
+def test_forearms_before_the_chest_stay_where_raising_gives_no_room() -> None:
+    pose = Pose.from_rotvecs(
+        {"shoulder_l": (0.0, -40.0, -70.0), "elbow_l": (0.0, -125.0, 0.0)}
+        | {"shoulder_r": (0.0, 40.0, 70.0), "elbow_r": (0.0, 125.0, 0.0)}
+    )
+    joints = figure().skeleton.joints(pose)[None]
+    seen, held = (figure_from(figure(), joints, JOINTS, rate=25, plant=False, room=r) for r in (0.0, 0.12))
+    pairs = [pair for pair in clearances(figure(), seen.poses).least if pair.endswith("trunk and legs")]
+    before, after = ([clearances(figure(), one.poses).least[pair] for pair in pairs] for one in (seen, held))
+    assert len(pairs) == 4
+    assert held.cramped > 0.0
+    assert min(after) > min(before) - 0.002
+
+
+@pytest.mark.parametrize("room", [np.nan, np.inf, -0.01, 0.3, "wide", None])
+def test_a_room_without_meaning_is_refused(room: object) -> None:
+    with pytest.raises(SimCoreError, match="room"):
+        figure_from(figure(), joints_of("walk")[1][:1], JOINTS, rate=25, room=room)
+
+
 @pytest.mark.parametrize(
     ("joint", "at"), [("knee_l", "hip_l"), ("elbow_r", "shoulder_r"), ("ankle_l", "knee_l")]
 )

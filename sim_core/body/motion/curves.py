@@ -7,11 +7,12 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
 from sim_core.body.joints import JOINTS
 from sim_core.errors import SimCoreError
 
-__all__ = ["ROOT", "Curve", "minimum_jerk"]
+__all__ = ["ROOT", "Curve", "minimum_jerk", "spread"]
 
 ROOT = "root"  # stands for the root's way where a curve names what it moves
 WHOLE = 100.0  # per cent of a period
@@ -26,6 +27,12 @@ def minimum_jerk(share: np.ndarray | float) -> np.ndarray:
     at nought (Flash and Hogan, J. Neurosci. 5 (1985) 1688-1703)."""
     t = np.clip(share, 0.0, 1.0)
     return t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
+
+
+def spread(need: np.ndarray, frames: float) -> np.ndarray:
+    """A smooth curve (T,) that is nowhere below `need`, for as short as it can be, over so many frames."""
+    wide = max(1, round(frames))
+    return np.maximum(gaussian_filter1d(maximum_filter1d(need, 4 * wide + 1), wide, mode="nearest"), need)
 
 
 @dataclass(frozen=True)

@@ -12,13 +12,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt, gaussian_filter1d, maximum_filter1d, minimum_filter1d
+from scipy.ndimage import distance_transform_edt, gaussian_filter1d, minimum_filter1d
 
-from sim_core.body.joints import JOINTS, PARENTS, product
+from sim_core.body.joints import JOINTS, PARENTS, product, unit
 from sim_core.body.limits import LIMITS
 from sim_core.body.mannequin import Mannequin
+from sim_core.body.motion.arms import arms_apart
 from sim_core.body.motion.bones import named_points, rest_points, turns_of
-from sim_core.body.motion.curves import minimum_jerk
+from sim_core.body.motion.curves import minimum_jerk, spread
 from sim_core.body.motion.legs import Foothold, legs_at, pitched, reach, rotvec_of
 from sim_core.body.motion.soles import Sole, sole_of
 from sim_core.body.pose import Pose
@@ -47,13 +48,16 @@ LIFTS = 6  # times that heels are lifted at most
 class Retargeted:
     """poses: of every frame; scale: the figure's legs against the other body's; clamped: joint -> most degrees by which
     it was turned beyond its limits, and in how many frames; stands: share of the frames in which the left foot and the
-    right stand; missed [m]: most that a foot was out of reach."""
+    right stand; missed [m]: most that a foot was out of reach; raised: by how many degrees the left arm and the right
+    were held away from the trunk at most; cramped [m]: how much of the room asked for is missing there all the same."""
 
     poses: tuple[Pose, ...]
     scale: float
     clamped: dict[str, tuple[float, int]]
     stands: tuple[float, float]
     missed: float
+    raised: tuple[float, float] = (0.0, 0.0)
+    cramped: float = 0.0
 
 
 def figure_from(
@@ -65,13 +69,15 @@ def figure_from(
     rest: np.ndarray | None = None,
     turns: Mapping[str, np.ndarray] | None = None,
     plant: bool = True,
+    room: float = 0.0,
 ) -> Retargeted:
     """Poses of a figure that moves as points (T, J, 3) [m] with y up and `names` (J,) do, `rate` frames a second.
 
     names: of Kinect v2 or of our own joints (also collar, head, tip_l, tip_r), others are passed over; rest (J, 3) [m]:
     the same body in T-pose facing +z, without it the figure's own proportions are taken; turns: rotations (T, 3, 3) of
     joints by our names against that T-pose, in the world, where they are known better than by points; plant: whether
-    feet that stand are held. Raises SimCoreError naming frame and joint for what is not finite, and what is missing.
+    feet that stand are held; room [m]: kept between arms and trunk or thighs, for layers of cloth that the tracked body
+    did not wear (0: as seen). Raises SimCoreError naming frame and joint for what is not finite, and what is missing.
     """
     points = _checked(points, names, rate)
     own = named_points(points, tuple(names))
@@ -87,11 +93,12 @@ def figure_from(
     scale = _legs(dict(zip(JOINTS, skeleton.heads[:, None], strict=True))) / _legs(own)
     clamped: dict[str, tuple[float, int]] = {}
     poses = _poses(local, scale * own["pelvis"] - skeleton.heads[0], clamped)
-    if not plant:
-        return Retargeted(tuple(poses), scale, clamped, (0.0, 0.0), 0.0)
-    poses, stands, missed = _planted(figure, poses, rate)
+    poses, raised, cramped = arms_apart(figure, poses, room, rate)
+    stands, missed = (0.0, 0.0), 0.0
+    if plant:
+        poses, stands, missed = _planted(figure, poses, rate)
     kept = [_clamped(pose, clamped) for pose in poses]
-    return Retargeted(tuple(kept), scale, clamped, stands, missed)
+    return Retargeted(tuple(kept), scale, clamped, stands, missed, raised, cramped)
 
 
 def _checked(points: np.ndarray, names: tuple[str, ...], rate: float) -> np.ndarray:
@@ -216,10 +223,14 @@ def _planted(
         if not any(values.any() for values in stiff.values()):
             break
         for side, goal in goals.items():  # an ankle that cannot bend further lifts its heel
-            goal.pitch += np.radians(_spread(stiff[side], rate))
-            left, right = (_spread(np.maximum(sign * stiff[f"yaw_{side}"], 0.0), rate) for sign in (1, -1))
+            goal.pitch += np.radians(spread(stiff[side], SMOOTH * rate))
+            left, right = (
+                spread(np.maximum(sign * stiff[f"yaw_{side}"], 0.0), SMOOTH * rate) for sign in (1, -1)
+            )
             goal.hinge = _yawed(goal.hinge, left - right)  # one that cannot turn further turns the knee along
-        tilt = _spread(stiff["hips"], rate)  # and a thigh that cannot go further back takes the pelvis along
+        tilt = spread(
+            stiff["hips"], SMOOTH * rate
+        )  # and a thigh that cannot go further back takes the pelvis along
         poses = [_tilted(pose, float(angle)) for pose, angle in zip(poses, tilt, strict=True)]
         poses = _within_reach(figure, poses, goals, rate)
     return out, (float(stands["l"].mean()), float(stands["r"].mean())), missed
@@ -261,8 +272,8 @@ def _tilted(pose: Pose, angle: float) -> Pose:
         np.array(Pose.from_rotvecs({"pelvis": (a, 0.0, 0.0)}).turn("pelvis")) for a in (angle, -angle)
     )
     turns = dict(pose.turns) | {
-        "pelvis": _unit(product(np.array(pose.turn("pelvis")), forth)),
-        "spine_1": _unit(product(back, np.array(pose.turn("spine_1")))),
+        "pelvis": unit(product(np.array(pose.turn("pelvis")), forth)),
+        "spine_1": unit(product(back, np.array(pose.turn("spine_1")))),
     }
     return Pose(tuple((joint, turns[joint]) for joint in JOINTS if joint in turns), pose.shift)
 
@@ -272,17 +283,6 @@ def _yawed(vectors: np.ndarray, angles: np.ndarray) -> np.ndarray:
     cosine, sine = np.cos(np.radians(angles)), np.sin(np.radians(angles))
     x, y, z = vectors.T
     return np.stack([cosine * x + sine * z, y, cosine * z - sine * x], axis=1)
-
-
-def _unit(q: np.ndarray) -> tuple[float, float, float, float]:
-    w, x, y, z = (q / np.copysign(np.linalg.norm(q), q[0])).tolist()
-    return w, x, y, z
-
-
-def _spread(need: np.ndarray, rate: float) -> np.ndarray:
-    """A smooth curve (T,) that is nowhere below `need`, for as short as it can be."""
-    wide = max(1, round(SMOOTH * rate))
-    return np.maximum(gaussian_filter1d(maximum_filter1d(need, 4 * wide + 1), wide, mode="nearest"), need)
 
 
 def _tracks(figure: Mannequin, poses: list[Pose]) -> dict[str, _Track]:
@@ -396,5 +396,5 @@ def _within_reach(
             need[row] = max(need[row], -float(way[1]) - (left**0.5 if left > 0.0 else 0.0))
     if need.max() <= 0.0:
         return poses
-    lower = _spread(need, rate)
+    lower = spread(need, SMOOTH * rate)
     return [pose.shifted(y=-float(down)) for pose, down in zip(poses, lower, strict=True)]
