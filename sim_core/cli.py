@@ -12,7 +12,7 @@ from sim_core.errors import SimCoreError, WrongArgument
 
 __all__ = ["main"]
 
-ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "motion", "track")
+ROOMS = ("weave", "mesh", "cloth", "dress", "figure", "motion", "track", "learn")
 ELSEWHERE = {
     "dress": "sim_core.garment.cli",
     "figure": "sim_core.body.cli",
@@ -30,6 +30,7 @@ The simulation core, one stage at a time: files in, files out.
   figure   who wears a garment: poses drawn, and new figures from free body data
   motion   how figures move: motion files (TOML) drawn, measured, written as joints in time
   track    a motion (BVH, arrays, a sensor's stream) becomes points that follow the person
+  learn    fine cloth from coarse: data to learn from
   bench    time and error of the engines, side by side with a reference
 
 Units are SI throughout: metres, kilograms, seconds, newtons. Exit status: 0 done, 1 the work failed

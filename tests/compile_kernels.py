@@ -97,6 +97,23 @@ def track() -> None:
         follow(Recording(KINECT, np.arange(4) / 30.0, joints), TrackSettings(filter=name))
 
 
+def learn() -> None:
+    """A small sheet pooled by every method, upsampled, read in spirals and measured."""
+    from sim_core.cloth.scenes import equilateral_sheet
+    from sim_core.learn.convolution import spirals
+    from sim_core.learn.evaluation import frame_errors
+    from sim_core.learn.pooling import collapse, decimate, mean_absolute_curvature
+    from sim_core.learn.upsampling import linear
+
+    rest, faces = equilateral_sheet(0.5, 0.4, 0.05)
+    frame = np.column_stack([rest, np.sin(9 * rest[:, 0])])
+    decimate(rest, faces, mean_absolute_curvature([frame], faces), 0.8)
+    pooled = collapse(rest, faces, frame[None], 0.8)
+    made = linear(rest[pooled.kept], pooled.faces, rest) @ frame[pooled.kept]
+    frame_errors(made, frame, faces, rest)
+    spirals(faces, 9, rest)
+
+
 ROOMS: dict[str, Callable[[], None]] = {
     "mesh": mesh,
     "weave": weave,
@@ -104,6 +121,7 @@ ROOMS: dict[str, Callable[[], None]] = {
     "garment": garment,
     "light": light,
     "track": track,
+    "learn": learn,
 }
 
 

@@ -5,7 +5,7 @@ sums up.
 """
 
 from sim_core.mesh.measures.report import MeshReport, deviation
-from sim_core.mesh.measures.triangles import quality, triangle_areas
-from sim_core.mesh.measures.verification import mesh_fault
+from sim_core.mesh.measures.triangles import quality, stars, triangle_areas
+from sim_core.mesh.measures.verification import mesh_fault, open_edges
 
-__all__ = ["MeshReport", "deviation", "mesh_fault", "quality", "triangle_areas"]
+__all__ = ["MeshReport", "deviation", "mesh_fault", "open_edges", "quality", "stars", "triangle_areas"]

@@ -1,0 +1,28 @@
+"""Data to learn from: published scenes simulated coarse and free, and fine, softly led by the coarse."""
+
+from sim_core.learn.data.film import Film, coarse_film, film, fine_film
+from sim_core.learn.data.gate import GATE, Floor, floor
+from sim_core.learn.data.generation import generate
+from sim_core.learn.data.lead import Lead
+from sim_core.learn.data.recipe import DESIGNS, Design, Recipe, recipes
+from sim_core.learn.data.store import MANIFEST, Manifest, read_films, read_sequence
+
+__all__ = [
+    "DESIGNS",
+    "GATE",
+    "MANIFEST",
+    "Design",
+    "Film",
+    "Floor",
+    "Lead",
+    "Manifest",
+    "Recipe",
+    "coarse_film",
+    "film",
+    "fine_film",
+    "floor",
+    "generate",
+    "read_films",
+    "read_sequence",
+    "recipes",
+]
