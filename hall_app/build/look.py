@@ -74,13 +74,16 @@ class Wardrobe:
         """Writes close.glb, and hall.glb with each layer's cheapest level; returns these levels.
 
         budget [m]: how far (p99) the outermost may deviate in the hall; played: how they move, which shows more of
-        their wearer.
+        their wearer, and bends what hangs flat.
         """
         from sim_core.garment import choose_detail
 
         self._write(garments, folder / "close.glb", "close", (garments, played))
-        levels = [choose_detail(garment, HALL_BENEATH) for garment in garments[:-1]]
-        levels.append(choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels)))
+        moved = [() if played is None else tuple(played.frames[k]) for k in range(len(garments))]
+        levels = [choose_detail(one, HALL_BENEATH, moments=moved[k]) for k, one in enumerate(garments[:-1])]
+        levels.append(
+            choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels), moments=moved[-1])
+        )
         self._write(levels, folder / "hall.glb", "hall", (garments, played))
         return tuple(levels)
 

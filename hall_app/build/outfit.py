@@ -19,7 +19,7 @@ from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
-from hall_app.content.bakes.steps import Step, budget, chosen_steps, study_of
+from hall_app.content.bakes.steps import Step, budget, chosen_steps, hall_budget, study_of
 from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
 from hall_app.content.files import CLIP, TRACKED
 from hall_app.content.folder import Content, Exhibit
@@ -68,9 +68,10 @@ def bake_outfit(
 
     def models(garments: Sequence[Garment]) -> None:
         for garment, name in zip(garments, layer_files(len(garments)), strict=True):
-            garment.save(out / name)
+            if not (out / name).exists():  # one that was kept is the file it was, to the byte
+                garment.save(out / name)
         played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
-        fine = budget(show.nearest, show.hall_error_px)
+        fine = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
         levels.extend(wardrobe.write_models(garments, out, fine, played))
         if played is not None:
             told = write_motion(
@@ -279,6 +280,8 @@ def _figures(garment: Garment, light: Garment) -> dict[str, float]:
     errors = {name: value for name, value in told.items() if not isinstance(value, list)}
     apart = light.provenance["detail"].get("hausdorff", {})
     errors |= {f"hall_hausdorff_{name.removesuffix('_m')}": value for name, value in apart.items()}
+    if (moving := light.provenance["detail"].get("moving_p99_m")) is not None:
+        errors["moving_hall_hausdorff_p99"] = moving
     errors["vertices"], errors["triangles"] = len(garment.positions), len(garment.faces)
     errors["hall_triangles"] = len(light.faces)
     return errors

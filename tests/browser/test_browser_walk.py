@@ -14,6 +14,14 @@ async (node) => {
     [name, geometry.attributes.position.array.reduce((sum, value, k) => sum + value * (1 + k % 7), 0)]));
 }
 """
+# Whether the figure is drawn by the shader that puts it behind its place.
+BEHIND = """
+async (node) => {
+  const {meshesOf, renderer} = await import("/static/viser/viser_adapter.js");
+  const figure = meshesOf(node).find(({name}) => name.startsWith("figure"));
+  return renderer().properties.get(figure.material).currentProgram?.cacheKey.includes("behind 0.008") ?? false;
+}
+"""
 
 
 @pytest.mark.parametrize(("address", "node"), [("", "/exhibits/beizi"), ("&exhibit=beizi", "/closeup")])
@@ -31,4 +39,5 @@ def test_cloth_and_figure_walk_together(shipped_hall, chromium, address, node):
         return all(abs(now[name] - before[name]) > 1e-3 for name in before)
 
     soon(page, all_moved)
+    soon(page, lambda: page.evaluate(BEHIND, node))
     page.close()

@@ -12,7 +12,7 @@ from sim_core.body import Loop, Motion, Pose, load_motion
 from sim_core.body.motion import Curve
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, Outfit, Played, dress, load_outfit, move, moving_errors
-from sim_core.garment.worn import Pins
+from sim_core.garment.worn import Lengths, Pins
 
 pytestmark = pytest.mark.slow
 
@@ -82,6 +82,21 @@ def test_a_loop_closes_without_a_jump_in_place_or_speed(walked: Walked) -> None:
     assert np.percentile(steps[-2:], 99) <= np.percentile(steps[:-2], 99, axis=1).max()
     assert np.percentile(bends[-2:], 99) <= np.percentile(bends[2:-2], 99, axis=1).max()
     assert 0.0 < walked.played.apart[0] < 0.05
+
+
+def test_cloth_half_way_between_two_states_is_led_back_to_its_lengths(walked: Walked) -> None:
+    """A mean of two ways in which sleeves lie is shorter than either."""
+    (garment,), (frames,) = walked.garments, walked.played.frames
+    held = np.arange(20)
+    half = 0.5 * (frames[0].astype(float) + frames[8])
+    led = Lengths.of(garment, held).relaxed(half)
+    strains = [
+        np.percentile(np.abs(metrics.area_strain(garment.rest_corners(), x, garment.faces)), 95)
+        for x in (frames[0].astype(float), half, led)
+    ]
+    assert strains[1] > strains[0]
+    assert strains[2] < 0.75 * strains[1]
+    assert np.array_equal(led[held], half[held])
 
 
 def test_every_frame_is_measured(walked: Walked) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
+from sim_core.errors import SimCoreError
 from sim_core.garment.levels import Thinning
 from sim_core.mesh import panel_mesh
 
@@ -48,6 +49,30 @@ def test_folds_are_kept_where_they_are() -> None:
         assert area_in_pattern(flat, left).sum() == pytest.approx(1.0, abs=1e-9)
     assert seen == sorted(seen)
     assert seen[-1] < 0.0015  # a vertex takes over the planes of those that slid onto it
+
+
+def test_what_hangs_flat_keeps_its_triangles_where_it_is_bent_a_moment_later() -> None:
+    flat, faces = square(0.03)
+    still = draped(flat, np.zeros(len(flat)))
+    bent = [
+        draped(flat, 0.2 * np.maximum(0.0, 0.15 - np.abs(flat[:, 0] - at))) for at in (0.3, 0.7)
+    ]  # over a knee, here or there
+    apart = {}
+    for name, moments in (("still", []), ("moving", bent)):
+        mesh = Thinning(still, faces, np.arange(len(flat)), flat, moments=moments)
+        mesh.to(60)
+        assert area_in_pattern(flat, mesh.faces()).sum() == pytest.approx(1.0, abs=1e-9)
+        apart[name] = max(metrics.hausdorff(x, faces, x, mesh.faces(), spacing=0.01).p99 for x in bent)
+    assert apart["still"] > 0.02
+    assert apart["moving"] < 0.25 * apart["still"]
+
+
+@pytest.mark.parametrize("wrong", [lambda x: x[:-1], lambda x: np.full_like(x, np.nan), lambda x: x[:, :2]])
+def test_a_moment_of_another_mesh_is_refused(wrong) -> None:
+    flat, faces = square()
+    x = draped(flat, np.zeros(len(flat)))
+    with pytest.raises(SimCoreError, match=r"moments\[1\]"):
+        Thinning(x, faces, np.arange(len(flat)), flat, moments=[x, wrong(x)])
 
 
 def test_twins_of_a_seam_stay_together() -> None:

@@ -78,6 +78,7 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = F
     if moving:
         found += [Limit("moving_deepest_m", 1e-3), Limit("moving_self_intersections", _crossings(worn))]
         found += [Limit("moving_layer_order", 0), Limit("moving_area_strain_p95", 0.04)]
+        found += [Limit("moving_hall_hausdorff_p99", deviation)]
     if worn.half:
         found.append(Limit("asymmetry_m", 0.010))
     if not worn.on_stand and not worn.beneath:

@@ -11,7 +11,7 @@ from typing import Any
 from hall_app.check.garments.limits import Worn, limits_of, writer
 from hall_app.check.garments.measurement import Measured, measured_again
 from hall_app.content.bakes.record import FILES
-from hall_app.content.bakes.steps import HALL_BENEATH, budget
+from hall_app.content.bakes.steps import HALL_BENEATH, hall_budget
 from hall_app.content.bakes.store import bake_fault, baked_here, key_now, layer_files, read_record
 from hall_app.content.files import BAKED, MOTION
 from hall_app.content.folder import Content, Exhibit
@@ -89,7 +89,9 @@ def figure_lines(exhibit: str, show: Show, record: Numbers, again: Measured) -> 
     told, lines, layers = _told(record), [], len(again.worn)
     files = record.get(FILES)
     moving = isinstance(files, dict) and MOTION.removeprefix(BAKED) in files
-    asked = [limits_of(worn, _deviation(worn, show), layers, moving=moving) for worn in again.worn[::-1]]
+    asked = [
+        limits_of(worn, _deviation(worn, show, moving), layers, moving=moving) for worn in again.worn[::-1]
+    ]
     for limit in [limit for limits in asked for limit in limits]:
         value, found = told.get(limit.name), again.figures.get(limit.name)
         if value is None:
@@ -113,9 +115,9 @@ def _told(record: Numbers) -> dict[str, Any]:
     return {**errors, "drape_s": seconds.get("drape"), "drape_cpu_s": stages.get("drape_cpu")}
 
 
-def _deviation(worn: Worn, show: Show) -> float:
+def _deviation(worn: Worn, show: Show, moving: bool) -> float:
     """How far a garment's hall model may be from the close one [m], p99: what it was thinned to."""
-    return HALL_BENEATH if worn.beneath else budget(show.nearest, show.hall_error_px)
+    return HALL_BENEATH if worn.beneath else hall_budget(show.nearest, show.hall_error_px, moving=moving)
 
 
 def _agree(name: str, told: float, found: float) -> bool:

@@ -11,8 +11,10 @@ from hall_app.content.folder import Content, Exhibit
 
 __all__ = ["BAKE_VERSION", "KEY_DIGITS", "bake_key", "dressing_key"]
 
-# Raise it whenever an engine, the film or the GLB writer changes what a bake looks like.
-BAKE_VERSION = 10
+# Raise it whenever models, clips or their writers change what a bake looks like, and the other as well where an engine
+# or the film does: garments, film and pictures are then made anew, which costs most of a bake.
+BAKE_VERSION = 11
+DRESSING_VERSION = 10
 
 KEY_DIGITS = 16
 
@@ -27,9 +29,9 @@ def bake_key(content: Content, exhibit: Exhibit) -> str:
 
 
 def dressing_key(content: Content, exhibit: Exhibit) -> str:
-    """The same without how it is shown: what decides garments, film and pictures, and costs most of a bake."""
+    """Of garments, film and pictures alone, whatever the models: without how the exhibit is shown."""
     edges = [step.edge for step in chosen_steps(content, exhibit)]  # by how near it is seen, if a study says
-    return _hash(content, exhibit, f"dressing {BAKE_VERSION}\n{edges or ''}")
+    return _hash(content, exhibit, f"dressing {DRESSING_VERSION}\n{edges or ''}")
 
 
 def _hash(content: Content, exhibit: Exhibit, begin: str) -> str:

@@ -20,6 +20,7 @@ __all__ = [
     "Study",
     "budget",
     "chosen_steps",
+    "hall_budget",
     "read_study",
     "study_of",
 ]
@@ -27,6 +28,8 @@ __all__ = [
 SCREEN = 1080  # [pixels] height of the picture a pixel's budget is reckoned for
 FIELD_OF_VIEW = math.radians(58)
 HALL_BENEATH = 0.004  # [m] by how much what is worn beneath may deviate in the hall, p99
+# Times that by which what stands may deviate: of what moves, triangles are shared between all its moments.
+MOVING = 3.0
 # [s] of processor time that dressing a layer may take: of one half against its image, and of one dressed whole
 PATIENCE, PATIENCE_WHOLE = 180.0, 900.0
 GRID = 0.0005  # [m] that steps are rounded up to
@@ -145,6 +148,11 @@ class Study(Table):
 def budget(nearest: float, pixels: float) -> float:
     """The length [m] that `pixels` of a full-screen picture show at the nearest viewing distance [m]."""
     return pixels * 2 * nearest * math.tan(FIELD_OF_VIEW / 2) / SCREEN
+
+
+def hall_budget(nearest: float, pixels: float, *, moving: bool = False) -> float:
+    """How far (p99) an exhibit's model in the hall may deviate [m], of one that moves at every time."""
+    return budget(nearest, pixels) * (MOVING if moving else 1.0)
 
 
 def study_of(content: Content, exhibit: Exhibit) -> Study | None:

@@ -15,9 +15,9 @@ TWINS = 32  # of one vertex, that move at once
 
 
 class Mesh(NamedTuple):
-    """V vertices, P pattern vertices, F faces; the corner k of face f is number 3 f + k."""
+    """V vertices in M moments, P pattern vertices, F faces; the corner k of face f is number 3 f + k."""
 
-    x: np.ndarray  # (V, 3) [m]
+    x: np.ndarray  # (V, 3 M) [m]; ways and turns are looked at in the first moment
     flat: np.ndarray  # (P, 2) [m], or (0, 2)
     weld: np.ndarray  # (P,) int64
     faces: np.ndarray  # (F, 3) int64
@@ -27,7 +27,7 @@ class Mesh(NamedTuple):
     lines: np.ndarray  # (N,) neighbours along borders and seams, or -1
     line_start: np.ndarray  # (V + 1,)
     stays: np.ndarray  # (V,) bool
-    quadric: np.ndarray  # (V, 10)
+    quadric: np.ndarray  # (V, 10 M)
     version: np.ndarray  # (V,) int64: what the heap holds of an older one counts no more
     count: np.ndarray  # (1,) int64 of the faces that are left
     ring: np.ndarray  # (V,) int64 working memory
@@ -170,7 +170,7 @@ def _offer(mesh, heap, v):
     for n in range(many):
         u = mesh.ring[n]
         way = (x[v, 0] - x[u, 0]) ** 2 + (x[v, 1] - x[u, 1]) ** 2 + (x[v, 2] - x[u, 2]) ** 2
-        error = _error(q, v, x[u, 0], x[u, 1], x[u, 2]) + SHAPE_WEIGHT * way * q[v, 9] * 1e-3
+        error = _error(q, v, x, u) + SHAPE_WEIGHT * way * q[v, 9] * 1e-3
         heap = _pushed(heap, error, v, u, mesh.version[v])
     return heap
 
@@ -286,7 +286,7 @@ def _collapse(mesh, heap, v, u, moves):
         if w >= 0 and w != u:  # there are two, and u is the other one
             _replace(lines, start, w, v, u)
             _replace(lines, start, u, v, w)
-    for n in range(10):
+    for n in range(mesh.quadric.shape[1]):
         mesh.quadric[u, n] += mesh.quadric[v, n]
     mesh.version[v] += 1
     for w in mesh.ring[:many].copy():  # which offers write over
@@ -321,8 +321,12 @@ def _far(x, i, j):
 
 
 @njit(cache=True, error_model="numpy")
-def _error(q, v, x, y, z):
-    """Sum of weighted squared distances of a point to all planes in q[v]."""
-    square = q[v, 0] * x * x + q[v, 4] * y * y + q[v, 7] * z * z + q[v, 9]
-    cross = q[v, 1] * x * y + q[v, 2] * x * z + q[v, 5] * y * z
-    return max(square + 2 * (cross + q[v, 3] * x + q[v, 6] * y + q[v, 8] * z), 0.0)
+def _error(quadric, v, places, u):
+    """Sum of weighted squared distances of the vertex u to all planes of v, in the moment when that is worst."""
+    worst = 0.0
+    for n in range(quadric.shape[1] // 10):
+        q, (x, y, z) = quadric[v, 10 * n : 10 * n + 10], places[u, 3 * n : 3 * n + 3]
+        square = q[0] * x * x + q[4] * y * y + q[7] * z * z + q[9]
+        cross = q[1] * x * y + q[2] * x * z + q[5] * y * z
+        worst = max(worst, square + 2 * (cross + q[3] * x + q[6] * y + q[8] * z))
+    return worst

@@ -6,9 +6,13 @@ place and their pattern coordinates, so texture coordinates are exact and twins 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from sim_core.errors import SimCoreError
 from sim_core.garment.levels.collapses import TWINS, Heap, Mesh, offer_all, thin
+from sim_core.validation import points
 
 __all__ = ["Thinning"]
 
@@ -19,7 +23,9 @@ class Thinning:
     """A mesh that is made coarser step by step.
 
     vertices (V, 3) [m]; pattern (P, 2) [m] or None; faces (F, 3) of pattern vertices; weld (P,) to vertices;
-    fixed (V,) bool: vertices that stay where they are.
+    fixed (V,) bool: vertices that stay where they are; moments: where the vertices (V, 3) [m] are at other times, when
+    the mesh is to be as true: what is flat as cloth hangs may be bent over a knee a moment later. Raises SimCoreError
+    for a moment of other vertices, or one that is not finite.
     """
 
     def __init__(
@@ -29,8 +35,10 @@ class Thinning:
         weld: np.ndarray,
         pattern: np.ndarray | None = None,
         fixed: np.ndarray | None = None,
+        moments: Sequence[np.ndarray] = (),
     ) -> None:
         count, welded = len(vertices), weld[faces]
+        places = [vertices, *(_checked(number, x, count) for number, x in enumerate(moments))]
         lines = _line_neighbours(welded, faces, count)
         corners = welded.ravel()
         order = np.argsort(corners, kind="stable")
@@ -40,7 +48,7 @@ class Thinning:
         head = np.full(count, -1, np.int64)
         head[corners[::-1]] = np.arange(len(corners))[::-1]
         self._mesh = Mesh(
-            x=np.ascontiguousarray(vertices, float),
+            x=np.ascontiguousarray(np.column_stack(places), float),
             flat=np.zeros((0, 2)) if pattern is None else np.ascontiguousarray(pattern, float),
             weld=weld.astype(np.int64),
             faces=faces.astype(np.int64),
@@ -50,7 +58,7 @@ class Thinning:
             lines=np.array([u for near in lines for u in sorted(near)], np.int64),
             line_start=np.cumsum([0, *map(len, lines)]),
             stays=np.zeros(count, bool) if fixed is None else fixed.copy(),
-            quadric=_quadrics(vertices, welded, lines),
+            quadric=np.column_stack([_quadrics(x, welded, lines) for x in places]),
             version=np.zeros(count, np.int64),
             count=np.array([len(faces)]),
             ring=np.zeros(count, np.int64),
@@ -79,6 +87,13 @@ class Thinning:
     def to(self, triangles: int) -> None:
         """Collapses edges until at most `triangles` are left, or no collapse is sound."""
         self._heap = thin(self._mesh, self._heap, triangles)
+
+
+def _checked(number: int, moment: np.ndarray, count: int) -> np.ndarray:
+    places = points(f"moments[{number}]", moment)
+    if len(places) != count:
+        raise SimCoreError(f"moments[{number}]: {len(places)} vertices – the mesh has {count}")
+    return places
 
 
 def _line_neighbours(welded: np.ndarray, faces: np.ndarray, count: int) -> list[set[int]]:

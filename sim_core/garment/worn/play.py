@@ -8,22 +8,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim_core import metrics
-from sim_core.body.motion import RATE, Loop, minimum_jerk
+from sim_core.body.motion import RATE, Loop
 from sim_core.body.pose import Pose
-from sim_core.cloth import Air, Live
-from sim_core.cloth.step import FRAME
+from sim_core.cloth import Air
 from sim_core.garment.dressing import capped, layer_order
 from sim_core.garment.garment import Garment
 from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.outfit import Layer, Outfit
 from sim_core.garment.worn.follow_body import following
+from sim_core.garment.worn.loop_closure import CLOSING, Lengths, closed, draw
 from sim_core.garment.worn.pins import Pins
 
 __all__ = ["Played", "move", "moving_errors"]
 
-CLOSING = 0.5  # [s] at the end of a round in which cloth is drawn to where it was at that of the round before
-DRAW = 0.9  # share of what it is away that it is drawn in a frame
-GENTLY = 0.15  # [s] in which that is reached
 DAMPING = 5.0  # [1/s] beside the air's
 
 Mesh = tuple[np.ndarray, np.ndarray]  # vertices (V, 3) [m], faces (F, 3)
@@ -53,8 +50,9 @@ def move(
     A motion that does not repeat is played once, from the pose the outfit was dressed in. Of one that repeats the
     wearer comes into it and goes through two rounds; the second is what is returned, a loop. Cloth never comes back to
     just where it was: in the last half second forces draw every vertex to where it was a round before, as simulated
-    cloth that touches what it touches, and what is left (`Played.apart`) is blended away. As the first round ended in
-    the instant that the second began with, the loop closes without a jump in place or speed.
+    cloth that touches what it touches, and what is left (`Played.apart`) is blended away, edges led back to their
+    lengths. As the first round ended in the instant that the second began with, the loop closes without a jump in place
+    or speed.
     Raises SimCoreError where the outfit has no wearer or no motion, or a joint would be turned beyond its limit.
     """
     poses, again = outfit.poses(), outfit.repeats()
@@ -108,32 +106,14 @@ class _Course:
         for n in range(1, last + 1):
             pulls = None
             if n > last - closing:
-                drawn = _draw(live, frames[n - 1 - self.again], frames[n - self.again], n - (last - closing))
+                drawn = draw(live, frames[n - 1 - self.again], frames[n - self.again], n - (last - closing))
                 pulls = free, (mass * drawn)[free]
             frames.append(live.step(body=float(n), pins=held, targets=pins.places(body[n]), pulls=pulls))
             progress(n / last)
         gone = np.stack(frames).astype(np.float32)
         if not self.again:
             return gone, 0.0
-        return _closed(gone, self.again, closing)
-
-
-def _draw(live: Live, before: np.ndarray, there: np.ndarray, number: int) -> np.ndarray:
-    """Accelerations (V, 3) [m/s2] in the frame of that number that draw a cloth to one which goes from `before` to
-    `there` (V, 3) [m] in it: critically damped, from nothing on."""
-    share = DRAW * float(minimum_jerk(number * FRAME / GENTLY))
-    away, faster = live.positions - before, live.velocities - (there - before) / FRAME
-    return -(share * away / FRAME + 1.6 * np.sqrt(share) * faster) / FRAME
-
-
-def _closed(frames: np.ndarray, again: int, closing: int) -> tuple[np.ndarray, float]:
-    """Frames (T, V, 3) whose last is blended to be that of a round before, and how far from there it was [m]."""
-    away = float(np.linalg.norm(frames[-1] - frames[-1 - again], axis=1).max())
-    count = min(closing, round(RATE * GENTLY))
-    for k in range(1, count + 1):
-        at = len(frames) - 1 - count + k
-        frames[at] += np.float32(minimum_jerk(k / count)) * (frames[at - again] - frames[at])
-    return frames, away
+        return closed(gone, self.again, Lengths.of(garment, pins.vertices))
 
 
 def _air(outfit: Outfit) -> Air:
