@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
 
     wanted = recipes(args.scene, sequences=args.sequences, frames=args.frames, seed=args.seed)
     args.out.mkdir(parents=True, exist_ok=True)
-    Manifest.of(args.out, wanted)  # what cannot go on is refused before anything runs
+    Manifest.matching(args.out, wanted)  # what cannot go on is refused before anything runs
     worth = floor(wanted[0], args.floor) if args.floor else None
     if worth is not None and not args.json:
         sys.stdout.write(_floor_words(wanted[0], worth))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from sim_core.body.joints import JOINTS, product, unit
+from sim_core.body.joints import JOINTS, matrix_of, product, unit
 from sim_core.body.mannequin import Mannequin
 from sim_core.body.motion.curves import spread
 from sim_core.body.pose import Pose
@@ -97,7 +97,7 @@ def _angle(
     """By how many degrees an arm (N, 3) [m] about its pivot is to be turned about an axis, and its clearance [m]."""
 
     def clearance(degrees: float) -> float:
-        return near.clearance(_turned(arm, axis, np.radians(degrees)) + pivot)
+        return near.clearance(arm @ matrix_of(_about(axis, degrees)).T + pivot)
 
     seen = [clearance(0.0)]
     for high in TRIED[1:]:
@@ -116,18 +116,16 @@ def _angle(
     return float(high), room
 
 
-def _turned(points: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
-    """Points (N, 3) turned about a unit axis through the origin."""
-    along = (points @ axis)[:, None] * axis
-    return along + np.cos(angle) * (points - along) + np.sin(angle) * np.cross(axis, points)
+def _about(axis: np.ndarray, degrees: float) -> np.ndarray:
+    """The quaternion (4,) of a turn about a unit axis."""
+    half = 0.5 * np.radians(degrees)
+    return np.r_[np.cos(half), np.sin(half) * axis]
 
 
 def _raised(pose: Pose, side: str, degrees: float) -> Pose:
     """The pose with an arm raised sideways from where it is."""
     if degrees == 0.0:
         return pose
-    joint, sign = f"shoulder_{side}", 1.0 if side == "l" else -1.0
-    raised = np.array(Pose.from_rotvecs({"pelvis": (0.0, 0.0, sign * degrees)}).turn("pelvis"))
-    turn = product(raised, np.array(pose.turn(joint)))
-    turns = dict(pose.turns) | {joint: unit(turn)}
+    joint, axis = f"shoulder_{side}", np.array([0.0, 0.0, 1.0 if side == "l" else -1.0])
+    turns = dict(pose.turns) | {joint: unit(product(_about(axis, degrees), np.array(pose.turn(joint))))}
     return Pose(tuple((name, turns[name]) for name in JOINTS if name in turns), pose.shift)

@@ -72,7 +72,20 @@ def _steps(planes: bytes, count: int) -> np.ndarray:
 def read_sequence(path: Path) -> tuple[Recipe, Film]:
     """A sequence's file; raises SimCoreError for one that is none, is cut short or damaged."""
     try:
-        head, _, blocks = path.read_bytes().partition(b"\n")
+        data = path.read_bytes()
+    except OSError as error:
+        raise _damaged(path, error) from None
+    return _unpacked(path, data)
+
+
+def _damaged(path: Path, error: Exception) -> SimCoreError:
+    return SimCoreError(f"{path}: not a sequence, or damaged ({error}) – make it again")
+
+
+def _unpacked(path: Path, data: bytes) -> tuple[Recipe, Film]:
+    """What the bytes of a file say."""
+    try:
+        head, _, blocks = data.partition(b"\n")
         told = json.loads(head)
         if told["format"] != FORMAT:
             raise SimCoreError(
@@ -91,8 +104,8 @@ def read_sequence(path: Path) -> tuple[Recipe, Film]:
         places = (np.array(told["origin"]) + told["step"] * steps).astype(np.float32)
         coarse, fine = np.split(places, [told["coarse"]], axis=1)
         return Recipe(**told["recipe"]), Film(coarse, fine, told["coarse_ms"], told["fine_ms"])
-    except (OSError, ValueError, KeyError, TypeError, zstandard.ZstdError) as error:
-        raise SimCoreError(f"{path}: not a sequence, or damaged ({error}) – make it again") from None
+    except (ValueError, KeyError, TypeError, zstandard.ZstdError) as error:
+        raise _damaged(path, error) from None
 
 
 @dataclass(frozen=True)
@@ -110,6 +123,17 @@ class Manifest:
 
         Raises SimCoreError where the folder is for others.
         """
+        found = Manifest.matching(folder, recipes)
+        whole = {
+            name: kept
+            for name, kept in found.done.items()
+            if _digest(folder / kept["file"]) == kept["sha256"]
+        }
+        return replace(found, done=whole)
+
+    @staticmethod
+    def matching(folder: Path, recipes: Sequence[Recipe]) -> Manifest:
+        """The same as it is noted, without a look at the files."""
         wanted = tuple(recipes)
         try:
             found = Manifest.load(folder)
@@ -124,12 +148,7 @@ class Manifest:
             raise SimCoreError(
                 f"{folder}: was made by another engine ({found.made}, this is {MADE_BY}) – give another folder"
             )
-        whole = {
-            name: kept
-            for name, kept in found.done.items()
-            if _digest(folder / kept["file"]) == kept["sha256"]
-        }
-        return replace(found, done=whole)
+        return found
 
     @staticmethod
     def load(folder: Path) -> Manifest:
@@ -187,9 +206,10 @@ def read_films(folder: Path) -> dict[str, tuple[Recipe, Film]]:
     for recipe in manifest.recipes:
         kept = manifest.done[recipe.name]
         path = folder / kept["file"]
-        if _digest(path) != kept["sha256"]:
+        data = path.read_bytes() if path.is_file() else b""
+        if hashlib.sha256(data).hexdigest() != kept["sha256"]:
             raise SimCoreError(f"{path}: not what was made – run the same `simcore learn data` again")
-        films[recipe.name] = read_sequence(path)
+        films[recipe.name] = _unpacked(path, data)
     return films
 
 
