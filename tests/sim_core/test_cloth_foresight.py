@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.cloth import Contact, Material, Phase, Sheet, drape
+from sim_core.cloth import Contact, HalfSpace, Material, Phase, Sheet, drape
 from sim_core.cloth.contact import (
     Mesh,
     Patches,
     Search,
     begin_pairs,
+    feel,
+    jerks_of,
     near_pairs_of,
     patches_of,
     shapes_of,
+    stand_by,
     unsure_pairs,
 )
 from sim_core.cloth.run import Run, Setup
@@ -162,18 +166,102 @@ def sheets(heights: list[float], count: int, size: float) -> tuple[Sheet, np.nda
     return Sheet.of(flat, every, Material(0.1, 49.0, bend=5e-6)), np.concatenate(places)
 
 
-@pytest.mark.parametrize(("gap", "speed"), [(0.020, 2.0), (0.020, 3.0), (0.020, 5.0), (0.025, 5.0)])
-def test_a_sheet_that_is_struck_does_not_pass_through_the_next(gap: float, speed: float) -> None:
-    """The middle one was at rest when its pairs were foreseen, and flies from one substep to the other."""
-    sheet, x = sheets([0.0, 0.008, 0.008 + gap], 24, 0.3)
-    run = Run(Setup(sheet, [Phase(FRAME, (0.0, 0.0))], contact=Contact(thickness=0.0025)))
+STRUCK = [  # [m] from the first to the second and to the third, m/s, [m] that layers keep
+    (0.008, 0.020, 2.0, 0.0025),
+    (0.008, 0.020, 3.0, 0.0025),
+    (0.008, 0.020, 5.0, 0.0025),
+    (0.008, 0.025, 5.0, 0.0025),
+    (0.008, 0.003, 8.0, 0.0025),
+    (0.008, 0.0035, 6.0, 0.0025),
+    (0.008, 0.004, 4.0, 0.0025),
+    (0.008, 0.004, 8.0, 0.0025),
+    (0.005, 0.0045, 3.0, 0.0025),
+    (0.012, 0.0018, 2.0, 0.001),
+]
+
+
+@pytest.mark.parametrize(("first", "second", "speed", "thickness"), STRUCK)
+def test_a_sheet_that_is_struck_does_not_pass_through_the_next(
+    first: float, second: float, speed: float, thickness: float
+) -> None:
+    """The middle one was at rest when its pairs were foreseen or fell asleep, and flies from a substep to the next."""
+    sheet, x = sheets([0.0, first, first + second], 24 if second > 0.01 else 16, 0.3)
+    run = Run(Setup(sheet, [Phase(FRAME, (0.0, 0.0))], contact=Contact(thickness=thickness)))
     v, own = np.zeros_like(x), len(x) // 3
     v[:own, 1] = speed
     state = run.begun(x, v)
     run.frame(state)
     heights = state.positions[:, 1].reshape(3, own).mean(1)
-    assert (np.diff(heights) > 0.001).all()
+    assert (np.diff(heights) > 0.4 * thickness).all()
     assert metrics.intersections(state.positions, sheet.faces) == 0
+
+
+FALLEN = [  # [m] the lower sheet's height, the gap, m/s, [m] that layers keep
+    (0.07, 0.004, 3.0, 0.0025),
+    (0.07, 0.003, 4.0, 0.0025),
+    (0.035, 0.003, 5.0, 0.0025),
+    (0.02, 0.018, 5.0, 0.0025),
+    (0.05, 0.018, 5.0, 0.0025),
+    (0.05, 0.022, 5.0, 0.0025),
+    (0.02, 0.004, 10.0, 0.0025),
+    (0.05, 0.002, 2.0, 0.001),
+]
+
+
+@pytest.mark.parametrize(("height", "gap", "speed", "thickness"), FALLEN)
+def test_sheets_that_fall_together_keep_their_order_on_the_floor(
+    height: float, gap: float, speed: float, thickness: float
+) -> None:
+    """Nothing comes nearer to anything until the floor stops the lower one from one substep to the next."""
+    sheet, x = sheets([height, height + gap], 16, 0.3)
+    contact = Contact(thickness=thickness)
+    run = Run(Setup(sheet, [Phase(FRAME, (9.81, 9.81))], contact=contact, collider=HalfSpace()))
+    v = np.zeros_like(x)
+    v[:, 1] = -speed
+    state = run.begun(x, v)
+    run.frame(state)
+    lower, upper = state.positions[:, 1].reshape(2, -1)
+    assert (upper > lower).all()
+    assert metrics.intersections(state.positions, sheet.faces) == 0
+
+
+@pytest.mark.parametrize("after", [0, 2])
+def test_sheets_on_a_floor_go_on_to_the_same_bits(after: int) -> None:
+    """Whoever resumes begins with new lists, in which nobody sleeps: sleep and foresight may change nothing."""
+    sheet, x = sheets([0.09, 0.096, 0.103], 16, 0.3)
+    setup = Setup(
+        sheet, [Phase(4 * FRAME, (9.81, 9.81))], contact=Contact(thickness=0.0025), collider=HalfSpace()
+    )
+    v = np.zeros_like(x)
+    v[:, 1] = -2.0
+    run = Run(setup)
+    state = run.begun(x, v)
+    for frame in range(4):
+        run.frame(state)
+        if frame == after:
+            other, again = Run(setup), deepcopy(state)
+    for _ in range(after + 1, 4):
+        other.frame(again)
+    assert np.array_equal(again.positions, state.positions)
+
+
+def test_who_goes_otherwise_is_woken() -> None:
+    """By a velocity, and by a push that no velocity knows of; by less than the sway nobody is."""
+    dt, count = 4e-4, 50
+    x, v = np.random.default_rng(3).normal(0, 1, (2, 3, count))
+    for off, pushed, woken in ((0.0, 0.0, 0), (0.09, 0.0, 0), (0.11, 0.0, 1), (0.0, 5e-5, 1)):
+        jerks = jerks_of(count)
+        stand_by(x, v, jerks)
+        there, now = x + dt * v, v.copy()
+        now[0, 7] += off
+        there[1, 7] += pushed
+        assert not feel(there, now, jerks, dt)
+        assert jerks.jerked.sum() == woken
+        assert jerks.jerked[7] == bool(woken)
+        assert jerks.some[0] == bool(woken)
+        there, now = there + dt * now, now + [[0.0], [0.0], [1.0]]
+        assert feel(there, now, jerks, dt)
+        assert jerks.jerked.all()
 
 
 @pytest.mark.parametrize("gap", [0.06, 0.07, 0.08, 0.09, 0.1, 0.105, 0.11, 0.115, 0.13, 0.15])
@@ -185,3 +273,5 @@ def test_sheets_that_meet_at_forty_metres_a_second_do_not_cross_themselves(gap: 
     contact = Contact(thickness=0.003, untangle=20, partly=True)
     end = drape(sheet, x, [Phase(FRAME, (0.0, 0.0))], velocities=v, contact=contact)
     assert metrics.intersections(end.positions, sheet.faces) == 0
+    lower, upper = end.positions[:, 1].reshape(2, own).mean(1)
+    assert lower < upper

@@ -9,7 +9,7 @@ from sim_core.cloth import Contact, GridSdf
 from sim_core.cloth.contact import (
     LEVER,
     Mesh,
-    Near,
+    NearPairs,
     Push,
     Shell,
     collide_samples,
@@ -33,14 +33,16 @@ def mesh_of(inverse: np.ndarray, faces: np.ndarray, edges: np.ndarray) -> Mesh:
     return Mesh(inverse, np.zeros((len(inverse), 2)), edges, faces, np.ones(len(edges)), same)
 
 
-def near_of(points: list[list[int]], crossings: list[list[int]]) -> Near:
+def near_of(points: list[list[int]], crossings: list[list[int]]) -> NearPairs:
     """Lists that hold these pairs, awake."""
 
     def awake(pairs: list[list[int]]) -> np.ndarray:
         return np.array([[*pair, 0] for pair in pairs], np.int32).reshape(-1, 3)
 
     counts = np.array([0, len(points), len(crossings)])
-    return near_pairs_of(0, 0, 0).now._replace(points=awake(points), crossings=awake(crossings), count=counts)
+    lists = near_pairs_of(4, 2, 0)
+    now = lists.now._replace(points=awake(points), crossings=awake(crossings), count=counts)
+    return lists._replace(now=now)
 
 
 def met(gap: float, velocity: tuple[float, float, float], friction: float, kind: str) -> np.ndarray:

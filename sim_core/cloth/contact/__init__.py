@@ -10,6 +10,7 @@ from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
 from sim_core.cloth.contact.layers.crossings import crossings_of, faces_at_edges, no_crossings, none_crosses
 from sim_core.cloth.contact.layers.foresight import unsure_pairs
+from sim_core.cloth.contact.layers.jerks import feel, jerks_of, stand_by
 from sim_core.cloth.contact.layers.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
 from sim_core.cloth.contact.layers.pairs import Mesh, Search, finder_of, hash_points
 from sim_core.cloth.contact.layers.patches import Patches, patches_of, shapes_of
@@ -50,12 +51,14 @@ __all__ = [
     "crossings_of",
     "distances",
     "faces_at_edges",
+    "feel",
     "field_of",
     "finder_of",
     "hash_points",
     "hull_faces",
     "hull_mesh",
     "moving_mesh",
+    "jerks_of",
     "near_pairs_of",
     "no_crossings",
     "none_crosses",
@@ -63,6 +66,7 @@ __all__ = [
     "renew_pairs",
     "repel",
     "shapes_of",
+    "stand_by",
     "solid_mesh",
     "united",
     "unsure_pairs",

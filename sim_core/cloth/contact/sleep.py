@@ -1,4 +1,7 @@
-"""How long what is apart may be left alone: until it could have met, at its speed and what it may gain."""
+"""How long what is apart may be left alone: until it could have met, at its speed and what it may gain.
+
+Who is near a solid may gain what thrown cloth gains; layers are woken where one goes otherwise (`layers/jerks.py`).
+"""
 
 from __future__ import annotations
 
@@ -20,3 +23,10 @@ def asleep(room, fast2, drift, dt):
     """
     left, speed = max(room, 0.0), 2.0 * math.sqrt(fast2) + GAINED + drift
     return int((math.sqrt(speed * speed + 2.0 * HASTE * left) - speed) / (HASTE * dt))
+
+
+@njit(error_model="numpy", inline="always")
+def apart_for(room, fast2, sway, dt):
+    """Substeps of dt [s], at least one, after which what is `room` [m] apart may have met: at the speed whose square is
+    fast2 [m2/s2], while each side goes otherwise by less than `sway` [m/s]."""
+    return max(1, int(max(room, 0.0) / ((math.sqrt(fast2) + 2.0 * sway) * dt)))

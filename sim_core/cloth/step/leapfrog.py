@@ -15,6 +15,7 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
+from sim_core.cloth.contact.layers.jerks import feel, stand_by
 from sim_core.cloth.contact.layers.near_pairs import go_on, likely_way, no_pairs, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for, search_with
@@ -148,7 +149,12 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            if k >= look_layer:
+            shaken = False
+            if k == 0:
+                stand_by(here.x, here.v, near.jerks)
+            else:
+                shaken = feel(here.x, here.v, near.jerks, steps.dt * shell.every)
+            if k >= look_layer or shaken:
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
@@ -161,8 +167,12 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 first = look_layer < 0 and solids  # when nobody knows yet how far they push
                 look_layer = k + 1 if first else k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt))
                 pushed = 0.0
+                near.jerks.looked[:] = here.v
             if near.now.count[1] + near.now.count[2] > 0:
-                repel(x, v, mesh, near.now, shell, steps.dt * shell.every, k)
+                late_pairs = repel(x, v, mesh, near, shell, steps.dt * shell.every, k)
+                if late_pairs and steps.breaks:
+                    done = False
+                    break
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         watch = layers and steps.breaks and k % WATCH_EVERY == 0

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from sim_core.cloth.contact.layers.jerks import SHAKEN
 from sim_core.cloth.contact.layers.patch_motion import apart, going_patches
 from sim_core.cloth.contact.layers.patch_places import are_beside, between, patch_pairs, place_now, sort_along
 from sim_core.cloth.contact.layers.patches import WHOLE
@@ -92,9 +93,9 @@ def on_course(x, v, edges, course, time, pushed):
     """For how long [s] the cloth at x and v (V, 3) keeps to its course as it goes now; 0 where it does not, NaN where x
     is not finite.
 
-    Who asks may not wait for as long as that: what is struck goes otherwise at once.
+    That is while nobody goes otherwise by SHAKEN; who is struck does at once, and has to be looked at then.
     """
-    (begun, lasts), moving = (course.plan[0], course.plan[1]), 2.0 * pushed + GAINED
+    (begun, lasts), moving = (course.plan[0], course.plan[1]), 2.0 * pushed + GAINED + SHAKEN
     gone = time - begun if lasts > 0.0 else 0.0
     far, fast, tightest, total = strayed(x, v, course, gone)
     if not math.isfinite(total):
@@ -105,7 +106,9 @@ def on_course(x, v, edges, course, time, pushed):
     far, fast, tautest = twisted(x, v, edges, course, gone)
     if far > STALE:
         return 0.0
-    return max(1e-9, min(lasts - gone, long, (1.0 - far) / (2.0 * fast + moving * tautest + 1e-30)))
+    return max(
+        1e-9, min(lasts - gone, long, (1.0 - far) / (2.0 * fast + (moving + SHAKEN) * tautest + 1e-30))
+    )
 
 
 @njit(cache=True, error_model="numpy")

@@ -23,6 +23,7 @@ from sim_core.cloth.contact.layers.foresight import (
     twisted,
     unsure_pairs,
 )
+from sim_core.cloth.contact.layers.jerks import SHAKEN, Jerks, jerks_of
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
 from sim_core.cloth.contact.layers.patch_motion import apart, furthest, going_patches, move_patches
 from sim_core.cloth.contact.layers.patch_places import between, flat_pair, place_now, place_parts
@@ -58,6 +59,7 @@ class NearPairs(NamedTuple):
     now: Near
     spare: Near
     course: Course
+    jerks: Jerks
     order: np.ndarray  # (K,) int32 working memory
     kept: np.ndarray  # (2,) [m] the skin that the lists are looked for with; 1 while they hold
     tally: (
@@ -84,7 +86,13 @@ def near_pairs_of(vertices: int, edges: int, patches: int) -> NearPairs:
 
     none = np.zeros(0, np.int32)
     return NearPairs(
-        near(), near(), course_of(vertices, edges, patches), none, np.zeros(2), np.zeros(5, np.int64)
+        near(),
+        near(),
+        course_of(vertices, edges, patches),
+        jerks_of(vertices),
+        none,
+        np.zeros(2),
+        np.zeros(5, np.int64),
     )
 
 
@@ -272,7 +280,7 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
         gone = time - course.plan[0] if course.plan[1] > 0.0 else 0.0
         sure = set_out(x, v, mesh, patches, course, gone, left, how.edge)
         course.plan[0], course.plan[1] = time, sure
-        sure = min(sure, STRAIN * how.edge / (2.0 * pushed + GAINED))
+        sure = min(sure, STRAIN * how.edge / (2.0 * pushed + GAINED + 2.0 * SHAKEN))
     if late or fresh:
         near = _looked_through(x, v, mesh, patches, shapes, how, near, fresh)
         if fresh:
@@ -315,7 +323,7 @@ def _gone_on(near, moved, pushed):
     for k in range(near.count[0]):
         p, q = pairs[k, 0], pairs[k, 1]
         ways[k, 0] = gone[k] + apart(moved, p, q, 0)
-        ways[k, 1] = 2.0 * (apart(moved, p, q, WHOLE) + pushed) + GAINED
+        ways[k, 1] = 2.0 * (apart(moved, p, q, WHOLE) + pushed + SHAKEN) + GAINED
         late = late or not ways[k, 0] <= LATE * lasts[k]
     return late
 
@@ -383,4 +391,4 @@ def _looked_through(x, v, mesh, patches, shapes, how, near, fresh):
     near.tally[4] += through
     spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
     _margin(spare)
-    return NearPairs(spare, now, near.course, order, near.kept, near.tally)
+    return NearPairs(spare, now, near.course, near.jerks, order, near.kept, near.tally)

@@ -13,11 +13,16 @@ from typing import NamedTuple
 from numba import njit
 
 from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
+from sim_core.cloth.contact.layers.jerks import SWAY
 from sim_core.cloth.contact.layers.pairs import Search
 from sim_core.cloth.contact.layers.patches import CONE
-from sim_core.cloth.contact.sleep import asleep
+from sim_core.cloth.contact.sleep import apart_for
 
-LONGEST_SLEEP = 16  # substeps of a pair, which may not miss a jerk
+SHORT, LEAST_ROOM = (
+    0.25,
+    0.25,
+)  # of the thickness, that is left of a gap after a step, and that any may lose in one
+MOST_SLEEP = 10_000  # substeps: more than a frame has
 WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
 LEAST = 0.45  # of the skin, that calm cloth is looked through
 NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
@@ -75,51 +80,92 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
 
 @njit(cache=True, error_model="numpy")
 def _apart2(v, i, j):
-    """The square of the speed [m2/s2] at which i and j part or meet, or pass each other."""
-    return (v[i, 0] - v[j, 0]) ** 2 + (v[i, 1] - v[j, 1]) ** 2 + (v[i, 2] - v[j, 2]) ** 2
+    """The square of the speed [m2/s2], of velocities v (3, V), at which i and j part or meet, or pass each other."""
+    return (v[0, i] - v[0, j]) ** 2 + (v[1, i] - v[1, j]) ** 2 + (v[2, i] - v[2, j]) ** 2
+
+
+@njit(error_model="numpy", inline="always")
+def _too_fast(meets, gap2, short, least, dt):
+    """Whether what is gap away and comes nearer at meets / gap [m/s] is there in a step of dt [s], but for `short` [m].
+
+    Slower than `least` [m/s] nothing is.
+    """
+    if meets <= 0.0 or meets * meets <= least * least * gap2:
+        return False
+    gap = math.sqrt(gap2)
+    return meets * dt > gap * (gap - short)
 
 
 @njit(cache=True, error_model="numpy")
 def repel(x, v, mesh, near, shell, dt, step):
-    """Impulses for the vertex-face pairs and edge-edge pairs of `Near`, in its order, but for those that sleep."""
+    """Impulses for the vertex-face pairs and edge-edge pairs of `NearPairs`, in its order, but for those that sleep: as
+    long as they cannot meet while none of their vertices is jerked. Returns whether any come nearer so fast that they
+    would be through each other a step later.
+    """
     reach2 = shell.thickness * shell.thickness
-    points, crossings, counts, inverse_mass = near.points, near.crossings, near.count, mesh.inverse_mass
+    points, crossings, counts, inverse_mass = (
+        near.now.points,
+        near.now.crossings,
+        near.now.count,
+        mesh.inverse_mass,
+    )
     faces, edges = mesh.faces, mesh.edges
+    going, jerked, some = near.jerks.going, near.jerks.jerked, near.jerks.some[0]
+    short, least, late = SHORT * shell.thickness, LEAST_ROOM * shell.thickness / dt, False
     for k in range(counts[1]):
-        if points[k, 2] > step:
+        if points[k, 2] > step and not some:
             continue
         i, f = points[k, 0], points[k, 1]
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        if points[k, 2] > step and not (jerked[i] or jerked[a] or jerked[b] or jerked[c]):
+            continue
         wa, wb, wc = triangle_weights(at(x, i), at(x, a), at(x, b), at(x, c))
         dx = x[i, 0] - wa * x[a, 0] - wb * x[b, 0] - wc * x[c, 0]
         dy = x[i, 1] - wa * x[a, 1] - wb * x[b, 1] - wc * x[c, 1]
         dz = x[i, 2] - wa * x[a, 2] - wb * x[b, 2] - wc * x[c, 2]
         gap2 = dx * dx + dy * dy + dz * dz
+        meets = -(
+            dx * (v[i, 0] - wa * v[a, 0] - wb * v[b, 0] - wc * v[c, 0])
+            + dy * (v[i, 1] - wa * v[a, 1] - wb * v[b, 1] - wc * v[c, 1])
+            + dz * (v[i, 2] - wa * v[a, 2] - wb * v[b, 2] - wc * v[c, 2])
+        )
+        late = late or _too_fast(meets, gap2, short, least, dt)
         if gap2 < reach2:
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
         else:
-            fast2 = max(_apart2(v, i, a), _apart2(v, i, b), _apart2(v, i, c))
-            points[k, 2] = (
-                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            fast2 = max(_apart2(going, i, a), _apart2(going, i, b), _apart2(going, i, c))
+            points[k, 2] = step + min(
+                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, SWAY, dt)
             )
     for k in range(counts[2]):
-        if crossings[k, 2] > step:
+        if crossings[k, 2] > step and not some:
             continue
         e, g = crossings[k, 0], crossings[k, 1]
         a, b, c, d = edges[e, 0], edges[e, 1], edges[g, 0], edges[g, 1]
+        if crossings[k, 2] > step and not (jerked[a] or jerked[b] or jerked[c] or jerked[d]):
+            continue
         s, t = segment_parameters(at(x, a), at(x, b), at(x, c), at(x, d))
         dx = x[a, 0] + s * (x[b, 0] - x[a, 0]) - x[c, 0] - t * (x[d, 0] - x[c, 0])
         dy = x[a, 1] + s * (x[b, 1] - x[a, 1]) - x[c, 1] - t * (x[d, 1] - x[c, 1])
         dz = x[a, 2] + s * (x[b, 2] - x[a, 2]) - x[c, 2] - t * (x[d, 2] - x[c, 2])
         gap2 = dx * dx + dy * dy + dz * dz
+        meets = -(
+            dx * (v[a, 0] + s * (v[b, 0] - v[a, 0]) - v[c, 0] - t * (v[d, 0] - v[c, 0]))
+            + dy * (v[a, 1] + s * (v[b, 1] - v[a, 1]) - v[c, 1] - t * (v[d, 1] - v[c, 1]))
+            + dz * (v[a, 2] + s * (v[b, 2] - v[a, 2]) - v[c, 2] - t * (v[d, 2] - v[c, 2]))
+        )
+        late = late or _too_fast(meets, gap2, short, least, dt)
         if gap2 >= reach2:
-            fast2 = max(_apart2(v, a, c), _apart2(v, a, d), _apart2(v, b, c), _apart2(v, b, d))
-            crossings[k, 2] = (
-                step + 1 + min(LONGEST_SLEEP, asleep(math.sqrt(gap2) - shell.thickness, fast2, 0.0, dt))
+            fast2 = max(
+                _apart2(going, a, c), _apart2(going, a, d), _apart2(going, b, c), _apart2(going, b, d)
+            )
+            crossings[k, 2] = step + min(
+                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, SWAY, dt)
             )
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
         elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
             _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
+    return late
 
 
 @njit(cache=True, error_model="numpy")
