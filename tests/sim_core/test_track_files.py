@@ -310,9 +310,25 @@ def test_streams_are_frames_of_rows(tmp_path: Path) -> None:
         assert np.allclose(small.joints, 0.001 * recording.joints, equal_nan=True)
 
 
+def test_rows_of_a_time_are_one_frame_in_whatever_order_they_come(tmp_path: Path) -> None:
+    """Joint by joint, or one row late; a time without a value belongs nowhere."""
+    names = KINECT.joints[:4]
+    rows = [(0.1 * frame, name, frame, k, 0.0) for k, name in enumerate(names) for frame in range(3)]
+    for order in (rows, sorted(rows), [*sorted(rows)[1:], sorted(rows)[0]]):
+        text = "time,joint,x,y,z\n" + "\n".join(",".join(map(str, row)) for row in order) + "\n"
+        recording = read_recording(written(tmp_path, text, "s.csv"))
+        assert recording.time.tolist() == pytest.approx([0.0, 0.1, 0.2])
+        assert np.isfinite(recording.joints[:, : len(names)]).all()
+        assert (recording.joints[:, 0, 0] == [0, 1, 2]).all()
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
+        (
+            "time,joint,x,y,z\n0,SpineBase,1,2,3\nnan,SpineBase,1,2,3\n",
+            "line 3, column 1: time: nan – seconds",
+        ),
         ("time,joint,x,y\n", "line 1, column 1: no z"),
         ("time,joint,x,y,z,colour\n", "line 1, column 18: 'colour'"),
         ("time,joint,x,y,z\n0,SpineBase,1,2\n", "line 2, column 15: 4 cells"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -61,8 +62,8 @@ class _Row:
 def read_csv_stream(path: Path, unit: float = 1.0) -> Recording:
     """The frames of a CSV stream; raises FileProblem naming line and column of what is wrong.
 
-    Any order of the columns, which the first line names; `state` may be missing. Rows of one time are one frame,
-    unless a joint comes again. unit [m]: of its lengths.
+    Any order of the columns, which the first line names; `state` may be missing. Rows of one time are one frame, in
+    whatever order they come, unless a joint comes again. unit [m]: of its lengths.
     """
     return _recording(path, _csv_rows(path, read_text(path, WHAT)), unit)
 
@@ -127,17 +128,22 @@ def _json_rows(path: Path, rows: list[Any]) -> Iterator[_Row]:
 def _recording(path: Path, rows: Iterator[_Row], unit: float) -> Recording:
     times: list[float] = []
     frames: list[np.ndarray] = []
-    there: set[int] = set()
+    there: list[set[int]] = []
+    latest: dict[float, int] = {}  # the last frame of each time: rows come late, or joint by joint
     ever = np.zeros(len(KINECT.joints), bool)
     for row in rows:
         time, joint = row.number("time"), row.joint()
-        if not times or time != times[-1] or joint in there:
+        if not math.isfinite(time):
+            raise row.problem("time", f"{time} – seconds are meant; leave the row out")
+        frame = latest.get(time)
+        if frame is None or joint in there[frame]:
+            frame = latest[time] = len(times)
             times.append(time)
             frames.append(np.full((len(KINECT.joints), 3), np.nan))
-            there = set()
-        there.add(joint)
+            there.append(set())
+        there[frame].add(joint)
         if row.seen():
-            frames[-1][joint] = [row.number(axis) for axis in "xyz"]
+            frames[frame][joint] = [row.number(axis) for axis in "xyz"]
             ever[joint] = True
     if not frames:
         raise FileProblem(f"{path}: no row of a joint – give {WHAT}")
