@@ -84,9 +84,8 @@ def test_forces_of_the_lead_draw_back_and_do_not_turn() -> None:
     lead = Lead.of(linear(coarse.rest, coarse.faces, fine.rest), fine.mass)
     there = np.column_stack([coarse.rest, np.zeros(len(coarse.rest))])
     own = np.column_stack([fine.rest, np.zeros(len(fine.rest))])
-    still = np.zeros_like(own)
-    assert np.abs(lead.forces(own, still, there, there)).max() < 1e-12  # an affine surface is shown exactly
-    off = lead.forces(own + [0.0, 0.0, 0.01], still, there, there)
+    assert np.abs(lead.forces(own, there, there)).max() < 1e-12  # an affine surface is shown exactly
+    off = lead.forces(own + [0.0, 0.0, 0.01], there, there)
     assert (off[:, 2] < 0).all()
     assert np.allclose(off[:, 2] / fine.mass, off[0, 2] / fine.mass[0])
 

@@ -4,7 +4,9 @@ from sim_core.learn.data.film import Film, coarse_film, film, fine_film
 from sim_core.learn.data.gate import GATE, Floor, floor
 from sim_core.learn.data.generation import generate
 from sim_core.learn.data.lead import Lead
+from sim_core.learn.data.pair import Pair
 from sim_core.learn.data.recipe import DESIGNS, Design, Recipe, recipes
+from sim_core.learn.data.split import Split, split
 from sim_core.learn.data.store import MANIFEST, Manifest, read_films, read_sequence
 
 __all__ = [
@@ -16,7 +18,9 @@ __all__ = [
     "Floor",
     "Lead",
     "Manifest",
+    "Pair",
     "Recipe",
+    "Split",
     "coarse_film",
     "film",
     "fine_film",
@@ -25,4 +29,5 @@ __all__ = [
     "read_films",
     "read_sequence",
     "recipes",
+    "split",
 ]

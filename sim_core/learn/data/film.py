@@ -11,7 +11,7 @@ import numpy as np
 
 from sim_core.cloth import Live, Pace, Scene
 from sim_core.cloth.step.frame import FRAME
-from sim_core.learn.data.lead import SLOW, Lead, between
+from sim_core.learn.data.lead import CALM, SLOW, Lead, between
 from sim_core.learn.data.recipe import Recipe
 from sim_core.learn.upsampling import linear
 
@@ -59,12 +59,12 @@ def fine_film(recipe: Recipe, coarse: np.ndarray, told: Told | None = None) -> t
     air = own.air
     if air is not None:
         own = replace(own, air=replace(air, gusts=0.0).blowing(_slowed(air.at(0.0))))
-    led = _live(own, recipe.paces[1], (0.0, -GRAVITY / SLOW**2, 0.0))
+    led = _live(own, recipe.paces[1], (0.0, -GRAVITY / SLOW**2, 0.0), CALM / SLOW)
     lead = Lead.of(linear(sheet.rest, sheet.faces, own.sheet.rest), own.sheet.mass)
     loose = np.setdiff1d(np.arange(len(own.sheet.rest)), own.pins)
     frames, ends = [], [time.process_time()]
     for number, (before, there) in enumerate(pairwise(between(coarse)), 1):
-        forces = lead.forces(led.positions, led.velocities, before, there)
+        forces = lead.forces(led.positions, before, there)
         wind = None if air is None else _slowed(air.at(number / SLOW * FRAME))
         now = led.step(pulls=(loose, forces[loose]), wind=wind)
         if number % SLOW:
@@ -82,11 +82,12 @@ def _slowed(wind: np.ndarray) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _live(scene: Scene, pace: Pace, gravity: tuple[float, float, float]) -> Live:
+def _live(scene: Scene, pace: Pace, gravity: tuple[float, float, float], calm: float = 0.0) -> Live:
     return Live(
         scene.sheet,
         scene.positions,
         gravity=gravity,
+        damping=scene.sheet.material.mass_damping + calm,
         pins=scene.pins,
         collider=scene.collider,
         contact=scene.contact,

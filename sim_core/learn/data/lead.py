@@ -1,7 +1,8 @@
 """A fine cloth that follows a coarse one softly: its mean about every coarse vertex is drawn to the coarse surface's.
 
-Only what the coarse mesh can say is led (Bergou, Mathur, Wardetzky and Grinspun 2007: TRACKS); of wrinkles finer than
-its edges, speeds against the coarse surface die away, so that they depend less on how they once began.
+Only what the coarse mesh can say is led (Bergou, Mathur, Wardetzky and Grinspun 2007: TRACKS). Wrinkles finer than its
+edges are the cloth's own, and their speeds against the coarse surface die away within a tenth of a frame or so: a sheet
+rings at 15 Hz and more, which 25 frames a second do not show, and what they do not show cannot be learned from them.
 """
 
 from __future__ import annotations
@@ -18,12 +19,11 @@ from sim_core.cloth.step.frame import FRAME
 __all__ = ["MADE_BY", "SLOW", "Lead", "between"]
 
 SLOW = 16  # times as slow as it is the fine cloth is simulated: forces change as often in a frame
-# Forces that stand still for a sixteenth of a frame come late, and swing up what turns within it: the sheet's own waves
-# as long as a coarse edge. With 1.6 instead of .6, or 60 instead of 8, two time steps end 4 mm apart, with these .02.
-DRAWN = 0.04  # of what the mean is away, that is drawn in a sixteenth of a frame
-DAMPED = 0.6  # of the critical two
-CALM = 8.0  # [1/s] at which speeds against the coarse surface die away
-MADE_BY = {"engine": ENGINE_VERSION, "slow": SLOW, "drawn": DRAWN, "damped": DAMPED, "calm": CALM}
+DRAWN = 1.0  # of what the mean is away, that is drawn in a sixteenth of a frame
+# Speeds against the coarse surface are braked by the engine, in every substep, and only the coarse surface's own speed
+# is given as a force: brakes that come a sixteenth of a frame late swing up the sheet's waves instead.
+CALM = 300.0  # [1/s] at which they die away
+MADE_BY = {"engine": ENGINE_VERSION, "slow": SLOW, "drawn": DRAWN, "calm": CALM}
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,12 @@ class Lead:
         """How far (C, 3) the fine mean is from the coarse surface's, fine (V, 3), coarse (C, 3) [m]."""
         return self.mean @ (fine - self.spread @ coarse)
 
-    def forces(
-        self, positions: np.ndarray, velocities: np.ndarray, before: np.ndarray, there: np.ndarray
-    ) -> np.ndarray:
-        """Forces (V, 3) [N] of the slowed cloth in one of its frames, in which the coarse surface goes from `before` to
-        `there` (C, 3) [m]."""
-        off = self.away(positions, before)
-        faster = velocities - self.spread @ ((there - before) / FRAME)
-        drawn = -(DRAWN * off / FRAME + DAMPED * np.sqrt(DRAWN) * (self.mean @ faster)) / FRAME
-        return self.mass[:, None] * (self.spread @ drawn - CALM / SLOW * faster)
+    def forces(self, positions: np.ndarray, before: np.ndarray, there: np.ndarray) -> np.ndarray:
+        """Forces (V, 3) [N] of the slowed cloth, which is damped by CALM / SLOW, in one of its frames, in which the
+        coarse surface goes from `before` to `there` (C, 3) [m]."""
+        drawn = -DRAWN / FRAME**2 * self.away(positions, before)
+        speed = (there - before) / FRAME
+        return self.mass[:, None] * (self.spread @ (drawn + CALM / SLOW * speed))
 
 
 def between(film: np.ndarray) -> Iterator[np.ndarray]:

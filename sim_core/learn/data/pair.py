@@ -1,0 +1,73 @@
+"""The two sheets of a sequence, and the matrices between their vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from sim_core.cloth import Sheet
+from sim_core.learn.data.lead import Lead
+from sim_core.learn.data.recipe import Recipe
+from sim_core.learn.upsampling import biharmonic, linear
+
+__all__ = ["Pair"]
+
+CUT = 1e-3  # weights of the base that are less of a row's greatest are left out
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A coarse sheet of C vertices and a fine one of V.
+
+    spread (V, C): the coarse surface, linear in between; mean (C, V): the mean, by mass, of fine vertices about each
+    coarse one; base (V, C): the smoothest fine sheet whose means are the coarse surface's, which is what the fine one
+    is led to be.
+    """
+
+    coarse: Sheet
+    fine: Sheet
+    spread: csr_array
+    mean: csr_array
+    base: csr_array
+
+    @staticmethod
+    def of(recipe: Recipe) -> Pair:
+        """Those of a sequence; sequences on the same sheets share the matrices."""
+        coarse, fine = recipe.on(recipe.coarse).sheet, recipe.on(recipe.fine).sheet
+        return Pair(coarse, fine, *_matrices(_Flat.of(coarse), _Flat.of(fine)))
+
+
+@dataclass(frozen=True)
+class _Flat:
+    """A flat mesh that can be a key."""
+
+    rest: bytes
+    faces: bytes
+
+    @staticmethod
+    def of(sheet: Sheet) -> _Flat:
+        return _Flat(np.asarray(sheet.rest, float).tobytes(), np.asarray(sheet.faces, np.int32).tobytes())
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.frombuffer(self.rest).reshape(-1, 2), np.frombuffer(self.faces, np.int32).reshape(-1, 3)
+
+
+@lru_cache(maxsize=8)
+def _matrices(coarse: _Flat, fine: _Flat) -> tuple[csr_array, csr_array, csr_array]:
+    (flat, faces), (rest, fine_faces) = coarse.arrays, fine.arrays
+    spread = linear(flat, faces, rest)
+    mass = _lumped(rest, fine_faces)
+    mean = csr_array(Lead.of(spread, mass).mean)
+    smooth = biharmonic(rest, fine_faces, mean, cut=CUT).matrix
+    return spread, mean, csr_array(smooth @ csr_array(mean @ spread))
+
+
+def _lumped(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """A third of the area of its faces for each vertex (V,) [m2]."""
+    a, b = rest[faces[:, 1]] - rest[faces[:, 0]], rest[faces[:, 2]] - rest[faces[:, 0]]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return np.bincount(faces.ravel(), np.repeat(area / 3.0, 3), len(rest))

@@ -1,0 +1,21 @@
+"""What is compared: ways from a coarse sheet to a fine one, each a `Row` that follows a sequence frame by frame.
+
+`plain` knows no training, `regression` fits local frames in closed form; `measured` tells errors and times of any.
+"""
+
+from sim_core.learn.rows.measured import EVERY, Measured, measured, reference
+from sim_core.learn.rows.plain import Biharmonic, Linear
+from sim_core.learn.rows.regression import LocalFrames
+from sim_core.learn.rows.row import Follow, Row
+
+__all__ = [
+    "EVERY",
+    "Biharmonic",
+    "Follow",
+    "Linear",
+    "LocalFrames",
+    "Measured",
+    "Row",
+    "measured",
+    "reference",
+]

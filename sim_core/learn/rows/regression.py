@@ -1,0 +1,58 @@
+"""Local frames, fitted to the sequences that are learned from; a model for every kind of sheet among them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sim_core.learn.data import Film, Pair, Recipe
+from sim_core.learn.rows.row import Follow
+from sim_core.learn.upsampling import LocalFrames as Model
+from sim_core.learn.upsampling import LocalFramesFit
+
+__all__ = ["LocalFrames"]
+
+Kind = tuple[int, int, float]
+
+
+def kind(pair: Pair) -> Kind:
+    """What sheets have in common that differ in size alone: vertices of both, and the ratio of their sides."""
+    width, height = np.ptp(pair.fine.rest, axis=0)
+    return len(pair.coarse.rest), len(pair.fine.rest), round(float(width / height), 6)
+
+
+@dataclass(frozen=True)
+class LocalFrames:
+    """models: of every kind of sheet that was learned from, in units of its width; others get the biharmonic base."""
+
+    models: Mapping[Kind, Model]
+    name: str = "local_frames"
+
+    @staticmethod
+    def fitted(films: Sequence[tuple[Recipe, Film]], *, thin: int = 1) -> LocalFrames:
+        """From every `thin`-th frame of these sequences; sheets of one kind are brought to one size."""
+        fits: dict[Kind, LocalFramesFit] = {}
+        for recipe, film in films:
+            pair = Pair.of(recipe)
+            width = _width(pair)
+            which = kind(pair)
+            if which not in fits:
+                fits[which] = LocalFramesFit(
+                    pair.coarse.rest / width, pair.coarse.faces, pair.fine.rest / width, pair.base
+                )
+            fits[which].add(film.coarse[::thin] / width, film.fine[::thin] / width)
+        return LocalFrames({which: fit.solve() for which, fit in fits.items()})
+
+    def follow(self, recipe: Recipe) -> Follow:
+        pair = Pair.of(recipe)
+        model, width = self.models.get(kind(pair)), _width(pair)
+        if model is None:
+            return lambda coarse: pair.base @ coarse
+        own = replace(model, base=pair.base)
+        return lambda coarse: width * own.predict(coarse / width)
+
+
+def _width(pair: Pair) -> float:
+    return float(np.ptp(pair.fine.rest[:, 0]))

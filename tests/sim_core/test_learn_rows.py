@@ -1,0 +1,103 @@
+"""Rows of the table: what each makes of a coarse sheet, and that nobody is tested on what they learned from."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core.cli import main
+from sim_core.errors import SimCoreError
+from sim_core.learn.data import DESIGNS, Film, Pair, Recipe, film, generate, recipes, split
+from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, measured
+
+
+def small(case: int, frames: int = 8) -> Recipe:
+    """A sequence of few vertices."""
+    return Recipe("hanging", case, 7, frames, 0, coarse=90, fine=340)
+
+
+@cache
+def hanging(case: int) -> tuple[Recipe, Film]:
+    return small(case), film(small(case))
+
+
+def test_the_base_is_smooth_has_the_means_of_the_coarse_surface_and_keeps_affine_maps() -> None:
+    pair = Pair.of(small(1))
+    bent = np.column_stack([pair.coarse.rest, 0.05 * np.sin(7 * pair.coarse.rest[:, 0])])
+    surface, base = pair.spread @ bent, pair.base @ bent
+    assert np.abs(pair.mean @ (surface - base)).max() < 0.1 * np.abs(surface - base).max()
+    straight = np.array([[1.0, 0.2, -0.4], [0.1, 0.9, 0.3]])
+    assert np.abs(pair.base @ (pair.coarse.rest @ straight) - pair.fine.rest @ straight).max() < 1e-9
+    assert Pair.of(small(2)).base is pair.base  # sheets of one shape share their matrices
+
+
+@pytest.mark.parametrize("scene", list(DESIGNS))
+def test_three_of_ten_sequences_are_held_back_and_every_size_is_among_them(scene: str) -> None:
+    every = recipes(scene)
+    parts = split(every)
+    assert set(parts.train) | set(parts.test) == set(every)
+    assert not set(parts.train) & set(parts.test)
+    assert not {one.seed for one in parts.train} & {one.seed for one in parts.test}
+    assert 0.25 < len(parts.test) / len(every) < 0.35
+    assert parts.validation in parts.train
+    sizes = [
+        {tuple(np.ptp(one.on(60).sheet.rest, axis=0).round(3)) for one in part}
+        for part in (every, parts.test)
+    ]
+    assert sizes[0] == sizes[1]
+    with pytest.raises(SimCoreError, match="make 3 or more"):
+        split(every[:2])
+
+
+def test_what_learned_is_nearer_than_what_did_not() -> None:
+    """On frames that were learned from: whether it helps on others is what the table is for."""
+    seen = [hanging(1), hanging(2)]
+    plain = measured(Linear(), seen, every=2)
+    smooth = measured(Biharmonic(), seen, every=2)
+    fitted = measured(LocalFrames.fitted(seen), seen, every=2)
+    assert fitted.errors.mean.vertex < 0.7 * min(row.errors.mean.vertex for row in (plain, smooth))
+    assert set(fitted.by_sequence) == {"hanging-01", "hanging-02"}
+    assert plain.errors.frames == 8
+    assert plain.milliseconds > 0.0
+
+
+def test_sheets_of_one_kind_share_what_was_learned_and_others_get_the_base() -> None:
+    made = LocalFrames.fitted([hanging(1)])
+    (other, filmed), (wide, broad) = hanging(7), (small(13), film(small(13, 2)))
+    pair = Pair.of(other)
+    assert len(made.models) == 1
+    base = pair.base @ filmed.coarse[-1].astype(float)
+    assert np.abs(made.follow(other)(filmed.coarse[-1].astype(float)) - base).max() > 1e-6
+    place = broad.coarse[-1].astype(float)
+    assert np.array_equal(made.follow(wide)(place), Pair.of(wide).base @ place)
+
+
+def test_the_command_compares_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    generate(tmp_path, [small(case, 5) for case in (1, 2, 3)])
+    words = [
+        "learn",
+        "evaluate",
+        "hanging",
+        "--data",
+        str(tmp_path),
+        "--rows",
+        "linear,biharmonic,local_frames",
+    ]
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["tested"] == ["hanging-03"]
+    assert list(told["rows"]) == ["linear", "biharmonic", "local_frames"]
+    for row in told["rows"].values():
+        assert {"mean_mm", "hausdorff_mm", "p95_mm", "normal_deg", "strain", "net_ms", "total_ms"} <= set(row)
+        assert row["total_ms"] > row["net_ms"] > 0.0
+    assert main(words) == 0
+    assert "local_frames" in capsys.readouterr().out
+    assert main(["learn", "evaluate", "flag", "--data", str(tmp_path)]) == 1
+    assert "holds hanging – give the folder of flag" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["learn", "evaluate", "flag", "--data", str(tmp_path), "--rows", "mine"])
+    assert "'mine' – there are reference, linear" in capsys.readouterr().err
