@@ -3,7 +3,7 @@
 from sim_core.learn.data.film import Film, coarse_film, film, fine_film
 from sim_core.learn.data.gate import GATE, Floor, floor
 from sim_core.learn.data.generation import generate
-from sim_core.learn.data.lead import Lead
+from sim_core.learn.data.lead import STIFFNESS, Lead
 from sim_core.learn.data.pair import Pair
 from sim_core.learn.data.recipe import DESIGNS, Design, Recipe, recipes
 from sim_core.learn.data.split import Split, split
@@ -13,6 +13,7 @@ __all__ = [
     "DESIGNS",
     "GATE",
     "MANIFEST",
+    "STIFFNESS",
     "Design",
     "Film",
     "Floor",

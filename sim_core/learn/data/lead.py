@@ -16,13 +16,14 @@ from scipy.sparse import csr_array, diags_array
 from sim_core.cloth.run import ENGINE_VERSION
 from sim_core.cloth.step.frame import FRAME
 
-__all__ = ["MADE_BY", "SLOW", "Lead", "between"]
+__all__ = ["MADE_BY", "SLOW", "STIFFNESS", "Lead", "between"]
 
 SLOW = 16  # times as slow as it is the fine cloth is simulated: forces change as often in a frame
 DRAWN = 1.0  # of what the mean is away, that is drawn in a sixteenth of a frame
 # Speeds against the coarse surface are braked by the engine, in every substep, and only the coarse surface's own speed
 # is given as a force: brakes that come a sixteenth of a frame late swing up the sheet's waves instead.
 CALM = 300.0  # [1/s] at which they die away
+STIFFNESS = DRAWN * (SLOW / FRAME) ** 2  # [1/s2] acceleration of the mean per metre that it is away
 MADE_BY = {"engine": ENGINE_VERSION, "slow": SLOW, "drawn": DRAWN, "calm": CALM}
 
 

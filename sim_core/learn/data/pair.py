@@ -37,7 +37,8 @@ class Pair:
     def of(recipe: Recipe) -> Pair:
         """Those of a sequence; sequences on the same sheets share the matrices."""
         coarse, fine = recipe.on(recipe.coarse).sheet, recipe.on(recipe.fine).sheet
-        return Pair(coarse, fine, *_matrices(_Flat.of(coarse), _Flat.of(fine)))
+        mass = np.asarray(fine.mass, float).tobytes()
+        return Pair(coarse, fine, *_matrices(_Flat.of(coarse), _Flat.of(fine), mass))
 
 
 @dataclass(frozen=True)
@@ -57,17 +58,9 @@ class _Flat:
 
 
 @lru_cache(maxsize=8)
-def _matrices(coarse: _Flat, fine: _Flat) -> tuple[csr_array, csr_array, csr_array]:
+def _matrices(coarse: _Flat, fine: _Flat, mass: bytes) -> tuple[csr_array, csr_array, csr_array]:
     (flat, faces), (rest, fine_faces) = coarse.arrays, fine.arrays
     spread = linear(flat, faces, rest)
-    mass = _lumped(rest, fine_faces)
-    mean = csr_array(Lead.of(spread, mass).mean)
+    mean = csr_array(Lead.of(spread, np.frombuffer(mass)).mean)
     smooth = biharmonic(rest, fine_faces, mean, cut=CUT).matrix
     return spread, mean, csr_array(smooth @ csr_array(mean @ spread))
-
-
-def _lumped(rest: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """A third of the area of its faces for each vertex (V,) [m2]."""
-    a, b = rest[faces[:, 1]] - rest[faces[:, 0]], rest[faces[:, 2]] - rest[faces[:, 0]]
-    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    return np.bincount(faces.ravel(), np.repeat(area / 3.0, 3), len(rest))

@@ -8,6 +8,7 @@ from sim_core.learn.upsampling.biharmonic import Biharmonic, biharmonic
 from sim_core.learn.upsampling.edge_laplacian import squared_laplacian
 from sim_core.learn.upsampling.linear import linear
 from sim_core.learn.upsampling.local_frames import LocalFrames, LocalFramesFit, TangentFrames, tangent_frames
+from sim_core.learn.upsampling.location import located
 
 __all__ = [
     "Biharmonic",
@@ -16,6 +17,7 @@ __all__ = [
     "TangentFrames",
     "biharmonic",
     "linear",
+    "located",
     "squared_laplacian",
     "tangent_frames",
 ]

@@ -1,0 +1,79 @@
+"""What is missing to balance: how a fine sheet that is led would still move if it stood as it is said to.
+
+Both sheets feel the same gravity, wind and floor, so where the fine one is W X + r its difference r is accelerated by
+what the sheets do themselves, and by what leads:
+
+    q = a(W X + r) - W A(X) - k W P r,
+
+a and A the accelerations by stretch and bending of the fine and the coarse sheet, k W P r the lead's. Whoever says r
+can be told q, as an iteration of a solver is, and mends what it learned wrongly on a cloth that it has never seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from sim_core.cloth import Sheet
+from sim_core.cloth.sheet.energies import edge_tensions, vertex_forces
+from sim_core.learn.data import STIFFNESS, Pair
+
+__all__ = ["Imbalance"]
+
+SAG = 0.005  # [m] that means are told to be out of balance by, at most
+
+
+@dataclass(frozen=True)
+class Imbalance:
+    """Of a pair of sheets. ease (V, 1) [s2]: of an acceleration to about the way that undoes it, 0 where pinned;
+    free (C, 1): 0 where the coarse sheet is pinned."""
+
+    pair: Pair
+    ease: np.ndarray
+    free: np.ndarray
+
+    @staticmethod
+    def of(pair: Pair, pins_coarse: tuple[int, ...], pins_fine: tuple[int, ...]) -> Imbalance:
+        """With the pins of both sheets."""
+        stencil, count = pair.fine.stencil, len(pair.fine.rest)
+        stiff = 4.0 * stencil.own * stencil.length2  # [N/m] of an edge along itself, at rest
+        total = np.bincount(stencil.edges.ravel(), np.repeat(stiff, 2), count)
+        ease = 1.0 / (total / pair.fine.mass + STIFFNESS)
+        ease[list(pins_fine)] = 0.0
+        free = np.ones((len(pair.coarse.rest), 1))
+        free[list(pins_coarse)] = 0.0
+        return Imbalance(pair, ease[:, None], free)
+
+    def shared(self, coarse: np.ndarray) -> np.ndarray:
+        """W A(X) (V, 3) [m/s2] of a coarse sheet (C, 3) [m]."""
+        return self.pair.spread @ (self.free * accelerations(self.pair.coarse, coarse))
+
+    def ways(self, fine: np.ndarray, coarse: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Ways [m] on which fine vertices (V, 3) want to go, each for itself, and the means (C, 3) about coarse ones.
+
+        fine (V, 3), coarse (C, 3) [m]; shared: of `shared`.
+        """
+        pair = self.pair
+        off = pair.mean @ (fine - pair.spread @ coarse)
+        missing = accelerations(pair.fine, fine) - shared - STIFFNESS * (pair.spread @ off)
+        means = (pair.mean @ np.where(self.ease > 0.0, missing, 0.0)) / STIFFNESS
+        return self.ease * missing, np.clip(means, -SAG, SAG)
+
+
+def accelerations(sheet: Sheet, positions: np.ndarray) -> np.ndarray:
+    """By stretch and bending, (V, 3) [m/s2], at positions (V, 3) [m]."""
+    return _accelerations(sheet.stencil, np.ascontiguousarray(positions, float), sheet.mass)
+
+
+@njit(cache=True, error_model="numpy")
+def _accelerations(stencil, x, mass):
+    strain, tension = np.zeros(len(stencil.edges)), np.zeros(len(stencil.edges))
+    force = np.zeros_like(x)
+    edge_tensions(stencil, x, x, 0.0, strain, tension)
+    vertex_forces(stencil, x, tension, force)
+    for i in range(len(x)):
+        for c in range(3):
+            force[i, c] /= mass[i]
+    return force

@@ -1,0 +1,62 @@
+"""Between patches and fine vertices: sums over the three corners of the coarse face in which a vertex lies at rest."""
+
+from __future__ import annotations
+
+from numba import njit
+
+from sim_core.learn.convolution.depthwise import FREE_ORDER
+
+__all__ = ["add_up", "carry_over", "draw_down"]
+
+
+@njit(cache=True, fastmath=FREE_ORDER)
+def draw_down(patches, turn, corner, weights, out):
+    """out (V, 3) = sum over corners i of turn[i] @ (weights[v, i] @ patches[i]); patches (C, K, 3), turn (C, 3, 3),
+    corner (V, 3), weights (V, 3, K)."""
+    for v in range(len(corner)):
+        x = y = z = out[v, 0] * 0
+        for c in range(3):
+            i = corner[v, c]
+            a = b = n = x * 0
+            for k in range(weights.shape[2]):
+                w = weights[v, c, k]
+                a, b, n = a + w * patches[i, k, 0], b + w * patches[i, k, 1], n + w * patches[i, k, 2]
+            x += turn[i, 0, 0] * a + turn[i, 0, 1] * b + turn[i, 0, 2] * n
+            y += turn[i, 1, 0] * a + turn[i, 1, 1] * b + turn[i, 1, 2] * n
+            z += turn[i, 2, 0] * a + turn[i, 2, 1] * b + turn[i, 2, 2] * n
+        out[v, 0], out[v, 1], out[v, 2] = x, y, z
+
+
+@njit(cache=True, fastmath=FREE_ORDER)
+def add_up(fine, turn, corner, weights, out):
+    """The transpose: out (C, K, 3) = sum over vertices v of weights[v, i] times turn[i].T @ fine[v], fine (V, 3)."""
+    out[:] = 0
+    for v in range(len(corner)):
+        fx, fy, fz = fine[v, 0], fine[v, 1], fine[v, 2]
+        for c in range(3):
+            i = corner[v, c]
+            a = turn[i, 0, 0] * fx + turn[i, 1, 0] * fy + turn[i, 2, 0] * fz
+            b = turn[i, 0, 1] * fx + turn[i, 1, 1] * fy + turn[i, 2, 1] * fz
+            n = turn[i, 0, 2] * fx + turn[i, 1, 2] * fy + turn[i, 2, 2] * fz
+            for k in range(weights.shape[2]):
+                w = weights[v, c, k]
+                out[i, k, 0] += w * a
+                out[i, k, 1] += w * b
+                out[i, k, 2] += w * n
+
+
+@njit(cache=True, fastmath=FREE_ORDER)
+def carry_over(fine, before, turn, corner, share, out):
+    """out (V, 3) = what fine (V, 3) was in the frames `before` (C, 3, 3), in the frames `turn`; share (V, 3)."""
+    for v in range(len(corner)):
+        fx, fy, fz = fine[v, 0], fine[v, 1], fine[v, 2]
+        x = y = z = fx * 0
+        for c in range(3):
+            i, w = corner[v, c], share[v, c]
+            a = w * (before[i, 0, 0] * fx + before[i, 1, 0] * fy + before[i, 2, 0] * fz)
+            b = w * (before[i, 0, 1] * fx + before[i, 1, 1] * fy + before[i, 2, 1] * fz)
+            n = w * (before[i, 0, 2] * fx + before[i, 1, 2] * fy + before[i, 2, 2] * fz)
+            x += turn[i, 0, 0] * a + turn[i, 0, 1] * b + turn[i, 0, 2] * n
+            y += turn[i, 1, 0] * a + turn[i, 1, 1] * b + turn[i, 1, 2] * n
+            z += turn[i, 2, 0] * a + turn[i, 2, 1] * b + turn[i, 2, 2] * n
+        out[v, 0], out[v, 1], out[v, 2] = x, y, z
