@@ -12,6 +12,7 @@ ROOT = Path(__file__).parent.parent
 ROOMS = ("sim_core", "survey", "hall_app")
 ALLOWED = {"sim_core": {"sim_core"}, "survey": {"survey"}, "hall_app": set(ROOMS)}
 HEAVY = {"torch", "pandas", "factor_analyzer", "viser", "moderngl", "av", "matplotlib", "embreex"}
+NETWORKS = ROOT / "sim_core" / "learn" / "networks"
 DOZEN = 12
 FEW = 8
 # Of sim_core, from the ground up: a room may import those of lower lines, skipping as many as it likes.
@@ -134,8 +135,18 @@ def test_tests_go_through_public_faces(house):
 @pytest.mark.parametrize("room", ROOMS)
 def test_heavy_packages_are_imported_where_needed(room):
     for path in modules(room):
-        top = at_module_top(ast.parse(path.read_text("utf-8"))) & HEAVY
+        own = {"torch"} if path.is_relative_to(NETWORKS) else set()
+        top = at_module_top(ast.parse(path.read_text("utf-8"))) & (HEAVY - own)
         assert not top, f"{path.relative_to(ROOT)} imports {top} at its top"
+
+
+def test_networks_are_imported_by_nobody_who_has_no_torch():
+    """They are classes of torch's, so their package needs it; others import it where they train."""
+    name = ".".join(NETWORKS.relative_to(ROOT).parts)
+    for path in (path for room in ROOMS for path in modules(room) if not path.is_relative_to(NETWORKS)):
+        tree = ast.parse(path.read_text("utf-8"))
+        top = [node.module or "" for node in tree.body if isinstance(node, ast.ImportFrom)]
+        assert not [one for one in top if one.startswith(name)], path.relative_to(ROOT)
 
 
 @pytest.mark.parametrize("room", ROOMS)

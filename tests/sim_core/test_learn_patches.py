@@ -13,7 +13,7 @@ from sim_core.cloth.sheet import energies
 from sim_core.errors import SimCoreError
 from sim_core.learn.convolution import depthwise, depthwise_gradients, spirals
 from sim_core.learn.data import STIFFNESS, Pair, Recipe
-from sim_core.learn.patches import CUBIC, Imbalance, Patches
+from sim_core.learn.patches import CUBIC, SEEN, Imbalance, Patches, Surroundings
 from sim_core.learn.upsampling import tangent_frames
 
 
@@ -126,3 +126,26 @@ def test_pins_want_to_go_nowhere() -> None:
     ways, _ = made.ways(sheets.base @ coarse, coarse, made.shared(coarse))
     assert (ways[[0, 9]] == 0).all()
     assert (np.abs(ways).max(1) > 0).sum() == len(ways) - 2
+
+
+def test_what_a_vertex_sees_stays_when_the_sheet_is_moved_and_turned() -> None:
+    sheet, rng = pair().coarse, np.random.default_rng(4)
+    made = Surroundings.of(sheet.rest, sheet.faces, (0, 3))
+    flat = np.column_stack([sheet.rest, np.zeros(len(sheet.rest))])
+    turn, seen = made.seen(flat, flat, flat)
+    assert np.abs(seen[:, :-3]).max() < 1e-6  # a sheet at rest sees nothing but flags
+    assert turn == pytest.approx(np.broadcast_to(np.eye(3), turn.shape), abs=1e-6)
+    assert seen[:, -3].sum() == 2
+    bent = np.column_stack([sheet.rest, 0.05 * np.sin(7 * sheet.rest[:, 0])])
+    films = [bent + rng.normal(0, 0.002, bent.shape) for _ in range(3)]
+    whole = Rotation.from_rotvec([0.4, -2.0, 0.9]).as_matrix()
+    turn, seen = made.seen(*films)
+    turned, again = made.seen(*(film @ whole.T + [3.0, -1.0, 7.0] for film in films))
+    assert again == pytest.approx(seen, abs=2e-6)
+    assert turned == pytest.approx(whole @ turn, abs=2e-6)
+    assert np.abs(seen[:, -9:-3]).max() > 0.01
+    assert seen.shape == (len(bent), SEEN)
+    with pytest.raises(SimCoreError, match="before"):
+        made.seen(bent, bent[:-1], bent)
+    with pytest.raises(SimCoreError, match="coarse"):
+        made.seen(np.full_like(bent, np.nan), bent, bent)

@@ -1,6 +1,7 @@
-"""What a network says about coarse vertices, what becomes of fine ones by it, and what is then missing to balance."""
+"""What a network is told of coarse vertices and says about them; what fine ones make of it, and lack to balance."""
 
-from sim_core.learn.patches.imbalance import Imbalance
+from sim_core.learn.patches.imbalance import Imbalance, limited
 from sim_core.learn.patches.patches import CUBIC, Patches
+from sim_core.learn.patches.surroundings import SEEN, TWO_RINGS, Surroundings
 
-__all__ = ["CUBIC", "Imbalance", "Patches"]
+__all__ = ["CUBIC", "SEEN", "TWO_RINGS", "Imbalance", "Patches", "Surroundings", "limited"]

@@ -20,7 +20,7 @@ from sim_core.cloth import Sheet
 from sim_core.cloth.sheet.energies import edge_tensions, vertex_forces
 from sim_core.learn.data import STIFFNESS, Pair
 
-__all__ = ["Imbalance"]
+__all__ = ["Imbalance", "limited"]
 
 SAG = 0.005  # [m] that means are told to be out of balance by, at most
 
@@ -59,7 +59,13 @@ class Imbalance:
         off = pair.mean @ (fine - pair.spread @ coarse)
         missing = accelerations(pair.fine, fine) - shared - STIFFNESS * (pair.spread @ off)
         means = (pair.mean @ np.where(self.ease > 0.0, missing, 0.0)) / STIFFNESS
-        return self.ease * missing, np.clip(means, -SAG, SAG)
+        return self.ease * missing, limited(means, SAG)
+
+
+def limited(vectors: np.ndarray, most: float) -> np.ndarray:
+    """Vectors (N, 3), the longer ones cut to a length; by length, since a cut axis by axis would know where up is."""
+    size = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors * np.minimum(1.0, most / np.maximum(size, 1e-300))
 
 
 def accelerations(sheet: Sheet, positions: np.ndarray) -> np.ndarray:

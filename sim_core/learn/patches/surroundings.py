@@ -1,0 +1,103 @@
+"""What a coarse vertex sees: its two rings in its own tangent frame, and how it goes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.sparse import csr_array
+
+from sim_core.learn.convolution import spirals
+from sim_core.learn.topology import border_vertices, checked_sheet
+from sim_core.learn.upsampling import tangent_frames
+from sim_core.validation import coordinates, vertex_indices
+
+__all__ = ["SEEN", "TWO_RINGS", "Surroundings"]
+
+TWO_RINGS = 19  # a vertex, six neighbours and their twelve
+FLAGS = 3
+SEEN = 3 * (TWO_RINGS - 1) + 6 + FLAGS  # numbers of a vertex
+USUAL = 0.03  # [m] a coarse edge; what its logarithm is told against
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Of a coarse sheet of C vertices. near: (C, TWO_RINGS) int32 spirals; flags: (C, FLAGS) float32, pinned, on the
+    border, and the logarithm of the edges' length, of which a sheet knows nothing else."""
+
+    near: np.ndarray
+    flags: np.ndarray
+    length: float
+    _away: np.ndarray  # (C, TWO_RINGS, 2) places of the spiral at rest, in lengths
+    _along: csr_array
+    _across: csr_array
+
+    @staticmethod
+    def of(rest: np.ndarray, faces: np.ndarray, pins: tuple[int, ...]) -> Surroundings:
+        """From a sheet at rest, (C, 2) [m], its faces (G, 3) and pins. Raises SimCoreError for what is none."""
+        flat, faces = checked_sheet(rest, faces)
+        length = float(np.sqrt(np.prod(np.ptp(flat, axis=0)) / len(flat)))
+        near = spirals(faces, TWO_RINGS, flat)
+        pinned = np.zeros(len(flat))
+        pinned[list(vertex_indices("pins", pins, len(flat)))] = 1.0
+        scale = np.full(len(flat), math.log(length / USUAL))
+        flags = np.column_stack([pinned, border_vertices(faces, len(flat)), scale]).astype(np.float32)
+        frames = tangent_frames(flat, faces)
+        away = (flat[near] - flat[:, None]) / length
+        return Surroundings(near, flags, length, away, csr_array(frames.along), csr_array(frames.across))
+
+    def seen(
+        self, coarse: np.ndarray, before: np.ndarray, earlier: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Tangent frames (C, 3, 3) float32, in columns, and what each vertex sees (C, SEEN) float32, in lengths.
+
+        coarse, before, earlier: (C, 3) [m], now and one and two frames ago. Where the sheet is moved or turned as a
+        whole, frames turn along and nothing that is seen changes. Raises SimCoreError for other shapes or NaN.
+        """
+        shape = (len(self.near), 3)
+        now, last, first = (
+            coordinates(name, array, shape)
+            for name, array in (("coarse", coarse), ("before", before), ("earlier", earlier))
+        )
+        turn, out = np.zeros((*shape, 3), np.float32), np.zeros((len(self.near), SEEN), np.float32)
+        moves = np.stack([now - last, now - 2.0 * last + first])
+        slopes = np.stack([self._along @ now, self._across @ now])
+        _seen(now, moves, slopes, (self.near, self._away, self.length), turn, out)
+        out[:, -FLAGS:] = self.flags
+        return turn, out
+
+
+@njit(cache=True, error_model="numpy")
+def _unit(x, y, z):
+    size = math.sqrt(x * x + y * y + z * z)
+    return (x / size, y / size, z / size) if size > 1e-9 else (0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _seen(x, moves, slopes, sheet, turn, out):
+    near, away, length = sheet
+    for i in range(len(x)):
+        a = _unit(slopes[0, i, 0], slopes[0, i, 1], slopes[0, i, 2])
+        b = slopes[1, i, 0], slopes[1, i, 1], slopes[1, i, 2]
+        n = _unit(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+        if n == (0.0, 0.0, 0.0):
+            a = n  # slopes in line: no tangent plane
+        c = n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0]
+        for k in range(3):
+            turn[i, k, 0], turn[i, k, 1], turn[i, k, 2] = a[k], c[k], n[k]
+        place = 0
+        for k in range(1, near.shape[1]):
+            j = near[i, k]
+            d = (x[j, 0] - x[i, 0]) / length, (x[j, 1] - x[i, 1]) / length, (x[j, 2] - x[i, 2]) / length
+            out[i, place] = a[0] * d[0] + a[1] * d[1] + a[2] * d[2] - away[i, k, 0]
+            out[i, place + 1] = c[0] * d[0] + c[1] * d[1] + c[2] * d[2] - away[i, k, 1]
+            out[i, place + 2] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
+            place += 3
+        for k in range(2):
+            d = moves[k, i, 0] / length, moves[k, i, 1] / length, moves[k, i, 2] / length
+            out[i, place] = a[0] * d[0] + a[1] * d[1] + a[2] * d[2]
+            out[i, place + 1] = c[0] * d[0] + c[1] * d[1] + c[2] * d[2]
+            out[i, place + 2] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
+            place += 3

@@ -1,0 +1,152 @@
+"""What is trained is what is run: torch and the follower without it say the same, and who says nothing is the base."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core.errors import SimCoreError
+from sim_core.learn.data import Film, Recipe, film
+from sim_core.learn.inference import Follower, Ground, Settings
+
+SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
+
+
+@cache
+def hanging(case: int) -> tuple[Ground, Film]:
+    recipe = Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340)
+    return Ground.of(recipe), film(recipe)
+
+
+def drawn(seed: int, scale: float = 0.05) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return {name: rng.normal(0, scale, shape).astype(np.float32) for name, shape in SMALL.shapes().items()}
+
+
+def test_a_network_that_says_nothing_is_the_base() -> None:
+    ground, made = hanging(1)
+    follow = Follower(ground, SMALL, drawn(0, 0.0))
+    for coarse in made.coarse:
+        assert np.array_equal(follow(coarse), ground.pair.base @ coarse.astype(float))
+
+
+def test_the_follower_goes_along_when_the_sheet_is_moved_and_turned() -> None:
+    from scipy.spatial.transform import Rotation
+
+    ground, made = hanging(1)
+    whole = Rotation.from_rotvec([0.4, -2.0, 0.9])
+    one, other = (Follower(ground, SMALL, drawn(1)) for _ in range(2))
+    far = 0.0
+    for coarse in made.coarse.astype(float):
+        fine, turned = one(coarse), other(whole.apply(coarse) + [3.0, -1.0, 7.0])
+        assert np.abs(whole.apply(fine) + [3.0, -1.0, 7.0] - turned).max() < 1e-7
+        far = max(far, np.abs(fine - ground.pair.base @ coarse).max())
+    assert far > 1e-4
+
+
+def test_another_sheet_other_weights_and_nan_are_refused() -> None:
+    ground, made = hanging(1)
+    follow = Follower(ground, SMALL, drawn(1))
+    with pytest.raises(SimCoreError, match="coarse"):
+        follow(made.coarse[0][:-1])
+    with pytest.raises(SimCoreError, match="coarse"):
+        follow(np.full_like(made.coarse[0], np.nan))
+    weights = drawn(1)
+    weights["steps.0.inner.bias"] = np.zeros(3, np.float32)
+    with pytest.raises(SimCoreError, match=r"steps.0.inner.bias – \(8,\) is meant, \(3,\) found"):
+        Follower(ground, SMALL, weights)
+    with pytest.raises(SimCoreError, match="none found"):
+        Follower(ground, SMALL, {})
+
+
+def test_torch_says_the_same_on_several_sheets_glued_together() -> None:
+    torch = pytest.importorskip("torch")
+    from sim_core.learn.networks import Glued, LearnedSteps, Moment
+
+    network = LearnedSteps(SMALL)
+    weights = drawn(2)
+    assert {name: tuple(value.shape) for name, value in network.state_dict().items()} == dict(SMALL.shapes())
+    network.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
+    made = [hanging(1), hanging(13)]
+    glued = Glued([ground for ground, _ in made])
+    followers = [Follower(ground, SMALL, weights) for ground, _ in made]
+    off = torch.zeros(2, int(glued.fine[-1]), 3)
+    before = None
+    for k in range(6):
+        moment = Moment.of(glued, [(one.coarse, k) for _, one in made])
+        before = moment.turn if before is None else before
+        last, first = (glued.carried(part, before, moment.turn) for part in off)
+        with torch.no_grad():
+            now = network(glued, moment, last, first)
+        off, before = torch.stack([now, last]), moment.turn
+        for n, (ground, one) in enumerate(made):
+            fine = followers[n](one.coarse[k])
+            told = moment.base[n] + ground.unit * now[glued.fine[n] : glued.fine[n + 1]].numpy()
+            assert np.abs(fine - told).max() < 1e-5 * ground.patches.length
+
+
+def test_gradients_are_those_of_small_changes() -> None:
+    torch = pytest.importorskip("torch")
+    from sim_core.learn.networks import EdgeGap, Glued, LearnedSteps, Moment
+
+    torch.manual_seed(0)
+    ground, made = hanging(1)
+    network, glued = LearnedSteps(Settings(width=6, hidden=8, blocks=1, steps=1)), Glued([ground])
+    with torch.no_grad():
+        for value in network.parameters():
+            value.add_(0.1 * torch.randn_like(value))
+    moment = Moment.of(glued, [(made.coarse, 4)])
+    last, first = torch.randn(2, int(glued.fine[-1]), 3)
+    edges = ground.pair.fine.stencil.edges
+    weight = np.ones(len(edges), np.float32)
+
+    def loss():
+        off = network(glued, moment, last, first)
+        return off.square().mean() + EdgeGap.apply(off, edges, weight)
+
+    loss().backward()
+    for name, value in network.named_parameters():
+        step = torch.randn_like(value)
+        step *= 1e-2 / step.norm()
+        with torch.no_grad():
+            value.add_(step)
+            there = float(loss())
+            value.sub_(2 * step)
+            back = float(loss())
+            value.add_(step)
+        assert there - back == pytest.approx(2 * float((value.grad * step).sum()), rel=0.05, abs=2e-5), name
+
+
+def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_weights(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("torch")
+    from sim_core.learn.networks import Schedule, train, training
+
+    monkeypatch.setattr(training, "BETWEEN", 0.0)
+    recipe = Recipe("hanging", 1, 7, 6, 0, coarse=90, fine=340)
+    ground, made = hanging(1)
+    schedule, record = Schedule(updates=400, lanes=2, rate=1e-2), tmp_path / "record.pt"
+    weights = train([(recipe, made)], SMALL, schedule)
+
+    def broken(share: float, words: str) -> None:
+        if share > 0.4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train([(recipe, made)], SMALL, schedule, record=record, told=broken)
+    again = train([(recipe, made)], SMALL, schedule, record=record)
+    assert all(np.array_equal(again[name], weights[name]) for name in weights)
+    follow, off = Follower(ground, SMALL, weights), [[], []]
+    for coarse, fine in zip(made.coarse.astype(float), made.fine, strict=True):
+        for kind, place in enumerate((follow(coarse), ground.pair.base @ coarse)):
+            off[kind].append(np.linalg.norm(place - fine, axis=1).mean())
+    assert np.mean(off[0]) < 0.6 * np.mean(off[1])
+    with pytest.raises(SimCoreError, match="begun with other settings"):
+        train([(recipe, made)], SMALL, Schedule(updates=121, lanes=2, rate=1e-2), record=record)
+    record.write_bytes(b"half")
+    with pytest.raises(SimCoreError, match="damaged .* delete it and train again"):
+        train([(recipe, made)], SMALL, schedule, record=record)
