@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 from sim_core.validation.arguments import whole
 
 if TYPE_CHECKING:
-    from sim_core.learn.data import Floor, Manifest, Recipe
+    from sim_core.learn.data import Film, Floor, Manifest, Recipe
 
 DESCRIPTION = """\
 Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine one.
 
   data      simulate a published scene's sequences, coarse and fine
+  train     the learned steps, on the sequences that are not held back
   evaluate  errors and times of what makes fine cloth of coarse, on sequences held back
 """
 
@@ -40,6 +41,17 @@ examples:
   simcore learn data flag --sequences 2 --frames 50 --out data/try --json
 """
 
+TRAIN = """\
+Train the learned steps on a scene's sequences, all but those that are held back (cases 3, 6, 9, 13, ...). Needs torch
+(pip install '.[learn]'); what comes out does not: a .safetensors file of some 170 kB.
+
+A record beside it is written every minute: whatever ends the run, the same command goes on, to the same weights.
+
+examples:
+  simcore learn train hanging --data data/hanging --out hanging.safetensors
+  simcore learn train flag --data data/flag --updates 500 --out try.safetensors
+"""
+
 EVALUATE = """\
 Compare ways from coarse to fine on the sequences that are held back (cases 3, 6, 9, 13, ...), frame by frame against
 the fine film, every fifth measured: mean of how far vertices are off, Hausdorff distance (two-sided, vertices from
@@ -49,19 +61,20 @@ faces; mean and 95th percentile over frames), normals, strain.
   linear        the coarse surface
   biharmonic    the smoothest fine sheet with the coarse surface's means
   local_frames  that, and what frames of training add to it in closed form
+  ours          the learned steps of --weights
 
 examples:
   simcore learn evaluate hanging --data data/hanging
   simcore learn evaluate flag --data data/flag --rows linear,local_frames --json
 """
-ROWS = ("reference", "linear", "biharmonic", "local_frames")
+ROWS = ("reference", "linear", "biharmonic", "local_frames", "ours")
 
 
 def add_parser(subparsers: Any) -> None:
     """Adds `learn` to the parsers of `simcore`."""
     parser = subparsers.add_parser(
         "learn",
-        help="coarse cloth -> fine cloth: data, errors",
+        help="coarse cloth -> fine cloth: data, training, errors",
         description=DESCRIPTION,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -92,6 +105,22 @@ def add_parser(subparsers: Any) -> None:
         help="frames the floor is told over; 0: not told (40)",
     )
     data.add_argument("--json", action="store_true", help="print a machine-readable summary")
+    train = actions.add_parser(
+        "train",
+        help="train the learned steps",
+        description=TRAIN,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    train.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
+    train.add_argument(
+        "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
+    )
+    train.add_argument("--out", type=Path, required=True, metavar="FILE.safetensors", help="the weights")
+    train.add_argument(
+        "--updates", type=whole(1, 1_000_000), default=12_000, metavar="N", help="of the weights (12,000)"
+    )
+    train.add_argument("--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="(0)")
+    train.add_argument("--json", action="store_true", help="print a machine-readable summary")
     evaluate = actions.add_parser(
         "evaluate",
         help="errors and times of ways from coarse to fine",
@@ -103,7 +132,10 @@ def add_parser(subparsers: Any) -> None:
         "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
     )
     evaluate.add_argument(
-        "--rows", type=_rows, default=ROWS, metavar="NAMES", help=f"of {','.join(ROWS)} (all)"
+        "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; ours with --weights)"
+    )
+    evaluate.add_argument(
+        "--weights", type=Path, metavar="FILE", help="of `simcore learn train`, for the row ours"
     )
     evaluate.add_argument(
         "--frames", type=whole(1, 100_000), metavar="N", help="of every sequence, the first so many (all)"
@@ -124,7 +156,64 @@ def _rows(text: str) -> tuple[str, ...]:
 
 def run(args: argparse.Namespace) -> int:
     """Does what was asked for; returns the exit status."""
-    return evaluate(args) if args.action == "evaluate" else data(args)
+    return {"data": data, "train": train, "evaluate": evaluate}[args.action](args)
+
+
+def train(args: argparse.Namespace) -> int:
+    """Trains on the sequences that are not held back, and writes the weights."""
+    from importlib.util import find_spec
+
+    from sim_core.cloth.run import ENGINE_VERSION
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.data import split
+    from sim_core.learn.inference import Settings, Trained, write_weights
+
+    if args.out.suffix != ".safetensors":
+        raise SimCoreError(f"--out: {args.out} – name a file that ends in .safetensors")
+    if find_spec("torch") is None:
+        raise SimCoreError("torch is not installed – pip install '.[learn]'; to use weights it is not needed")
+    from sim_core.learn.networks import Schedule
+    from sim_core.learn.networks import train as trained
+
+    films = _films(args)
+    parts = split([recipe for recipe, _ in films.values()])
+    began, settings = time.monotonic(), Settings()
+    schedule = Schedule(updates=args.updates, seed=args.seed)
+    told = _progress()
+    weights = trained(
+        [films[recipe.name] for recipe in parts.train],
+        settings,
+        schedule,
+        record=args.out.with_suffix(".record"),
+        told=lambda share, words: told(share, f"loss {words}"),
+    )
+    told(1.0, "")
+    facts = {
+        "scene": args.scene,
+        "learned_from": [recipe.name for recipe in parts.train],
+        "engine": ENGINE_VERSION,
+        "updates": args.updates,
+        "seed": args.seed,
+        "device": "cpu",
+    }
+    write_weights(args.out, Trained(settings, weights, facts))
+    facts |= {"file": str(args.out), "parameters": sum(value.size for value in weights.values())}
+    facts |= {"seconds": round(time.monotonic() - began, 1)}
+    words = (
+        f"{args.out}: {facts['parameters']:,} numbers, {args.updates:,} updates in {facts['seconds']:.0f} s\n"
+    )
+    sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else words)
+    return 0
+
+
+def _films(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.data import read_films
+
+    every = read_films(args.data)
+    if (found := next(iter(every.values()))[0].scene) != args.scene:
+        raise SimCoreError(f"{args.data}: holds {found} – give the folder of {args.scene}")
+    return every
 
 
 def evaluate(args: argparse.Namespace) -> int:
@@ -132,28 +221,37 @@ def evaluate(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from sim_core.errors import SimCoreError
-    from sim_core.learn.data import read_films, split
-    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, measured, reference
+    from sim_core.learn.data import split
+    from sim_core.learn.inference import read_weights
+    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, Ours, measured, reference
 
-    every = read_films(args.data)
-    if (found := next(iter(every.values()))[0].scene) != args.scene:
-        raise SimCoreError(f"{args.data}: holds {found} – give the folder of {args.scene}")
+    wanted = args.rows or (ROWS if args.weights else ROWS[:-1])
+    if "ours" in wanted and args.weights is None:
+        raise SimCoreError("--rows ours – give its --weights, which `simcore learn train` makes")
+    ours = read_weights(args.weights) if args.weights else None
     films = {
         name: (recipe, replace(film, coarse=film.coarse[: args.frames], fine=film.fine[: args.frames]))
-        for name, (recipe, film) in every.items()
+        for name, (recipe, film) in _films(args).items()
     }
-    parts = split([recipe for recipe, _ in every.values()])
+    parts = split([recipe for recipe, _ in films.values()])
+    if ours and (seen := {one.name for one in parts.test} & set(ours.told.get("learned_from", ()))):
+        raise SimCoreError(
+            f"{args.weights}: learned from {', '.join(sorted(seen))}, which would be tested on"
+        )
     tested = [films[recipe.name] for recipe in parts.test]
     makers = {
         "linear": Linear,
         "biharmonic": Biharmonic,
         "local_frames": lambda: LocalFrames.fitted([films[recipe.name] for recipe in parts.train]),
     }
+    if ours is not None:
+        made = Ours(ours)
+        makers["ours"] = lambda: made
     told, rows = _progress(), {}
-    for number, name in enumerate(args.rows):
+    for number, name in enumerate(wanted):
 
         def share(part: float, words: str, number: int = number) -> None:
-            told((number + part) / len(args.rows), words)
+            told((number + part) / len(wanted), words)
 
         if name == "reference":
             found = reference(parts.test, args.floor, share)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Recipe, film
-from sim_core.learn.inference import Follower, Ground, Settings
+from sim_core.learn.data import Film, Recipe, film, generate
+from sim_core.learn.inference import Follower, Ground, Settings, Trained, read_weights, write_weights
 
 SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
 
@@ -150,3 +152,68 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
     record.write_bytes(b"half")
     with pytest.raises(SimCoreError, match="damaged .* delete it and train again"):
         train([(recipe, made)], SMALL, schedule, record=record)
+
+
+def test_weights_are_kept_as_they_are_and_what_was_changed_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "ours.safetensors"
+    write_weights(path, Trained(SMALL, drawn(5), {"scene": "hanging", "updates": 3}))
+    found = read_weights(path)
+    assert found.settings == SMALL
+    assert found.told == {"scene": "hanging", "updates": 3}
+    assert all(np.array_equal(found.weights[name], value) for name, value in drawn(5).items())
+    whole = bytearray(path.read_bytes())
+    whole[-7] ^= 1
+    for data, words in (
+        (whole, "changed since"),
+        (whole[:-40], "damaged"),
+        (b"", "damaged"),
+        (b"{}" * 9, "damaged"),
+    ):
+        path.write_bytes(data)
+        with pytest.raises(SimCoreError, match=words):
+            read_weights(path)
+    with pytest.raises(SimCoreError, match="damaged"):
+        read_weights(tmp_path / "none.safetensors")
+    write_weights(path, Trained(Settings(), drawn(5), {}))
+    with pytest.raises(SimCoreError, match="do not fit"):
+        read_weights(path)
+
+
+def test_the_commands_compare_what_was_trained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    generate(tmp_path / "data", [Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340) for case in (1, 3, 4)])
+    place, out = ["hanging", "--data", str(tmp_path / "data")], tmp_path / "ours.safetensors"
+    write_weights(out, Trained(SMALL, drawn(5, 0.01), {"learned_from": ["hanging-01"]}))
+    assert (
+        main(["learn", "evaluate", *place, "--rows", "biharmonic,ours", "--weights", str(out), "--json"]) == 0
+    )
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert rows["ours"]["net_ms"] > rows["biharmonic"]["net_ms"]
+    assert main(["learn", "evaluate", *place, "--rows", "ours"]) == 1
+    assert "give its --weights" in capsys.readouterr().err
+    write_weights(out, Trained(SMALL, drawn(5), {"learned_from": ["hanging-03"]}))
+    assert main(["learn", "evaluate", *place, "--weights", str(out)]) == 1
+    assert "learned from hanging-03, which would be tested on" in capsys.readouterr().err
+    assert main(["learn", "train", *place, "--out", "ours.pt"]) == 1
+    assert "ends in .safetensors" in capsys.readouterr().err
+
+
+def test_the_command_trains(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("torch")
+    generate(tmp_path, [Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340) for case in (1, 3)])
+    out = tmp_path / "ours.safetensors"
+    words = [
+        "learn",
+        "train",
+        "hanging",
+        "--data",
+        str(tmp_path),
+        "--out",
+        str(out),
+        "--updates",
+        "30",
+        "--json",
+    ]
+    assert main(words) == 0
+    assert json.loads(capsys.readouterr().out)["learned_from"] == ["hanging-01"]
+    assert read_weights(out).told["updates"] == 30
+    assert out.with_suffix(".record").is_file()

@@ -3,5 +3,6 @@
 from sim_core.learn.inference.follower import Follower
 from sim_core.learn.inference.ground import Ground
 from sim_core.learn.inference.settings import Settings, Shapes
+from sim_core.learn.inference.weights import Trained, read_weights, write_weights
 
-__all__ = ["Follower", "Ground", "Settings", "Shapes"]
+__all__ = ["Follower", "Ground", "Settings", "Shapes", "Trained", "read_weights", "write_weights"]

@@ -1,8 +1,10 @@
 """What is compared: ways from a coarse sheet to a fine one, each a `Row` that follows a sequence frame by frame.
 
-`plain` knows no training, `regression` fits local frames in closed form; `measured` tells errors and times of any.
+`plain` knows no training, `regression` fits local frames in closed form, `learned` runs a network; `measured` tells
+errors and times of any.
 """
 
+from sim_core.learn.rows.learned import Ours
 from sim_core.learn.rows.measured import EVERY, Measured, measured, reference
 from sim_core.learn.rows.plain import Biharmonic, Linear
 from sim_core.learn.rows.regression import LocalFrames
@@ -15,6 +17,7 @@ __all__ = [
     "Linear",
     "LocalFrames",
     "Measured",
+    "Ours",
     "Row",
     "measured",
     "reference",
