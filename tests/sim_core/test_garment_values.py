@@ -183,6 +183,26 @@ def test_cheapest_detail_within_the_budget() -> None:
     assert strict.provenance["detail"]["tried"]
 
 
+def test_the_level_of_what_moves_is_measured_in_all_moments_however_few() -> None:
+    """The only one that is bent lies between those that the mesh is fitted to."""
+    fine = arched(0.02)
+    x = fine.positions
+    bent = x + np.column_stack([np.zeros(len(x)), np.zeros(len(x)), 0.03 * np.sin(30 * x[:, 1])])
+    found = [
+        len(choose_detail(fine, 0.004, moments=film).faces)
+        for film in ([bent, x, x], [x, bent, x], [x, x, x])
+    ]
+    assert found[2] < found[0] <= 1.5 * found[1]
+    assert found[1] < len(fine.faces)
+    for wrong, words in (
+        (np.r_[x, x[:2]], "vertices"),
+        (np.full_like(x, np.nan), "moments"),
+        ("abc", "moments"),
+    ):
+        with pytest.raises(SimCoreError, match=rf"moments\[1\].*{words}|{words}\[1\]"):
+            choose_detail(fine, 0.004, moments=[x, wrong, x])
+
+
 def chunks(path: Path) -> tuple[dict, bytes]:
     data = path.read_bytes()
     magic, version, size = struct.unpack_from("<4sII", data)

@@ -65,7 +65,6 @@ def arms_apart(
     trunk = figure.faces[np.isin(dominant, [JOINTS.index(joint) for joint in TRUNK])[figure.faces].all(1)]
     arms = {side: _arm(figure, dominant, side) for side in "lr"}
     need = {side: np.zeros(len(poses)) for side in arms}
-    short = 0.0
     for row, pose in enumerate(poses):
         vertices = figure.posed(pose)
         near = _Skin.of(vertices[trunk])
@@ -74,14 +73,25 @@ def arms_apart(
             shoulder = JOINTS.index(f"shoulder_{side}")
             pivot = turns[shoulder] @ figure.skeleton.heads[shoulder] + shifts[shoulder]
             axis = turns[JOINTS.index(f"clavicle_{side}")][:, 2] * (1.0 if side == "l" else -1.0)
-            need[side][row], kept = _angle(vertices[arm] - pivot, pivot, axis, near, room)
-            short = max(short, room - kept)
+            need[side][row] = _angle(vertices[arm] - pivot, pivot, axis, near, room)
     out, most = list(poses), []
     for side, angles in need.items():
         given = spread(angles, SMOOTH * rate) if angles.any() else angles
         out = [_raised(pose, side, float(angle)) for pose, angle in zip(out, given, strict=True)]
         most.append(float(given.max(initial=0.0)))
-    return out, (most[0], most[1]), short
+    return out, (most[0], most[1]), _short(figure, out, trunk, tuple(arms.values()), room)
+
+
+def _short(
+    figure: Mannequin, poses: Sequence[Pose], trunk: np.ndarray, arms: Sequence[np.ndarray], room: float
+) -> float:
+    """What is missing of the room at worst [m], in the poses as they are after all."""
+    short = 0.0
+    for pose in poses:
+        vertices = figure.posed(pose)
+        near = _Skin.of(vertices[trunk])
+        short = max(short, *(room - near.clearance(vertices[arm]) for arm in arms))
+    return short
 
 
 def _arm(figure: Mannequin, dominant: np.ndarray, side: str) -> np.ndarray:
@@ -91,10 +101,8 @@ def _arm(figure: Mannequin, dominant: np.ndarray, side: str) -> np.ndarray:
     return np.flatnonzero(own & (away > ARMPIT))
 
 
-def _angle(
-    arm: np.ndarray, pivot: np.ndarray, axis: np.ndarray, near: _Skin, room: float
-) -> tuple[float, float]:
-    """By how many degrees an arm (N, 3) [m] about its pivot is to be turned about an axis, and its clearance [m]."""
+def _angle(arm: np.ndarray, pivot: np.ndarray, axis: np.ndarray, near: _Skin, room: float) -> float:
+    """By how many degrees an arm (N, 3) [m] about its pivot is to be turned about an axis."""
 
     def clearance(degrees: float) -> float:
         return near.clearance(arm @ matrix_of(_about(axis, degrees)).T + pivot)
@@ -106,14 +114,14 @@ def _angle(
         seen.append(clearance(high))
     if seen[-1] < room:
         best = int(np.argmax(seen))
-        return (float(TRIED[best]), seen[best]) if seen[best] > seen[0] + HELPS else (0.0, seen[0])
+        return float(TRIED[best]) if seen[best] > seen[0] + HELPS else 0.0
     if len(seen) == 1:
-        return 0.0, seen[0]
+        return 0.0
     low, high = TRIED[len(seen) - 2], TRIED[len(seen) - 1]
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if clearance(middle) >= room else (middle, high)
-    return float(high), room
+    return float(high)
 
 
 def _about(axis: np.ndarray, degrees: float) -> np.ndarray:

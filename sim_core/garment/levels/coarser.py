@@ -14,7 +14,7 @@ from sim_core.cloth import Solid
 from sim_core.cloth.contact import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.sheet.sheet import face_edge_table
 from sim_core.garment.garment import Garment
-from sim_core.garment.levels.thinning import Thinning
+from sim_core.garment.levels.thinning import Thinning, moment_of
 from sim_core.garment.pattern.pattern import Pattern
 
 SHARES = tuple(
@@ -113,16 +113,18 @@ def choose_detail(
     """The cheapest level whose measured distance (p99) stays under `budget` [m], e.g. one pixel at the nearest view.
 
     moments: where the vertices (V, 3) [m] of a garment that moves are, frame by frame: it stays under it in all of
-    them, though only every seventh is what the mesh is fitted to.
+    them, though of more than seven only every seventh is what the mesh is fitted to.
 
     The garment is thinned by steps, of which every STRIDE-th is measured until one fails, and then those between it and
     the last that did not, halving what is left. Levels are tried on few samples and the chosen one is measured again on
     many; where it fails then, the level before it is taken. The garment itself is returned when none will do. Where a
     chord would cut into the stand, or into `solid`, the mesh is moved out. The choice and all that was tried go into
-    the provenance.
+    the provenance. Raises SimCoreError for a moment of other vertices, or not finite.
     """
     counts = [round(len(garment.faces) * share) for share in SHARES]
-    thinner, levels = thinned(garment, counts, moments[::FITTED]), list[_Level]()
+    moments = [moment_of(number, places, len(garment.positions)) for number, places in enumerate(moments)]
+    fitted = moments[::FITTED] if len(moments) > FITTED else moments
+    thinner, levels = thinned(garment, counts, fitted), list[_Level]()
     if solid is None and garment.settled is not None and garment.settled.beneath.stand is not None:
         solid = garment.settled.beneath.solid()
     tried: list[dict[str, float]] = []
@@ -130,7 +132,9 @@ def choose_detail(
     while fails - fits > 1:
         number = (fits + fails) // 2 if fails < len(counts) else min(fits + STRIDE, fails - 1)
         levels.extend(islice(thinner, max(0, number + 1 - len(levels))))
-        levels[number] = _measured(garment, _cleared(levels[number], solid), _TRYING, moments[TRIED])
+        levels[number] = _measured(
+            garment, _cleared(levels[number], solid), _TRYING, moments[TRIED] or moments
+        )
         tried.append({"triangles": len(levels[number].garment.faces), "p99_m": _off(levels[number])})
         if tried[-1]["p99_m"] > budget:
             fails = number

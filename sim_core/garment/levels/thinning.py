@@ -14,7 +14,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.levels.collapses import TWINS, Heap, Mesh, offer_all, thin
 from sim_core.validation import points
 
-__all__ = ["Thinning"]
+__all__ = ["Thinning", "moment_of"]
 
 LINE_WEIGHT = 4.0  # of keeping a border or seam in its line, against keeping a face in its plane
 
@@ -38,7 +38,7 @@ class Thinning:
         moments: Sequence[np.ndarray] = (),
     ) -> None:
         count, welded = len(vertices), weld[faces]
-        places = [vertices, *(_checked(number, x, count) for number, x in enumerate(moments))]
+        places = [vertices, *(moment_of(number, x, count) for number, x in enumerate(moments))]
         lines = _line_neighbours(welded, faces, count)
         corners = welded.ravel()
         order = np.argsort(corners, kind="stable")
@@ -89,7 +89,8 @@ class Thinning:
         self._heap = thin(self._mesh, self._heap, triangles)
 
 
-def _checked(number: int, moment: np.ndarray, count: int) -> np.ndarray:
+def moment_of(number: int, moment: np.ndarray, count: int) -> np.ndarray:
+    """Places (V, 3) [m] of so many vertices; raises SimCoreError, naming the moment, for what is none."""
     places = points(f"moments[{number}]", moment)
     if len(places) != count:
         raise SimCoreError(f"moments[{number}]: {len(places)} vertices – the mesh has {count}")
