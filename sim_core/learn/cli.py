@@ -79,13 +79,7 @@ def add_parser(subparsers: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
-    data = actions.add_parser(
-        "data",
-        help="simulate a scene's sequences, coarse and fine",
-        description=DATA,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    data.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
+    data = _action(actions, "data", "simulate a scene's sequences, coarse and fine", DATA)
     data.add_argument(
         "--out", type=Path, required=True, metavar="DIR", help="the folder; goes on where it was"
     )
@@ -104,33 +98,17 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="frames the floor is told over; 0: not told (40)",
     )
-    data.add_argument("--json", action="store_true", help="print a machine-readable summary")
-    train = actions.add_parser(
-        "train",
-        help="train the learned steps",
-        description=TRAIN,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    train.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
-    train.add_argument(
-        "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
-    )
+    train = _action(actions, "train", "train the learned steps", TRAIN)
+    evaluate = _action(actions, "evaluate", "errors and times of ways from coarse to fine", EVALUATE)
+    for reads in (train, evaluate):
+        reads.add_argument(
+            "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
+        )
     train.add_argument("--out", type=Path, required=True, metavar="FILE.safetensors", help="the weights")
     train.add_argument(
         "--updates", type=whole(1, 1_000_000), default=12_000, metavar="N", help="of the weights (12,000)"
     )
     train.add_argument("--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="(0)")
-    train.add_argument("--json", action="store_true", help="print a machine-readable summary")
-    evaluate = actions.add_parser(
-        "evaluate",
-        help="errors and times of ways from coarse to fine",
-        description=EVALUATE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    evaluate.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
-    evaluate.add_argument(
-        "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
-    )
     evaluate.add_argument(
         "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; ours with --weights)"
     )
@@ -143,7 +121,16 @@ def add_parser(subparsers: Any) -> None:
     evaluate.add_argument(
         "--floor", type=whole(5, 1000), default=40, metavar="N", help="frames of the reference (40)"
     )
-    evaluate.add_argument("--json", action="store_true", help="print a machine-readable summary")
+
+
+def _action(actions: Any, name: str, words: str, description: str) -> argparse.ArgumentParser:
+    """What all of them take: a scene, and --json."""
+    parser = actions.add_parser(
+        name, help=words, description=description, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
+    parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
+    return parser
 
 
 def _rows(text: str) -> tuple[str, ...]:

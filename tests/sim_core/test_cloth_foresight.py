@@ -166,6 +166,18 @@ def sheets(heights: list[float], count: int, size: float) -> tuple[Sheet, np.nda
     return Sheet.of(flat, every, Material(0.1, 49.0, bend=5e-6)), np.concatenate(places)
 
 
+def after_a_frame(
+    sheet: Sheet, x: np.ndarray, v: np.ndarray, thickness: float, solid: HalfSpace | None = None
+) -> np.ndarray:
+    """Places (V, 3) [m] a frame later, with gravity where there is a solid to fall on."""
+    pull = 9.81 if solid else 0.0
+    contact = Contact(thickness=thickness)
+    run = Run(Setup(sheet, [Phase(FRAME, (pull, pull))], contact=contact, collider=solid))
+    state = run.begun(x, v)
+    run.frame(state)
+    return state.positions
+
+
 STRUCK = [  # [m] from the first to the second and to the third, m/s, [m] that layers keep
     (0.008, 0.020, 2.0, 0.0025),
     (0.008, 0.020, 3.0, 0.0025),
@@ -186,14 +198,12 @@ def test_a_sheet_that_is_struck_does_not_pass_through_the_next(
 ) -> None:
     """The middle one was at rest when its pairs were foreseen or fell asleep, and flies from a substep to the next."""
     sheet, x = sheets([0.0, first, first + second], 24 if second > 0.01 else 16, 0.3)
-    run = Run(Setup(sheet, [Phase(FRAME, (0.0, 0.0))], contact=Contact(thickness=thickness)))
     v, own = np.zeros_like(x), len(x) // 3
     v[:own, 1] = speed
-    state = run.begun(x, v)
-    run.frame(state)
-    heights = state.positions[:, 1].reshape(3, own).mean(1)
+    there = after_a_frame(sheet, x, v, thickness)
+    heights = there[:, 1].reshape(3, own).mean(1)
     assert (np.diff(heights) > 0.4 * thickness).all()
-    assert metrics.intersections(state.positions, sheet.faces) == 0
+    assert metrics.intersections(there, sheet.faces) == 0
 
 
 FALLEN = [  # [m] the lower sheet's height, the gap, m/s, [m] that layers keep
@@ -214,15 +224,12 @@ def test_sheets_that_fall_together_keep_their_order_on_the_floor(
 ) -> None:
     """Nothing comes nearer to anything until the floor stops the lower one from one substep to the next."""
     sheet, x = sheets([height, height + gap], 16, 0.3)
-    contact = Contact(thickness=thickness)
-    run = Run(Setup(sheet, [Phase(FRAME, (9.81, 9.81))], contact=contact, collider=HalfSpace()))
     v = np.zeros_like(x)
     v[:, 1] = -speed
-    state = run.begun(x, v)
-    run.frame(state)
-    lower, upper = state.positions[:, 1].reshape(2, -1)
+    there = after_a_frame(sheet, x, v, thickness, HalfSpace())
+    lower, upper = there[:, 1].reshape(2, -1)
     assert (upper > lower).all()
-    assert metrics.intersections(state.positions, sheet.faces) == 0
+    assert metrics.intersections(there, sheet.faces) == 0
 
 
 @pytest.mark.parametrize("after", [0, 2])

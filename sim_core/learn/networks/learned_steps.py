@@ -22,7 +22,8 @@ __all__ = ["Glued", "LearnedSteps", "Moment"]
 
 
 class Glued:
-    """Several grounds as one sheet of their vertices, one after the other. coarse, fine: where each begins."""
+    """Several grounds as one sheet of their vertices, one after the other. coarse, fine: where each begins; edges:
+    (E, 2) of the fine sheets; edge_weight: (E,) float32, the mean length of its sheet's over each one's."""
 
     def __init__(self, grounds: Sequence[Ground]) -> None:
         self.grounds = tuple(grounds)
@@ -38,6 +39,10 @@ class Glued:
         self.share, self.lift, self.fit = (
             np.concatenate([getattr(one, name) for one in patches]) for name in ("share", "lift", "fit")
         )
+        self.gathered = torch.from_numpy(self.corner.astype(np.int64)), torch.from_numpy(self.share)
+        lengths = [np.sqrt(one.pair.fine.stencil.length2) for one in grounds]
+        self.edges = after([one.pair.fine.stencil.edges for one in grounds], self.fine)
+        self.edge_weight = np.concatenate([one.mean() / one for one in lengths]).astype(np.float32)
 
     def carried(self, fine: Tensor, before: np.ndarray, turn: np.ndarray) -> Tensor:
         """Displacements (V, 3) turned along from frames `before` (N, 3, 3) into those of `turn`: `Patches.carried`."""
@@ -123,8 +128,8 @@ class LearnedSteps(nn.Module):
                 torch.cat([seen, there, change, there - was, pushed, means], dim=1), glued.near
             )
             if number == 0:
-                share = torch.sigmoid(stays + GATE_BIAS)[torch.from_numpy(glued.corner.astype(np.int64))]
-                off = last * (share * torch.from_numpy(glued.share)).sum(1, keepdim=True)
+                corner, share = glued.gathered
+                off = last * (torch.sigmoid(stays + GATE_BIAS)[corner] * share).sum(1, keepdim=True)
             off = off + Displaced.apply(said.view(-1, CUBIC, 3), moment.turn, glued.corner, glued.lift)
             if number + 1 < len(self.steps):
                 there = Fitted.apply(off, *fixed).flatten(1)

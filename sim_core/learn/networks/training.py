@@ -67,14 +67,13 @@ class _Course:
 
     def __init__(self, films: Sequence[tuple[Recipe, Film]], schedule: Schedule) -> None:
         self.schedule, self.rng = schedule, np.random.default_rng(schedule.seed)
-        grounds: dict[tuple[int, ...], Ground] = {}
         self.films = []
         for recipe, film in films:
             if len(film.fine) <= schedule.window + 2:
                 raise SimCoreError(
                     f"{recipe.name}: {len(film.fine)} frames – give more than {schedule.window + 2}"
                 )
-            ground = grounds.setdefault((recipe.case,), Ground.of(recipe))
+            ground = Ground.of(recipe)
             base = np.stack([ground.pair.base @ place for place in film.coarse.astype(float)])
             self.films.append((ground, film.coarse, ((film.fine - base) / ground.unit).astype(np.float32)))
         self.lanes: list[_Lane | None] = [None] * schedule.lanes
@@ -181,7 +180,6 @@ def train(
 def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course) -> float:
     """One window of all lanes, and one update; the mean distance from what was wanted, in units."""
     glued, schedule = course.begin(), course.schedule
-    edges, weight = _edges(glued)
     said, before = course.past()
     total, off = torch.zeros(()), 0.0
     last, first = said[0], said[1]
@@ -196,7 +194,7 @@ def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Co
             total
             + distance
             + SQUARES * squares.mean()
-            + schedule.edges * EdgeGap.apply(errors, edges, weight)
+            + schedule.edges * EdgeGap.apply(errors, glued.edges, glued.edge_weight)
         )
         off += float(distance.detach()) / schedule.window
         last, first, before = now, last, moment.turn
@@ -206,17 +204,6 @@ def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Co
     optimiser.step()
     course.go_on(glued, torch.stack([last, first]).detach().numpy(), before)
     return off
-
-
-def _edges(glued: Glued) -> tuple[np.ndarray, np.ndarray]:
-    """All edges (E, 2), and the mean length over each one's, of its sheet (E,) float32."""
-    every, weights = [], []
-    for ground, start in zip(glued.grounds, glued.fine, strict=False):
-        stencil = ground.pair.fine.stencil
-        length = np.sqrt(stencil.length2)
-        every.append(stencil.edges + start)
-        weights.append((length.mean() / length).astype(np.float32))
-    return np.concatenate(every), np.concatenate(weights)
 
 
 def _write(record: Path, same: dict[str, Any], update: int, what: tuple[Any, ...]) -> None:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.sparse import csr_array
 
 from sim_core.learn.convolution import spirals
 from sim_core.learn.topology import border_vertices, checked_sheet
-from sim_core.learn.upsampling import tangent_frames
+from sim_core.learn.upsampling import TangentFrames, tangent_frames
 from sim_core.validation import coordinates, vertex_indices
 
 __all__ = ["SEEN", "TWO_RINGS", "Surroundings"]
@@ -31,8 +30,7 @@ class Surroundings:
     flags: np.ndarray
     length: float
     _away: np.ndarray  # (C, TWO_RINGS, 2) places of the spiral at rest, in lengths
-    _along: csr_array
-    _across: csr_array
+    _frames: TangentFrames
 
     @staticmethod
     def of(rest: np.ndarray, faces: np.ndarray, pins: tuple[int, ...]) -> Surroundings:
@@ -44,9 +42,8 @@ class Surroundings:
         pinned[list(vertex_indices("pins", pins, len(flat)))] = 1.0
         scale = np.full(len(flat), math.log(length / USUAL))
         flags = np.column_stack([pinned, border_vertices(faces, len(flat)), scale]).astype(np.float32)
-        frames = tangent_frames(flat, faces)
         away = (flat[near] - flat[:, None]) / length
-        return Surroundings(near, flags, length, away, csr_array(frames.along), csr_array(frames.across))
+        return Surroundings(near, flags, length, away, tangent_frames(flat, faces))
 
     def seen(
         self, coarse: np.ndarray, before: np.ndarray, earlier: np.ndarray
@@ -61,32 +58,20 @@ class Surroundings:
             coordinates(name, array, shape)
             for name, array in (("coarse", coarse), ("before", before), ("earlier", earlier))
         )
-        turn, out = np.zeros((*shape, 3), np.float32), np.zeros((len(self.near), SEEN), np.float32)
+        turn, out = self._frames.of(now), np.zeros((len(self.near), SEEN), np.float32)
         moves = np.stack([now - last, now - 2.0 * last + first])
-        slopes = np.stack([self._along @ now, self._across @ now])
-        _seen(now, moves, slopes, (self.near, self._away, self.length), turn, out)
+        _seen(now, moves, turn, (self.near, self._away, self.length), out)
         out[:, -FLAGS:] = self.flags
-        return turn, out
+        return turn.astype(np.float32), out
 
 
 @njit(cache=True, error_model="numpy")
-def _unit(x, y, z):
-    size = math.sqrt(x * x + y * y + z * z)
-    return (x / size, y / size, z / size) if size > 1e-9 else (0.0, 0.0, 0.0)
-
-
-@njit(cache=True, error_model="numpy")
-def _seen(x, moves, slopes, sheet, turn, out):
+def _seen(x, moves, turn, sheet, out):
     near, away, length = sheet
     for i in range(len(x)):
-        a = _unit(slopes[0, i, 0], slopes[0, i, 1], slopes[0, i, 2])
-        b = slopes[1, i, 0], slopes[1, i, 1], slopes[1, i, 2]
-        n = _unit(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-        if n == (0.0, 0.0, 0.0):
-            a = n  # slopes in line: no tangent plane
-        c = n[1] * a[2] - n[2] * a[1], n[2] * a[0] - n[0] * a[2], n[0] * a[1] - n[1] * a[0]
-        for k in range(3):
-            turn[i, k, 0], turn[i, k, 1], turn[i, k, 2] = a[k], c[k], n[k]
+        a = turn[i, 0, 0], turn[i, 1, 0], turn[i, 2, 0]
+        c = turn[i, 0, 1], turn[i, 1, 1], turn[i, 2, 1]
+        n = turn[i, 0, 2], turn[i, 1, 2], turn[i, 2, 2]
         place = 0
         for k in range(1, near.shape[1]):
             j = near[i, k]
