@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import time
-from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sim_core.learn.command_parts import films_of, progress
 from sim_core.validation.arguments import whole
 
 if TYPE_CHECKING:
-    from sim_core.learn.data import Film, Floor, Manifest, Recipe
+    from sim_core.learn.data import Floor, Manifest, Recipe
 
 DESCRIPTION = """\
 Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine one.
@@ -43,13 +42,16 @@ examples:
 
 TRAIN = """\
 Train the learned steps on a scene's sequences, all but those that are held back (cases 3, 6, 9, 13, ...). Needs torch
-(pip install '.[learn]'); what comes out does not: a .safetensors file of some 170 kB.
+(pip install '.[learn]'); what comes out does not: a .safetensors file of some 170 kB. --row trains what they are
+compared with: mfsr (geometry images), mesh_conv (spirals of 9, quadric pooling), paper (spirals of 100, pooling by
+Gauss curvature). A GPU is used where there is one, and told; there the last bits of a training are not fixed.
 
 A record beside it is written every minute: whatever ends the run, the same command goes on, to the same weights.
 
 examples:
   simcore learn train hanging --data data/hanging --out hanging.safetensors
   simcore learn train flag --data data/flag --updates 500 --out try.safetensors
+  simcore learn train flag --data data/flag --row paper --updates 2000 --out paper.safetensors
 """
 
 EVALUATE = """\
@@ -61,13 +63,15 @@ faces; mean and 95th percentile over frames), normals, strain.
   linear        the coarse surface
   biharmonic    the smoothest fine sheet with the coarse surface's means
   local_frames  that, and what frames of training add to it in closed form
-  ours          the learned steps of --weights
+  mfsr, mesh_conv, paper, ours    networks, of --weights; all but ours need torch
 
 examples:
   simcore learn evaluate hanging --data data/hanging
   simcore learn evaluate flag --data data/flag --rows linear,local_frames --json
 """
-ROWS = ("reference", "linear", "biharmonic", "local_frames", "ours")
+PLAIN = ("reference", "linear", "biharmonic", "local_frames")
+ROWS = (*PLAIN, "mfsr", "mesh_conv", "paper", "ours")
+DEVICES = ("auto", "cpu", "cuda")
 
 
 def add_parser(subparsers: Any) -> None:
@@ -109,11 +113,18 @@ def add_parser(subparsers: Any) -> None:
         "--updates", type=whole(1, 1_000_000), default=12_000, metavar="N", help="of the weights (12,000)"
     )
     train.add_argument("--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="(0)")
+    train.add_argument("--row", choices=ROWS[4:], default="ours", help="the network (ours)")
+    train.add_argument("--device", choices=DEVICES, default="auto", help="(auto: a GPU where there is one)")
     evaluate.add_argument(
-        "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; ours with --weights)"
+        "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; networks with --weights)"
     )
     evaluate.add_argument(
-        "--weights", type=Path, metavar="FILE", help="of `simcore learn train`, for the row ours"
+        "--weights",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="FILE",
+        help="of `simcore learn train`, for networks",
     )
     evaluate.add_argument(
         "--frames", type=whole(1, 100_000), metavar="N", help="of every sequence, the first so many (all)"
@@ -143,64 +154,11 @@ def _rows(text: str) -> tuple[str, ...]:
 
 def run(args: argparse.Namespace) -> int:
     """Does what was asked for; returns the exit status."""
-    return {"data": data, "train": train, "evaluate": evaluate}[args.action](args)
+    if args.action == "train":
+        from sim_core.learn.training_command import train
 
-
-def train(args: argparse.Namespace) -> int:
-    """Trains on the sequences that are not held back, and writes the weights."""
-    from importlib.util import find_spec
-
-    from sim_core.cloth.run import ENGINE_VERSION
-    from sim_core.errors import SimCoreError
-    from sim_core.learn.data import split
-    from sim_core.learn.inference import Settings, Trained, write_weights
-
-    if args.out.suffix != ".safetensors":
-        raise SimCoreError(f"--out: {args.out} – name a file that ends in .safetensors")
-    if find_spec("torch") is None:
-        raise SimCoreError("torch is not installed – pip install '.[learn]'; to use weights it is not needed")
-    from sim_core.learn.networks import Schedule
-    from sim_core.learn.networks import train as trained
-
-    films = _films(args)
-    parts = split([recipe for recipe, _ in films.values()])
-    began, settings = time.monotonic(), Settings()
-    schedule = Schedule(updates=args.updates, seed=args.seed)
-    told = _progress()
-    weights = trained(
-        [films[recipe.name] for recipe in parts.train],
-        settings,
-        schedule,
-        record=args.out.with_suffix(".record"),
-        told=lambda share, words: told(share, f"loss {words}"),
-    )
-    told(1.0, "")
-    facts = {
-        "scene": args.scene,
-        "learned_from": [recipe.name for recipe in parts.train],
-        "engine": ENGINE_VERSION,
-        "updates": args.updates,
-        "seed": args.seed,
-        "device": "cpu",
-    }
-    write_weights(args.out, Trained(settings, weights, facts))
-    facts |= {"file": str(args.out), "parameters": sum(value.size for value in weights.values())}
-    facts |= {"seconds": round(time.monotonic() - began, 1)}
-    words = (
-        f"{args.out}: {facts['parameters']:,} numbers, {args.updates:,} updates in {facts['seconds']:.0f} s\n"
-    )
-    sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else words)
-    return 0
-
-
-def _films(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
-    from sim_core.errors import SimCoreError
-    from sim_core.learn.data import read_films
-
-    every = read_films(args.data)
-    if (found := next(iter(every.values()))[0].scene) != args.scene:
-        raise SimCoreError(f"{args.data}: holds {found} – give the folder of {args.scene}")
-    return every
+        return train(args)
+    return {"data": data, "evaluate": evaluate}[args.action](args)
 
 
 def evaluate(args: argparse.Namespace) -> int:
@@ -209,32 +167,32 @@ def evaluate(args: argparse.Namespace) -> int:
 
     from sim_core.errors import SimCoreError
     from sim_core.learn.data import split
-    from sim_core.learn.inference import read_weights
-    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, Ours, measured, reference
+    from sim_core.learn.inference import Trained, read_weights
+    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, Ours, RivalRow, measured, reference
 
-    wanted = args.rows or (ROWS if args.weights else ROWS[:-1])
-    if "ours" in wanted and args.weights is None:
-        raise SimCoreError("--rows ours – give its --weights, which `simcore learn train` makes")
-    ours = read_weights(args.weights) if args.weights else None
+    given = {trained.row: (path, trained) for path in args.weights for trained in [read_weights(path)]}
+    wanted = args.rows or (*PLAIN, *(row for row in ROWS[len(PLAIN) :] if row in given))
+    for row in wanted:
+        if row not in PLAIN and row not in given:
+            raise SimCoreError(f"--rows {row} – give its --weights, which `simcore learn train` makes")
     films = {
         name: (recipe, replace(film, coarse=film.coarse[: args.frames], fine=film.fine[: args.frames]))
-        for name, (recipe, film) in _films(args).items()
+        for name, (recipe, film) in films_of(args).items()
     }
     parts = split([recipe for recipe, _ in films.values()])
-    if ours and (seen := {one.name for one in parts.test} & set(ours.told.get("learned_from", ()))):
-        raise SimCoreError(
-            f"{args.weights}: learned from {', '.join(sorted(seen))}, which would be tested on"
-        )
+    for path, trained in given.values():
+        if seen := {one.name for one in parts.test} & set(trained.told.get("learned_from", ())):
+            raise SimCoreError(f"{path}: learned from {', '.join(sorted(seen))}, which would be tested on")
     tested = [films[recipe.name] for recipe in parts.test]
     makers = {
         "linear": Linear,
         "biharmonic": Biharmonic,
         "local_frames": lambda: LocalFrames.fitted([films[recipe.name] for recipe in parts.train]),
     }
-    if ours is not None:
-        made = Ours(ours)
-        makers["ours"] = lambda: made
-    told, rows = _progress(), {}
+    for row, (_, trained) in given.items():
+        made = Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
+        makers[row] = lambda made=made: made
+    told, rows = progress(), {}
     for number, name in enumerate(wanted):
 
         def share(part: float, words: str, number: int = number) -> None:
@@ -284,28 +242,10 @@ def data(args: argparse.Namespace) -> int:
     if args.workers > 1:
         pool = ProcessPoolExecutor(args.workers, mp_context=get_context("spawn"))
     with pool as executor:
-        manifest = generate(args.out, wanted, executor=executor, progress=_progress())
+        manifest = generate(args.out, wanted, executor=executor, progress=progress())
     facts = _facts(args.out, manifest) | ({"floor": _floor_facts(worth)} if worth else {})
     sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
     return 0
-
-
-def _progress() -> Callable[[float, str], None]:
-    """Tells the share and the time left on stderr, where someone looks."""
-    began, first = time.monotonic(), None
-
-    def told(share: float, words: str) -> None:
-        nonlocal first
-        if first is None:
-            first = share
-        gone = time.monotonic() - began
-        left = gone * (1.0 - share) / (share - first) if share > first else 0.0
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r{100 * share:5.1f} %  {words:<12} {left / 60:5.1f} min left ")
-            sys.stderr.write("\n" if share >= 1.0 else "")
-            sys.stderr.flush()
-
-    return told
 
 
 def _facts(folder: Path, manifest: Manifest) -> dict[str, Any]:

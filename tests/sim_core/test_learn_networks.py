@@ -64,50 +64,84 @@ def test_another_sheet_other_weights_and_nan_are_refused() -> None:
         Follower(ground, SMALL, {})
 
 
-def test_torch_says_the_same_on_several_sheets_glued_together() -> None:
+def glued(grounds: list[Ground], *, gathered: bool = False):
+    """The grounds as one sheet, and its sums as a GPU has them, or compiled."""
     torch = pytest.importorskip("torch")
-    from sim_core.learn.networks import Glued, LearnedSteps, Moment
+
+    from sim_core.learn.networks import Gathered, Glued, Sheets
+
+    sheets = [Sheets.of(ground, torch.device("cpu")) for ground in grounds]
+    made = Glued(grounds, sheets)
+    if gathered:
+        made.at = Gathered(Sheets.glued(sheets))
+    return made
+
+
+@pytest.mark.parametrize("gathered", [False, True])
+def test_torch_says_the_same_on_several_sheets_glued_together(gathered: bool) -> None:
+    torch = pytest.importorskip("torch")
+    from sim_core.learn.networks import LearnedSteps, Moment
 
     network = LearnedSteps(SMALL)
     weights = drawn(2)
     assert {name: tuple(value.shape) for name, value in network.state_dict().items()} == dict(SMALL.shapes())
     network.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
     made = [hanging(1), hanging(13)]
-    glued = Glued([ground for ground, _ in made])
+    whole = glued([ground for ground, _ in made], gathered=gathered)
     followers = [Follower(ground, SMALL, weights) for ground, _ in made]
-    off = torch.zeros(2, int(glued.fine[-1]), 3)
+    off = torch.zeros(2, int(whole.fine[-1]), 3)
     before = None
     for k in range(6):
-        moment = Moment.of(glued, [(one.coarse, k) for _, one in made])
+        moments = [Moment.of(ground, one.coarse, k) for ground, one in made]
+        if gathered:
+            moments = [Moment.stacked([moment], torch.device("cpu")).row(0) for moment in moments]
+        moment = Moment.glued(moments)
         before = moment.turn if before is None else before
-        last, first = (glued.carried(part, before, moment.turn) for part in off)
+        last, first = (whole.at.carried(part, before, moment.turn) for part in off)
         with torch.no_grad():
-            now = network(glued, moment, last, first)
+            now = network(whole, moment, last, first)
         off, before = torch.stack([now, last]), moment.turn
         for n, (ground, one) in enumerate(made):
             fine = followers[n](one.coarse[k])
-            told = moment.base[n] + ground.unit * now[glued.fine[n] : glued.fine[n + 1]].numpy()
-            assert np.abs(fine - told).max() < 1e-5 * ground.patches.length
+            told = moments[n].base + ground.unit * now[whole.fine[n] : whole.fine[n + 1]]
+            assert np.abs(fine - told.numpy()).max() < 1e-5 * ground.patches.length
+
+
+def test_the_sums_of_a_gpu_have_the_gradients_of_the_compiled_ones() -> None:
+    torch = pytest.importorskip("torch")
+    from sim_core.learn.networks import LearnedSteps, Moment
+
+    made = [hanging(1), hanging(13)]
+    moment = Moment.glued([Moment.of(ground, one.coarse, 4) for ground, one in made])
+    found = []
+    for gathered in (False, True):
+        network = LearnedSteps(SMALL)
+        network.load_state_dict({name: torch.from_numpy(value) for name, value in drawn(2).items()})
+        whole = glued([ground for ground, _ in made], gathered=gathered)
+        last, first = torch.randn(2, int(whole.fine[-1]), 3, generator=torch.Generator().manual_seed(0))
+        off = network(whole, moment, whole.at.carried(last, moment.turn, moment.turn), first)
+        (off.square().mean() + whole.at.edge_gap(off)).backward()
+        found.append({name: value.grad for name, value in network.named_parameters()})
+    for name, one in found[0].items():
+        assert (one - found[1][name]).norm() < 1e-3 * one.norm() + 1e-7, name
 
 
 def test_gradients_are_those_of_small_changes() -> None:
     torch = pytest.importorskip("torch")
-    from sim_core.learn.networks import EdgeGap, Glued, LearnedSteps, Moment
+    from sim_core.learn.networks import LearnedSteps, Moment
 
     torch.manual_seed(0)
     ground, made = hanging(1)
-    network, glued = LearnedSteps(Settings(width=6, hidden=8, blocks=1, steps=1)), Glued([ground])
+    network, whole = LearnedSteps(Settings(width=6, hidden=8, blocks=1, steps=1)), glued([ground])
     with torch.no_grad():
         for value in network.parameters():
             value.add_(0.1 * torch.randn_like(value))
-    moment = Moment.of(glued, [(made.coarse, 4)])
-    last, first = torch.randn(2, int(glued.fine[-1]), 3)
-    edges = ground.pair.fine.stencil.edges
-    weight = np.ones(len(edges), np.float32)
+    moment = Moment.of(ground, made.coarse, 4)
+    last, first = torch.randn(2, int(whole.fine[-1]), 3)
 
     def loss():
-        off = network(glued, moment, last, first)
-        return off.square().mean() + EdgeGap.apply(off, edges, weight)
+        off = network(whole, moment, last, first)
+        return off.square().mean() + whole.at.edge_gap(off)
 
     loss().backward()
     for name, value in network.named_parameters():
@@ -126,12 +160,12 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("torch")
-    from sim_core.learn.networks import Schedule, train, training
+    from sim_core.learn.networks import Schedule, record, train
 
-    monkeypatch.setattr(training, "BETWEEN", 0.0)
+    monkeypatch.setattr(record, "BETWEEN", 0.0)
     recipe = Recipe("hanging", 1, 7, 6, 0, coarse=90, fine=340)
     ground, made = hanging(1)
-    schedule, record = Schedule(updates=400, lanes=2, rate=1e-2), tmp_path / "record.pt"
+    schedule, file = Schedule(updates=400, lanes=2, rate=1e-2), tmp_path / "record.pt"
     weights = train([(recipe, made)], SMALL, schedule)
 
     def broken(share: float, words: str) -> None:
@@ -139,8 +173,8 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        train([(recipe, made)], SMALL, schedule, record=record, told=broken)
-    again = train([(recipe, made)], SMALL, schedule, record=record)
+        train([(recipe, made)], SMALL, schedule, record=file, told=broken)
+    again = train([(recipe, made)], SMALL, schedule, record=file)
     assert all(np.array_equal(again[name], weights[name]) for name in weights)
     follow, off = Follower(ground, SMALL, weights), [[], []]
     for coarse, fine in zip(made.coarse.astype(float), made.fine, strict=True):
@@ -148,16 +182,17 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
             off[kind].append(np.linalg.norm(place - fine, axis=1).mean())
     assert np.mean(off[0]) < 0.6 * np.mean(off[1])
     with pytest.raises(SimCoreError, match="begun with other settings"):
-        train([(recipe, made)], SMALL, Schedule(updates=121, lanes=2, rate=1e-2), record=record)
-    record.write_bytes(b"half")
+        train([(recipe, made)], SMALL, Schedule(updates=121, lanes=2, rate=1e-2), record=file)
+    file.write_bytes(b"half")
     with pytest.raises(SimCoreError, match="damaged .* delete it and train again"):
-        train([(recipe, made)], SMALL, schedule, record=record)
+        train([(recipe, made)], SMALL, schedule, record=file)
 
 
 def test_weights_are_kept_as_they_are_and_what_was_changed_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "ours.safetensors"
     write_weights(path, Trained(SMALL, drawn(5), {"scene": "hanging", "updates": 3}))
     found = read_weights(path)
+    assert isinstance(found, Trained)
     assert found.settings == SMALL
     assert found.told == {"scene": "hanging", "updates": 3}
     assert all(np.array_equal(found.weights[name], value) for name, value in drawn(5).items())

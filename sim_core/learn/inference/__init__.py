@@ -2,7 +2,18 @@
 
 from sim_core.learn.inference.follower import Follower
 from sim_core.learn.inference.ground import Ground
-from sim_core.learn.inference.settings import Settings, Shapes
-from sim_core.learn.inference.weights import Trained, read_weights, write_weights
+from sim_core.learn.inference.settings import RIVALS, Rival, Settings, Shapes
+from sim_core.learn.inference.weights import RivalTrained, Trained, read_weights, write_weights
 
-__all__ = ["Follower", "Ground", "Settings", "Shapes", "Trained", "read_weights", "write_weights"]
+__all__ = [
+    "RIVALS",
+    "Follower",
+    "Ground",
+    "Rival",
+    "RivalTrained",
+    "Settings",
+    "Shapes",
+    "Trained",
+    "read_weights",
+    "write_weights",
+]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sim_core.learn.patches import CUBIC, SEEN, TWO_RINGS
 
-__all__ = ["KNOWN", "PATCH", "TOLD", "Settings", "Shapes"]
+__all__ = ["KNOWN", "PATCH", "RIVALS", "TOLD", "Rival", "Settings", "Shapes"]
 
 PATCH = 3 * CUBIC  # numbers of a patch
 TOLD = (
@@ -50,3 +50,22 @@ class Settings:
                     f"{part}.narrow.bias": (self.width,),
                 }
         return found
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A network to compare with. length: of spirals, 0: geometry images; width: channels; share: of vertices that
+    pooling keeps, by `pooling`; rate: of learning, at which it learned most of a first few hundred updates."""
+
+    length: int
+    width: int
+    share: float
+    pooling: str
+    rate: float
+
+
+RIVALS = {
+    "mfsr": Rival(0, 48, 1.0, "none", 2e-3),
+    "mesh_conv": Rival(9, 32, 0.25, "quadric errors", 2e-3),
+    "paper": Rival(100, 16, 0.6, "Gauss curvature", 5e-4),
+}

@@ -12,11 +12,13 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.inference.settings import Settings
+from sim_core.learn.inference.settings import RIVALS, Settings
+from sim_core.learn.pooling import Pooled
 
-__all__ = ["Trained", "read_weights", "write_weights"]
+__all__ = ["RivalTrained", "Trained", "read_weights", "write_weights"]
 
 FORMAT = "1"
+OURS = "ours"
 
 
 @dataclass(frozen=True)
@@ -26,53 +28,86 @@ class Trained:
     settings: Settings
     weights: Mapping[str, np.ndarray]
     told: Mapping[str, Any]
+    row: str = OURS
 
 
-def write_weights(path: Path, trained: Trained) -> None:
+@dataclass(frozen=True)
+class RivalTrained:
+    """row: of RIVALS; weights: float32 by torch's names; pooled: what stays of each kind of sheet, by the name of the
+    first sequence of that kind; told: as of `Trained`."""
+
+    row: str
+    weights: Mapping[str, np.ndarray]
+    pooled: Mapping[str, Pooled]
+    told: Mapping[str, Any]
+
+
+def write_weights(path: Path, trained: Trained | RivalTrained) -> None:
     """Writes a .safetensors file, whole or not at all."""
     from safetensors.numpy import save
 
-    weights = {name: np.ascontiguousarray(value, np.float32) for name, value in trained.weights.items()}
-    head = {
-        "format": FORMAT,
-        "settings": json.dumps(asdict(trained.settings)),
-        "told": json.dumps(dict(trained.told)),
-        "sha256": _digest(weights),
+    arrays: dict[str, np.ndarray] = {
+        name: np.ascontiguousarray(value, np.float32) for name, value in trained.weights.items()
     }
+    head = {"format": FORMAT, "row": trained.row, "told": json.dumps(dict(trained.told))}
+    if isinstance(trained, Trained):
+        head["settings"] = json.dumps(asdict(trained.settings))
+    else:
+        for name, pooled in trained.pooled.items():
+            arrays[f"{name}/kept"] = np.ascontiguousarray(pooled.kept, np.int32)
+            arrays[f"{name}/faces"] = np.ascontiguousarray(pooled.faces, np.int32)
+        head["shares"] = json.dumps({name: pooled.share for name, pooled in trained.pooled.items()})
     beside = path.with_name(f".{path.name}.part")
-    beside.write_bytes(save(weights, metadata=head))
+    beside.write_bytes(save(arrays, metadata=head | {"sha256": _digest(arrays)}))
     beside.replace(path)
 
 
-def read_weights(path: Path) -> Trained:
+def read_weights(path: Path) -> Trained | RivalTrained:
     """Reads one; raises SimCoreError for a file that is none, is cut short, was changed, or does not fit itself."""
     from safetensors import SafetensorError, safe_open
 
     try:
         with safe_open(path, framework="numpy") as file:
             head = file.metadata() or {}
-            weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 – no mapping
+            arrays = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 – no mapping
         if head.get("format") != FORMAT:
             raise SimCoreError(
                 f"{path}: format {head.get('format')} – this version reads {FORMAT}: train again"
             )
-        settings = Settings(**json.loads(head["settings"]))
-        told = dict(json.loads(head["told"]))
+        if _digest(arrays) != head.get("sha256"):
+            raise SimCoreError(f"{path}: changed since it was written – fetch or train the weights again")
+        row, told = head.get("row", OURS), dict(json.loads(head["told"]))
+        if any(not np.isfinite(value).all() for value in arrays.values()):
+            raise ValueError("numbers that are not finite")
+        if row == OURS:
+            return _ours(arrays, Settings(**json.loads(head["settings"])), told)
+        return _rival(arrays, row, json.loads(head["shares"]), told)
     except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
         raise SimCoreError(f"{path}: not weights, or damaged ({error}) – fetch or train them again") from None
-    if _digest(weights) != head.get("sha256"):
-        raise SimCoreError(f"{path}: changed since it was written – fetch or train the weights again")
-    shapes = {name: value.shape for name, value in weights.items()}
-    if shapes != dict(settings.shapes()) or any(not np.isfinite(value).all() for value in weights.values()):
-        raise SimCoreError(
-            f"{path}: arrays that do not fit its own settings – fetch or train the weights again"
-        )
-    return Trained(settings, weights, told)
 
 
-def _digest(weights: Mapping[str, np.ndarray]) -> str:
+def _ours(arrays: Mapping[str, np.ndarray], settings: Settings, told: Mapping[str, Any]) -> Trained:
+    if {name: value.shape for name, value in arrays.items()} != dict(settings.shapes()):
+        raise ValueError("arrays that do not fit its own settings")
+    return Trained(settings, arrays, told)
+
+
+def _rival(
+    arrays: Mapping[str, np.ndarray], row: str, shares: Mapping[str, float], told: Mapping[str, Any]
+) -> RivalTrained:
+    if row not in RIVALS:
+        raise ValueError(f"row {row!r}")
+    pooled = {
+        name: Pooled(arrays[f"{name}/kept"].astype(np.int64), arrays[f"{name}/faces"], float(share))
+        for name, share in shares.items()
+    }
+    weights = {name: value for name, value in arrays.items() if value.dtype == np.float32}
+    return RivalTrained(row, weights, pooled, told)
+
+
+def _digest(arrays: Mapping[str, np.ndarray]) -> str:
     digest = hashlib.sha256()
-    for name in sorted(weights):
-        digest.update(f"{name} {weights[name].shape} {weights[name].dtype}\n".encode())
-        digest.update(weights[name].tobytes())
+    for name in sorted(arrays):
+        digest.update(f"{name} {arrays[name].shape} {arrays[name].dtype}\n".encode())
+        digest.update(arrays[name].tobytes())
     return digest.hexdigest()

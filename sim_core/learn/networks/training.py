@@ -8,8 +8,6 @@ said before as its past, so that it learns to live with its own errors.
 from __future__ import annotations
 
 import math
-import os
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,8 +20,10 @@ from torch import Tensor
 from sim_core.errors import SimCoreError
 from sim_core.learn.data import Film, Recipe
 from sim_core.learn.inference import Ground, Settings
-from sim_core.learn.networks.learned_steps import Glued, LearnedSteps, Moment
-from sim_core.learn.networks.operators import EdgeGap
+from sim_core.learn.networks.learned_steps import Glued, LearnedSteps
+from sim_core.learn.networks.moment import Moment
+from sim_core.learn.networks.record import Record
+from sim_core.learn.networks.sheets import Sheets
 
 __all__ = ["Schedule", "Told", "train"]
 
@@ -36,20 +36,52 @@ CLIPPED = 1.0  # length of a gradient
 LOST = 50.0  # units off, from where on a lane begins elsewhere
 FROM_TRUTH, FROM_FIRST = 0.5, 0.1  # of lanes that begin with what was, and at the first frame
 STAY = 80  # frames that a lane follows a sequence, on average
-BETWEEN = 60.0  # [s] between two records
+HEARD = 200  # updates whose loss is told, as a mean
 
 
 @dataclass(frozen=True)
 class Schedule:
-    """updates of the weights in all; lanes followed side by side, window frames at a time; rate of learning; seed."""
+    """updates of the weights in all; lanes followed side by side, window frames at a time; rate of learning; weights,
+    against mean distance, of what edges' ends are off against each other, and of the vertices that are farthest off
+    (the mean of distances to the eighth); seed."""
 
     updates: int = 4000
     lanes: int = 4
     window: int = 2
     rate: float = 2e-3
     decay: float = 1e-2
-    edges: float = 1.0  # weight of what edges' ends are off against each other
+    edges: float = 1.0
+    worst: float = 0.0
     seed: int = 0
+
+
+class _Sequence:
+    """One that is learned from. On a GPU all its frames are there from the begin on."""
+
+    def __init__(self, recipe: Recipe, film: Film, device: torch.device) -> None:
+        self.ground, self.frames = Ground.of(recipe), len(film.fine)
+        self.sheets = Sheets.of(self.ground, device)
+        self._coarse = film.coarse
+        places = film.coarse.astype(float)
+        base = np.stack([self.ground.pair.base @ place for place in places])
+        self._truth = torch.from_numpy(((film.fine - base) / self.ground.unit).astype(np.float32)).to(device)
+        self._ready: Moment | None = None
+        if device.type != "cpu":
+            moments = [Moment.of(self.ground, film.coarse, k) for k in range(self.frames)]
+            self._ready = Moment.stacked(moments, device)
+
+    def moment(self, frame: int) -> Moment:
+        if self._ready is None:
+            return Moment.of(self.ground, self._coarse, frame)
+        return self._ready.row(frame)
+
+    def turn(self, frame: int) -> Tensor:
+        """Frames of coarse vertices."""
+        return self.moment(frame).turn
+
+    def truth(self, frame: int) -> Tensor:
+        """Displacements (V, 3) from the base, in units."""
+        return self._truth[frame]
 
 
 @dataclass
@@ -58,24 +90,25 @@ class _Lane:
 
     film: int
     frame: int
-    said: np.ndarray  # (2, V, 3)
-    turn: np.ndarray
+    said: Tensor  # (2, V, 3)
+    turn: Tensor
 
 
 class _Course:
     """The sequences, and the lanes over them."""
 
-    def __init__(self, films: Sequence[tuple[Recipe, Film]], schedule: Schedule) -> None:
-        self.schedule, self.rng = schedule, np.random.default_rng(schedule.seed)
-        self.films = []
-        for recipe, film in films:
+    def __init__(
+        self, films: Sequence[tuple[Recipe, Film]], schedule: Schedule, device: torch.device, told: Told
+    ) -> None:
+        self.schedule, self.device, self.rng = schedule, device, np.random.default_rng(schedule.seed)
+        self.sequences: list[_Sequence] = []
+        for number, (recipe, film) in enumerate(films):
             if len(film.fine) <= schedule.window + 2:
                 raise SimCoreError(
                     f"{recipe.name}: {len(film.fine)} frames – give more than {schedule.window + 2}"
                 )
-            ground = Ground.of(recipe)
-            base = np.stack([ground.pair.base @ place for place in film.coarse.astype(float)])
-            self.films.append((ground, film.coarse, ((film.fine - base) / ground.unit).astype(np.float32)))
+            told(0.0, f"reads {recipe.name}, {number + 1} of {len(films)}")
+            self.sequences.append(_Sequence(recipe, film, device))
         self.lanes: list[_Lane | None] = [None] * schedule.lanes
         self.glued: Glued | None = None
 
@@ -85,45 +118,55 @@ class _Course:
         for number, lane in enumerate(self.lanes):
             if (
                 lane is not None
-                and lane.frame + window < len(self.films[lane.film][1])
+                and lane.frame + window < self.sequences[lane.film].frames
                 and rng.random() > window / STAY
             ):
                 continue
-            which = int(rng.integers(len(self.films)))
-            ground, coarse, truth = self.films[which]
-            frame = 0 if rng.random() < FROM_FIRST else int(rng.integers(0, len(coarse) - window))
-            said = np.zeros((2, *truth.shape[1:]), np.float32)
+            which = int(rng.integers(len(self.sequences)))
+            sequence = self.sequences[which]
+            frame = 0 if rng.random() < FROM_FIRST else int(rng.integers(0, sequence.frames - window))
+            said = torch.zeros_like(sequence.truth(0)).expand(2, -1, -1)
             if frame >= 2 and rng.random() < FROM_TRUTH:
-                said[0], said[1] = truth[frame - 1], truth[frame - 2]
-            place = coarse[max(frame - 1, 0)].astype(float)
-            turn, _ = ground.surroundings.seen(place, place, place)
-            self.lanes[number], self.glued = _Lane(which, frame, said, turn), None
+                said = torch.stack([sequence.truth(frame - 1), sequence.truth(frame - 2)])
+            self.lanes[number] = _Lane(which, frame, said, sequence.turn(max(frame - 1, 0)))
+            self.glued = None
         if self.glued is None:
-            self.glued = Glued([self.films[lane.film][0] for lane in self.lanes if lane is not None])
+            on = [self.sequences[lane.film] for lane in self._running()]
+            self.glued = Glued([one.ground for one in on], [one.sheets for one in on])
         return self.glued
 
-    def moment(self, glued: Glued, ahead: int) -> tuple[Moment, Tensor]:
+    def _running(self) -> list[_Lane]:
+        return [lane for lane in self.lanes if lane is not None]
+
+    def moment(self, ahead: int) -> tuple[Moment, Tensor]:
         """So many frames ahead of the lanes: what is given, and what is wanted."""
-        lanes = [lane for lane in self.lanes if lane is not None]
-        given = [(self.films[lane.film][1], lane.frame + ahead) for lane in lanes]
-        wanted = np.concatenate([self.films[lane.film][2][lane.frame + ahead] for lane in lanes])
-        return Moment.of(glued, given), torch.from_numpy(wanted)
+        places = [(self.sequences[lane.film], lane.frame + ahead) for lane in self._running()]
+        given = Moment.glued([one.moment(frame) for one, frame in places])
+        return given, torch.cat([one.truth(frame) for one, frame in places])
 
-    def past(self) -> tuple[Tensor, np.ndarray]:
+    def past(self) -> tuple[Tensor, Tensor]:
         """What was said (2, V, 3), and the frames it was said in."""
-        lanes = [lane for lane in self.lanes if lane is not None]
-        said = np.concatenate([lane.said for lane in lanes], axis=1)
-        return torch.from_numpy(said), np.concatenate([lane.turn for lane in lanes])
+        lanes = self._running()
+        return torch.cat([lane.said for lane in lanes], dim=1), torch.cat([lane.turn for lane in lanes])
 
-    def go_on(self, glued: Glued, said: np.ndarray, turn: np.ndarray) -> None:
+    def told(self, mean: dict[str, Tensor]) -> dict[str, Any]:
+        """For a record: the lanes, and the running mean."""
+        lanes = [lane and (lane.film, lane.frame, lane.said, lane.turn) for lane in self.lanes]
+        return {"mean": mean, "lanes": lanes}
+
+    def go_on(self, glued: Glued, said: Tensor, turn: Tensor) -> None:
         """Every lane by a window, with what was said (2, V, 3) of its last frames; who is lost begins elsewhere."""
+        far = torch.zeros(len(self.lanes), device=said.device)
+        far = far.scatter_reduce(
+            0, glued.which, said.abs().amax((0, 2)).nan_to_num(nan=LOST), "amax"
+        ).tolist()
         for k, lane in enumerate(self.lanes):
-            own = said[:, glued.fine[k] : glued.fine[k + 1]]
-            if lane is None or not np.abs(own).max() < LOST:
+            if lane is None or far[k] >= LOST:
                 self.lanes[k] = None
                 continue
             lane.frame += self.schedule.window
-            lane.said, lane.turn = own.copy(), turn[glued.coarse[k] : glued.coarse[k + 1]]
+            lane.said = said[:, glued.fine[k] : glued.fine[k + 1]].clone()
+            lane.turn = turn[glued.coarse[k] : glued.coarse[k + 1]].clone()
 
 
 def train(
@@ -131,17 +174,20 @@ def train(
     settings: Settings,
     schedule: Schedule,
     *,
+    device: str = "cpu",
     record: Path | None = None,
     told: Told | None = None,
 ) -> dict[str, np.ndarray]:
     """Weights by the names of `Settings.shapes`, the running mean of those of the last updates.
 
-    record: a file that is written every minute, and gone on from where it is there: interrupted or not, the same
-    weights come out. told(share, words): hears the loss. Raises SimCoreError for a record of other settings, and
-    sequences too short for a window.
+    device: as torch names it; on a GPU sums have no fixed order, and the last bits of weights none either. record: a
+    file that is written every minute, and gone on from where it is there: interrupted or not, the same weights come
+    out. told(share, words): hears the loss. Raises SimCoreError for a record of other settings, and sequences too short
+    for a window.
     """
     torch.manual_seed(schedule.seed)
-    course, network = _Course(films, schedule), LearnedSteps(settings)
+    place, told = torch.device(device), told or (lambda share, words: None)
+    course, network = _Course(films, schedule, place, told), LearnedSteps(settings).to(place)
     flat = [value for value in network.parameters() if value.ndim < 2]
     deep = [value for value in network.parameters() if value.ndim > 1]
     optimiser = torch.optim.AdamW(
@@ -155,91 +201,61 @@ def train(
         "schedule": asdict(schedule),
         "films": [one.told() for one, _ in films],
     }
-    begin = _recorded(record, same, (network, optimiser, mean, course)) if record else 0
-    written, losses = time.monotonic(), []
+    kept = Record(record, same) if record else None
+    parts = {"network": network, "optimiser": optimiser}
+    begin, more = kept.read_more(parts, course.rng, place) if kept else (0, None)
+    if more is not None:
+        mean.update(more["mean"])
+        course.lanes = [lane and _Lane(*lane) for lane in more["lanes"]]
+    losses: list[Tensor] = []
     for update in range(begin, schedule.updates):
         share = update / schedule.updates
         for group in optimiser.param_groups:
             group["lr"] = (
                 schedule.rate * min(1.0, (update + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * share))
             )
-        losses.append(_update(network, optimiser, course))
-        kept = min(MEMORY, update / (update + 1))
+        losses = [*losses[1 - HEARD :], _update(network, optimiser, course)]
+        stays = min(MEMORY, update / (update + 1))
         for name, value in network.state_dict().items():
-            mean[name].mul_(kept).add_(value, alpha=1.0 - kept)
-        if told is not None and update % 20 == 0:
-            told(share, f"{np.mean(losses[-200:]):.4f}")
-        if record and time.monotonic() - written > BETWEEN:
-            _write(record, same, update + 1, (network, optimiser, mean, course))
-            written = time.monotonic()
-    if record:
-        _write(record, same, schedule.updates, (network, optimiser, mean, course))
-    return {name: value.numpy().copy() for name, value in mean.items()}
+            mean[name].mul_(stays).add_(value, alpha=1.0 - stays)
+        if update % 20 == 0:
+            told(share, f"{torch.stack(losses).mean():.4f}")
+        if kept:
+            kept.write(update + 1, parts, course.rng, course.told(mean))
+    if kept:
+        kept.write(schedule.updates, parts, course.rng, course.told(mean), now=True)
+    return {name: value.cpu().numpy().copy() for name, value in mean.items()}
 
 
-def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course) -> float:
+def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course) -> Tensor:
     """One window of all lanes, and one update; the mean distance from what was wanted, in units."""
     glued, schedule = course.begin(), course.schedule
     said, before = course.past()
-    total, off = torch.zeros(()), 0.0
+    total = off = torch.zeros((), device=said.device)
     last, first = said[0], said[1]
     for ahead in range(schedule.window):
-        moment, wanted = course.moment(glued, ahead)
-        last, first = (glued.carried(one, before, moment.turn) for one in (last, first))
+        moment, wanted = course.moment(ahead)
+        last, first = (glued.at.carried(one, before, moment.turn) for one in (last, first))
         now = network(glued, moment, last, first)
         errors = now - wanted
         squares = errors.square().sum(1)
         distance = (squares + SOFT).sqrt().mean()
-        total = (
-            total
-            + distance
-            + SQUARES * squares.mean()
-            + schedule.edges * EdgeGap.apply(errors, glued.edges, glued.edge_weight)
-        )
-        off += float(distance.detach()) / schedule.window
+        total = total + distance + SQUARES * squares.mean() + schedule.edges * glued.at.edge_gap(errors)
+        if schedule.worst:
+            total = total + schedule.worst * _worst(squares, glued)
+        off = off + distance.detach() / schedule.window
         last, first, before = now, last, moment.turn
     optimiser.zero_grad()
     (total / schedule.window).backward()
     torch.nn.utils.clip_grad_norm_(network.parameters(), CLIPPED)
     optimiser.step()
-    course.go_on(glued, torch.stack([last, first]).detach().numpy(), before)
+    course.go_on(glued, torch.stack([last, first]).detach(), before)
     return off
 
 
-def _write(record: Path, same: dict[str, Any], update: int, what: tuple[Any, ...]) -> None:
-    network, optimiser, mean, course = what
-    value = {
-        "same": same,
-        "update": update,
-        "network": network.state_dict(),
-        "optimiser": optimiser.state_dict(),
-        "mean": mean,
-        "lanes": [lane and (lane.film, lane.frame, lane.said, lane.turn) for lane in course.lanes],
-        "rng": course.rng.bit_generator.state,
-    }
-    beside = record.with_name(f".{record.name}.part")
-    torch.save(value, beside)
-    os.replace(beside, record)
-
-
-def _recorded(record: Path, same: dict[str, Any], what: tuple[Any, ...]) -> int:
-    """The update to go on with; 0 where there is no record."""
-    if not record.is_file():
-        return 0
-    network, optimiser, mean, course = what
-    try:
-        value = torch.load(record, weights_only=False)
-        if value["same"] != same:
-            raise SimCoreError(
-                f"{record}: was begun with other settings or data – give another file, or delete it"
-            )
-        network.load_state_dict(value["network"])
-        optimiser.load_state_dict(value["optimiser"])
-        mean.update(value["mean"])
-        course.lanes = [lane and _Lane(*lane) for lane in value["lanes"]]
-        course.rng.bit_generator.state = value["rng"]
-        return int(value["update"])
-    except SimCoreError:
-        raise
-    except Exception as error:
-        raise SimCoreError(f"{record}: damaged ({error}) – delete it and train again") from None
+def _worst(squares: Tensor, glued: Glued) -> Tensor:
+    """The mean over sheets of the mean to the eighth of distances, whose squares are given."""
+    count = len(glued.fine) - 1
+    sums = torch.zeros(count, device=squares.device).index_add(0, glued.which, squares.square().square())
+    size = torch.tensor(np.diff(glued.fine), dtype=torch.float32, device=squares.device)
+    return ((sums / size + SOFT) ** 0.125).mean()

@@ -8,6 +8,7 @@ from sim_core.learn.rows.learned import Ours
 from sim_core.learn.rows.measured import EVERY, Measured, measured, reference
 from sim_core.learn.rows.plain import Biharmonic, Linear
 from sim_core.learn.rows.regression import LocalFrames
+from sim_core.learn.rows.rivals import RivalRow
 from sim_core.learn.rows.row import Follow, Row
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "LocalFrames",
     "Measured",
     "Ours",
+    "RivalRow",
     "Row",
     "measured",
     "reference",

@@ -1,10 +1,11 @@
-"""The compiled loops as operators that torch differentiates; on a GPU the same sums by its own gathers."""
+"""The compiled loops that also infer, as operators that torch differentiates, on the CPU."""
 
 # pyright: reportMissingImports=false
 # (torch is an extra)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,17 +13,67 @@ import torch
 from torch import Tensor
 
 from sim_core.learn.convolution import depthwise, depthwise_gradients
-from sim_core.learn.patches import CUBIC
+from sim_core.learn.inference import Ground
+from sim_core.learn.inference.follower import FURTHEST_WAY
+from sim_core.learn.networks.moment import Moment
+from sim_core.learn.networks.sheets import Sheets
+from sim_core.learn.patches import CUBIC, limited
 from sim_core.learn.patches.kernels import add_up, carry_over, draw_down
 
-__all__ = ["Carried", "Displaced", "EdgeGap", "Fitted", "SpiralMix"]
+__all__ = ["Compiled"]
+
+
+class Compiled:
+    """Of sheets, glued from these grounds."""
+
+    def __init__(self, grounds: Sequence[Ground], sheets: Sheets) -> None:
+        self.grounds, self.sheets = tuple(grounds), sheets
+        arrays = {name: getattr(sheets, name).numpy() for name in ("near", "corner", "share", "lift", "fit")}
+        self._near, self._corner, self._share, self._lift, self._fit = arrays.values()
+        self._coarse = np.cumsum([0, *(one.patches.count for one in grounds)])
+        self._fine = np.cumsum([0, *(len(one.pair.fine.rest) for one in grounds)])
+
+    def mixed(self, features: Tensor, weights: Tensor) -> Tensor:
+        """`depthwise`: features (C, W), weights (L, W) -> (C, W)."""
+        return _Mixed.apply(features, weights, self._near)
+
+    def displaced(self, patches: Tensor, turn: Tensor) -> Tensor:
+        """Patches (C, CUBIC, 3) -> displacements (V, 3): `Patches.displaced`."""
+        return _Displaced.apply(patches, turn.numpy(), self._corner, self._lift)
+
+    def fitted(self, fine: Tensor, turn: Tensor) -> Tensor:
+        """Displacements (V, 3) -> patches (C, CUBIC, 3): `Patches.fitted`."""
+        return _Fitted.apply(fine, turn.numpy(), self._corner, self._fit)
+
+    def carried(self, fine: Tensor, before: Tensor, turn: Tensor) -> Tensor:
+        """Displacements (V, 3) of the frames `before`, in the frames `turn` (C, 3, 3): `Patches.carried`."""
+        return _Carried.apply(fine, before.numpy(), turn.numpy(), self._corner, self._share)
+
+    def edge_gap(self, errors: Tensor) -> Tensor:
+        """Mean over edges of how far the two ends' errors, of (V, 3), are apart, over the edge's share of the mean
+        length: what is wrong with normals and strain."""
+        return _EdgeGap.apply(errors, self.sheets.edges.numpy(), self.sheets.edge_weight.numpy())
+
+    def lacking(self, moment: Moment, off: Tensor) -> tuple[Tensor, Tensor]:
+        """What balance lacks where the fine sheet is off (V, 3), in units: `Imbalance.ways`; not differentiated."""
+        ways, means, now = [], [], off.detach().numpy()
+        turn, base, coarse, shared = (
+            getattr(moment, name).numpy() for name in ("turn", "base", "coarse", "shared")
+        )
+        for k, ground in enumerate(self.grounds):
+            above, below = (slice(a[k], a[k + 1]) for a in (self._coarse, self._fine))
+            fine = base[below] + ground.unit * now[below]
+            way, mean = ground.imbalance.ways(fine, coarse[above], shared[below])
+            ways.append(limited(way / ground.unit, FURTHEST_WAY))
+            means.append(np.einsum("cji,cj->ci", turn[above], mean / ground.unit))
+        return tuple(torch.from_numpy(np.concatenate(one).astype(np.float32)) for one in (ways, means))
 
 
 def _array(tensor: Tensor) -> np.ndarray:
     return tensor.detach().contiguous().numpy()
 
 
-class SpiralMix(torch.autograd.Function):
+class _Mixed(torch.autograd.Function):
     """`depthwise`: features (N, W), weights (L, W), spirals (N, L) int32 as an array -> (N, W)."""
 
     @staticmethod
@@ -50,7 +101,7 @@ def _up(fine: Tensor, turn: np.ndarray, corner: np.ndarray, weights: np.ndarray)
     return torch.from_numpy(out)
 
 
-class Displaced(torch.autograd.Function):
+class _Displaced(torch.autograd.Function):
     """Patches (C, CUBIC, 3) -> displacements (V, 3): `Patches.displaced`."""
 
     @staticmethod
@@ -63,7 +114,7 @@ class Displaced(torch.autograd.Function):
         return _up(upon[0], *ctx.fixed), None, None, None
 
 
-class Fitted(torch.autograd.Function):
+class _Fitted(torch.autograd.Function):
     """Displacements (V, 3) -> patches (C, CUBIC, 3): `Patches.fitted`."""
 
     @staticmethod
@@ -76,7 +127,7 @@ class Fitted(torch.autograd.Function):
         return _down(upon[0], *ctx.fixed), None, None, None
 
 
-class Carried(torch.autograd.Function):
+class _Carried(torch.autograd.Function):
     """Displacements (V, 3) of the frames `before`, in the frames `turn`: `Patches.carried`; its gradient goes back."""
 
     @staticmethod
@@ -95,7 +146,7 @@ class Carried(torch.autograd.Function):
         return torch.from_numpy(out), None, None, None, None
 
 
-class EdgeGap(torch.autograd.Function):
+class _EdgeGap(torch.autograd.Function):
     """Mean over edges (E, 2) of how far the two ends' errors, of (V, 3), are apart, over the edge's share of the mean
     length: what is wrong with normals and strain."""
 

@@ -1,0 +1,189 @@
+"""Rivals trained: frames drawn at random, and the published loss for all, a L1 + b Ln + c L2."""
+
+# pyright: reportMissingImports=false
+# (torch is an extra)
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from sim_core.errors import SimCoreError
+from sim_core.learn.data import Film, Recipe
+from sim_core.learn.inference import Ground, Rival
+from sim_core.learn.networks.record import Record
+from sim_core.learn.networks.rivals.image_net import ImageNet, Images
+from sim_core.learn.networks.rivals.sheet import Frames, RivalSheet
+from sim_core.learn.networks.rivals.spiral_net import SpiralNet, Spirals
+from sim_core.learn.pooling import Pooled, collapse, decimate, mean_absolute_curvature
+
+__all__ = ["RivalSchedule", "kind_of", "made_of", "network_of", "train_rival"]
+
+A, B, C = 1.0, 1.0, 0.02  # the paper's, distances in units
+QUADRIC_FRAMES, CURVATURE_FRAMES = 24, 200  # of training, that pooling looks at
+Told = Callable[[float, str], None]
+Tables = Spirals | Images
+
+
+def network_of(rival: Rival) -> SpiralNet | ImageNet:
+    """Its network, untrained."""
+    return SpiralNet(rival.length, rival.width) if rival.length else ImageNet(rival.width)
+
+
+@dataclass(frozen=True)
+class RivalSchedule:
+    """updates of the weights; frames of a batch; seed."""
+
+    updates: int = 4000
+    batch: int = 8
+    seed: int = 0
+
+
+class _Sequence:
+    def __init__(self, recipe: Recipe, film: Film, device: torch.device) -> None:
+        self.ground = Ground.of(recipe)
+        self.sheet = RivalSheet(self.ground, tuple(recipe.on(recipe.fine).pins), device)
+        base = np.stack([self.ground.pair.base @ place for place in film.coarse.astype(float)])
+        self.base = torch.from_numpy(base.astype(np.float32)).to(device)
+        self.truth = torch.from_numpy(np.asarray(film.fine, np.float32)).to(device)
+
+    def frames(self, numbers: np.ndarray) -> Frames:
+        """The frames of these numbers, each with the two before."""
+        before = np.maximum(numbers[:, None] - np.arange(3), 0)
+        before[numbers == 1, 2] = 0
+        return self.sheet.frames(self.base[torch.from_numpy(before).to(self.base.device)])
+
+
+def pooled_for(rival: Rival, recipes: Sequence[Recipe], films: Sequence[Film]) -> Pooled:
+    """What stays of sheets of one kind, decided by frames of training alone."""
+    fine = recipes[0].on(recipes[0].fine)
+    sheet, pins = fine.sheet, sorted({pin for one in recipes for pin in one.on(one.fine).pins})
+    width = float(np.ptp(sheet.rest[:, 0]))
+
+    def drawn(count: int) -> np.ndarray:
+        """So many frames of all films, at one size."""
+        each = max(1, count // len(films))
+        parts = []
+        for recipe, film in zip(recipes, films, strict=True):
+            own = float(np.ptp(recipe.on(recipe.fine).sheet.rest[:, 0]))
+            parts.append(film.fine[np.linspace(0, len(film.fine) - 1, each).astype(int)] * (width / own))
+        return np.concatenate(parts).astype(float)
+
+    if rival.pooling == "Gauss curvature":
+        curvature = mean_absolute_curvature(drawn(CURVATURE_FRAMES), sheet.faces)
+        return decimate(sheet.rest, sheet.faces, curvature, rival.share, pins=pins)
+    return collapse(sheet.rest, sheet.faces, drawn(QUADRIC_FRAMES), rival.share, pins=pins)
+
+
+def kind_of(recipe: Recipe) -> tuple[int, int, bytes]:
+    """Equal for sheets that differ in size alone."""
+    sheet = recipe.on(recipe.fine).sheet
+    return len(sheet.rest), len(sheet.faces), np.asarray(sheet.faces, np.int32).tobytes()
+
+
+def made_of(rival: Rival, sheet: RivalSheet, pooled: Pooled | None) -> Tables:
+    """What a rival's network needs of a sheet."""
+    return Spirals.of(sheet, pooled, rival.length) if pooled is not None else Images.of(sheet)
+
+
+def train_rival(
+    films: Sequence[tuple[Recipe, Film]],
+    rival: Rival,
+    schedule: RivalSchedule,
+    *,
+    device: str = "cpu",
+    record: Path | None = None,
+    told: Told | None = None,
+) -> tuple[dict[str, np.ndarray], dict[str, Pooled]]:
+    """Weights, and what pooling kept of each kind of sheet, by the name of the first sequence of that kind.
+
+    record and told as of `train`. Raises SimCoreError for no film, and a record of another training.
+    """
+    if not films:
+        raise SimCoreError("films: none – give one sequence at least")
+    torch.manual_seed(schedule.seed)
+    place, rng, told = (
+        torch.device(device),
+        np.random.default_rng(schedule.seed),
+        told or (lambda share, words: None),
+    )
+    kinds: dict[Any, list[int]] = {}
+    for number, (recipe, _) in enumerate(films):
+        kinds.setdefault(kind_of(recipe), []).append(number)
+    pooled: dict[str, Pooled] = {}
+    if rival.length:
+        for numbers in kinds.values():
+            told(0.0, f"pools {films[numbers[0]][0].name}")
+            pooled[films[numbers[0]][0].name] = pooled_for(
+                rival, [films[n][0] for n in numbers], [films[n][1] for n in numbers]
+            )
+    sequences, tables = [], []
+    for recipe, film in films:
+        told(0.0, f"reads {recipe.name}")
+        sequences.append(_Sequence(recipe, film, place))
+        first = films[kinds[kind_of(recipe)][0]][0].name
+        tables.append(made_of(rival, sequences[-1].sheet, pooled.get(first)))
+    network = network_of(rival).to(place)
+    optimiser = torch.optim.AdamW(network.parameters(), lr=rival.rate, weight_decay=1e-2)
+    same = {"rival": asdict(rival), "schedule": asdict(schedule), "films": [one.told() for one, _ in films]}
+    kept = Record(record, same) if record else None
+    parts = {"network": network, "optimiser": optimiser}
+    begin = kept.read(parts, rng, place) if kept else 0
+    losses: list[Tensor] = []
+    chances = np.array([len(one.truth) for one in sequences], float)
+    for update in range(begin, schedule.updates):
+        for group in optimiser.param_groups:
+            group["lr"] = (
+                rival.rate
+                * min(1.0, (update + 1) / 100)
+                * 0.5
+                * (1.0 + math.cos(math.pi * update / schedule.updates))
+            )
+        which = int(rng.choice(len(sequences), p=chances / chances.sum()))
+        sequence = sequences[which]
+        numbers = rng.integers(0, len(sequence.truth), schedule.batch)
+        loss = _loss(network, sequence, tables[which], numbers)
+        optimiser.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(network.parameters(), 1.0)
+        optimiser.step()
+        losses = [*losses[-199:], loss.detach()]
+        if update % 20 == 0:
+            told(update / schedule.updates, f"{torch.stack(losses).mean():.4f}")
+        if kept:
+            kept.write(update + 1, parts, rng)
+    if kept:
+        kept.write(schedule.updates, parts, rng, now=True)
+    return {name: value.cpu().numpy().copy() for name, value in network.state_dict().items()}, pooled
+
+
+def _loss(network: SpiralNet | ImageNet, sequence: _Sequence, tables: Any, numbers: np.ndarray) -> Tensor:
+    frames, sheet = sequence.frames(numbers), sequence.sheet
+    truth = sequence.truth[torch.from_numpy(numbers).to(sheet.device)]
+    more = torch.zeros((), device=sheet.device)
+    if isinstance(network, ImageNet):
+        off, normal, fast = network.every(frames, sheet, tables)
+        last = np.maximum(numbers - 1, 0)
+        gone = truth - sequence.truth[torch.from_numpy(last).to(sheet.device)]
+        before = frames.features[:, :, 3:6] * (10.0 * sheet.unit)
+        speed = (frames.turn @ before[..., None])[..., 0]
+        more = (fast - (gone - speed)).abs().mean() / sheet.unit
+        more = (
+            more
+            + 0.1
+            * (normal - (sheet.frames(truth[:, None].expand(-1, 3, -1, -1)).turn - frames.turn)[..., 2])
+            .abs()
+            .mean()
+        )
+    else:
+        off = network(frames, sheet, tables)
+    errors = (frames.base + off - truth) / sheet.unit
+    bent = 1.0 - (sheet.normals(frames.base + off) * sheet.normals(truth)).sum(2)
+    return A * errors.abs().sum(2).mean() + B * bent.mean() + C * errors.square().sum(2).mean() + more

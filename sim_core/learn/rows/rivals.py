@@ -1,0 +1,75 @@
+"""Networks to compare with, as rows; they run in torch, on one core as all rows do."""
+
+# pyright: reportMissingImports=false
+# (torch is an extra)
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim_core.errors import SimCoreError
+from sim_core.learn.data import Recipe, recipes
+from sim_core.learn.inference import RIVALS, Ground, RivalTrained
+from sim_core.learn.pooling import Pooled
+from sim_core.learn.rows.row import Follow
+
+__all__ = ["RivalRow"]
+
+
+@dataclass(frozen=True)
+class RivalRow:
+    """A network that mends the base frame by frame."""
+
+    trained: RivalTrained
+
+    @property
+    def name(self) -> str:
+        return self.trained.row
+
+    def follow(self, recipe: Recipe) -> Follow:
+        """Raises SimCoreError without torch, and for a kind of sheet that was not learned from, where one is pooled."""
+        import torch
+
+        from sim_core.learn.networks.rivals import RivalSheet, made_of, network_of
+
+        torch.set_num_threads(1)
+        rival, device = RIVALS[self.name], torch.device("cpu")
+        network = network_of(rival)
+        network.load_state_dict(
+            {name: torch.from_numpy(np.array(value)) for name, value in self.trained.weights.items()}
+        )
+        ground = Ground.of(recipe)
+        sheet = RivalSheet(ground, tuple(recipe.on(recipe.fine).pins), device)
+        tables = made_of(rival, sheet, self._pooled(recipe) if rival.length else None)
+        past: list[np.ndarray] = []
+
+        def follow(coarse: np.ndarray) -> np.ndarray:
+            base = ground.pair.base @ coarse
+            past.insert(0, base)
+            del past[3:]
+            three = [past[0], past[min(1, len(past) - 1)], past[-1]]
+            given = torch.from_numpy(np.stack(three).astype(np.float32))[None]
+            with torch.inference_mode():
+                return base + network(sheet.frames(given), sheet, tables)[0].numpy()
+
+        return follow
+
+    def _pooled(self, recipe: Recipe) -> Pooled:
+        from sim_core.learn.networks.rivals import kind_of
+
+        known = {one.name: one for one in self._learned_from(recipe)}
+        for name, pooled in self.trained.pooled.items():
+            if name in known and kind_of(known[name]) == kind_of(recipe):
+                return pooled
+        raise SimCoreError(
+            f"{recipe.name}: {self.name} has learned from no sheet of its kind – train it on one"
+        )
+
+    def _learned_from(self, recipe: Recipe) -> list[Recipe]:
+        """The sequences whose kinds were pooled, on sheets of as many vertices as this one's."""
+        from dataclasses import replace
+
+        every = recipes(recipe.scene)
+        return [replace(one, coarse=recipe.coarse, fine=recipe.fine) for one in every]

@@ -1,0 +1,107 @@
+"""`simcore learn train`: weights of a scene's network, from the sequences that are not held back."""
+
+# pyright: reportMissingImports=false
+# (torch is an extra)
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from sim_core.learn.command_parts import films_of, progress
+
+if TYPE_CHECKING:
+    from sim_core.learn.data import Film, Recipe
+    from sim_core.learn.inference import RivalTrained, Trained
+
+__all__ = ["train"]
+
+
+def train(args: argparse.Namespace) -> int:
+    """Trains on the sequences that are not held back, and writes the weights."""
+    from importlib.util import find_spec
+
+    from sim_core.cloth.run import ENGINE_VERSION
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.data import split
+    from sim_core.learn.inference import write_weights
+
+    if args.out.suffix != ".safetensors":
+        raise SimCoreError(f"--out: {args.out} – name a file that ends in .safetensors")
+    if find_spec("torch") is None:
+        raise SimCoreError("torch is not installed – pip install '.[learn]'; to use weights it is not needed")
+    films = films_of(args)
+    parts = split([recipe for recipe, _ in films.values()])
+    began, told = time.monotonic(), progress()
+    device, words = _device(args.device)
+    if not args.json:
+        sys.stdout.write(f"trains {args.row} on {words}\n")
+        sys.stdout.flush()
+    facts = {
+        "scene": args.scene,
+        "row": args.row,
+        "learned_from": [recipe.name for recipe in parts.train],
+        "engine": ENGINE_VERSION,
+        "updates": args.updates,
+        "seed": args.seed,
+        "device": words,
+    }
+    trained = _trained(args, [films[recipe.name] for recipe in parts.train], device, told, facts)
+    told(1.0, "")
+    write_weights(args.out, trained)
+    size = sum(value.size for value in trained.weights.values())
+    facts |= {
+        "file": str(args.out),
+        "parameters": size,
+        "seconds": round(time.monotonic() - began, 1),
+    }
+    line = f"{args.out}: {size:,} numbers, {args.updates:,} updates in {facts['seconds']:.0f} s\n"
+    sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else line)
+    return 0
+
+
+def _device(wanted: str) -> tuple[str, str]:
+    """As torch names it, and in words. Raises SimCoreError for a GPU that is not there."""
+    import torch
+
+    from sim_core.errors import SimCoreError
+
+    there = torch.cuda.is_available()
+    if wanted == "cuda" and not there:
+        raise SimCoreError("--device cuda: there is no GPU that torch can use – leave it out, or say cpu")
+    if there and wanted != "cpu":
+        return "cuda", torch.cuda.get_device_name(0)
+    return "cpu", "cpu"
+
+
+def _trained(
+    args: argparse.Namespace,
+    films: list[tuple[Recipe, Film]],
+    device: str,
+    told: Callable[[float, str], None],
+    facts: dict[str, Any],
+) -> Trained | RivalTrained:
+    from sim_core.learn.inference import RIVALS, RivalTrained, Settings, Trained
+
+    record = args.out.with_suffix(".record")
+
+    def heard(share: float, words: str) -> None:
+        told(share, words if words[:1].isalpha() else f"loss {words}")
+
+    if args.row in RIVALS:
+        from sim_core.learn.networks.rivals import RivalSchedule, train_rival
+
+        rival, plan = RIVALS[args.row], RivalSchedule(updates=args.updates, seed=args.seed)
+        weights, pooled = train_rival(films, rival, plan, device=device, record=record, told=heard)
+        return RivalTrained(args.row, weights, pooled, facts)
+    from sim_core.learn.networks import Schedule
+    from sim_core.learn.networks import train as trained
+
+    settings, lanes = Settings(), 4 if device == "cpu" else 16
+    schedule = Schedule(updates=args.updates, lanes=lanes, seed=args.seed)
+    weights = trained(films, settings, schedule, device=device, record=record, told=heard)
+    return Trained(settings, weights, facts)
