@@ -51,7 +51,7 @@ class Schedule:
     rate: float = 2e-3
     decay: float = 1e-2
     edges: float = 1.0
-    worst: float = 0.0
+    worst: float = 0.1
     seed: int = 0
 
 
