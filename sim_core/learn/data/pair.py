@@ -33,6 +33,12 @@ class Pair:
     mean: csr_array
     base: csr_array
 
+    @property
+    def kind(self) -> str:
+        """What sheets have in common that differ in size alone: vertices of both, and the ratio of their sides."""
+        width, height = np.ptp(self.fine.rest, axis=0)
+        return f"{len(self.coarse.rest)}-{len(self.fine.rest)}-{round(float(width / height), 6)}"
+
     @staticmethod
     def of(recipe: Recipe) -> Pair:
         """Those of a sequence; sequences on the same sheets share the matrices."""

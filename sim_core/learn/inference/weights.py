@@ -33,8 +33,8 @@ class Trained:
 
 @dataclass(frozen=True)
 class RivalTrained:
-    """row: of RIVALS; weights: float32 by torch's names; pooled: what stays of each kind of sheet, by the name of the
-    first sequence of that kind; told: as of `Trained`."""
+    """row: of RIVALS; weights: float32 by torch's names; pooled: what stays of each kind of sheet, by
+    `Pair.kind`; told: as of `Trained`."""
 
     row: str
     weights: Mapping[str, np.ndarray]

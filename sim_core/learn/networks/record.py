@@ -52,17 +52,14 @@ class Record:
         os.replace(beside, self.path)
         self._written = time.monotonic()
 
-    def read(self, parts: Mapping[str, Any], rng: np.random.Generator, device: torch.device) -> int:
-        """The update to go on with, 0 where there is no file; parts and generator are put where they were.
-
-        Raises SimCoreError for the record of another training, and a damaged one.
-        """
-        return self.read_more(parts, rng, device)[0]
-
-    def read_more(
+    def read(
         self, parts: Mapping[str, Any], rng: np.random.Generator, device: torch.device
     ) -> tuple[int, Any]:
-        """The same, and whatever else was written."""
+        """The update to go on with and whatever else was written; 0 and None where there is no file.
+
+        Parts and generator are put where they were. Raises SimCoreError for the record of another training, and a
+        damaged one.
+        """
         if not self.path.is_file():
             return 0, None
         try:

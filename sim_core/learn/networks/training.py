@@ -7,7 +7,7 @@ said before as its past, so that it learns to live with its own errors.
 
 from __future__ import annotations
 
-import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -22,6 +22,7 @@ from sim_core.learn.data import Film, Recipe
 from sim_core.learn.inference import Ground, Settings
 from sim_core.learn.networks.learned_steps import Glued, LearnedSteps
 from sim_core.learn.networks.moment import Moment
+from sim_core.learn.networks.pace import HEARD, rate_at, stepped
 from sim_core.learn.networks.record import Record
 from sim_core.learn.networks.sheets import Sheets
 
@@ -31,12 +32,9 @@ Told = Callable[[float, str], None]
 SQUARES = 0.02  # the paper's c, in units of displacements
 SOFT = 1e-6  # below which a distance counts squared
 MEMORY = 0.995  # of the running mean of weights, which is what is kept
-WARM = 100  # updates until the rate is whole
-CLIPPED = 1.0  # length of a gradient
 LOST = 50.0  # units off, from where on a lane begins elsewhere
 FROM_TRUTH, FROM_FIRST = 0.5, 0.1  # of lanes that begin with what was, and at the first frame
 STAY = 80  # frames that a lane follows a sequence, on average
-HEARD = 200  # updates whose loss is told, as a mean
 
 
 @dataclass(frozen=True)
@@ -203,23 +201,19 @@ def train(
     }
     kept = Record(record, same) if record else None
     parts = {"network": network, "optimiser": optimiser}
-    begin, more = kept.read_more(parts, course.rng, place) if kept else (0, None)
+    begin, more = kept.read(parts, course.rng, place) if kept else (0, None)
     if more is not None:
         mean.update(more["mean"])
         course.lanes = [lane and _Lane(*lane) for lane in more["lanes"]]
-    losses: list[Tensor] = []
+    losses: deque[Tensor] = deque(maxlen=HEARD)
     for update in range(begin, schedule.updates):
-        share = update / schedule.updates
-        for group in optimiser.param_groups:
-            group["lr"] = (
-                schedule.rate * min(1.0, (update + 1) / WARM) * 0.5 * (1.0 + math.cos(math.pi * share))
-            )
-        losses = [*losses[1 - HEARD :], _update(network, optimiser, course)]
+        rate = rate_at(update, schedule.updates, schedule.rate)
+        losses.append(_update(network, optimiser, course, rate))
         stays = min(MEMORY, update / (update + 1))
         for name, value in network.state_dict().items():
             mean[name].mul_(stays).add_(value, alpha=1.0 - stays)
         if update % 20 == 0:
-            told(share, f"{torch.stack(losses).mean():.4f}")
+            told(update / schedule.updates, f"{torch.stack(list(losses)).mean():.4f}")
         if kept:
             kept.write(update + 1, parts, course.rng, course.told(mean))
     if kept:
@@ -227,7 +221,7 @@ def train(
     return {name: value.cpu().numpy().copy() for name, value in mean.items()}
 
 
-def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course) -> Tensor:
+def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course, rate: float) -> Tensor:
     """One window of all lanes, and one update; the mean distance from what was wanted, in units."""
     glued, schedule = course.begin(), course.schedule
     said, before = course.past()
@@ -245,10 +239,7 @@ def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Co
             total = total + schedule.worst * _worst(squares, glued)
         off = off + distance.detach() / schedule.window
         last, first, before = now, last, moment.turn
-    optimiser.zero_grad()
-    (total / schedule.window).backward()
-    torch.nn.utils.clip_grad_norm_(network.parameters(), CLIPPED)
-    optimiser.step()
+    stepped(network, optimiser, total / schedule.window, rate)
     course.go_on(glued, torch.stack([last, first]).detach(), before)
     return off
 

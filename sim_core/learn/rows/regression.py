@@ -14,30 +14,22 @@ from sim_core.learn.upsampling import LocalFramesFit
 
 __all__ = ["LocalFrames"]
 
-Kind = tuple[int, int, float]
-
-
-def kind(pair: Pair) -> Kind:
-    """What sheets have in common that differ in size alone: vertices of both, and the ratio of their sides."""
-    width, height = np.ptp(pair.fine.rest, axis=0)
-    return len(pair.coarse.rest), len(pair.fine.rest), round(float(width / height), 6)
-
 
 @dataclass(frozen=True)
 class LocalFrames:
-    """models: of every kind of sheet that was learned from, in units of its width; others get the biharmonic base."""
+    """models: of every `Pair.kind` that was learned from, in units of its width; others get the biharmonic base."""
 
-    models: Mapping[Kind, Model]
+    models: Mapping[str, Model]
     name: str = "local_frames"
 
     @staticmethod
     def fitted(films: Sequence[tuple[Recipe, Film]], *, thin: int = 1) -> LocalFrames:
         """From every `thin`-th frame of these sequences; sheets of one kind are brought to one size."""
-        fits: dict[Kind, LocalFramesFit] = {}
+        fits: dict[str, LocalFramesFit] = {}
         for recipe, film in films:
             pair = Pair.of(recipe)
             width = _width(pair)
-            which = kind(pair)
+            which = pair.kind
             if which not in fits:
                 fits[which] = LocalFramesFit(
                     pair.coarse.rest / width, pair.coarse.faces, pair.fine.rest / width, pair.base
@@ -47,7 +39,7 @@ class LocalFrames:
 
     def follow(self, recipe: Recipe) -> Follow:
         pair = Pair.of(recipe)
-        model, width = self.models.get(kind(pair)), _width(pair)
+        model, width = self.models.get(pair.kind), _width(pair)
         if model is None:
             return lambda coarse: pair.base @ coarse
         own = replace(model, base=pair.base)

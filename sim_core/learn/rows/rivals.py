@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Recipe, recipes
+from sim_core.learn.data import Pair, Recipe
 from sim_core.learn.inference import RIVALS, Ground, RivalTrained
 from sim_core.learn.pooling import Pooled
 from sim_core.learn.rows.row import Follow
@@ -57,19 +57,9 @@ class RivalRow:
         return follow
 
     def _pooled(self, recipe: Recipe) -> Pooled:
-        from sim_core.learn.networks.rivals import kind_of
-
-        known = {one.name: one for one in self._learned_from(recipe)}
-        for name, pooled in self.trained.pooled.items():
-            if name in known and kind_of(known[name]) == kind_of(recipe):
-                return pooled
-        raise SimCoreError(
-            f"{recipe.name}: {self.name} has learned from no sheet of its kind – train it on one"
-        )
-
-    def _learned_from(self, recipe: Recipe) -> list[Recipe]:
-        """The sequences whose kinds were pooled, on sheets of as many vertices as this one's."""
-        from dataclasses import replace
-
-        every = recipes(recipe.scene)
-        return [replace(one, coarse=recipe.coarse, fine=recipe.fine) for one in every]
+        found = self.trained.pooled.get(Pair.of(recipe).kind)
+        if found is None:
+            raise SimCoreError(
+                f"{recipe.name}: {self.name} has learned from no sheet of its kind – train it on one"
+            )
+        return found

@@ -3,7 +3,7 @@
 from sim_core.learn.networks.rivals.image_net import ImageNet
 from sim_core.learn.networks.rivals.sheet import Frames, RivalSheet
 from sim_core.learn.networks.rivals.spiral_net import SpiralNet
-from sim_core.learn.networks.rivals.training import RivalSchedule, kind_of, made_of, network_of, train_rival
+from sim_core.learn.networks.rivals.training import RivalSchedule, made_of, network_of, train_rival
 
 __all__ = [
     "Frames",
@@ -11,7 +11,6 @@ __all__ = [
     "RivalSchedule",
     "RivalSheet",
     "SpiralNet",
-    "kind_of",
     "made_of",
     "network_of",
     "train_rival",

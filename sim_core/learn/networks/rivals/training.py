@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import math
+from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -13,18 +13,19 @@ from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Recipe
+from sim_core.learn.data import Film, Pair, Recipe
 from sim_core.learn.inference import Ground, Rival
+from sim_core.learn.networks.pace import HEARD, rate_at, stepped
 from sim_core.learn.networks.record import Record
 from sim_core.learn.networks.rivals.image_net import ImageNet, Images
 from sim_core.learn.networks.rivals.sheet import Frames, RivalSheet
 from sim_core.learn.networks.rivals.spiral_net import SpiralNet, Spirals
 from sim_core.learn.pooling import Pooled, collapse, decimate, mean_absolute_curvature
 
-__all__ = ["RivalSchedule", "kind_of", "made_of", "network_of", "train_rival"]
+__all__ = ["RivalSchedule", "made_of", "network_of", "train_rival"]
 
 A, B, C = 1.0, 1.0, 0.02  # the paper's, distances in units
 QUADRIC_FRAMES, CURVATURE_FRAMES = 24, 200  # of training, that pooling looks at
@@ -82,12 +83,6 @@ def pooled_for(rival: Rival, recipes: Sequence[Recipe], films: Sequence[Film]) -
     return collapse(sheet.rest, sheet.faces, drawn(QUADRIC_FRAMES), rival.share, pins=pins)
 
 
-def kind_of(recipe: Recipe) -> tuple[int, int, bytes]:
-    """Equal for sheets that differ in size alone."""
-    sheet = recipe.on(recipe.fine).sheet
-    return len(sheet.rest), len(sheet.faces), np.asarray(sheet.faces, np.int32).tobytes()
-
-
 def made_of(rival: Rival, sheet: RivalSheet, pooled: Pooled | None) -> Tables:
     """What a rival's network needs of a sheet."""
     return Spirals.of(sheet, pooled, rival.length) if pooled is not None else Images.of(sheet)
@@ -102,7 +97,7 @@ def train_rival(
     record: Path | None = None,
     told: Told | None = None,
 ) -> tuple[dict[str, np.ndarray], dict[str, Pooled]]:
-    """Weights, and what pooling kept of each kind of sheet, by the name of the first sequence of that kind.
+    """Weights, and what pooling kept of each kind of sheet, by `Pair.kind`.
 
     record and told as of `train`. Raises SimCoreError for no film, and a record of another training.
     """
@@ -114,49 +109,36 @@ def train_rival(
         np.random.default_rng(schedule.seed),
         told or (lambda share, words: None),
     )
-    kinds: dict[Any, list[int]] = {}
-    for number, (recipe, _) in enumerate(films):
-        kinds.setdefault(kind_of(recipe), []).append(number)
+    kinds: dict[str, list[tuple[Recipe, Film]]] = {}
+    for recipe, film in films:
+        kinds.setdefault(Pair.of(recipe).kind, []).append((recipe, film))
     pooled: dict[str, Pooled] = {}
     if rival.length:
-        for numbers in kinds.values():
-            told(0.0, f"pools {films[numbers[0]][0].name}")
-            pooled[films[numbers[0]][0].name] = pooled_for(
-                rival, [films[n][0] for n in numbers], [films[n][1] for n in numbers]
-            )
+        for kind, own in kinds.items():
+            told(0.0, f"pools {own[0][0].name}")
+            pooled[kind] = pooled_for(rival, [recipe for recipe, _ in own], [film for _, film in own])
     sequences, tables = [], []
     for recipe, film in films:
         told(0.0, f"reads {recipe.name}")
         sequences.append(_Sequence(recipe, film, place))
-        first = films[kinds[kind_of(recipe)][0]][0].name
-        tables.append(made_of(rival, sequences[-1].sheet, pooled.get(first)))
+        tables.append(made_of(rival, sequences[-1].sheet, pooled.get(Pair.of(recipe).kind)))
     network = network_of(rival).to(place)
     optimiser = torch.optim.AdamW(network.parameters(), lr=rival.rate, weight_decay=1e-2)
     same = {"rival": asdict(rival), "schedule": asdict(schedule), "films": [one.told() for one, _ in films]}
     kept = Record(record, same) if record else None
     parts = {"network": network, "optimiser": optimiser}
-    begin = kept.read(parts, rng, place) if kept else 0
-    losses: list[Tensor] = []
+    begin = kept.read(parts, rng, place)[0] if kept else 0
+    losses: deque[Tensor] = deque(maxlen=HEARD)
     chances = np.array([len(one.truth) for one in sequences], float)
     for update in range(begin, schedule.updates):
-        for group in optimiser.param_groups:
-            group["lr"] = (
-                rival.rate
-                * min(1.0, (update + 1) / 100)
-                * 0.5
-                * (1.0 + math.cos(math.pi * update / schedule.updates))
-            )
         which = int(rng.choice(len(sequences), p=chances / chances.sum()))
         sequence = sequences[which]
         numbers = rng.integers(0, len(sequence.truth), schedule.batch)
         loss = _loss(network, sequence, tables[which], numbers)
-        optimiser.zero_grad()
-        loss.backward()
-        nn.utils.clip_grad_norm_(network.parameters(), 1.0)
-        optimiser.step()
-        losses = [*losses[-199:], loss.detach()]
+        stepped(network, optimiser, loss, rate_at(update, schedule.updates, rival.rate))
+        losses.append(loss.detach())
         if update % 20 == 0:
-            told(update / schedule.updates, f"{torch.stack(losses).mean():.4f}")
+            told(update / schedule.updates, f"{torch.stack(list(losses)).mean():.4f}")
         if kept:
             kept.write(update + 1, parts, rng)
     if kept:
