@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 from sim_core.cloth.contact.collisions import Push, collide_samples, collide_vertices, contact_samples
 from sim_core.cloth.contact.constraints import Holds
 from sim_core.cloth.contact.distance import distances
+from sim_core.cloth.contact.layers.closing import hold_apart, listed_close
 from sim_core.cloth.contact.layers.crossings import crossings_of, faces_at_edges, no_crossings, none_crosses
 from sim_core.cloth.contact.layers.foresight import unsure_pairs
 from sim_core.cloth.contact.layers.jerks import feel, jerks_of, stand_by
 from sim_core.cloth.contact.layers.near_pairs import Near, NearPairs, begin_pairs, near_pairs_of, renew_pairs
 from sim_core.cloth.contact.layers.pairs import Mesh, Search, finder_of, hash_points
 from sim_core.cloth.contact.layers.patches import Patches, patches_of, shapes_of
-from sim_core.cloth.contact.layers.repulsion import LEVER, Shell, repel
+from sim_core.cloth.contact.layers.repulsion import CLOSE, LEVER, PARTING, Shell, repel
 from sim_core.cloth.contact.layers.untangling import Memory, Untangling, untangle
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.cloth.contact.solids import Box, Capsule, Cylinder, GridSdf, HalfSpace, Solid, Union
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from sim_core.cloth.contact.moving_grid import MovingGrid, moving_mesh
 
 __all__ = [
+    "CLOSE",
+    "PARTING",
     "Box",
     "Capsule",
     "Cylinder",
@@ -55,9 +58,11 @@ __all__ = [
     "field_of",
     "finder_of",
     "hash_points",
+    "hold_apart",
     "hull_faces",
     "hull_mesh",
     "jerks_of",
+    "listed_close",
     "moving_mesh",
     "near_pairs_of",
     "no_crossings",

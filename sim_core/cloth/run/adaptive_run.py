@@ -24,6 +24,7 @@ from sim_core.cloth.step.kernels.diagnostics import ways
 from sim_core.cloth.step.precision import Pace
 from sim_core.cloth.step.stability import first_mode, stable_with
 from sim_core.errors import SimCoreError
+from sim_core.metrics import intersections
 from sim_core.validation import coordinates, instance_of, integer, one_of, vector3, vertex_indices
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 MAX_HALVINGS = 8
 AIR_VERSION = 2  # raise when the same air gives other bits: `ENGINE_VERSION` would make every garment stale
-SHELL_VERSION = 3  # the same for layers that touch
+SHELL_VERSION = 4  # the same for layers that touch
 CONFIRMED = 0.02  # by which the longest edge may differ when half the step is to confirm it
 MOST_SUBSTEPS = 50_000  # a frame: beyond, the explicit scheme is not tried
 MORE_IMPLICIT = (IMPLICIT_STEPS, 64, 512)  # steps of backward Euler that are tried then, one after the other
@@ -303,6 +304,8 @@ class Run:
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
                     before, longest = longest, engine.stretch(end.x)
                     good = abs(before / longest - 1) < CONFIRMED
+                if good and engine.took_back and not self._uncrossed(begin, end):
+                    good = False
                 if good:
                     if FRAME / stride.count <= LATE * passing_step(engine.shell.thickness, end.v):
                         state.safety = min(1.0, state.safety * 1.1)
@@ -322,6 +325,13 @@ class Run:
             state.safety, state.rollbacks = state.safety / 2, state.rollbacks + 1
         why = cause(engine, frame, begin, MOST_SUBSTEPS, self._count(step))
         raise SimCoreError(f"frame {state.frame}: {why}")
+
+    def _uncrossed(self, begin: State, end: State) -> bool:
+        """Whether no layer passes through another that did not when the frame began."""
+        if self.engine.contact.untangle:  # what passed through is taken out again after the frame
+            return True
+        before, after = (intersections(state.x.T, self.engine.mesh.faces) for state in (begin, end))
+        return after <= before
 
     def _passing(self, state: RunState, end: State) -> float:
         """Largest stable step [s] whose share that is taken lets no layers pass each other at the speeds of `end`."""

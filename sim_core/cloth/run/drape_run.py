@@ -26,7 +26,7 @@ from sim_core.errors import FileProblem
 from sim_core.validation import optional_callable
 
 ENGINE_VERSION = (
-    11  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
+    12  # raise when equal inputs give other bits on one machine: old checkpoints are then left alone
 )
 RESTED = 8  # frames in a row below a phase's rest, after which it ends: one of them alone may be chance
 CHECKPOINT_SECONDS = 5.0  # between two writes of a checkpoint

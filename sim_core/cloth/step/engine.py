@@ -215,6 +215,11 @@ class Engine:
             self.near, done = advance(self.bands, mesh, touch, inside, steps, self.room, state, self.near)
         return done
 
+    @property
+    def took_back(self) -> bool:
+        """Whether in the last frame anything was taken back that solids had pushed through a layer."""
+        return bool(self.near.jerks.back[0])
+
     def _lead(self, frame: Frame, state: State, seconds: float = FRAME) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""
         state.v[:, self.inverse_mass(frame.pins) == 0.0] = 0.0

@@ -15,6 +15,7 @@ from sim_core.cloth.contact.collisions import (
     settle_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
+from sim_core.cloth.contact.layers.closing import PASSES, SHARE, THROUGH, hold_apart, listed_close, may_close
 from sim_core.cloth.contact.layers.jerks import feel, stand_by
 from sim_core.cloth.contact.layers.near_pairs import go_on, likely_way, no_pairs, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
@@ -119,6 +120,25 @@ def _against_solids(touch, inverse, frame, steps, x, v, k):
     return pushed
 
 
+@njit(cache=True, error_model="numpy")
+def _held_apart(touch, mesh, frame, steps, here, k, near):
+    """Takes the speeds at which layers would be through each other after substep k; whether that went.
+
+    How far solids push meanwhile shows in the next substep, as the ways of vertices that are jerked.
+    """
+    x, v, most, solids = here.x.T, here.v.T, 1.0, len(touch.solid.kind) > 0
+    dt, thickness = steps.dt * touch.shell.every, touch.shell.thickness
+    listed = listed_close(here.x, here.v, near, thickness, dt)
+    for n in range(PASSES + 1):
+        most = hold_apart(x, v, mesh, near, dt, k, listed)
+        if most <= SHARE or n == PASSES:
+            break
+        if solids:
+            _against_solids(touch, mesh.inverse_mass, frame, steps, x, v, k)
+        listed = listed and listed_close(here.x, here.v, near, thickness, dt)
+    return most <= THROUGH
+
+
 @njit(error_model="numpy", inline="always")
 def _sew(holds, inverse, frame, steps, x, v, k):
     """Draws sewing pairs together as far as they may be apart after substep k."""
@@ -141,13 +161,13 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes, done = -1, touch.patches, touch.shapes, True
+    look_layer, patches, shapes, done, nearest2 = -1, touch.patches, touch.shapes, True, 0.0
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
-        x, v = here.x.T, here.v.T
+        x, v, narrow = here.x.T, here.v.T, False
         if layers and k % shell.every == 0:
             shaken = False
             if k == 0:
@@ -169,10 +189,11 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 pushed = 0.0
                 near.jerks.looked[:] = here.v
             if near.now.count[1] + near.now.count[2] > 0:
-                late_pairs = repel(x, v, mesh, near, shell, steps.dt * shell.every, k)
+                late_pairs, nearest2 = repel(x, v, mesh, near, shell, steps.dt * shell.every, k)
                 if late_pairs and steps.breaks:
                     done = False
                     break
+                narrow = nearest2 < shell.thickness * shell.thickness
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         watch = layers and steps.breaks and k % WATCH_EVERY == 0
@@ -185,6 +206,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
             pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
+        if narrow and may_close(here.v, nearest2, steps.dt * shell.every):
+            if not _held_apart(touch, mesh, frame, steps, here, k, near) and steps.breaks:
+                done = False
+                break
         if bounded:
             bound(holds, x, v)
             mirror(holds, x, v)

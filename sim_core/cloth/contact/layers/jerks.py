@@ -23,20 +23,28 @@ class Jerks(NamedTuple):
     looked: np.ndarray  # (3, V) [m/s] what lists reckon with
     jerked: np.ndarray  # (V,) bool, in this substep
     some: np.ndarray  # (1,) bool, whether any is
+    back: (
+        np.ndarray
+    )  # (1,) bool, whether anything that a solid pushed through a layer in this frame was taken back
+    restless: (
+        np.ndarray
+    )  # (V,) bool, who in this frame was once too fast, or pushed too far, for pairs to be close
 
 
 def jerks_of(vertices: int) -> Jerks:
     """Memory for V vertices."""
     last, going, looked = (np.zeros((3, vertices)) for _ in range(3))
-    return Jerks(last, going, looked, np.zeros(vertices, np.bool_), np.zeros(1, np.bool_))
+    jerked, restless = (np.zeros(vertices, np.bool_) for _ in range(2))
+    some, back = (np.zeros(1, np.bool_) for _ in range(2))
+    return Jerks(last, going, looked, jerked, some, back, restless)
 
 
 @njit(cache=True, error_model="numpy")
 def stand_by(x, v, jerks):
     """Begins at x and v (3, V): nobody is jerked, and nobody may sleep yet."""
     jerks.last[:], jerks.going[:], jerks.looked[:] = x, v, v
-    jerks.jerked[:] = False
-    jerks.some[0] = False
+    jerks.jerked[:] = jerks.restless[:] = False
+    jerks.some[0] = jerks.back[0] = False
 
 
 @njit(cache=True, error_model="numpy")

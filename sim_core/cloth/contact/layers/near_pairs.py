@@ -61,6 +61,10 @@ class NearPairs(NamedTuple):
     course: Course
     jerks: Jerks
     order: np.ndarray  # (K,) int32 working memory
+    close: (
+        np.ndarray
+    )  # (1 + K,) int32 how many pairs are close in this substep, then which: place k in now.points,
+    # or -1 - k in now.crossings; as far as there is room
     kept: np.ndarray  # (2,) [m] the skin that the lists are looked for with; 1 while they hold
     tally: (
         np.ndarray
@@ -91,6 +95,7 @@ def near_pairs_of(vertices: int, edges: int, patches: int) -> NearPairs:
         course_of(vertices, edges, patches),
         jerks_of(vertices),
         none,
+        np.zeros(1 + 4 * vertices, np.int32),
         np.zeros(2),
         np.zeros(5, np.int64),
     )
@@ -391,4 +396,4 @@ def _looked_through(x, v, mesh, patches, shapes, how, near, fresh):
     near.tally[4] += through
     spare = _rebuilt(x, mesh, patches, shapes, how, now, spare)
     _margin(spare)
-    return NearPairs(spare, now, near.course, near.jerks, order, near.kept, near.tally)
+    return NearPairs(spare, now, near.course, near.jerks, order, near.close, near.kept, near.tally)

@@ -26,6 +26,8 @@ MOST_SLEEP = 10_000  # substeps: more than a frame has
 WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
 LEAST = 0.45  # of the skin, that calm cloth is looked through
 NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
+CLOSE = 0.5  # of the thickness: what is nearer is noted as close
+PARTING = 0.3  # of the thickness: as far as the spring lets a pair part in a step
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
 
 
@@ -66,6 +68,7 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
         gain += (1.0 if depth > 0.75 else 0.3) * -vn
     else:
         gain = max(gain - shell.separation * vn, 0.0)
+    gain = max(min(gain, PARTING * shell.thickness / dt - vn), 0.0)
     tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
     slide = math.sqrt(tx * tx + ty * ty + tz * tz)
     lost = 0.0
@@ -96,11 +99,19 @@ def _too_fast(meets, gap2, short, least, dt):
     return meets * dt > gap * (gap - short)
 
 
+@njit(error_model="numpy", inline="always")
+def _among(close, place):
+    """Notes a pair's place among the closest; where they are more than fit, only how many they are."""
+    close[0] += 1
+    if close[0] < len(close):
+        close[close[0]] = place
+
+
 @njit(cache=True, error_model="numpy")
 def repel(x, v, mesh, near, shell, dt, step):
     """Impulses for the vertex-face pairs and edge-edge pairs of `NearPairs`, in its order, but for those that sleep: as
     long as they cannot meet while none of their vertices is jerked. Returns whether any come nearer so fast that they
-    would be through each other a step later.
+    would be through each other a step later, and the square [m2] of the narrowest gap, the thickness at most.
     """
     reach2 = shell.thickness * shell.thickness
     points, crossings, counts, inverse_mass = (
@@ -112,6 +123,8 @@ def repel(x, v, mesh, near, shell, dt, step):
     faces, edges = mesh.faces, mesh.edges
     going, jerked, some = near.jerks.going, near.jerks.jerked, near.jerks.some[0]
     short, least, late = SHORT * shell.thickness, LEAST_ROOM * shell.thickness / dt, False
+    nearest2, close2, close, restless = reach2, CLOSE * CLOSE * reach2, near.close, near.jerks.restless
+    close[0] = 0
     for k in range(counts[1]):
         if points[k, 2] > step and not some:
             continue
@@ -129,10 +142,13 @@ def repel(x, v, mesh, near, shell, dt, step):
             + dy * (v[i, 1] - wa * v[a, 1] - wb * v[b, 1] - wc * v[c, 1])
             + dz * (v[i, 2] - wa * v[a, 2] - wb * v[b, 2] - wc * v[c, 2])
         )
-        late = late or _too_fast(meets, gap2, short, least, dt)
+        if gap2 < close2 or restless[i] or restless[a] or restless[b] or restless[c]:
+            _among(close, k)
         if gap2 < reach2:
+            nearest2 = min(nearest2, gap2)
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
         else:
+            late = late or _too_fast(meets, gap2, short, least, dt)
             fast2 = max(_apart2(going, i, a), _apart2(going, i, b), _apart2(going, i, c))
             points[k, 2] = step + min(
                 MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, SWAY, dt)
@@ -154,8 +170,10 @@ def repel(x, v, mesh, near, shell, dt, step):
             + dy * (v[a, 1] + s * (v[b, 1] - v[a, 1]) - v[c, 1] - t * (v[d, 1] - v[c, 1]))
             + dz * (v[a, 2] + s * (v[b, 2] - v[a, 2]) - v[c, 2] - t * (v[d, 2] - v[c, 2]))
         )
-        late = late or _too_fast(meets, gap2, short, least, dt)
+        if gap2 < close2 or restless[a] or restless[b] or restless[c] or restless[d]:
+            _among(close, -1 - k)
         if gap2 >= reach2:
+            late = late or _too_fast(meets, gap2, short, least, dt)
             fast2 = max(
                 _apart2(going, a, c), _apart2(going, a, d), _apart2(going, b, c), _apart2(going, b, d)
             )
@@ -164,8 +182,9 @@ def repel(x, v, mesh, near, shell, dt, step):
             )
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
         elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
+            nearest2 = min(nearest2, gap2)
             _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
-    return late
+    return late, nearest2
 
 
 @njit(cache=True, error_model="numpy")
