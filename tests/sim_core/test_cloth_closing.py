@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -46,8 +48,8 @@ def pressed(speed: float, pushed: float = 0.0) -> tuple[float, np.ndarray, np.nd
     x[0, 1] -= pushed
     lists.close[:2] = 1, 0
     again, fast = x.copy(), v.copy()
-    share = hold_apart(x, v, one_face(), lists, DT, 0, listed=False)
-    assert share == hold_apart(again, fast, one_face(), lists, DT, 0, listed=True)
+    share = hold_apart(x, v, one_face(), lists, 2 * GAP, DT, 0, listed=False)
+    assert share == hold_apart(again, fast, one_face(), lists, 2 * GAP, DT, 0, listed=True)
     assert (again == x).all()
     assert (fast == v).all()
     assert lists.jerks.back[0] == (pushed > 0.9 * GAP)
@@ -151,6 +153,38 @@ def test_a_stack_that_falls_keeps_its_order(
     run = Run(setup)
     state = run.begun(x, v)
     for _ in range(2):
+        run.frame(state)
+        assert in_order(state.positions, sheet, len(densities))
+
+
+FALLS = [  # [m] side, thickness, height, gap; [kg/m2]; [m/s]; contact
+    (2.0, 0.02, 0.2875, 0.04, [1.0, 1.0], 6.0, {}),
+    (5.0, 0.02, 0.0694, 0.022, [0.1, 0.3, 0.3], 1.0, {}),
+    (0.3, 2e-4, 0.03, 2.2e-4, [0.1, 0.1], 2.0, {}),
+    (0.3, 3e-4, 0.0479, 3.06e-4, [1.0, 1.0, 0.03], 5.0, {}),
+    (0.3, 0.0025, 0.0555, 0.00255, [0.03, 0.3], 3.0, {"every": 5}),
+    (0.3, 0.0025, 0.0214, 0.00255, [0.3, 1.0], 5.0, {"every": 3}),
+    (0.3, 0.0025, 0.044, 0.00325, [1.0, 0.3, 1.0], 8.0, {"cap": 0.02}),
+]
+
+
+@pytest.mark.parametrize(("size", "thickness", "height", "gap", "densities", "speed", "contact"), FALLS)
+def test_large_thin_and_seldom_asked_layers_keep_their_order(
+    size: float,
+    thickness: float,
+    height: float,
+    gap: float,
+    densities: list[float],
+    speed: float,
+    contact: dict[str, Any],
+) -> None:
+    sheet, x = stack(densities, [height + gap * k for k in range(len(densities))], count=10, size=size)
+    v = np.zeros_like(x)
+    v[:, 1] = -speed
+    touch = Contact(thickness=thickness, **contact)
+    run = Run(Setup(sheet, [Phase(3 * FRAME, (9.81, 9.81))], contact=touch, collider=HalfSpace()))
+    state = run.begun(x, v)
+    for _ in range(3):
         run.frame(state)
         assert in_order(state.positions, sheet, len(densities))
 

@@ -19,7 +19,7 @@ from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
 from sim_core.cloth.step.engine import IMPLICIT_STEPS, Engine, Stride
 from sim_core.cloth.step.frame import FRAME, Contact, Frame, Phase, State, checked_phases, schedule
-from sim_core.cloth.step.haste import LATE, passing_step
+from sim_core.cloth.step.haste import LATE
 from sim_core.cloth.step.kernels.diagnostics import ways
 from sim_core.cloth.step.precision import Pace
 from sim_core.cloth.step.stability import first_mode, stable_with
@@ -304,10 +304,10 @@ class Run:
                     # An edge beyond belief that half the step finds as long is the cloth's own, in a gale say.
                     before, longest = longest, engine.stretch(end.x)
                     good = abs(before / longest - 1) < CONFIRMED
-                if good and engine.took_back and not self._uncrossed(begin, end):
+                if good and (engine.took_back or engine.pressed) and not self._uncrossed(begin, end):
                     good = False
                 if good:
-                    if FRAME / stride.count <= LATE * passing_step(engine.shell.thickness, end.v):
+                    if FRAME / stride.count <= LATE * engine.passing_step(end.v):
                         state.safety = min(1.0, state.safety * 1.1)
                         return end, stride
                     step = min(step, self._passing(state, end))  # faster on the way than layers can bear
@@ -327,16 +327,18 @@ class Run:
         raise SimCoreError(f"frame {state.frame}: {why}")
 
     def _uncrossed(self, begin: State, end: State) -> bool:
-        """Whether no layer passes through another that did not when the frame began."""
+        """Whether no layer passes through another that did not when the frame began, nor is pressed through it."""
         if self.engine.contact.untangle:  # what passed through is taken out again after the frame
             return True
+        if self.engine.pressed:
+            return False
         before, after = (intersections(state.x.T, self.engine.mesh.faces) for state in (begin, end))
         return after <= before
 
     def _passing(self, state: RunState, end: State) -> float:
         """Largest stable step [s] whose share that is taken lets no layers pass each other at the speeds of `end`."""
         share = self.pace.courant * state.safety
-        return float(passing_step(self.engine.shell.thickness, end.v)) / share
+        return self.engine.passing_step(end.v) / share
 
     def _layer_step(self, frame: Frame, begin: State) -> float:
         """Largest step [s] in which layers cannot pass each other, at the speeds a frame begins with."""
@@ -345,7 +347,7 @@ class Run:
         v = begin.v.copy()
         index = self.engine.number[frame.led]
         v[:, index] = (frame.places.T - begin.x[:, index]) / FRAME
-        return passing_step(self.engine.shell.thickness, v)
+        return self.engine.passing_step(v)
 
 
 def _interrupted(error: BaseException | None) -> bool:

@@ -27,6 +27,7 @@ from sim_core.cloth.contact.packed import Packed
 from sim_core.cloth.contact.solids import Solid
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.frame import FRAME, FREE, Contact, Frame, State
+from sim_core.cloth.step.haste import passing_step
 from sim_core.cloth.step.health import Health
 from sim_core.cloth.step.implicit import Implicit
 from sim_core.cloth.step.kernels.bands import bands_of, ordered
@@ -117,7 +118,7 @@ class Engine:
         self.lightest = _lightest(self.sheet)
         self.implicit = Implicit(self.sheet, self.bands, self.room)
         self.bend_omega2 = bending_frequency2(self.bands, free, self.room)
-        touches = len(self.packed.kind) > 0 or self.moving is not None or self.shell.thickness > 0
+        touches = self.solids or self.shell.thickness > 0
         self.health = Health(self.sheet, self.stored, touches=touches)
         self._inverse: dict[bytes, np.ndarray] = {b"": free}
 
@@ -219,6 +220,20 @@ class Engine:
     def took_back(self) -> bool:
         """Whether in the last frame anything was taken back that solids had pushed through a layer."""
         return bool(self.near.jerks.back[0])
+
+    @property
+    def pressed(self) -> bool:
+        """Whether they pushed it there again, as often as it was taken back, or anything pressed layers to nothing."""
+        return bool(self.near.jerks.back[1])
+
+    @property
+    def solids(self) -> bool:
+        """Whether there is anything that is not cloth."""
+        return self.moving is not None or len(self.packed.kind) > 0
+
+    def passing_step(self, v: np.ndarray) -> float:
+        """Largest step [s] in which no layers can pass each other until they are asked again, at speeds v (3, V)."""
+        return float(passing_step(self.shell.thickness, v, self.solids)) / self.shell.every
 
     def _lead(self, frame: Frame, state: State, seconds: float = FRAME) -> None:
         """What is pinned rests, or has the speed that brings it where it is led within `seconds`."""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim_core.cloth.contact.layers.repulsion import Shell
+from sim_core.cloth.step.haste import HASTE
 from sim_core.errors import SimCoreError
 from sim_core.validation import excerpt, finite, instance_of, integer, vector, vertex_indices
 
@@ -94,6 +95,8 @@ class Contact:
     def shell(self) -> Shell:
         """The distances that are kept, as the compiled loops read them."""
         kept = {name: float(getattr(self, name)) for name in Shell._fields if name != "every"}
+        if self.thickness > 0.0:  # no push may carry a layer through another
+            kept["cap"] = min(kept["cap"], HASTE * kept["thickness"])
         return Shell(**kept, every=int(self.every))
 
 

@@ -31,7 +31,10 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
-WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
+WATCH_EVERY, FEW = (
+    8,
+    32,
+)  # substeps between two looks at whether layers are too fast, and looks a frame at least
 
 
 class Steps(NamedTuple):
@@ -130,12 +133,14 @@ def _held_apart(touch, mesh, frame, steps, here, k, near):
     dt, thickness = steps.dt * touch.shell.every, touch.shell.thickness
     listed = listed_close(here.x, here.v, near, thickness, dt)
     for n in range(PASSES + 1):
-        most = hold_apart(x, v, mesh, near, dt, k, listed)
+        most = hold_apart(x, v, mesh, near, thickness, dt, k, listed)
         if most <= SHARE or n == PASSES:
             break
         if solids:
             _against_solids(touch, mesh.inverse_mass, frame, steps, x, v, k)
         listed = listed and listed_close(here.x, here.v, near, thickness, dt)
+    if most > SHARE and near.jerks.back[0]:
+        near.jerks.back[1] = True
     return most <= THROUGH
 
 
@@ -161,15 +166,16 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
-    look_layer, patches, shapes, done, nearest2 = -1, touch.patches, touch.shapes, True, 0.0
+    look_layer, patches, shapes, done, nearest2, narrow = -1, touch.patches, touch.shapes, True, 0.0, False
+    watch_every = min(WATCH_EVERY, max(1, steps.count // FEW))
     how = search_for(mesh, shell.thickness, shell.skin, 0.0)
     if steps.beta > 0.0:
         look_back(layout, steps, room, here)
     for k in range(steps.count):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
-        x, v, narrow = here.x.T, here.v.T, False
+        x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            shaken = False
+            shaken, narrow = False, False
             if k == 0:
                 stand_by(here.x, here.v, near.jerks)
             else:
@@ -196,8 +202,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                 narrow = nearest2 < shell.thickness * shell.thickness
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
-        watch = layers and steps.breaks and k % WATCH_EVERY == 0
-        if watch and steps.dt > LATE * passing_step(shell.thickness, here.v):
+        watch = layers and steps.breaks and k % watch_every == 0
+        if watch and steps.dt * shell.every > LATE * passing_step(shell.thickness, here.v, solids):
             done = False
             break
         if late:
@@ -206,7 +212,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
             pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
-        if narrow and may_close(here.v, nearest2, steps.dt * shell.every):
+        if narrow and may_close(here.x, here.v, near.jerks.last, nearest2, steps.dt * shell.every):
             if not _held_apart(touch, mesh, frame, steps, here, k, near) and steps.breaks:
                 done = False
                 break

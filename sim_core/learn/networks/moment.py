@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from sim_core.learn.inference import Ground
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["Moment"]
 
@@ -36,7 +37,7 @@ class Moment:
         if k == 1:
             earlier = before
         turn, seen = ground.surroundings.seen(now, before, earlier)
-        arrays = now, turn, seen, ground.pair.base @ now, ground.imbalance.shared(now)
+        arrays = now, turn, seen, weighted_sums(ground.pair.base, now), ground.imbalance.shared(now)
         return Moment(*(torch.from_numpy(array) for array in arrays))
 
     @staticmethod

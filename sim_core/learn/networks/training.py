@@ -25,6 +25,7 @@ from sim_core.learn.networks.moment import Moment
 from sim_core.learn.networks.pace import HEARD, rate_at, stepped
 from sim_core.learn.networks.record import Record
 from sim_core.learn.networks.sheets import Sheets
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["Schedule", "Told", "train"]
 
@@ -61,7 +62,7 @@ class _Sequence:
         self.sheets = Sheets.of(self.ground, device)
         self._coarse = film.coarse
         places = film.coarse.astype(float)
-        base = np.stack([self.ground.pair.base @ place for place in places])
+        base = np.stack([weighted_sums(self.ground.pair.base, place) for place in places])
         self._truth = torch.from_numpy(((film.fine - base) / self.ground.unit).astype(np.float32)).to(device)
         self._ready: Moment | None = None
         if device.type != "cpu":

@@ -11,6 +11,7 @@ can be told q, as an iteration of a solver is, and mends what it learned wrongly
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ from numba import njit
 from sim_core.cloth import Sheet
 from sim_core.cloth.sheet.energies import edge_tensions, vertex_forces
 from sim_core.learn.data import STIFFNESS, Pair
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["Imbalance", "limited"]
 
@@ -48,7 +50,7 @@ class Imbalance:
 
     def shared(self, coarse: np.ndarray) -> np.ndarray:
         """W A(X) (V, 3) [m/s2] of a coarse sheet (C, 3) [m]."""
-        return self.pair.spread @ (self.free * accelerations(self.pair.coarse, coarse))
+        return weighted_sums(self.pair.spread, self.free * accelerations(self.pair.coarse, coarse))
 
     def ways(self, fine: np.ndarray, coarse: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ways [m] on which fine vertices (V, 3) want to go, each for itself, and the means (C, 3) about coarse ones.
@@ -56,16 +58,35 @@ class Imbalance:
         fine (V, 3), coarse (C, 3) [m]; shared: of `shared`.
         """
         pair = self.pair
-        off = pair.mean @ (fine - pair.spread @ coarse)
-        missing = accelerations(pair.fine, fine) - shared - STIFFNESS * (pair.spread @ off)
-        means = (pair.mean @ np.where(self.ease > 0.0, missing, 0.0)) / STIFFNESS
-        return self.ease * missing, limited(means, SAG)
+        off = weighted_sums(pair.mean, fine - weighted_sums(pair.spread, coarse))
+        missing, ways = accelerations(pair.fine, fine), np.zeros((len(fine), 3))
+        _lacking(missing, shared, weighted_sums(pair.spread, off), self.ease, ways)
+        return ways, limited(weighted_sums(pair.mean, missing) / STIFFNESS, SAG)
+
+
+@njit(cache=True)
+def _lacking(missing, shared, led, ease, ways):
+    """Takes from accelerations (V, 3) what is shared and what leads, in place, but of those that are pinned all."""
+    for i in range(len(missing)):
+        for c in range(3):
+            lacks = missing[i, c] - shared[i, c] - STIFFNESS * led[i, c]
+            ways[i, c], missing[i, c] = ease[i, 0] * lacks, lacks if ease[i, 0] > 0.0 else 0.0
 
 
 def limited(vectors: np.ndarray, most: float) -> np.ndarray:
     """Vectors (N, 3), the longer ones cut to a length; by length, since a cut axis by axis would know where up is."""
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors * np.minimum(1.0, most / np.maximum(size, 1e-300))
+    out = np.array(vectors, float)
+    _cut(out, most)
+    return out
+
+
+@njit(cache=True)
+def _cut(vectors, most):
+    for i in range(len(vectors)):
+        size = math.sqrt(vectors[i, 0] ** 2 + vectors[i, 1] ** 2 + vectors[i, 2] ** 2)
+        if size > most:
+            for c in range(3):
+                vectors[i, c] *= most / size
 
 
 def accelerations(sheet: Sheet, positions: np.ndarray) -> np.ndarray:

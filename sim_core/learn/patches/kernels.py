@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from sim_core.learn.convolution.depthwise import FREE_ORDER
 
-__all__ = ["add_up", "carry_over", "draw_down"]
+__all__ = ["add_up", "carry_over", "draw_down", "turn_into"]
 
 
 @njit(cache=True, fastmath=FREE_ORDER)
 def draw_down(patches, turn, corner, weights, out):
     """out (V, 3) = sum over corners i of turn[i] @ (weights[v, i] @ patches[i]); patches (C, K, 3), turn (C, 3, 3),
     corner (V, 3), weights (V, 3, K)."""
+    world = np.zeros((len(patches), 3, weights.shape[2]), patches.dtype)
+    for i in range(len(patches)):
+        for k in range(weights.shape[2]):
+            a, b, n = patches[i, k, 0], patches[i, k, 1], patches[i, k, 2]
+            for c in range(3):
+                world[i, c, k] = turn[i, c, 0] * a + turn[i, c, 1] * b + turn[i, c, 2] * n
     for v in range(len(corner)):
         x = y = z = out[v, 0] * 0
         for c in range(3):
             i = corner[v, c]
-            a = b = n = x * 0
             for k in range(weights.shape[2]):
                 w = weights[v, c, k]
-                a, b, n = a + w * patches[i, k, 0], b + w * patches[i, k, 1], n + w * patches[i, k, 2]
-            x += turn[i, 0, 0] * a + turn[i, 0, 1] * b + turn[i, 0, 2] * n
-            y += turn[i, 1, 0] * a + turn[i, 1, 1] * b + turn[i, 1, 2] * n
-            z += turn[i, 2, 0] * a + turn[i, 2, 1] * b + turn[i, 2, 2] * n
+                x, y, z = x + w * world[i, 0, k], y + w * world[i, 1, k], z + w * world[i, 2, k]
         out[v, 0], out[v, 1], out[v, 2] = x, y, z
 
 
@@ -60,3 +63,13 @@ def carry_over(fine, before, turn, corner, share, out):
             y += turn[i, 1, 0] * a + turn[i, 1, 1] * b + turn[i, 1, 2] * n
             z += turn[i, 2, 0] * a + turn[i, 2, 1] * b + turn[i, 2, 2] * n
         out[v, 0], out[v, 1], out[v, 2] = x, y, z
+
+
+@njit(cache=True)
+def turn_into(vectors, turn, out):
+    """out (C, 3) = turn[i].T @ vectors[i]: vectors (C, 3) as frames (C, 3, 3), in columns, see them."""
+    for i in range(len(out)):
+        for c in range(3):
+            out[i, c] = (
+                turn[i, 0, c] * vectors[i, 0] + turn[i, 1, c] * vectors[i, 1] + turn[i, 2, c] * vectors[i, 2]
+            )

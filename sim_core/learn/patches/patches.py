@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.patches.kernels import add_up, carry_over, draw_down
+from sim_core.learn.patches.kernels import add_up, carry_over, draw_down, turn_into
 from sim_core.learn.topology import checked_sheet
 from sim_core.learn.upsampling import located
 from sim_core.validation import coordinates
@@ -78,6 +78,12 @@ class Patches:
         """Displacements (V, 3) as they were in tangent frames `before` (C, 3, 3), turned along into those of `turn`."""
         out = np.zeros((len(self.corner), 3), np.float32)
         carry_over(_single(fine), _single(before), _single(turn), self.corner, self.share, out)
+        return out
+
+    def turned(self, vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
+        """Vectors (C, 3) of coarse vertices as their tangent frames (C, 3, 3) see them."""
+        out = np.zeros_like(vectors)
+        turn_into(vectors, turn, out)
         return out
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from sim_core.learn.data import Pair, Recipe
 from sim_core.learn.rows.row import Follow
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["Biharmonic", "Linear"]
 
@@ -18,7 +19,7 @@ class Linear:
 
     def follow(self, recipe: Recipe) -> Follow:
         matrix = Pair.of(recipe).spread
-        return lambda coarse: matrix @ coarse
+        return lambda coarse: weighted_sums(matrix, coarse)
 
 
 @dataclass(frozen=True)
@@ -30,4 +31,4 @@ class Biharmonic:
 
     def follow(self, recipe: Recipe) -> Follow:
         matrix = Pair.of(recipe).base
-        return lambda coarse: matrix @ coarse
+        return lambda coarse: weighted_sums(matrix, coarse)

@@ -10,7 +10,7 @@ import numpy as np
 from sim_core.learn.data import Film, Pair, Recipe
 from sim_core.learn.rows.row import Follow
 from sim_core.learn.upsampling import LocalFrames as Model
-from sim_core.learn.upsampling import LocalFramesFit
+from sim_core.learn.upsampling import LocalFramesFit, weighted_sums
 
 __all__ = ["LocalFrames"]
 
@@ -41,7 +41,7 @@ class LocalFrames:
         pair = Pair.of(recipe)
         model, width = self.models.get(pair.kind), _width(pair)
         if model is None:
-            return lambda coarse: pair.base @ coarse
+            return lambda coarse: weighted_sums(pair.base, coarse)
         own = replace(model, base=pair.base)
         return lambda coarse: width * own.predict(coarse / width)
 

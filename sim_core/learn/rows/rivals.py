@@ -14,6 +14,7 @@ from sim_core.learn.data import Pair, Recipe
 from sim_core.learn.inference import RIVALS, Ground, RivalTrained
 from sim_core.learn.pooling import Pooled
 from sim_core.learn.rows.row import Follow
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["RivalRow"]
 
@@ -46,7 +47,7 @@ class RivalRow:
         past: list[np.ndarray] = []
 
         def follow(coarse: np.ndarray) -> np.ndarray:
-            base = ground.pair.base @ coarse
+            base = weighted_sums(ground.pair.base, coarse)
             past.insert(0, base)
             del past[3:]
             three = [past[0], past[min(1, len(past) - 1)], past[-1]]

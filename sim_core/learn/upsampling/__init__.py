@@ -9,6 +9,7 @@ from sim_core.learn.upsampling.edge_laplacian import squared_laplacian
 from sim_core.learn.upsampling.linear import linear
 from sim_core.learn.upsampling.local_frames import LocalFrames, LocalFramesFit, TangentFrames, tangent_frames
 from sim_core.learn.upsampling.location import located
+from sim_core.learn.upsampling.weighted_sums import weighted_sums
 
 __all__ = [
     "Biharmonic",
@@ -20,4 +21,5 @@ __all__ = [
     "located",
     "squared_laplacian",
     "tangent_frames",
+    "weighted_sums",
 ]

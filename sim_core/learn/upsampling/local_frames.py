@@ -9,15 +9,18 @@ learning the frames by heart, and is relative to how much the neighbourhood move
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.sparse import csr_array
 from scipy.spatial import KDTree
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.convolution import spirals
+from sim_core.learn.convolution import FREE_ORDER, spirals
 from sim_core.learn.topology import checked_sheet, rings
+from sim_core.learn.upsampling.weighted_sums import weighted_sums
 from sim_core.validation import coordinates, finite, integer, numeric_array
 
 __all__ = ["LocalFrames", "LocalFramesFit", "TangentFrames", "tangent_frames"]
@@ -38,16 +41,30 @@ class TangentFrames:
 
         Where the derivatives lie in line a cloth has no tangent plane, and the frame is 0.
         """
-        first, second = self.along @ coarse, self.across @ coarse
-        first = _unit(first)
-        normal = _unit(np.cross(first, second))
-        present = (normal != 0).any(1, keepdims=True)
-        return np.stack([first * present, np.cross(normal, first), normal], axis=2)
+        out = np.zeros((len(coarse), 3, 3))
+        _frames(weighted_sums(self.along, coarse), weighted_sums(self.across, coarse), out)
+        return out
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.where(size > 1e-9, vectors / np.maximum(size, 1e-9), 0.0)
+@njit(cache=True)
+def _frames(along, across, out):
+    for i in range(len(out)):
+        x, y, z = _unit(along[i, 0], along[i, 1], along[i, 2])
+        u, v, w = across[i, 0], across[i, 1], across[i, 2]
+        a, b, c = _unit(y * w - z * v, z * u - x * w, x * v - y * u)
+        if a == 0.0 and b == 0.0 and c == 0.0:
+            continue
+        out[i, 0, 0], out[i, 1, 0], out[i, 2, 0] = x, y, z
+        out[i, 0, 1], out[i, 1, 1], out[i, 2, 1] = b * z - c * y, c * x - a * z, a * y - b * x
+        out[i, 0, 2], out[i, 1, 2], out[i, 2, 2] = a, b, c
+
+
+@njit(cache=True)
+def _unit(x, y, z):
+    size = math.sqrt(x * x + y * y + z * z)
+    if size > 1e-9:
+        return x / size, y / size, z / size
+    return 0.0, 0.0, 0.0
 
 
 def tangent_frames(rest: np.ndarray, faces: np.ndarray) -> TangentFrames:
@@ -99,8 +116,22 @@ class LocalFrames:
         coarse = coordinates("coarse", coarse, (len(self.near), 3))
         turn = self.frames.of(coarse)
         feature = _features(coarse, turn, self.near, self.length)
-        local = np.matmul(feature[self.anchor][:, None], self.weights)[:, 0] + self.bias
-        return self.base @ coarse + np.einsum("vij,vj->vi", turn[self.anchor], local)
+        out = weighted_sums(self.base, coarse)
+        _mend(feature, turn, self.anchor, self.weights, self.bias, out)
+        return out
+
+
+@njit(cache=True, fastmath=FREE_ORDER)
+def _mend(feature, turn, anchor, weights, bias, out):
+    """Adds to out (V, 3) what its anchor's features (K, D) say by weights (V, D, 3) and bias (V, 3), in its frame."""
+    for v in range(len(out)):
+        k = anchor[v]
+        a, b, n = bias[v, 0], bias[v, 1], bias[v, 2]
+        for d in range(feature.shape[1]):
+            f = feature[k, d]
+            a, b, n = a + f * weights[v, d, 0], b + f * weights[v, d, 1], n + f * weights[v, d, 2]
+        for c in range(3):
+            out[v, c] += turn[k, c, 0] * a + turn[k, c, 1] * b + turn[k, c, 2] * n
 
 
 class LocalFramesFit:

@@ -21,16 +21,23 @@ SHARE, HELD = 0.5, 0.25  # of a gap: what a pair may lose in a step, and does wh
 THROUGH = 0.9  # of a gap: a pair that still loses more after all passes needs shorter steps
 TAKEN_BACK = 0.7  # what is said of a pair that solids had pushed through each other: to be gone through again
 PASSES = 24  # at most
+NOTHING = 1e-6  # of the thickness: what is nearer and still closes cannot be kept apart
 
 
 @njit(cache=True, error_model="numpy")
-def may_close(v, gap2, dt):
-    """Whether velocities v (3, V) may close a share of a gap, whose square [m2] is given, in a step of dt [s]."""
-    most = 0.0
-    v0, v1, v2 = v[0], v[1], v[2]
+def may_close(x, v, last, gap2, dt):
+    """Whether a share of a gap, whose square [m2] is given, may be closed: by velocities v (3, V) in a step of dt [s],
+    and by the ways that vertices were pushed since they were at `last` (3, V)."""
+    most, dt2 = 0.0, dt * dt
+    (x0, x1, x2), (v0, v1, v2), (a0, a1, a2) = (
+        (x[0], x[1], x[2]),
+        (v[0], v[1], v[2]),
+        (last[0], last[1], last[2]),
+    )
     for i in range(len(v0)):
-        most = max(most, v0[i] * v0[i] + v1[i] * v1[i] + v2[i] * v2[i])
-    return 4.0 * most * dt * dt > SHARE * SHARE * gap2
+        pushed2 = (x0[i] - a0[i]) ** 2 + (x1[i] - a1[i]) ** 2 + (x2[i] - a2[i]) ** 2
+        most = max(most, dt2 * (v0[i] * v0[i] + v1[i] * v1[i] + v2[i] * v2[i]) + pushed2)
+    return 8.0 * most > SHARE * SHARE * gap2  # two vertices, and (a + b)² <= 2 (a² + b²)
 
 
 @njit(cache=True, error_model="numpy")
@@ -59,12 +66,13 @@ def listed_close(x, v, near, thickness, dt):
 
 
 @njit(cache=True, error_model="numpy")
-def hold_apart(x, v, mesh, near, dt, step, listed):
-    """One pass over the pairs of `NearPairs` that are awake, or only those that are `listed` as close; the greatest
-    share of its gap that one was found losing.
+def hold_apart(x, v, mesh, near, thickness, dt, step, listed):
+    """One pass over the pairs of `NearPairs` that were within the shell after the leap, or only those that are `listed`
+    as close; the greatest share of its gap that one was found losing. Wider ones are none of its business: whether
+    they are in the lists depends on when these were made.
 
     What solids have pushed through each other since the substep's leap goes back to where it was then, and
-    `near.jerks.back` tells of it.
+    `near.jerks.back` tells of it, and of what is pressed to nothing.
     """
     now, close, jerked, leapt, back = (
         near.now,
@@ -74,7 +82,7 @@ def hold_apart(x, v, mesh, near, dt, step, listed):
         near.jerks.back,
     )
     points, crossings, counts, inverse_mass = now.points, now.crossings, now.count, mesh.inverse_mass
-    faces, edges, most = mesh.faces, mesh.edges, 0.0
+    faces, edges, most, within = mesh.faces, mesh.edges, 0.0, (dt, thickness * thickness)
     if listed:
         for n in range(1, close[0] + 1):
             k = close[n]
@@ -82,20 +90,20 @@ def hold_apart(x, v, mesh, near, dt, step, listed):
                 index, weight = _of_point(x, points[k, 0], points[k, 1], faces)
             else:
                 index, weight = _of_edges(x, crossings[-1 - k, 0], crossings[-1 - k, 1], edges)
-            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, dt))
+            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, within))
         return most
     for k in range(counts[1]):
         i, f = points[k, 0], points[k, 1]
         woken = jerked[i] or jerked[faces[f, 0]] or jerked[faces[f, 1]] or jerked[faces[f, 2]]
         if points[k, 2] <= step or woken:
             index, weight = _of_point(x, i, f, faces)
-            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, dt))
+            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, within))
     for k in range(counts[2]):
         e, g = crossings[k, 0], crossings[k, 1]
         woken = jerked[edges[e, 0]] or jerked[edges[e, 1]] or jerked[edges[g, 0]] or jerked[edges[g, 1]]
         if crossings[k, 2] <= step or woken:
             index, weight = _of_edges(x, e, g, edges)
-            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, dt))
+            most = max(most, _held(x, v, leapt, back, inverse_mass, index, weight, within))
     return most
 
 
@@ -118,7 +126,7 @@ def _of_edges(x, e, g, edges):
 
 
 @njit(cache=True, error_model="numpy")
-def _held(x, v, leapt, back, inverse_mass, index, weight, dt):
+def _held(x, v, leapt, back, inverse_mass, index, weight, within):
     """One pair, whose four vertices' weights span its gap; the share that it was losing in a step."""
     dx = dy = dz = vx = vy = vz = ox = oy = oz = 0.0
     for k in range(4):
@@ -126,15 +134,21 @@ def _held(x, v, leapt, back, inverse_mass, index, weight, dt):
         dx, dy, dz = dx + w * x[i, 0], dy + w * x[i, 1], dz + w * x[i, 2]
         vx, vy, vz = vx + w * v[i, 0], vy + w * v[i, 1], vz + w * v[i, 2]
         ox, oy, oz = ox + w * leapt[i, 0], oy + w * leapt[i, 1], oz + w * leapt[i, 2]
-    least = 0.0
-    if ox * dx + oy * dy + oz * dz < (1.0 - THROUGH) * (ox * ox + oy * oy + oz * oz):
+    least, (dt, reach2), leapt2 = 0.0, within, ox * ox + oy * oy + oz * oz
+    if leapt2 >= reach2:
+        return least
+    if ox * dx + oy * dy + oz * dz < (1.0 - THROUGH) * leapt2:
         for k in range(4):
             for c in range(3):
                 x[index[k], c] = leapt[index[k], c]
         dx, dy, dz, least, back[0] = ox, oy, oz, TAKEN_BACK, True
     gap2 = dx * dx + dy * dy + dz * dz
     meets = -(vx * dx + vy * dy + vz * dz)
-    if meets * dt <= SHARE * gap2 or gap2 == 0.0:
+    if meets * dt <= SHARE * gap2:
+        return least
+    if min(gap2, leapt2) < NOTHING * NOTHING * reach2:
+        back[1] = True
+    if gap2 == 0.0:
         return least
     total = most = 0.0
     for k in range(4):

@@ -25,7 +25,7 @@ class Jerks(NamedTuple):
     some: np.ndarray  # (1,) bool, whether any is
     back: (
         np.ndarray
-    )  # (1,) bool, whether anything that a solid pushed through a layer in this frame was taken back
+    )  # (2,) bool, whether in this frame a push through a layer was taken back, and whether one had no end
     restless: (
         np.ndarray
     )  # (V,) bool, who in this frame was once too fast, or pushed too far, for pairs to be close
@@ -35,7 +35,7 @@ def jerks_of(vertices: int) -> Jerks:
     """Memory for V vertices."""
     last, going, looked = (np.zeros((3, vertices)) for _ in range(3))
     jerked, restless = (np.zeros(vertices, np.bool_) for _ in range(2))
-    some, back = (np.zeros(1, np.bool_) for _ in range(2))
+    some, back = np.zeros(1, np.bool_), np.zeros(2, np.bool_)
     return Jerks(last, going, looked, jerked, some, back, restless)
 
 
@@ -44,7 +44,7 @@ def stand_by(x, v, jerks):
     """Begins at x and v (3, V): nobody is jerked, and nobody may sleep yet."""
     jerks.last[:], jerks.going[:], jerks.looked[:] = x, v, v
     jerks.jerked[:] = jerks.restless[:] = False
-    jerks.some[0] = jerks.back[0] = False
+    jerks.some[:] = jerks.back[:] = False
 
 
 @njit(cache=True, error_model="numpy")

@@ -142,10 +142,10 @@ def repel(x, v, mesh, near, shell, dt, step):
             + dy * (v[i, 1] - wa * v[a, 1] - wb * v[b, 1] - wc * v[c, 1])
             + dz * (v[i, 2] - wa * v[a, 2] - wb * v[b, 2] - wc * v[c, 2])
         )
-        if gap2 < close2 or restless[i] or restless[a] or restless[b] or restless[c]:
-            _among(close, k)
         if gap2 < reach2:
             nearest2 = min(nearest2, gap2)
+            if gap2 < close2 or restless[i] or restless[a] or restless[b] or restless[c]:
+                _among(close, k)
             _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
         else:
             late = late or _too_fast(meets, gap2, short, least, dt)
@@ -170,8 +170,6 @@ def repel(x, v, mesh, near, shell, dt, step):
             + dy * (v[a, 1] + s * (v[b, 1] - v[a, 1]) - v[c, 1] - t * (v[d, 1] - v[c, 1]))
             + dz * (v[a, 2] + s * (v[b, 2] - v[a, 2]) - v[c, 2] - t * (v[d, 2] - v[c, 2]))
         )
-        if gap2 < close2 or restless[a] or restless[b] or restless[c] or restless[d]:
-            _among(close, -1 - k)
         if gap2 >= reach2:
             late = late or _too_fast(meets, gap2, short, least, dt)
             fast2 = max(
@@ -183,6 +181,8 @@ def repel(x, v, mesh, near, shell, dt, step):
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
         elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
             nearest2 = min(nearest2, gap2)
+            if gap2 < close2 or restless[a] or restless[b] or restless[c] or restless[d]:
+                _among(close, -1 - k)
             _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
     return late, nearest2
 

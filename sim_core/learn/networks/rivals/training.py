@@ -24,6 +24,7 @@ from sim_core.learn.networks.rivals.image_net import ImageNet, Images
 from sim_core.learn.networks.rivals.sheet import Frames, RivalSheet
 from sim_core.learn.networks.rivals.spiral_net import SpiralNet, Spirals
 from sim_core.learn.pooling import Pooled, collapse, decimate, mean_absolute_curvature
+from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["RivalSchedule", "made_of", "network_of", "train_rival"]
 
@@ -51,7 +52,7 @@ class _Sequence:
     def __init__(self, recipe: Recipe, film: Film, device: torch.device) -> None:
         self.ground = Ground.of(recipe)
         self.sheet = RivalSheet(self.ground, tuple(recipe.on(recipe.fine).pins), device)
-        base = np.stack([self.ground.pair.base @ place for place in film.coarse.astype(float)])
+        base = np.stack([weighted_sums(self.ground.pair.base, place) for place in film.coarse.astype(float)])
         self.base = torch.from_numpy(base.astype(np.float32)).to(device)
         self.truth = torch.from_numpy(np.asarray(film.fine, np.float32)).to(device)
 
