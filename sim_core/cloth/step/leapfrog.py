@@ -31,10 +31,8 @@ SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
 LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
-WATCH_EVERY, FEW = (
-    8,
-    32,
-)  # substeps between two looks at whether layers are too fast, and looks a frame at least
+WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
+FEW = 32  # such looks a frame at least, as far as it has substeps
 
 
 class Steps(NamedTuple):

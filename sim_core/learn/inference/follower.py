@@ -17,13 +17,12 @@ from sim_core.errors import SimCoreError
 from sim_core.learn.convolution import depthwise
 from sim_core.learn.inference.ground import Ground
 from sim_core.learn.inference.settings import PATCH, Settings
-from sim_core.learn.patches import SEEN, limited
+from sim_core.learn.patches import SEEN
 from sim_core.learn.upsampling import weighted_sums
 from sim_core.validation import coordinates
 
-__all__ = ["FURTHEST_WAY", "GATE_BIAS", "Follower"]
+__all__ = ["GATE_BIAS", "Follower"]
 
-FURTHEST_WAY = 4.0  # units that a vertex is told to be out of balance by, at most
 GATE_BIAS = -2.0  # so that of the last frame little stays until it is learned otherwise
 
 
@@ -54,16 +53,13 @@ class Follower:
         old = turn if self._turn is None else self._turn
         last, first = (ground.patches.carried(off, old, turn) for off in self._off)
         base, shared = weighted_sums(ground.pair.base, now), ground.imbalance.shared(now)
-        fit, into = ground.patches.fitted, ground.patches.turned
+        fit = ground.patches.fitted
         was, change = _flat(fit(last, turn)), _flat(fit(last - first, turn))
         off, there = np.zeros_like(last), np.zeros_like(was)
         for step in range(self.settings.steps):
-            ways, means = ground.imbalance.ways(base + ground.unit * off, now, shared)
-            ways = limited(ways / ground.unit, FURTHEST_WAY)
+            ways, means = ground.lacking(base + ground.unit * off, now, shared, turn)
             known = np.concatenate(
-                [seen, there, change, there - was, _flat(fit(ways, turn)), into(means / ground.unit, turn)],
-                axis=1,
-                dtype=np.float32,
+                [seen, there, change, there - was, _flat(fit(ways, turn)), means], axis=1, dtype=np.float32
             )
             said, stays = self._step(step, known)
             if step == 0:

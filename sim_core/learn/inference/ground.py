@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sim_core.learn.data import Pair, Recipe
-from sim_core.learn.patches import Imbalance, Patches, Surroundings
+import numpy as np
 
-__all__ = ["UNIT", "Ground"]
+from sim_core.learn.data import Pair, Recipe
+from sim_core.learn.patches import Imbalance, Patches, Surroundings, limited
+
+__all__ = ["FURTHEST_WAY", "UNIT", "Ground"]
 
 UNIT = 0.25  # of a coarse edge: what displacements are told in
+FURTHEST_WAY = 4.0  # units that a vertex is told to be out of balance by, at most
 
 
 @dataclass(frozen=True)
@@ -34,3 +37,11 @@ class Ground:
         surroundings = Surroundings.of(pair.coarse.rest, pair.coarse.faces, tuple(coarse))
         imbalance = Imbalance.of(pair, tuple(coarse), tuple(fine))
         return Ground(pair, patches, surroundings, imbalance, UNIT * patches.length)
+
+    def lacking(
+        self, fine: np.ndarray, coarse: np.ndarray, shared: np.ndarray, turn: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """`Imbalance.ways` as a network is told of them, in units: those of fine vertices (V, 3), the longer ones cut,
+        and the means (C, 3) as their tangent frames turn (C, 3, 3) see them."""
+        ways, means = self.imbalance.ways(fine, coarse, shared)
+        return limited(ways / self.unit, FURTHEST_WAY), self.patches.turned(means / self.unit, turn)

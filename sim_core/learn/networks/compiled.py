@@ -14,10 +14,9 @@ from torch import Tensor
 
 from sim_core.learn.convolution import depthwise, depthwise_gradients
 from sim_core.learn.inference import Ground
-from sim_core.learn.inference.follower import FURTHEST_WAY
 from sim_core.learn.networks.moment import Moment
 from sim_core.learn.networks.sheets import Sheets
-from sim_core.learn.patches import CUBIC, limited
+from sim_core.learn.patches import CUBIC
 from sim_core.learn.patches.kernels import add_up, carry_over, draw_down
 
 __all__ = ["Compiled"]
@@ -63,9 +62,9 @@ class Compiled:
         for k, ground in enumerate(self.grounds):
             above, below = (slice(a[k], a[k + 1]) for a in (self._coarse, self._fine))
             fine = base[below] + ground.unit * now[below]
-            way, mean = ground.imbalance.ways(fine, coarse[above], shared[below])
-            ways.append(limited(way / ground.unit, FURTHEST_WAY))
-            means.append(np.einsum("cji,cj->ci", turn[above], mean / ground.unit))
+            way, mean = ground.lacking(fine, coarse[above], shared[below], turn[above])
+            ways.append(way)
+            means.append(mean)
         return tuple(torch.from_numpy(np.concatenate(one).astype(np.float32)) for one in (ways, means))
 
 

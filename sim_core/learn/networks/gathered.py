@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from sim_core.learn.data import STIFFNESS
-from sim_core.learn.inference.follower import FURTHEST_WAY
+from sim_core.learn.inference.ground import FURTHEST_WAY
 from sim_core.learn.networks.moment import Moment
 from sim_core.learn.networks.sheets import Sheets
 from sim_core.learn.patches import SAG

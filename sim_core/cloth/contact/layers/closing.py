@@ -46,7 +46,7 @@ def listed_close(x, v, near, thickness, dt):
 
     One that is not is wider than CLOSE, and too wide for the speeds v (3, V) of its vertices and for the ways to x
     (3, V) that solids have pushed them since the leap – but for those that are noted as restless here, whose pairs will
-    be listed from now on, however wide.
+    be listed from now on, as long as they are within the shell.
     """
     if near.close[0] >= len(near.close):
         return False

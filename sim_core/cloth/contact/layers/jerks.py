@@ -23,12 +23,8 @@ class Jerks(NamedTuple):
     looked: np.ndarray  # (3, V) [m/s] what lists reckon with
     jerked: np.ndarray  # (V,) bool, in this substep
     some: np.ndarray  # (1,) bool, whether any is
-    back: (
-        np.ndarray
-    )  # (2,) bool, whether in this frame a push through a layer was taken back, and whether one had no end
-    restless: (
-        np.ndarray
-    )  # (V,) bool, who in this frame was once too fast, or pushed too far, for pairs to be close
+    back: np.ndarray  # (2,) bool, whether a push through a layer was taken back, and whether one had no end
+    restless: np.ndarray  # (V,) bool, who in this frame was once too fast, or pushed too far
 
 
 def jerks_of(vertices: int) -> Jerks:
