@@ -6,6 +6,7 @@ Every case ends finite, keeps its longest edge within 10 % of an analytic value 
 step, has 0 samples deeper than a tenth of the clearance in a collider at any frame, and gets no energy back without
 work (at most 1 % of what it has lost). `unique`: the equilibrium is one, and every vertex regains it within 1 mm;
 `calm`: kinetic energy goes to zero and self-intersections do not grow from when nothing does work any more.
+`order`: 150 stacks each, drawn by chance, fall on a floor, and no layer crosses another or changes places in silence.
 Nothing is put to sleep. --readme writes the table into the room's README.
 """
 
@@ -19,11 +20,12 @@ from cloth_course import Outcome
 from cloth_hard_hung import HUNG
 from cloth_hard_met import MET
 from cloth_hard_same import SAME
+from cloth_hard_stacks import STACKS
 
 README = Path(__file__).parents[2] / "sim_core" / "cloth" / "README.md"
 BEGIN, END = "<!-- hard cases -->", "<!-- end of hard cases -->"
 
-CASES: dict[str, Callable[[], Outcome]] = {**HUNG, **MET, **SAME}
+CASES: dict[str, Callable[[], Outcome]] = {**HUNG, **MET, **SAME, **STACKS}
 
 
 def main() -> int:

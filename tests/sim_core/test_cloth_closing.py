@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -98,25 +99,32 @@ def test_a_squeezed_pair_is_thrown_no_further_than_a_share_of_the_thickness() ->
 
 
 def stack(
-    densities: list[float], heights: list[float], count: int = 12, size: float = 0.3
+    densities: list[float],
+    heights: list[float],
+    count: int = 12,
+    size: float = 0.3,
+    shares: Sequence[float] | None = None,
 ) -> tuple[Sheet, np.ndarray]:
-    """Square sheets [kg/m2], a little beside each other, and their places (V, 3) [m]."""
+    """Square sheets [kg/m2], a little beside each other, and their places (V, 3) [m]; shares: of `size` a side."""
+    shares = shares or [1.0] * len(densities)
     axis = np.linspace(0, size, count)
-    rest = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+    square = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+    rest = [share * square for share in shares]
+    middle = [square + 0.5 * size * (1 - share) for share, square in zip(shares, rest, strict=True)]
     a = (np.arange(count - 1)[:, None] * count + np.arange(count - 1)).ravel()
     faces = np.concatenate(
         [np.column_stack([a, a + 1, a + count]), np.column_stack([a + 1, a + count + 1, a + count])]
     )
     numbers = range(len(densities))
-    every = np.concatenate([faces + len(rest) * k for k in numbers]).astype(np.int32)
-    flat = np.concatenate([rest + [2 * size * k, 0.0] for k in numbers])
+    every = np.concatenate([faces + len(square) * k for k in numbers]).astype(np.int32)
+    flat = np.concatenate([rest[k] + [2 * size * k, 0.0] for k in numbers])
     materials = [Material(density, 49.0, bend=5e-6) for density in densities]
     sheet = Sheet.of_corners(
         flat[every], every, materials, np.repeat(np.arange(len(densities)), len(faces)).astype(np.int32)
     )
     x = np.concatenate(
         [
-            np.column_stack([rest[:, 0] + 4e-4 * k, np.full(len(rest), y), rest[:, 1] + 2e-4 * k])
+            np.column_stack([middle[k][:, 0] + 4e-4 * k, np.full(len(square), y), middle[k][:, 1] + 2e-4 * k])
             for k, y in enumerate(heights)
         ]
     )
@@ -223,3 +231,20 @@ def test_a_post_that_strikes_two_sheets_leaves_them_in_order(speed: float) -> No
 def test_a_post_that_is_too_fast_for_two_sheets_never_passes_in_silence(speed: float) -> None:
     said = struck(speed)
     assert not said or "more slowly" in said
+
+
+def test_a_sheet_that_pins_press_into_a_floor_is_told_instead_of_swapped() -> None:
+    """A free sheet lies upon the floor, and one above is led down into the floor's clearance: no place is left."""
+    shell, count = 0.0025, 10
+    sheet, x = stack([0.1, 0.1], [0.01, 0.01 + 3 * shell], count, shares=[1.0, 0.6])
+    pins = np.arange(count**2, 2 * count**2)
+    live = Live(sheet, x, contact=Contact(thickness=shell), collider=HalfSpace(), pins=pins.tolist())
+    place, said = x[pins], ""
+    for _ in range(4):
+        place[:, 1] = np.maximum(place[:, 1] - 0.3 * FRAME, 0.001)
+        try:
+            live.step(pins=pins.tolist(), targets=place)
+        except SimCoreError as error:
+            said = str(error)
+            break
+    assert "more slowly" in said

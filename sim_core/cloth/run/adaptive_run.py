@@ -327,10 +327,10 @@ class Run:
         raise SimCoreError(f"frame {state.frame}: {why}")
 
     def _uncrossed(self, begin: State, end: State) -> bool:
-        """Whether no layer passes through another that did not when the frame began, nor is pressed through it."""
+        """Whether no layer crosses another that did not when the frame began, changed sides, or is pressed through."""
         if self.engine.contact.untangle:  # what passed through is taken out again after the frame
             return True
-        if self.engine.pressed:
+        if self.engine.pressed or self.engine.swapped(begin, end):
             return False
         before, after = (intersections(state.x.T, self.engine.mesh.faces) for state in (begin, end))
         return after <= before

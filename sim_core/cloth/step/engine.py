@@ -15,7 +15,12 @@ from sim_core.cloth.contact.collisions import (
     contact_samples,
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, keep_lengths, mirror
-from sim_core.cloth.contact.layers.crossings import faces_at_edges, no_crossings, none_crosses
+from sim_core.cloth.contact.layers.crossings import (
+    changed_sides,
+    faces_at_edges,
+    no_crossings,
+    none_crosses,
+)
 from sim_core.cloth.contact.layers.near_pairs import begin_pairs, near_pairs_of
 from sim_core.cloth.contact.layers.pairs import Mesh, finder_of
 from sim_core.cloth.contact.layers.parting import parted
@@ -225,6 +230,11 @@ class Engine:
     def pressed(self) -> bool:
         """Whether they pushed it there again, as often as it was taken back, or anything pressed layers to nothing."""
         return bool(self.near.jerks.back[1])
+
+    def swapped(self, begin: State, end: State) -> int:
+        """How many pairs of a vertex and a face that are near at a frame's end have changed sides in it."""
+        near = self.near.now
+        return changed_sides(begin.x.T, end.x.T, near.points[: near.count[1], :2], self.mesh.faces)
 
     @property
     def solids(self) -> bool:

@@ -13,6 +13,7 @@ from sim_core.cloth.contact.layers.patch_places import flat_pair, patch_pairs, p
 from sim_core.cloth.contact.layers.patches import CONE
 
 FRESH = 0.8  # of the skin, that lists which have just been begun are sure of
+WITHIN = 0.02  # least barycentric coordinate of a foot that counts as on the face
 
 Lists = tuple[np.ndarray, np.ndarray]
 
@@ -239,3 +240,24 @@ def near_crossings(x, shapes, crossed, reach):
                 near[n] = True
                 break
     return near
+
+
+def changed_sides(before: np.ndarray, after: np.ndarray, points: np.ndarray, faces: np.ndarray) -> int:
+    """How many pairs of a vertex and a face (K, 2), with feet on the face both times, have changed sides.
+
+    Layers that changed places as a whole leave no crossing that tells of it. before, after: (V, 3) [m]; faces (F, 3).
+    A vertex that slid off its face meanwhile tells nothing.
+    """
+    (inside, height), (still, now) = (_foot(x, points, faces) for x in (before, after))
+    return int((inside & still & (height * now < 0.0)).sum())
+
+
+def _foot(x: np.ndarray, points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Whether the foot of each vertex lies on its face, and the height above (K,)."""
+    a, b, c = (x[faces[points[:, 1], k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    square = np.maximum((normal**2).sum(1), 1e-300)
+    way = x[points[:, 0]] - a
+    v = (np.cross(way, c - a) * normal).sum(1) / square
+    w = (np.cross(b - a, way) * normal).sum(1) / square
+    return np.minimum(np.minimum(v, w), 1.0 - v - w) > WITHIN, (way * normal).sum(1) / np.sqrt(square)
