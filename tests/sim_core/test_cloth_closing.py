@@ -32,7 +32,7 @@ def one_pair(x: np.ndarray) -> NearPairs:
     """Vertex 0 and the only face, where they have leapt to x (4, 3)."""
     lists = near_pairs_of(4, 2, 0)
     now = lists.now._replace(points=np.array([[0, 0, 0]], np.int32), count=np.array([0, 1, 0]))
-    lists.jerks.last[:] = x.T
+    lists.jerks.leapt[:] = x.T
     return lists._replace(now=now)
 
 
@@ -81,7 +81,7 @@ def test_who_is_fast_is_restless_from_then_on_and_its_pairs_are_listed() -> None
     assert not listed_close(x, v, lists, GAP, DT)
     assert lists.jerks.restless.tolist() == [False, False, True, False]
     assert listed_close(x, v, lists, GAP, DT)
-    lists.jerks.last[0, 0] = -0.6 * CLOSE * GAP  # pushed by a solid since
+    lists.jerks.leapt[0, 0] = -0.6 * CLOSE * GAP  # pushed by a solid since
     assert not listed_close(x, v, lists, GAP, DT)
     assert listed_close(x, v, lists, GAP, DT)
     lists.close[0] = len(lists.close)  # more than there was room for

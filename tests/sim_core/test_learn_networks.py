@@ -12,7 +12,7 @@ import pytest
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
 from sim_core.learn.data import Film, Recipe, film, generate
-from sim_core.learn.inference import Follower, Ground, Settings, Trained, read_weights, write_weights
+from sim_core.learn.inference import PATCH, Follower, Ground, Settings, Trained, read_weights, write_weights
 
 SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
 
@@ -89,18 +89,16 @@ def test_torch_says_the_same_on_several_sheets_glued_together(gathered: bool) ->
     made = [hanging(1), hanging(13)]
     whole = glued([ground for ground, _ in made], gathered=gathered)
     followers = [Follower(ground, SMALL, weights) for ground, _ in made]
-    off = torch.zeros(2, int(whole.fine[-1]), 3)
-    before = None
+    now, was, turn = torch.zeros(int(whole.fine[-1]), 3), torch.zeros(int(whole.coarse[-1]), PATCH), None
     for k in range(6):
         moments = [Moment.of(ground, one.coarse, k) for ground, one in made]
         if gathered:
             moments = [Moment.stacked([moment], torch.device("cpu")).row(0) for moment in moments]
         moment = Moment.glued(moments)
-        before = moment.turn if before is None else before
-        last, first = (whole.at.carried(part, before, moment.turn) for part in off)
+        last = whole.at.carried(now, moment.turn if turn is None else turn, moment.turn)
         with torch.no_grad():
-            now = network(whole, moment, last, first)
-        off, before = torch.stack([now, last]), moment.turn
+            now, was = network(whole, moment, last, was)
+        turn = moment.turn
         for n, (ground, one) in enumerate(made):
             fine = followers[n](one.coarse[k])
             told = moments[n].base + ground.unit * now[whole.fine[n] : whole.fine[n + 1]]
@@ -118,8 +116,9 @@ def test_the_sums_of_a_gpu_have_the_gradients_of_the_compiled_ones() -> None:
         network = LearnedSteps(SMALL)
         network.load_state_dict({name: torch.from_numpy(value) for name, value in drawn(2).items()})
         whole = glued([ground for ground, _ in made], gathered=gathered)
-        last, first = torch.randn(2, int(whole.fine[-1]), 3, generator=torch.Generator().manual_seed(0))
-        off = network(whole, moment, whole.at.carried(last, moment.turn, moment.turn), first)
+        last = torch.randn(int(whole.fine[-1]), 3, generator=torch.Generator().manual_seed(0))
+        was = torch.randn(int(whole.coarse[-1]), PATCH, generator=torch.Generator().manual_seed(1))
+        off, _ = network(whole, moment, whole.at.carried(last, moment.turn, moment.turn), was)
         (off.square().mean() + whole.at.edge_gap(off)).backward()
         found.append({name: value.grad for name, value in network.named_parameters()})
     for name, one in found[0].items():
@@ -137,10 +136,10 @@ def test_gradients_are_those_of_small_changes() -> None:
         for value in network.parameters():
             value.add_(0.1 * torch.randn_like(value))
     moment = Moment.of(ground, made.coarse, 4)
-    last, first = torch.randn(2, int(whole.fine[-1]), 3)
+    last, was = torch.randn(int(whole.fine[-1]), 3), torch.randn(int(whole.coarse[-1]), PATCH)
 
     def loss():
-        off = network(whole, moment, last, first)
+        off, _ = network(whole, moment, last, was)
         return off.square().mean() + whole.at.edge_gap(off)
 
     loss().backward()

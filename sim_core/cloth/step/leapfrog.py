@@ -198,6 +198,8 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                     done = False
                     break
                 narrow = nearest2 < shell.thickness * shell.thickness
+        if narrow:
+            near.jerks.leapt[:] = here.x
         if frame.speed_limit < FREE:
             band_limit(axes(here.v), frame.speed_limit)
         watch = layers and steps.breaks and k % watch_every == 0
@@ -210,7 +212,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
             pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
-        if narrow and may_close(here.x, here.v, near.jerks.last, nearest2, steps.dt * shell.every):
+        if narrow and may_close(here.x, here.v, near.jerks.leapt, nearest2, steps.dt * shell.every):
             if not _held_apart(touch, mesh, frame, steps, here, k, near) and steps.breaks:
                 done = False
                 break

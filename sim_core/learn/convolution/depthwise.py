@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from sim_core.learn.topology import unsigned
+
 __all__ = ["depthwise", "depthwise_gradients"]
 
 FREE_ORDER = {"contract", "reassoc", "nsz", "arcp"}  # what sums in lanes need
@@ -45,7 +47,7 @@ def depthwise(features: np.ndarray, spirals: np.ndarray, weights: np.ndarray) ->
     features: (V, W); spirals: (V, L) int32; weights: (L, W).
     """
     out = np.empty_like(features)
-    _depthwise(features, spirals, weights, out)
+    _depthwise(features, unsigned(spirals), weights, out)
     return out
 
 
@@ -54,5 +56,5 @@ def depthwise_gradients(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Gradients by features (V, W) and by weights (L, W) of what has the gradient of_out (V, W) by `depthwise`."""
     of_features, of_weights = np.empty_like(features), np.empty_like(weights)
-    _gradients(features, spirals, weights, of_out, of_features, of_weights)
+    _gradients(features, unsigned(spirals), weights, of_out, of_features, of_weights)
     return of_features, of_weights

@@ -2,10 +2,11 @@
 
 from sim_core.learn.inference.follower import Follower
 from sim_core.learn.inference.ground import Ground
-from sim_core.learn.inference.settings import RIVALS, Rival, Settings, Shapes
+from sim_core.learn.inference.settings import PATCH, RIVALS, Rival, Settings, Shapes
 from sim_core.learn.inference.weights import RivalTrained, Trained, read_weights, write_weights
 
 __all__ = [
+    "PATCH",
     "RIVALS",
     "Follower",
     "Ground",

@@ -38,23 +38,24 @@ class Follower:
                 )
         self.ground, self.settings, self._weights = ground, settings, weights
         self._last: tuple[np.ndarray, ...] = ()  # coarse, one and two frames ago
-        count = len(ground.pair.fine.rest)
-        self._turn: np.ndarray | None = None
-        self._off = np.zeros((2, count, 3), np.float32)
+        self._turn: np.ndarray | None = None  # the frames in which the last one was said
+        self._off = np.zeros((len(ground.pair.fine.rest), 3), np.float32)
+        self._was = np.zeros(
+            (ground.patches.count, PATCH), np.float32
+        )  # the patches of the one before, told then
 
     def __call__(self, coarse: np.ndarray) -> np.ndarray:
         """The next frame: coarse (C, 3) [m] -> fine (V, 3) [m]. Raises SimCoreError for another sheet, or NaN."""
-        ground = self.ground
+        ground, fit = self.ground, self.ground.patches.fitted
         now = coordinates("coarse", coarse, (len(ground.pair.coarse.rest), 3))
         before, earlier = (*self._last, now, now)[:2]
         if len(self._last) == 1:
             earlier = before
         turn, seen = ground.surroundings.seen(now, before, earlier)
-        old = turn if self._turn is None else self._turn
-        last, first = (ground.patches.carried(off, old, turn) for off in self._off)
+        last = ground.patches.carried(self._off, turn if self._turn is None else self._turn, turn)
         base, shared = weighted_sums(ground.pair.base, now), ground.imbalance.shared(now)
-        fit = ground.patches.fitted
-        was, change = _flat(fit(last, turn)), _flat(fit(last - first, turn))
+        was = _flat(fit(last, turn))
+        change = was - self._was
         off, there = np.zeros_like(last), np.zeros_like(was)
         for step in range(self.settings.steps):
             ways, means = ground.lacking(base + ground.unit * off, now, shared, turn)
@@ -63,13 +64,12 @@ class Follower:
             )
             said, stays = self._step(step, known)
             if step == 0:
-                share = 1.0 / (1.0 + np.exp(-(stays + GATE_BIAS)))
-                off = last * (share[ground.patches.corner] * ground.patches.share).sum(1, keepdims=True)
+                off = ground.patches.scaled(last, 1.0 / (1.0 + np.exp(-(stays + GATE_BIAS))))
             off = off + ground.patches.displaced(said.reshape(len(now), -1, 3), turn)
             if step + 1 < self.settings.steps:
                 there = _flat(fit(off, turn))
         self._last, self._turn = (now, before), turn
-        self._off = np.stack([off, last])
+        self._off, self._was = off, was
         return base + ground.unit * off
 
     def _step(self, step: int, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

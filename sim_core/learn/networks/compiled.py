@@ -18,6 +18,7 @@ from sim_core.learn.networks.moment import Moment
 from sim_core.learn.networks.sheets import Sheets
 from sim_core.learn.patches import CUBIC
 from sim_core.learn.patches.kernels import add_up, carry_over, draw_down
+from sim_core.learn.topology import unsigned
 
 __all__ = ["Compiled"]
 
@@ -90,13 +91,13 @@ class _Mixed(torch.autograd.Function):
 
 def _down(patches: Tensor, turn: np.ndarray, corner: np.ndarray, weights: np.ndarray) -> Tensor:
     out = np.zeros((len(corner), 3), np.float32)
-    draw_down(_array(patches), turn, corner, weights, out)
+    draw_down(_array(patches), turn, unsigned(corner), weights, out)
     return torch.from_numpy(out)
 
 
 def _up(fine: Tensor, turn: np.ndarray, corner: np.ndarray, weights: np.ndarray) -> Tensor:
     out = np.zeros((len(turn), CUBIC, 3), np.float32)
-    add_up(_array(fine), turn, corner, weights, out)
+    add_up(_array(fine), turn, unsigned(corner), weights, out)
     return torch.from_numpy(out)
 
 
@@ -134,14 +135,14 @@ class _Carried(torch.autograd.Function):
         ctx.fixed = fixed
         out = np.zeros(fine.shape, np.float32)
         before, turn, corner, share = fixed
-        carry_over(_array(fine), before, turn, corner, share, out)
+        carry_over(_array(fine), before, turn, unsigned(corner), share, out)
         return torch.from_numpy(out)
 
     @staticmethod
     def backward(ctx: Any, *upon: Tensor) -> tuple[Tensor, None, None, None, None]:
         before, turn, corner, share = ctx.fixed
         out = np.zeros(upon[0].shape, np.float32)
-        carry_over(_array(upon[0]), turn, before, corner, share, out)
+        carry_over(_array(upon[0]), turn, before, unsigned(corner), share, out)
         return torch.from_numpy(out), None, None, None, None
 
 

@@ -75,11 +75,12 @@ class LearnedSteps(nn.Module):
         self.settings = settings
         self.steps = nn.ModuleList(_Step(settings) for _ in range(settings.steps))
 
-    def forward(self, glued: Glued, moment: Moment, last: Tensor, first: Tensor) -> Tensor:
-        """Displacements (V, 3) from the base, in units, from those one and two frames ago, carried along."""
+    def forward(self, glued: Glued, moment: Moment, last: Tensor, before: Tensor) -> tuple[Tensor, Tensor]:
+        """Displacements (V, 3) from the base, in units, from those of the last frame, carried along, and the patches
+        (C, PATCH) that they were; before: the patches that were told a frame ago."""
         at, turn = glued.at, moment.turn
         was = at.fitted(last, turn).flatten(1)
-        change = was - at.fitted(first, turn).flatten(1)
+        change = was - before
         off, there = torch.zeros_like(last), torch.zeros_like(was)
         for number, step in enumerate(self.steps):
             ways, means = at.lacking(moment, off)
@@ -91,4 +92,4 @@ class LearnedSteps(nn.Module):
             off = off + at.displaced(said.view(-1, CUBIC, 3), turn)
             if number + 1 < len(self.steps):
                 there = at.fitted(off, turn).flatten(1)
-        return off
+        return off, was

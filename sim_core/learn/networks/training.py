@@ -20,6 +20,7 @@ from torch import Tensor
 from sim_core.errors import SimCoreError
 from sim_core.learn.data import Film, Recipe
 from sim_core.learn.inference import Ground, Settings
+from sim_core.learn.inference.settings import PATCH
 from sim_core.learn.networks.learned_steps import Glued, LearnedSteps
 from sim_core.learn.networks.moment import Moment
 from sim_core.learn.networks.pace import HEARD, rate_at, stepped
@@ -82,15 +83,23 @@ class _Sequence:
         """Displacements (V, 3) from the base, in units."""
         return self._truth[frame]
 
+    def was(self, frame: int) -> Tensor:
+        """The patches (C, PATCH) of the frame before, as they are told in this one."""
+        last, turn = (self.turn(k).cpu().numpy() for k in (frame - 1, frame))
+        carried = self.ground.patches.carried(self.truth(frame - 1).cpu().numpy(), last, turn)
+        return torch.from_numpy(self.ground.patches.fitted(carried, turn)).flatten(1).to(self._truth.device)
+
 
 @dataclass
 class _Lane:
-    """Where a lane is: the sequence, the next frame, what was said of the two before, and the frames of the last."""
+    """Where a lane is: the sequence, the next frame, what was said of the last and in which frames, and the patches
+    that were told then of the one before."""
 
     film: int
     frame: int
-    said: Tensor  # (2, V, 3)
+    said: Tensor  # (V, 3)
     turn: Tensor
+    was: Tensor  # (C, PATCH)
 
 
 class _Course:
@@ -124,10 +133,11 @@ class _Course:
             which = int(rng.integers(len(self.sequences)))
             sequence = self.sequences[which]
             frame = 0 if rng.random() < FROM_FIRST else int(rng.integers(0, sequence.frames - window))
-            said = torch.zeros_like(sequence.truth(0)).expand(2, -1, -1)
-            if frame >= 2 and rng.random() < FROM_TRUTH:
-                said = torch.stack([sequence.truth(frame - 1), sequence.truth(frame - 2)])
-            self.lanes[number] = _Lane(which, frame, said, sequence.turn(max(frame - 1, 0)))
+            true = frame >= 2 and rng.random() < FROM_TRUTH
+            said = sequence.truth(frame - 1) if true else torch.zeros_like(sequence.truth(0))
+            turn = sequence.turn(max(frame - 1, 0))
+            was = sequence.was(frame - 1) if true else torch.zeros((len(turn), PATCH), device=said.device)
+            self.lanes[number] = _Lane(which, frame, said, turn, was)
             self.glued = None
         if self.glued is None:
             on = [self.sequences[lane.film] for lane in self._running()]
@@ -143,29 +153,30 @@ class _Course:
         given = Moment.glued([one.moment(frame) for one, frame in places])
         return given, torch.cat([one.truth(frame) for one, frame in places])
 
-    def past(self) -> tuple[Tensor, Tensor]:
-        """What was said (2, V, 3), and the frames it was said in."""
+    def past(self) -> tuple[Tensor, Tensor, Tensor]:
+        """What was said (V, 3), the frames it was said in, and the patches (C, PATCH) that were told then."""
         lanes = self._running()
-        return torch.cat([lane.said for lane in lanes], dim=1), torch.cat([lane.turn for lane in lanes])
+        said, turn, was = (
+            torch.cat([getattr(lane, name) for lane in lanes]) for name in ("said", "turn", "was")
+        )
+        return said, turn, was
 
     def told(self, mean: dict[str, Tensor]) -> dict[str, Any]:
         """For a record: the lanes, and the running mean."""
-        lanes = [lane and (lane.film, lane.frame, lane.said, lane.turn) for lane in self.lanes]
+        lanes = [lane and (lane.film, lane.frame, lane.said, lane.turn, lane.was) for lane in self.lanes]
         return {"mean": mean, "lanes": lanes}
 
-    def go_on(self, glued: Glued, said: Tensor, turn: Tensor) -> None:
-        """Every lane by a window, with what was said (2, V, 3) of its last frames; who is lost begins elsewhere."""
+    def go_on(self, glued: Glued, said: Tensor, turn: Tensor, was: Tensor) -> None:
+        """Every lane by a window, with what is `past` then; who is lost begins elsewhere."""
         far = torch.zeros(len(self.lanes), device=said.device)
-        far = far.scatter_reduce(
-            0, glued.which, said.abs().amax((0, 2)).nan_to_num(nan=LOST), "amax"
-        ).tolist()
+        far = far.scatter_reduce(0, glued.which, said.abs().amax(1).nan_to_num(nan=LOST), "amax").tolist()
         for k, lane in enumerate(self.lanes):
             if lane is None or far[k] >= LOST:
                 self.lanes[k] = None
                 continue
             lane.frame += self.schedule.window
-            lane.said = said[:, glued.fine[k] : glued.fine[k + 1]].clone()
-            lane.turn = turn[glued.coarse[k] : glued.coarse[k + 1]].clone()
+            lane.said = said[glued.fine[k] : glued.fine[k + 1]].clone()
+            lane.turn, lane.was = (one[glued.coarse[k] : glued.coarse[k + 1]].clone() for one in (turn, was))
 
 
 def train(
@@ -225,23 +236,21 @@ def train(
 def _update(network: LearnedSteps, optimiser: torch.optim.Optimizer, course: _Course, rate: float) -> Tensor:
     """One window of all lanes, and one update; the mean distance from what was wanted, in units."""
     glued, schedule = course.begin(), course.schedule
-    said, before = course.past()
-    total = off = torch.zeros((), device=said.device)
-    last, first = said[0], said[1]
+    now, turn, was = course.past()
+    total = off = torch.zeros((), device=now.device)
     for ahead in range(schedule.window):
         moment, wanted = course.moment(ahead)
-        last, first = (glued.at.carried(one, before, moment.turn) for one in (last, first))
-        now = network(glued, moment, last, first)
-        errors = now - wanted
+        last = glued.at.carried(now, turn, moment.turn)
+        now, was = network(glued, moment, last, was)
+        turn, errors = moment.turn, now - wanted
         squares = errors.square().sum(1)
         distance = (squares + SOFT).sqrt().mean()
         total = total + distance + SQUARES * squares.mean() + schedule.edges * glued.at.edge_gap(errors)
         if schedule.worst:
             total = total + schedule.worst * _worst(squares, glued)
         off = off + distance.detach() / schedule.window
-        last, first, before = now, last, moment.turn
     stepped(network, optimiser, total / schedule.window, rate)
-    course.go_on(glued, torch.stack([last, first]).detach(), before)
+    course.go_on(glued, now.detach(), turn, was.detach())
     return off
 
 

@@ -20,6 +20,7 @@ from numba import njit
 from sim_core.cloth import Sheet
 from sim_core.cloth.sheet.energies import edge_tensions, vertex_forces
 from sim_core.learn.data import STIFFNESS, Pair
+from sim_core.learn.topology import unsigned
 from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["Imbalance", "limited"]
@@ -91,7 +92,12 @@ def _cut(vectors, most):
 
 def accelerations(sheet: Sheet, positions: np.ndarray) -> np.ndarray:
     """By stretch and bending, (V, 3) [m/s2], at positions (V, 3) [m]."""
-    return _accelerations(sheet.stencil, np.ascontiguousarray(positions, float), sheet.mass)
+    stencil = sheet.stencil
+    never_negative = {
+        name: unsigned(getattr(stencil, name)) for name in ("edges", "around", "rows", "neighbour")
+    }
+    stencil = stencil._replace(**never_negative)
+    return _accelerations(stencil, np.ascontiguousarray(positions, float), sheet.mass)
 
 
 @njit(cache=True, error_model="numpy")

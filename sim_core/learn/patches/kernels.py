@@ -7,7 +7,7 @@ from numba import njit
 
 from sim_core.learn.convolution.depthwise import FREE_ORDER
 
-__all__ = ["add_up", "carry_over", "draw_down", "turn_into"]
+__all__ = ["add_up", "carry_over", "draw_down", "scale", "turn_into"]
 
 
 @njit(cache=True, fastmath=FREE_ORDER)
@@ -33,19 +33,22 @@ def draw_down(patches, turn, corner, weights, out):
 @njit(cache=True, fastmath=FREE_ORDER)
 def add_up(fine, turn, corner, weights, out):
     """The transpose: out (C, K, 3) = sum over vertices v of weights[v, i] times turn[i].T @ fine[v], fine (V, 3)."""
-    out[:] = 0
+    world = np.zeros((len(out), 3, weights.shape[2]), fine.dtype)
     for v in range(len(corner)):
         fx, fy, fz = fine[v, 0], fine[v, 1], fine[v, 2]
         for c in range(3):
             i = corner[v, c]
-            a = turn[i, 0, 0] * fx + turn[i, 1, 0] * fy + turn[i, 2, 0] * fz
-            b = turn[i, 0, 1] * fx + turn[i, 1, 1] * fy + turn[i, 2, 1] * fz
-            n = turn[i, 0, 2] * fx + turn[i, 1, 2] * fy + turn[i, 2, 2] * fz
-            for k in range(weights.shape[2]):
-                w = weights[v, c, k]
-                out[i, k, 0] += w * a
-                out[i, k, 1] += w * b
-                out[i, k, 2] += w * n
+            xs, ys, zs, w = world[i, 0], world[i, 1], world[i, 2], weights[v, c]
+            for k in range(len(w)):
+                xs[k] += w[k] * fx
+                ys[k] += w[k] * fy
+                zs[k] += w[k] * fz
+    for i in range(len(out)):
+        for k in range(weights.shape[2]):
+            x, y, z = world[i, 0, k], world[i, 1, k], world[i, 2, k]
+            out[i, k, 0] = turn[i, 0, 0] * x + turn[i, 1, 0] * y + turn[i, 2, 0] * z
+            out[i, k, 1] = turn[i, 0, 1] * x + turn[i, 1, 1] * y + turn[i, 2, 1] * z
+            out[i, k, 2] = turn[i, 0, 2] * x + turn[i, 1, 2] * y + turn[i, 2, 2] * z
 
 
 @njit(cache=True, fastmath=FREE_ORDER)
@@ -63,6 +66,16 @@ def carry_over(fine, before, turn, corner, share, out):
             y += turn[i, 1, 0] * a + turn[i, 1, 1] * b + turn[i, 1, 2] * n
             z += turn[i, 2, 0] * a + turn[i, 2, 1] * b + turn[i, 2, 2] * n
         out[v, 0], out[v, 1], out[v, 2] = x, y, z
+
+
+@njit(cache=True, fastmath=FREE_ORDER)
+def scale(fine, values, corner, share, out):
+    """out (V, 3) = fine (V, 3), each times the sum over corners i of share[v, i] values[i]; values (C,)."""
+    for v in range(len(corner)):
+        by = fine[v, 0] * 0
+        for c in range(3):
+            by += share[v, c] * values[corner[v, c]]
+        out[v, 0], out[v, 1], out[v, 2] = by * fine[v, 0], by * fine[v, 1], by * fine[v, 2]
 
 
 @njit(cache=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.patches.kernels import add_up, carry_over, draw_down, turn_into
-from sim_core.learn.topology import checked_sheet
+from sim_core.learn.patches.kernels import add_up, carry_over, draw_down, scale, turn_into
+from sim_core.learn.topology import checked_sheet, unsigned
 from sim_core.learn.upsampling import located
 from sim_core.validation import coordinates
 
@@ -65,19 +65,26 @@ class Patches:
     def displaced(self, patches: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """Displacements (V, 3) float32 of patches (C, CUBIC, 3) in tangent frames (C, 3, 3), in columns."""
         out = np.zeros((len(self.corner), 3), np.float32)
-        draw_down(_single(patches), _single(turn), self.corner, self.lift, out)
+        draw_down(_single(patches), _single(turn), unsigned(self.corner), self.lift, out)
         return out
 
     def fitted(self, fine: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """The patches (C, CUBIC, 3) float32 that are nearest to displacements (V, 3), each to those about it."""
         out = np.zeros((self.count, CUBIC, 3), np.float32)
-        add_up(_single(fine), _single(turn), self.corner, self.fit, out)
+        add_up(_single(fine), _single(turn), unsigned(self.corner), self.fit, out)
         return out
 
     def carried(self, fine: np.ndarray, before: np.ndarray, turn: np.ndarray) -> np.ndarray:
         """Displacements (V, 3) as they were in tangent frames `before` (C, 3, 3), turned along into those of `turn`."""
         out = np.zeros((len(self.corner), 3), np.float32)
-        carry_over(_single(fine), _single(before), _single(turn), self.corner, self.share, out)
+        corner = unsigned(self.corner)
+        carry_over(_single(fine), _single(before), _single(turn), corner, self.share, out)
+        return out
+
+    def scaled(self, fine: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Displacements (V, 3), each times what coarse vertices say (C,), blended."""
+        out = np.zeros((len(self.corner), 3), np.float32)
+        scale(_single(fine), _single(values), unsigned(self.corner), self.share, out)
         return out
 
     def turned(self, vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from sim_core.learn.convolution import spirals
-from sim_core.learn.topology import border_vertices, checked_sheet
+from sim_core.learn.topology import border_vertices, checked_sheet, unsigned
 from sim_core.learn.upsampling import TangentFrames, tangent_frames
 from sim_core.validation import coordinates, vertex_indices
 
@@ -59,15 +59,14 @@ class Surroundings:
             for name, array in (("coarse", coarse), ("before", before), ("earlier", earlier))
         )
         turn, out = self._frames.of(now), np.zeros((len(self.near), SEEN), np.float32)
-        moves = np.stack([now - last, now - 2.0 * last + first])
-        _seen(now, moves, turn, (self.near, self._away, self.length), out)
+        _seen((now, last, first), turn, (unsigned(self.near), self._away, self.length), out)
         out[:, -FLAGS:] = self.flags
         return turn.astype(np.float32), out
 
 
 @njit(cache=True, error_model="numpy")
-def _seen(x, moves, turn, sheet, out):
-    near, away, length = sheet
+def _seen(films, turn, sheet, out):
+    (x, before, earlier), (near, away, length) = films, sheet
     for i in range(len(x)):
         a = turn[i, 0, 0], turn[i, 1, 0], turn[i, 2, 0]
         c = turn[i, 0, 1], turn[i, 1, 1], turn[i, 2, 1]
@@ -80,8 +79,10 @@ def _seen(x, moves, turn, sheet, out):
             out[i, place + 1] = c[0] * d[0] + c[1] * d[1] + c[2] * d[2] - away[i, k, 1]
             out[i, place + 2] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]
             place += 3
-        for k in range(2):
-            d = moves[k, i, 0] / length, moves[k, i, 1] / length, moves[k, i, 2] / length
+        went = x[i, 0] - before[i, 0], x[i, 1] - before[i, 1], x[i, 2] - before[i, 2]
+        had = before[i, 0] - earlier[i, 0], before[i, 1] - earlier[i, 1], before[i, 2] - earlier[i, 2]
+        for move in (went, (went[0] - had[0], went[1] - had[1], went[2] - had[2])):
+            d = move[0] / length, move[1] / length, move[2] / length
             out[i, place] = a[0] * d[0] + a[1] * d[1] + a[2] * d[2]
             out[i, place + 1] = c[0] * d[0] + c[1] * d[1] + c[2] * d[2]
             out[i, place + 2] = n[0] * d[0] + n[1] * d[1] + n[2] * d[2]

@@ -11,7 +11,7 @@ from sim_core.errors import SimCoreError
 from sim_core.mesh.measures import open_edges, stars
 from sim_core.validation import coordinates, triangles
 
-__all__ = ["Rings", "border_edges", "border_vertices", "checked_sheet", "edges", "rings"]
+__all__ = ["Rings", "border_edges", "border_vertices", "checked_sheet", "edges", "rings", "unsigned"]
 
 
 class Rings(NamedTuple):
@@ -109,3 +109,8 @@ def _rings(faces, star, corners):
                 m = ahead
         start[v + 1] = filled
     return start, items[:filled].copy()
+
+
+def unsigned(numbers: np.ndarray) -> np.ndarray:
+    """Whole numbers that are never negative, seen so: a compiled loop need not ask where they count from."""
+    return numbers.view(f"u{numbers.dtype.itemsize}")

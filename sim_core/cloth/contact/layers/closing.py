@@ -25,14 +25,14 @@ NOTHING = 1e-6  # of the thickness: what is nearer and still closes cannot be ke
 
 
 @njit(cache=True, error_model="numpy")
-def may_close(x, v, last, gap2, dt):
+def may_close(x, v, leapt, gap2, dt):
     """Whether a share of a gap, whose square [m2] is given, may be closed: by velocities v (3, V) in a step of dt [s],
-    and by the ways that vertices were pushed since they were at `last` (3, V)."""
+    and by the ways that vertices were pushed since they were at `leapt` (3, V)."""
     most, dt2 = 0.0, dt * dt
     (x0, x1, x2), (v0, v1, v2), (a0, a1, a2) = (
         (x[0], x[1], x[2]),
         (v[0], v[1], v[2]),
-        (last[0], last[1], last[2]),
+        (leapt[0], leapt[1], leapt[2]),
     )
     for i in range(len(v0)):
         pushed2 = (x0[i] - a0[i]) ** 2 + (x1[i] - a1[i]) ** 2 + (x2[i] - a2[i]) ** 2
@@ -50,11 +50,11 @@ def listed_close(x, v, near, thickness, dt):
     """
     if near.close[0] >= len(near.close):
         return False
-    restless, last, listed = near.jerks.restless, near.jerks.last, True
+    restless, leapt, listed = near.jerks.restless, near.jerks.leapt, True
     (x0, x1, x2), (v0, v1, v2), (a0, a1, a2) = (
         (x[0], x[1], x[2]),
         (v[0], v[1], v[2]),
-        (last[0], last[1], last[2]),
+        (leapt[0], leapt[1], leapt[2]),
     )
     calm = 0.5 * CLOSE * thickness
     for i in range(len(restless)):
@@ -78,7 +78,7 @@ def hold_apart(x, v, mesh, near, thickness, dt, step, listed):
         near.now,
         near.close,
         near.jerks.jerked,
-        near.jerks.last.T,
+        near.jerks.leapt.T,
         near.jerks.back,
     )
     points, crossings, counts, inverse_mass = now.points, now.crossings, now.count, mesh.inverse_mass

@@ -18,7 +18,8 @@ SHAKEN = 0.35  # [m/s] likewise, before the cloth is looked at again
 class Jerks(NamedTuple):
     """What is relied on, and who has left it."""
 
-    last: np.ndarray  # (3, V) [m] where vertices were a substep ago
+    last: np.ndarray  # (3, V) [m] where vertices were when layers were last asked
+    leapt: np.ndarray  # (3, V) [m] where they were after the leap of this substep, if any gap is narrow
     going: np.ndarray  # (3, V) [m/s] what sleeping pairs reckon with
     looked: np.ndarray  # (3, V) [m/s] what lists reckon with
     jerked: np.ndarray  # (V,) bool, in this substep
@@ -29,10 +30,10 @@ class Jerks(NamedTuple):
 
 def jerks_of(vertices: int) -> Jerks:
     """Memory for V vertices."""
-    last, going, looked = (np.zeros((3, vertices)) for _ in range(3))
+    last, leapt, going, looked = (np.zeros((3, vertices)) for _ in range(4))
     jerked, restless = (np.zeros(vertices, np.bool_) for _ in range(2))
     some, back = np.zeros(1, np.bool_), np.zeros(2, np.bool_)
-    return Jerks(last, going, looked, jerked, some, back, restless)
+    return Jerks(last, leapt, going, looked, jerked, some, back, restless)
 
 
 @njit(cache=True, error_model="numpy")
