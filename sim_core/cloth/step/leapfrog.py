@@ -122,21 +122,22 @@ def _against_solids(touch, inverse, frame, steps, x, v, k):
 
 
 @njit(cache=True, error_model="numpy")
-def _held_apart(touch, mesh, frame, steps, here, k, near):
-    """Takes the speeds at which layers would be through each other after substep k; whether that went.
+def _held_apart(touch, mesh, frame, steps, here, k, until, near):
+    """Takes the speeds at which layers would be through each other `until` [s] they are asked again after substep k;
+    whether that went.
 
     How far solids push meanwhile shows in the next substep, as the ways of vertices that are jerked.
     """
     x, v, most, solids = here.x.T, here.v.T, 1.0, len(touch.solid.kind) > 0
-    dt, thickness = steps.dt * touch.shell.every, touch.shell.thickness
-    listed = listed_close(here.x, here.v, near, thickness, dt)
+    thickness = touch.shell.thickness
+    listed = listed_close(here.x, here.v, near, thickness, until)
     for n in range(PASSES + 1):
-        most = hold_apart(x, v, mesh, near, thickness, dt, k, listed)
+        most = hold_apart(x, v, mesh, near, thickness, until, k, listed)
         if most <= SHARE or n == PASSES:
             break
         if solids:
             _against_solids(touch, mesh.inverse_mass, frame, steps, x, v, k)
-        listed = listed and listed_close(here.x, here.v, near, thickness, dt)
+        listed = listed and listed_close(here.x, here.v, near, thickness, until)
     if most > SHARE and near.jerks.back[0]:
         near.jerks.back[1] = True
     return most <= THROUGH
@@ -212,8 +213,9 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             _sew(holds, inverse, frame, steps, x, v, k)
         if solids:
             pushed = max(pushed, _against_solids(touch, inverse, frame, steps, x, v, k))
-        if narrow and may_close(here.x, here.v, near.jerks.leapt, nearest2, steps.dt * shell.every):
-            if not _held_apart(touch, mesh, frame, steps, here, k, near) and steps.breaks:
+        until = steps.dt * (shell.every - k % shell.every)  # layers are asked again
+        if narrow and may_close(here.x, here.v, near.jerks.leapt, nearest2, until):
+            if not _held_apart(touch, mesh, frame, steps, here, k, until, near) and steps.breaks:
                 done = False
                 break
         if bounded:
