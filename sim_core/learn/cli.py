@@ -21,6 +21,7 @@ Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine
   data      simulate a published scene's sequences, coarse and fine
   train     the learned steps, on the sequences that are not held back
   evaluate  errors and times of what makes fine cloth of coarse, on sequences held back
+  infer     simulate coarse, get fine: a film by trained weights
 """
 
 DATA = """\
@@ -69,6 +70,19 @@ examples:
   simcore learn evaluate hanging --data data/hanging
   simcore learn evaluate flag --data data/flag --rows linear,local_frames --json
 """
+
+INFER = """\
+Fine cloth at the price of coarse: a sequence's coarse sheet is simulated, and every frame of it made fine by weights of
+`simcore learn train`. Those of the row `ours` need no torch.
+
+FILE.npz holds coarse (T, C, 3) and fine (T, V, 3) [m], coarse_faces and fine_faces. --coarse takes the array `coarse`
+of another file instead of simulating: the scene's own coarse sheet, moved as you like.
+
+examples:
+  simcore learn infer hanging --weights hanging.safetensors --out hanging.npz
+  simcore learn infer flag --weights flag.safetensors --case 3 --frames 200 --seed 7 --out new.npz
+  simcore learn infer flag --weights flag.safetensors --coarse mine.npz --out fine.npz --json
+"""
 PLAIN = ("reference", "linear", "biharmonic", "local_frames")
 ROWS = (*PLAIN, "mfsr", "mesh_conv", "paper", "ours")
 DEVICES = ("auto", "cpu", "cuda")
@@ -102,6 +116,7 @@ def add_parser(subparsers: Any) -> None:
         metavar="N",
         help="frames the floor is told over; 0: not told (40)",
     )
+    _add_infer(actions)
     train = _action(actions, "train", "train the learned steps", TRAIN)
     evaluate = _action(actions, "evaluate", "errors and times of ways from coarse to fine", EVALUATE)
     for reads in (train, evaluate):
@@ -134,6 +149,18 @@ def add_parser(subparsers: Any) -> None:
     )
 
 
+def _add_infer(actions: Any) -> None:
+    infer = _action(actions, "infer", "a fine film from a coarse one, by weights", INFER)
+    infer.add_argument("--weights", type=Path, required=True, metavar="FILE", help="of `simcore learn train`")
+    infer.add_argument("--out", type=Path, required=True, metavar="FILE.npz", help="both films")
+    infer.add_argument("--case", type=whole(1, 18), default=1, metavar="N", help="which sequence (1)")
+    infer.add_argument("--frames", type=whole(1, 100_000), default=100, metavar="N", help="to simulate (100)")
+    infer.add_argument(
+        "--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="of a flag's gusts (0)"
+    )
+    infer.add_argument("--coarse", type=Path, metavar="FILE.npz", help="a coarse film of your own")
+
+
 def _action(actions: Any, name: str, words: str, description: str) -> argparse.ArgumentParser:
     """What all of them take: a scene, and --json."""
     parser = actions.add_parser(
@@ -158,6 +185,10 @@ def run(args: argparse.Namespace) -> int:
         from sim_core.learn.training_command import train
 
         return train(args)
+    if args.action == "infer":
+        from sim_core.learn.inference_command import infer
+
+        return infer(args)
     return {"data": data, "evaluate": evaluate}[args.action](args)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Recipe, film, generate
+from sim_core.learn.data import DESIGNS, Design, Film, Recipe, film, generate
 from sim_core.learn.inference import PATCH, Follower, Ground, Settings, Trained, read_weights, write_weights
 
 SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
@@ -251,3 +251,46 @@ def test_the_command_trains(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert json.loads(capsys.readouterr().out)["learned_from"] == ["hanging-01"]
     assert read_weights(out).told["updates"] == 30
     assert out.with_suffix(".record").is_file()
+
+
+def test_the_command_makes_a_fine_film(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(DESIGNS, "teapot", Design(16, 400, 90, 340))
+    weights, out = tmp_path / "ours.safetensors", tmp_path / "film.npz"
+    write_weights(weights, Trained(SMALL, drawn(5, 0.01), {"scene": "teapot"}))
+    words = ["learn", "infer", "teapot", "--weights", str(weights), "--out", str(out), "--json"]
+    assert main([*words, "--frames", "3", "--case", "2"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    with np.load(out) as file:
+        coarse, fine = file["coarse"], file["fine"]
+        assert coarse.shape == (3, facts["coarse_vertices"], 3)
+        assert fine.shape == (3, facts["fine_vertices"], 3)
+        assert file["fine_faces"].max() == facts["fine_vertices"] - 1
+    assert facts["total_ms"] == pytest.approx(facts["coarse_ms"] + facts["net_ms"], abs=2e-3)
+    brought, again = tmp_path / "mine.npz", tmp_path / "again.npz"
+    np.savez(brought, coarse=coarse)
+    words[words.index(str(out))] = str(again)
+    assert main([*words, "--case", "2", "--coarse", str(brought)]) == 0
+    with np.load(again) as file:
+        assert np.array_equal(file["fine"], fine)
+    capsys.readouterr()
+    coarse[1, 5] = np.nan
+    for film_, told in (
+        (coarse, "frame 2: coarse: vertex 5 is not finite"),
+        (coarse[:, :-1], "frame 1: coarse"),
+        (coarse[0], r"(frames, vertices, 3) [m] is meant, shape"),
+    ):
+        np.savez(brought, coarse=film_)
+        assert main([*words, "--coarse", str(brought)]) == 1
+        assert told in capsys.readouterr().err
+    brought.write_bytes(b"none")
+    for more, told in (
+        (["--coarse", str(brought)], "no .npz file"),
+        (["--case", "17"], "there are 1 to 16"),
+    ):
+        assert main([*words, *more]) == 1
+        assert told in capsys.readouterr().err
+    words[2] = "flag"
+    assert main(words) == 1
+    assert "has learned teapot – give weights of flag" in capsys.readouterr().err

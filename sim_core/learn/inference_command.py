@@ -1,0 +1,117 @@
+"""`simcore learn infer`: a coarse sheet simulated, or brought along, and made fine frame by frame."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sim_core.learn.command_parts import progress
+
+if TYPE_CHECKING:
+    from sim_core.learn.data import Recipe
+    from sim_core.learn.rows import Row
+
+__all__ = ["infer"]
+
+
+def infer(args: argparse.Namespace) -> int:
+    """Writes the coarse and the fine film."""
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.data import DESIGNS, Pair, coarse_film, recipes
+
+    if args.out.suffix != ".npz":
+        raise SimCoreError(f"--out: {args.out} – name a file that ends in .npz")
+    if args.case > DESIGNS[args.scene].sequences:
+        raise SimCoreError(f"--case: {args.case} – there are 1 to {DESIGNS[args.scene].sequences}")
+    row = _row(args.weights, args.scene)
+    recipe: Recipe = recipes(args.scene, frames=args.frames, seed=args.seed)[args.case - 1]
+    told, coarse_ms = progress(), 0.0
+    if args.coarse is None:
+        told(0.0, "coarse")
+        film, coarse_ms = coarse_film(recipe)
+        coarse = film[1 + recipe.run_in :].astype(np.float32)
+    else:
+        coarse = _brought(args.coarse)
+    follow, frames, spent = row.follow(recipe), [], []
+    for number, place in enumerate(coarse):
+        begun = time.process_time()
+        try:
+            frames.append(follow(np.asarray(place, float)).astype(np.float32))
+        except SimCoreError as error:
+            raise SimCoreError(f"frame {number + 1}: {error}") from None
+        spent.append(time.process_time() - begun)
+        if number % 25 == 0:
+            told(number / len(coarse), "fine")
+    told(1.0, "")
+    pair, fine = Pair.of(recipe), np.stack(frames)
+    _write(args.out, coarse=coarse, fine=fine, coarse_faces=pair.coarse.faces, fine_faces=pair.fine.faces)
+    net_ms = 1000.0 * float(np.median(spent))
+    facts = {
+        "scene": args.scene,
+        "case": args.case,
+        "frames": len(fine),
+        "coarse_vertices": coarse.shape[1],
+        "fine_vertices": fine.shape[1],
+        "coarse_ms": round(coarse_ms, 3),
+        "net_ms": round(net_ms, 3),
+        "total_ms": round(coarse_ms + net_ms, 3),
+        "file": str(args.out),
+    }
+    sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
+    return 0
+
+
+def _row(path: Path, scene: str) -> Row:
+    """What follows by weights; raises SimCoreError for those of another scene."""
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.inference import Trained, read_weights
+    from sim_core.learn.rows import Ours, RivalRow
+
+    trained = read_weights(path)
+    if (own := trained.told.get("scene")) != scene:
+        raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}, or infer {own}")
+    return Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
+
+
+def _brought(path: Path) -> np.ndarray:
+    """The coarse film (T, C, 3) of a file."""
+    from sim_core.errors import SimCoreError
+
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            found = file["coarse"] if "coarse" in file.files else None
+    except (OSError, ValueError, EOFError) as error:
+        raise SimCoreError(f"--coarse: {path} – no .npz file ({error})") from None
+    if found is None or found.ndim != 3 or found.shape[2] != 3 or not len(found):
+        shape = "none found" if found is None else f"shape {found.shape}"
+        raise SimCoreError(
+            f"--coarse: {path} – an array `coarse` (frames, vertices, 3) [m] is meant, {shape}"
+        )
+    return found
+
+
+def _write(path: Path, **arrays: np.ndarray) -> None:
+    """Whole or not at all."""
+    from sim_core.errors import SimCoreError
+
+    beside = path.with_name(f".{path.name}.part")
+    try:
+        with beside.open("wb") as file:
+            np.savez_compressed(file, **arrays)
+        beside.replace(path)
+    except OSError as error:
+        raise SimCoreError(f"--out: {path} – cannot be written ({error})") from None
+
+
+def _words(facts: dict[str, Any]) -> str:
+    coarse = f"{facts['coarse_ms']:.2f} ms coarse, " if facts["coarse_ms"] else ""
+    return (
+        f"{facts['file']}: {facts['frames']} frames of {facts['scene']}, {facts['coarse_vertices']:,} vertices made "
+        f"{facts['fine_vertices']:,}; a frame takes {coarse}{facts['net_ms']:.2f} ms by the network\n"
+    )
