@@ -15,10 +15,11 @@ from sim_core.cloth.step import Air, Contact, Pace, Phase
 
 if TYPE_CHECKING:
     from sim_core.cloth.contact import DistanceField, MovingGrid, field_of, moving_mesh
-    from sim_core.cloth.scenes import Choice, Scene, choose, scene
+    from sim_core.cloth.scenes import Alternative, Choice, Scene, choose, scene
 
 __all__ = [
     "Air",
+    "Alternative",
     "Box",
     "Capsule",
     "Certificate",
@@ -48,6 +49,7 @@ __all__ = [
 ]
 
 _LATE = {
+    "Alternative": "scenes",
     "Choice": "scenes",
     "DistanceField": "contact",
     "MovingGrid": "contact",

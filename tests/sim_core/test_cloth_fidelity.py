@@ -7,6 +7,7 @@ from sim_core.cloth.scenes import (
     GF_CM,
     GRID,
     TRIAL_EDGES,
+    Alternative,
     Asked,
     apart,
     bounds,
@@ -93,6 +94,26 @@ def test_size_pins_and_wind_enter_the_choice() -> None:
     assert held["edge"] > held["thirds"]
     blown = {w: choose("flag", error_mm=20, size=(0.8, 0.8), wind=(w, 0.0, 1.2)).error_mm for w in (2.0, 4.0)}
     assert blown[2.0] < blown[4.0]
+
+
+def test_an_alternative_is_taken_where_it_is_cheaper_within_the_budget() -> None:
+    asked = {"size": (0.8, 0.8), "pins": "edge"}
+    mesh = choose("hanging", error_mm=8, **asked)
+    cheap, rough = (Alternative("coarse + learned", 6400, e, 0.5 * mesh.ms) for e in (7.9, 8.1))
+    dear = Alternative("coarse + learned", 6400, 1.0, 2.0 * mesh.ms)
+    for others in ((), (rough,), (dear,), (rough, dear)):
+        assert choose("hanging", error_mm=8, **asked, alternatives=others) == mesh
+    found = choose("hanging", error_mm=8, **asked, alternatives=(dear, rough, cheap))
+    assert (found.integrator, found.vertices) == (cheap.name, cheap.vertices)
+    assert (found.error_mm, found.ms) == (cheap.error_mm, cheap.ms)
+    assert found.edge == pytest.approx(0.0107, abs=1e-4)
+    assert "7.9 mm off" in found.why
+    assert f"of {1e3 * mesh.edge:.3g} mm, costs" in found.why
+    only = choose("hanging", error_mm=0.001, **asked, alternatives=(Alternative("exact", 99, 0.0, 1e6),))
+    assert "no mesh that was measured keeps it" in only.why
+    for wrong in (("", 1.5, 1, 1), (2, 5, 1, 1), ("a", 5, -1, 1), ("a", 5, 1, float("nan"))):
+        with pytest.raises(SimCoreError, match="alternative"):
+            Alternative(*wrong)
 
 
 def test_what_cannot_be_kept_or_was_not_measured_is_refused_in_one_line() -> None:

@@ -12,13 +12,14 @@ from sim_core.cloth.scenes.catalogue import (
     material,
     scene,
 )
-from sim_core.cloth.scenes.fidelity import FILE, Asked, Choice, bounds, choose, law_terms, table
+from sim_core.cloth.scenes.fidelity import FILE, Alternative, Asked, Choice, bounds, choose, law_terms, table
 from sim_core.cloth.scenes.limb import limb_mesh
 from sim_core.cloth.scenes.regular_sheets import disc, equilateral_sheet, sheet_of
 from sim_core.cloth.scenes.teapot import teapot_mesh, teapot_solid
 from sim_core.cloth.scenes.trial_runs import GRID, TRIAL_EDGES, apart, gap, grid_film, trial_film
 
 __all__ = [
+    "Alternative",
     "Asked",
     "Choice",
     "FILE",

@@ -28,7 +28,7 @@ from sim_core.cloth.scenes.trial_runs import TRIAL_EDGES, apart, gap, trial_film
 from sim_core.cloth.sheet.material import Material
 from sim_core.cloth.step.frame import FRAME
 from sim_core.errors import WrongArgument
-from sim_core.validation import excerpt, finite, vector3
+from sim_core.validation import excerpt, finite, instance_of, integer, vector3
 
 FILE = Path(__file__).with_name("fidelity.json")
 GRAVITY, AIR = 9.81, 0.6  # [m/s2]; half the density of air times Cd [kg/m3]
@@ -39,7 +39,8 @@ TWICE = 2.0
 
 @dataclass(frozen=True)
 class Choice:
-    """What to run: edge [m], vertices, integrator; bound of its error [mm] and cost [ms a frame]; why in words."""
+    """What to run: edge [m], vertices, integrator, or an alternative by its name; bound of its error [mm] and cost
+    [ms a frame]; why in words."""
 
     edge: float
     vertices: int
@@ -47,6 +48,26 @@ class Choice:
     error_mm: float
     ms: float
     why: str
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another way to the same sheet than to simulate it on a mesh, such as a coarse run that is mended: what it is
+    called, its vertices, its measured error [mm] of the kind that `choose` tells, and its cost [ms a frame].
+
+    Raises SimCoreError for values without meaning.
+    """
+
+    name: str
+    vertices: int
+    error_mm: float
+    ms: float
+
+    def __post_init__(self) -> None:
+        instance_of("alternative.name", self.name, str, "a text is meant")
+        integer("alternative.vertices", self.vertices, 1, "how many it ends with")
+        finite("alternative.error_mm [mm]", self.error_mm, least=0)
+        finite("alternative.ms [ms a frame]", self.ms, least=0)
 
 
 @dataclass(frozen=True)
@@ -140,8 +161,10 @@ def choose(
     pins: str | None = None,
     wind: Sequence[float] | None = None,
     cloth: Material | None = None,
+    alternatives: Sequence[Alternative] = (),
 ) -> Choice:
-    """The cheapest mesh of a published scene, changed by what is given, that keeps `error_mm` [mm].
+    """The cheapest mesh of a published scene, changed by what is given, that keeps `error_mm` [mm], or the cheapest of
+    the alternatives, where one that keeps it costs less than that mesh.
 
     The error is the mean distance of the sheet's material points from where they would be, in the worst frame of the
     table's `seconds`, mesh and time error together; for a flag also that of its mean shape after 0.5 s. Raises
@@ -162,6 +185,11 @@ def choose(
     offered = bounds(asked, [gap(films[k : k + 3]) for k in range(len(TRIAL_EDGES) - 2)])
     calm = 1e-3 * part.get("calm_mm", math.inf)
     kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
+    other = min(
+        (one for one in alternatives if one.error_mm <= error_mm), key=lambda one: one.ms, default=None
+    )
+    if other is not None and (not kept or other.ms < min(row[2] for row in kept)):
+        return _instead(other, asked, kept)
     if not kept:
         edge, least, _ = offered[0]
         raise WrongArgument(
@@ -171,6 +199,19 @@ def choose(
     best = min(kept, key=lambda row: row[2])
     why = _why(part, apart(films[0], films[-1]), best, [row for row in offered if row[0] > best[0]])
     return Choice(best[0], vertices(asked.size, best[0]), "auto", best[1], best[2], why)
+
+
+def _instead(other: Alternative, asked: Asked, kept: Sequence[tuple[float, float, float]]) -> Choice:
+    """An alternative that keeps the budget at less than the meshes that do."""
+    why = f"{other.name}: measured {other.error_mm:.2g} mm off at {other.ms:.3g} ms a frame; "
+    if kept:
+        edge, _, cost = min(kept, key=lambda row: row[2])
+        why += f"the cheapest mesh that keeps it, of {1e3 * edge:.3g} mm, costs {cost:.3g}"
+    else:
+        why += "no mesh that was measured keeps it"
+    area = asked.size[0] * asked.size[1]
+    edge = math.sqrt(area * 2 / math.sqrt(3) / other.vertices)
+    return Choice(edge, other.vertices, other.name, other.error_mm, other.ms, why)
 
 
 def _asked(
