@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from sim_core.learn.command_parts import films_of, progress
+from sim_core.learn.commands.evaluation import PLAIN, ROWS, evaluate
+from sim_core.learn.commands.generation import data
 from sim_core.validation.arguments import whole
-
-if TYPE_CHECKING:
-    from sim_core.learn.data import Floor, Manifest, Recipe
 
 DESCRIPTION = """\
 Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine one.
@@ -83,8 +78,6 @@ examples:
   simcore learn infer flag --weights flag.safetensors --case 3 --frames 200 --seed 7 --out new.npz
   simcore learn infer flag --weights flag.safetensors --coarse mine.npz --out fine.npz --json
 """
-PLAIN = ("reference", "linear", "biharmonic", "local_frames")
-ROWS = (*PLAIN, "mfsr", "mesh_conv", "paper", "ours")
 DEVICES = ("auto", "cpu", "cuda")
 
 
@@ -128,7 +121,7 @@ def add_parser(subparsers: Any) -> None:
         "--updates", type=whole(1, 1_000_000), default=12_000, metavar="N", help="of the weights (12,000)"
     )
     train.add_argument("--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="(0)")
-    train.add_argument("--row", choices=ROWS[4:], default="ours", help="the network (ours)")
+    train.add_argument("--row", choices=ROWS[len(PLAIN) :], default="ours", help="the network (ours)")
     train.add_argument("--device", choices=DEVICES, default="auto", help="(auto: a GPU where there is one)")
     evaluate.add_argument(
         "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; networks with --weights)"
@@ -182,154 +175,11 @@ def _rows(text: str) -> tuple[str, ...]:
 def run(args: argparse.Namespace) -> int:
     """Does what was asked for; returns the exit status."""
     if args.action == "train":
-        from sim_core.learn.training_command import train
+        from sim_core.learn.commands.training import train
 
         return train(args)
     if args.action == "infer":
-        from sim_core.learn.inference_command import infer
+        from sim_core.learn.commands.inference import infer
 
         return infer(args)
     return {"data": data, "evaluate": evaluate}[args.action](args)
-
-
-def evaluate(args: argparse.Namespace) -> int:
-    """Measures rows on the sequences held back."""
-    from dataclasses import replace
-
-    from sim_core.errors import SimCoreError
-    from sim_core.learn.data import split
-    from sim_core.learn.inference import Trained, read_weights
-    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, Ours, RivalRow, measured, reference
-
-    given = {trained.row: (path, trained) for path in args.weights for trained in [read_weights(path)]}
-    wanted = args.rows or (*PLAIN, *(row for row in ROWS[len(PLAIN) :] if row in given))
-    for row in wanted:
-        if row not in PLAIN and row not in given:
-            raise SimCoreError(f"--rows {row} – give its --weights, which `simcore learn train` makes")
-    films = {
-        name: (recipe, replace(film, coarse=film.coarse[: args.frames], fine=film.fine[: args.frames]))
-        for name, (recipe, film) in films_of(args).items()
-    }
-    parts = split([recipe for recipe, _ in films.values()])
-    for path, trained in given.values():
-        if seen := {one.name for one in parts.test} & set(trained.told.get("learned_from", ())):
-            raise SimCoreError(f"{path}: learned from {', '.join(sorted(seen))}, which would be tested on")
-    tested = [films[recipe.name] for recipe in parts.test]
-    makers = {
-        "linear": Linear,
-        "biharmonic": Biharmonic,
-        "local_frames": lambda: LocalFrames.fitted([films[recipe.name] for recipe in parts.train]),
-    }
-    for row, (_, trained) in given.items():
-        made = Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
-        makers[row] = lambda made=made: made
-    told, rows = progress(), {}
-    for number, name in enumerate(wanted):
-
-        def share(part: float, words: str, number: int = number) -> None:
-            told((number + part) / len(wanted), words)
-
-        if name == "reference":
-            found = reference(parts.test, args.floor, share)
-            rows[name] = found.told() | {"net_ms": 0.0, "total_ms": round(found.milliseconds, 3)}
-            continue
-        facts = measured(makers[name](), tested, told=share).told()
-        coarse = _middle([film.coarse_ms for _, film in tested])
-        rows[name] = facts | {"total_ms": round(coarse + facts["net_ms"], 3)}
-    told(1.0, "")
-    summary = {"scene": args.scene, "tested": [recipe.name for recipe in parts.test], "rows": rows}
-    sys.stdout.write(json.dumps(summary, indent=2) + "\n" if args.json else _table(summary))
-    return 0
-
-
-def _table(summary: dict[str, Any]) -> str:
-    head = (
-        f"{'mm':14}{'mean':>8}{'Hausdorff':>11}{'p95':>8}{'normals':>9}{'strain':>8}{'ms':>8}{'whole':>8}\n"
-    )
-    lines = [f"{summary['scene']}, tested on {', '.join(summary['tested'])}\n", head]
-    for name, row in summary["rows"].items():
-        lines.append(
-            f"{name:14}{row['mean_mm']:8.3f}{row['hausdorff_mm']:11.2f}{row['p95_mm']:8.2f}{row['normal_deg']:8.2f}°"
-            f"{row['strain']:8.4f}{row['net_ms']:8.2f}{row['total_ms']:8.2f}\n"
-        )
-    return "".join(lines)
-
-
-def data(args: argparse.Namespace) -> int:
-    """Makes the data and tells what they are worth."""
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
-
-    from sim_core.learn.data import Manifest, floor, generate, recipes
-
-    wanted = recipes(args.scene, sequences=args.sequences, frames=args.frames, seed=args.seed)
-    args.out.mkdir(parents=True, exist_ok=True)
-    Manifest.matching(args.out, wanted)  # what cannot go on is refused before anything runs
-    worth = floor(wanted[0], args.floor) if args.floor else None
-    if worth is not None and not args.json:
-        sys.stdout.write(_floor_words(wanted[0], worth))
-        sys.stdout.flush()
-    pool = nullcontext()
-    if args.workers > 1:
-        pool = ProcessPoolExecutor(args.workers, mp_context=get_context("spawn"))
-    with pool as executor:
-        manifest = generate(args.out, wanted, executor=executor, progress=progress())
-    facts = _facts(args.out, manifest) | ({"floor": _floor_facts(worth)} if worth else {})
-    sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
-    return 0
-
-
-def _facts(folder: Path, manifest: Manifest) -> dict[str, Any]:
-    kept = list(manifest.done.values())
-    return {
-        "folder": str(folder),
-        "scene": manifest.recipes[0].scene,
-        "sequences": len(kept),
-        "frames": sum(one["frames"] for one in kept),
-        "coarse_vertices": [one["coarse_vertices"] for one in kept],
-        "fine_vertices": [one["fine_vertices"] for one in kept],
-        "coarse_ms": _middle([one["coarse_ms"] for one in kept]),
-        "fine_ms": _middle([one["fine_ms"] for one in kept]),
-        "bytes": sum((folder / one["file"]).stat().st_size for one in kept),
-    }
-
-
-def _middle(values: list[float]) -> float:
-    from statistics import median
-
-    return round(median(values), 3)
-
-
-def _floor_facts(worth: Floor) -> dict[str, Any]:
-    halved, flat = worth.halved, worth.linear
-    return {
-        "frames": halved.frames,
-        "hausdorff_mm": round(1000 * halved.mean.hausdorff, 4),
-        "hausdorff_p95_mm": round(1000 * halved.p95.hausdorff, 4),
-        "mean_mm": round(1000 * halved.mean.vertex, 4),
-        "normal_deg": round(halved.mean.normal, 4),
-        "linear_hausdorff_mm": round(1000 * flat.mean.hausdorff, 4),
-        "linear_mean_mm": round(1000 * flat.mean.vertex, 4),
-        "slack_mm": round(1000 * worth.slack, 4),
-        "fine_ms": round(worth.fine_ms, 2),
-        "halved_ms": round(worth.halved_ms, 2),
-    }
-
-
-def _floor_words(recipe: Recipe, worth: Floor) -> str:
-    told = _floor_facts(worth)
-    return (
-        f"floor, {recipe.name}, {told['frames']} frames looked at: half the step moves the fine sheet by "
-        f"{told['mean_mm']:.3g} mm (mean), {told['hausdorff_mm']:.3g} mm (Hausdorff; p95 "
-        f"{told['hausdorff_p95_mm']:.3g})\n"
-        f"  the coarse surface is {told['linear_mean_mm']:.3g} mm from it (mean), {told['linear_hausdorff_mm']:.3g} mm "
-        f"(Hausdorff); the led means are {told['slack_mm']:.2g} mm off\n"
-    )
-
-
-def _words(facts: dict[str, Any]) -> str:
-    return (
-        f"{facts['folder']}: {facts['sequences']} sequences, {facts['frames']} frames of {facts['scene']}, "
-        f"{facts['bytes'] / 1e6:.1f} MB; a frame takes {facts['coarse_ms']:.2f} ms coarse, {facts['fine_ms']:.1f} ms "
-        "fine and led\n"
-    )

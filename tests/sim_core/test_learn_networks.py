@@ -279,14 +279,14 @@ def test_the_command_makes_a_fine_film(
     for film_, told in (
         (coarse, "frame 2: coarse: vertex 5 is not finite"),
         (coarse[:, :-1], "frame 1: coarse"),
-        (coarse[0], r"(frames, vertices, 3) [m] is meant, shape"),
+        (coarse[0], "(frames, vertices, 3) [m] is meant"),
     ):
         np.savez(brought, coarse=film_)
         assert main([*words, "--coarse", str(brought)]) == 1
         assert told in capsys.readouterr().err
     brought.write_bytes(b"none")
     for more, told in (
-        (["--coarse", str(brought)], "no .npz file"),
+        (["--coarse", str(brought)], "not a coarse film"),
         (["--case", "17"], "there are 1 to 16"),
     ):
         assert main([*words, *more]) == 1

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim_core.learn.command_parts import progress
+from sim_core.errors import FileProblem, SimCoreError
+from sim_core.learn.commands.parts import progress
+from sim_core.validation.files import check_target, read_npz, written_whole
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Recipe
@@ -22,11 +24,9 @@ __all__ = ["infer"]
 
 def infer(args: argparse.Namespace) -> int:
     """Writes the coarse and the fine film."""
-    from sim_core.errors import SimCoreError
     from sim_core.learn.data import DESIGNS, Pair, coarse_film, recipes
 
-    if args.out.suffix != ".npz":
-        raise SimCoreError(f"--out: {args.out} – name a file that ends in .npz")
+    check_target(args.out)
     if args.case > DESIGNS[args.scene].sequences:
         raise SimCoreError(f"--case: {args.case} – there are 1 to {DESIGNS[args.scene].sequences}")
     row = _row(args.weights, args.scene)
@@ -50,7 +50,9 @@ def infer(args: argparse.Namespace) -> int:
             told(number / len(coarse), "fine")
     told(1.0, "")
     pair, fine = Pair.of(recipe), np.stack(frames)
-    _write(args.out, coarse=coarse, fine=fine, coarse_faces=pair.coarse.faces, fine_faces=pair.fine.faces)
+    faces = {"coarse_faces": pair.coarse.faces, "fine_faces": pair.fine.faces}
+    with written_whole(args.out) as stream:
+        np.savez_compressed(stream, coarse=coarse, fine=fine, **faces)
     net_ms = 1000.0 * float(np.median(spent))
     facts = {
         "scene": args.scene,
@@ -69,7 +71,6 @@ def infer(args: argparse.Namespace) -> int:
 
 def _row(path: Path, scene: str) -> Row:
     """What follows by weights; raises SimCoreError for those of another scene."""
-    from sim_core.errors import SimCoreError
     from sim_core.learn.inference import Trained, read_weights
     from sim_core.learn.rows import Ours, RivalRow
 
@@ -81,32 +82,11 @@ def _row(path: Path, scene: str) -> Row:
 
 def _brought(path: Path) -> np.ndarray:
     """The coarse film (T, C, 3) of a file."""
-    from sim_core.errors import SimCoreError
-
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            found = file["coarse"] if "coarse" in file.files else None
-    except (OSError, ValueError, EOFError) as error:
-        raise SimCoreError(f"--coarse: {path} – no .npz file ({error})") from None
-    if found is None or found.ndim != 3 or found.shape[2] != 3 or not len(found):
-        shape = "none found" if found is None else f"shape {found.shape}"
-        raise SimCoreError(
-            f"--coarse: {path} – an array `coarse` (frames, vertices, 3) [m] is meant, {shape}"
-        )
+    meant = "an array `coarse` (frames, vertices, 3) [m]"
+    found = read_npz(path, ("coarse",), "a coarse film", f"give a file with {meant}")["coarse"]
+    if found.ndim != 3 or found.shape[2] != 3 or not len(found):
+        raise FileProblem(f"{path}: coarse has shape {found.shape} – {meant} is meant")
     return found
-
-
-def _write(path: Path, **arrays: np.ndarray) -> None:
-    """Whole or not at all."""
-    from sim_core.errors import SimCoreError
-
-    beside = path.with_name(f".{path.name}.part")
-    try:
-        with beside.open("wb") as file:
-            np.savez_compressed(file, **arrays)
-        beside.replace(path)
-    except OSError as error:
-        raise SimCoreError(f"--out: {path} – cannot be written ({error})") from None
 
 
 def _words(facts: dict[str, Any]) -> str:

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from sim_core.learn.command_parts import films_of, progress
+from sim_core.learn.commands.parts import films_of, progress
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Film, Recipe

@@ -1,0 +1,1 @@
+"""What `simcore learn` does, one module an action."""
