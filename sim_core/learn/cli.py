@@ -17,6 +17,7 @@ Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine
   train     the learned steps, on the sequences that are not held back
   evaluate  errors and times of what makes fine cloth of coarse, on sequences held back
   infer     simulate coarse, get fine: a film by trained weights
+  draw      coarse, made fine and fine side by side, coloured by error: a PNG
 """
 
 DATA = """\
@@ -78,6 +79,16 @@ examples:
   simcore learn infer flag --weights flag.safetensors --case 3 --frames 200 --seed 7 --out new.npz
   simcore learn infer flag --weights flag.safetensors --coarse mine.npz --out fine.npz --json
 """
+
+DRAW = """\
+Draw meshes of a frame side by side: the coarse sheet, what makes it fine (the smoothest sheet, then every network of
+--weights that has learned the scene) coloured by how far its vertices are off, and the fine sheet. A row a folder of
+data, of its first sequence that is held back; the frame is the one whose mean error is the middle one of them all.
+
+examples:
+  simcore learn draw --data data/flag --weights flag.safetensors --out flag.png
+  simcore learn draw --data data/flag data/teapot data/hanging --weights *.safetensors --out figure.png
+"""
 DEVICES = ("auto", "cpu", "cuda")
 
 
@@ -110,6 +121,7 @@ def add_parser(subparsers: Any) -> None:
         help="frames the floor is told over; 0: not told (40)",
     )
     _add_infer(actions)
+    _add_draw(actions)
     train = _action(actions, "train", "train the learned steps", TRAIN)
     evaluate = _action(actions, "evaluate", "errors and times of ways from coarse to fine", EVALUATE)
     for reads in (train, evaluate):
@@ -154,6 +166,29 @@ def _add_infer(actions: Any) -> None:
     infer.add_argument("--coarse", type=Path, metavar="FILE.npz", help="a coarse film of your own")
 
 
+def _add_draw(actions: Any) -> None:
+    draw = actions.add_parser(
+        "draw",
+        help="meshes side by side, coloured by error",
+        description=DRAW,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    draw.add_argument(
+        "--data",
+        type=Path,
+        nargs="+",
+        required=True,
+        metavar="DIR",
+        help="of `simcore learn data`, a row each",
+    )
+    draw.add_argument(
+        "--weights", type=Path, nargs="+", default=[], metavar="FILE", help="of `simcore learn train`"
+    )
+    draw.add_argument("--out", type=Path, required=True, metavar="FILE.png", help="the picture")
+    draw.add_argument("--frame", type=whole(1, 100_000), metavar="N", help="another frame")
+    draw.add_argument("--json", action="store_true", help="print a machine-readable summary")
+
+
 def _action(actions: Any, name: str, words: str, description: str) -> argparse.ArgumentParser:
     """What all of them take: a scene, and --json."""
     parser = actions.add_parser(
@@ -182,4 +217,8 @@ def run(args: argparse.Namespace) -> int:
         from sim_core.learn.commands.inference import infer
 
         return infer(args)
+    if args.action == "draw":
+        from sim_core.learn.commands.drawing import draw
+
+        return draw(args)
     return {"data": data, "evaluate": evaluate}[args.action](args)

@@ -294,3 +294,22 @@ def test_the_command_makes_a_fine_film(
     words[2] = "flag"
     assert main(words) == 1
     assert "has learned teapot – give weights of flag" in capsys.readouterr().err
+
+
+def test_the_command_draws_a_scene_a_row(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from PIL import Image
+
+    generate(tmp_path / "data", [Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340) for case in (1, 3)])
+    weights, out = tmp_path / "ours.safetensors", tmp_path / "drawn.png"
+    write_weights(weights, Trained(SMALL, drawn(5, 0.01), {"scene": "hanging"}))
+    words = ["learn", "draw", "--data", str(tmp_path / "data"), "--out", str(out), "--json"]
+    assert main([*words, "--weights", str(weights)]) == 0
+    row = json.loads(capsys.readouterr().out)["rows"][0]
+    assert row["sequence"] == "hanging-03"
+    assert list(row["errors"]) == ["biharmonic", "ours"]
+    assert 0 < row["errors"]["ours"]["mean_mm"] < row["errors"]["ours"]["hausdorff_mm"]
+    with Image.open(out) as picture:
+        assert picture.width > 3 * picture.height
+        assert len(picture.convert("RGB").getcolors(1 << 24)) > 200
+    assert main([*words, "--frame", "7"]) == 1
+    assert "--frame: 7 – hanging-03 has 6" in capsys.readouterr().err

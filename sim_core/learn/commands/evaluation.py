@@ -22,8 +22,8 @@ def evaluate(args: argparse.Namespace) -> int:
 
     from sim_core.errors import SimCoreError
     from sim_core.learn.data import split
-    from sim_core.learn.inference import Trained, read_weights
-    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, Ours, RivalRow, measured, reference
+    from sim_core.learn.inference import read_weights
+    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, measured, reference, row_of
 
     given = {trained.row: (path, trained) for path in args.weights for trained in [read_weights(path)]}
     wanted = args.rows or (*PLAIN, *(row for row in ROWS[len(PLAIN) :] if row in given))
@@ -45,7 +45,7 @@ def evaluate(args: argparse.Namespace) -> int:
         "local_frames": lambda: LocalFrames.fitted([films[recipe.name] for recipe in parts.train]),
     }
     for row, (_, trained) in given.items():
-        made = Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
+        made = row_of(trained)
         makers[row] = lambda made=made: made
     told, rows = progress(), {}
     for number, name in enumerate(wanted):

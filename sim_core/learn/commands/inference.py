@@ -50,9 +50,9 @@ def infer(args: argparse.Namespace) -> int:
             told(number / len(coarse), "fine")
     told(1.0, "")
     pair, fine = Pair.of(recipe), np.stack(frames)
-    faces = {"coarse_faces": pair.coarse.faces, "fine_faces": pair.fine.faces}
+    faces, fine_faces = pair.coarse.faces, pair.fine.faces
     with written_whole(args.out) as stream:
-        np.savez_compressed(stream, coarse=coarse, fine=fine, **faces)
+        np.savez_compressed(stream, coarse=coarse, fine=fine, coarse_faces=faces, fine_faces=fine_faces)
     net_ms = 1000.0 * float(np.median(spent))
     facts = {
         "scene": args.scene,
@@ -71,13 +71,13 @@ def infer(args: argparse.Namespace) -> int:
 
 def _row(path: Path, scene: str) -> Row:
     """What follows by weights; raises SimCoreError for those of another scene."""
-    from sim_core.learn.inference import Trained, read_weights
-    from sim_core.learn.rows import Ours, RivalRow
+    from sim_core.learn.inference import read_weights
+    from sim_core.learn.rows import row_of
 
     trained = read_weights(path)
     if (own := trained.told.get("scene")) != scene:
         raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}, or infer {own}")
-    return Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
+    return row_of(trained)
 
 
 def _brought(path: Path) -> np.ndarray:

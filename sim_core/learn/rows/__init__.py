@@ -8,7 +8,7 @@ from sim_core.learn.rows.learned import Ours
 from sim_core.learn.rows.measured import EVERY, Measured, measured, reference
 from sim_core.learn.rows.plain import Biharmonic, Linear
 from sim_core.learn.rows.regression import LocalFrames
-from sim_core.learn.rows.rivals import RivalRow
+from sim_core.learn.rows.rivals import RivalRow, row_of
 from sim_core.learn.rows.row import Follow, Row
 
 __all__ = [
@@ -23,4 +23,5 @@ __all__ = [
     "Row",
     "measured",
     "reference",
+    "row_of",
 ]

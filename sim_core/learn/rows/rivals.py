@@ -11,12 +11,13 @@ import numpy as np
 
 from sim_core.errors import SimCoreError
 from sim_core.learn.data import Pair, Recipe
-from sim_core.learn.inference import RIVALS, Ground, RivalTrained
+from sim_core.learn.inference import RIVALS, Ground, RivalTrained, Trained
 from sim_core.learn.pooling import Pooled
-from sim_core.learn.rows.row import Follow
+from sim_core.learn.rows.learned import Ours
+from sim_core.learn.rows.row import Follow, Row
 from sim_core.learn.upsampling import weighted_sums
 
-__all__ = ["RivalRow"]
+__all__ = ["RivalRow", "row_of"]
 
 
 @dataclass(frozen=True)
@@ -64,3 +65,8 @@ class RivalRow:
                 f"{recipe.name}: {self.name} has learned from no sheet of its kind – train it on one"
             )
         return found
+
+
+def row_of(trained: Trained | RivalTrained) -> Row:
+    """What follows by weights, whosever they are."""
+    return Ours(trained) if isinstance(trained, Trained) else RivalRow(trained)
