@@ -113,7 +113,7 @@ def test_an_alternative_is_taken_where_it_is_cheaper_within_the_budget() -> None
     assert "no mesh that was measured keeps it" in only.why
     for wrong in (("", 1.5, 1, 1), (2, 5, 1, 1), ("a", 5, -1, 1), ("a", 5, 1, float("nan"))):
         with pytest.raises(SimCoreError, match="alternative"):
-            Alternative(*wrong)
+            Alternative(*wrong)  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_kept_or_was_not_measured_is_refused_in_one_line() -> None:
