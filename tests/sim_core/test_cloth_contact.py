@@ -231,6 +231,7 @@ def heard(frames: list[np.ndarray], _: int, x: np.ndarray) -> None:
     frames.append(np.array(x))
 
 
+@pytest.mark.nightly
 def test_cloth_that_bears_on_midpoints_comes_to_rest() -> None:
     """Most of it: how cloth falls is chance, and now and then a fold still creeps."""
     rng = np.random.default_rng(3)

@@ -138,7 +138,7 @@ def test_the_twist_of_collinear_points_stays_with_a_prior() -> None:
     assert np.median(free) > 30.0  # what the prior is for
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_hundred_thousand_frames_stay_rotations() -> None:
     random = np.random.default_rng(2)
     body = points(3, 7) * 0.3

@@ -304,7 +304,7 @@ def test_rotations_of_bones_point_where_bones_do_and_do_not_twist(tmp_path: Path
     assert twist[:, long].max() <= 2.0
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_hundred_thousand_frames_do_not_drift(tmp_path: Path) -> None:
     clip = recorded("dance", tmp_path, seconds=20.0)
     whole = noisy(clip)
