@@ -12,6 +12,7 @@ import pytest
 from sim_core import cloth
 from sim_core.cloth import (
     Air,
+    Alternative,
     Box,
     Capsule,
     Checkpoint,
@@ -99,7 +100,9 @@ CHOOSE = {
     "pins": None,
     "wind": (4, 0, 1),
     "cloth": GF_CM,
+    "alternatives": (),
 }
+ALTERNATIVE = {"name": "other", "vertices": 99, "error_mm": 1.0, "ms": 2.0}
 SCENE = {
     "name": "flag",
     "case": 1,
@@ -222,6 +225,7 @@ PUBLIC: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     ),
     "Solid": (BALL.distance, {"points": FLAT}),
     "Union": (lambda **given: run(collider=Union(**given)), {"parts": (BALL, HalfSpace())}),
+    "Alternative": (Alternative, ALTERNATIVE),
     "choose": (choose, CHOOSE),
     "drape": (drape, DRAPE),
     "field_of": (field_of, FIELD),

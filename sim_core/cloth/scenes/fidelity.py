@@ -27,7 +27,7 @@ from sim_core.cloth.scenes.catalogue import Scene, case_values, checked_cloth, c
 from sim_core.cloth.scenes.trial_runs import TRIAL_EDGES, apart, gap, trial_film
 from sim_core.cloth.sheet.material import Material
 from sim_core.cloth.step.frame import FRAME
-from sim_core.errors import WrongArgument
+from sim_core.errors import SimCoreError, WrongArgument
 from sim_core.validation import excerpt, finite, instance_of, integer, vector3
 
 FILE = Path(__file__).with_name("fidelity.json")
@@ -177,7 +177,7 @@ def choose(
             f"scene {excerpt(name)}: no table of errors – there is one for {', '.join(sorted(known))}"
         )
     finite("error_mm: the budget [mm]", error_mm, above=0)
-    asked = _asked(name, case, size, pins, wind, cloth)
+    asked, others = _asked(name, case, size, pins, wind, cloth), _alternatives(alternatives)
     _within(asked)
     part = known[name]
     frames = round(part["seconds"] / FRAME)
@@ -185,9 +185,7 @@ def choose(
     offered = bounds(asked, [gap(films[k : k + 3]) for k in range(len(TRIAL_EDGES) - 2)])
     calm = 1e-3 * part.get("calm_mm", math.inf)
     kept = [row for row in offered if row[1] <= error_mm and row[0] <= calm]
-    other = min(
-        (one for one in alternatives if one.error_mm <= error_mm), key=lambda one: one.ms, default=None
-    )
+    other = min((one for one in others if one.error_mm <= error_mm), key=lambda one: one.ms, default=None)
     if other is not None and (not kept or other.ms < min(row[2] for row in kept)):
         return _instead(other, asked, kept)
     if not kept:
@@ -199,6 +197,12 @@ def choose(
     best = min(kept, key=lambda row: row[2])
     why = _why(part, apart(films[0], films[-1]), best, [row for row in offered if row[0] > best[0]])
     return Choice(best[0], vertices(asked.size, best[0]), "auto", best[1], best[2], why)
+
+
+def _alternatives(given: object) -> tuple[Alternative, ...]:
+    if not isinstance(given, list | tuple) or not all(isinstance(one, Alternative) for one in given):
+        raise SimCoreError(f"alternatives: {excerpt(given)} – give a list of Alternative")
+    return tuple(given)
 
 
 def _instead(other: Alternative, asked: Asked, kept: Sequence[tuple[float, float, float]]) -> Choice:
