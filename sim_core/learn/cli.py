@@ -167,12 +167,7 @@ def _add_infer(actions: Any) -> None:
 
 
 def _add_draw(actions: Any) -> None:
-    draw = actions.add_parser(
-        "draw",
-        help="meshes side by side, coloured by error",
-        description=DRAW,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    draw = _action(actions, "draw", "meshes side by side, coloured by error", DRAW, scene=False)
     draw.add_argument(
         "--data",
         type=Path,
@@ -186,15 +181,17 @@ def _add_draw(actions: Any) -> None:
     )
     draw.add_argument("--out", type=Path, required=True, metavar="FILE.png", help="the picture")
     draw.add_argument("--frame", type=whole(1, 100_000), metavar="N", help="another frame")
-    draw.add_argument("--json", action="store_true", help="print a machine-readable summary")
 
 
-def _action(actions: Any, name: str, words: str, description: str) -> argparse.ArgumentParser:
-    """What all of them take: a scene, and --json."""
+def _action(
+    actions: Any, name: str, words: str, description: str, *, scene: bool = True
+) -> argparse.ArgumentParser:
+    """What they take alike: a scene, but for who reads it from the data, and --json."""
     parser = actions.add_parser(
         name, help=words, description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
+    if scene:
+        parser.add_argument("scene", choices=("flag", "teapot", "hanging"), help="the published scene")
     parser.add_argument("--json", action="store_true", help="print a machine-readable summary")
     return parser
 
