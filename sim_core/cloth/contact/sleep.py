@@ -28,5 +28,5 @@ def asleep(room, fast2, drift, dt):
 @njit(error_model="numpy", inline="always")
 def apart_for(room, fast2, sway, dt):
     """Substeps of dt [s], at least one, after which what is `room` [m] apart may have met: at the speed whose square is
-    fast2 [m2/s2], while each side goes otherwise by less than `sway` [m/s]."""
-    return max(1, int(max(room, 0.0) / ((math.sqrt(fast2) + 2.0 * sway) * dt)))
+    fast2 [m2/s2], while both sides together go otherwise by less than `sway` [m/s]."""
+    return max(1, int(max(room, 0.0) / ((math.sqrt(fast2) + sway) * dt)))

@@ -16,7 +16,7 @@ from sim_core.cloth.contact.collisions import (
 )
 from sim_core.cloth.contact.constraints import Holds, bound, draw_together, mirror
 from sim_core.cloth.contact.layers.closing import PASSES, SHARE, THROUGH, hold_apart, listed_close, may_close
-from sim_core.cloth.contact.layers.jerks import feel, stand_by
+from sim_core.cloth.contact.layers.jerks import feel, look_from, stand_by
 from sim_core.cloth.contact.layers.near_pairs import go_on, likely_way, no_pairs, renew_pairs
 from sim_core.cloth.contact.layers.patches import Patches, Shapes
 from sim_core.cloth.contact.layers.repulsion import Shell, repel, search_for, search_with
@@ -30,7 +30,9 @@ SHARED = 0.5  # of the largest push of a vertex, that a sample is pushed by: a d
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
-LOOK_EVERY = 16  # substeps at most between two looks at how far the cloth has moved
+STRAYING = 0.5  # [m/s] beside what solids push, by which lists allow for ways that are not straight; more of it makes
+# looks rarer that somebody strays to, and those more frequent that were planned
+JOLT = 0.25  # of the thickness in a substep: by which nobody may go otherwise in any case
 WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
 FEW = 32  # such looks a frame at least, as far as it has substeps
 
@@ -161,7 +163,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     """
     here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
-    layers, pushed = shell.thickness > 0.0, 0.0
+    layers, pushed, straight = shell.thickness > 0.0, 0.0, (0.0, 0.0, 0.0)
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
@@ -174,12 +176,13 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
         here, there = leap(layout, inverse, frame, steps, room, here, there, k)
         x, v = here.x.T, here.v.T
         if layers and k % shell.every == 0:
-            shaken, narrow = False, False
+            astray, narrow, every = False, False, steps.dt * shell.every
             if k == 0:
                 stand_by(here.x, here.v, near.jerks)
             else:
-                shaken = feel(here.x, here.v, near.jerks, steps.dt * shell.every)
-            if k >= look_layer or shaken:
+                straight = straight[0] + every, straight[1], straight[2]
+                astray = feel(here.x, here.v, near.jerks, every, straight)
+            if k >= look_layer or astray:
                 if look_layer < 0:
                     way = likely_way(x, v, patches, shapes, steps.count * steps.dt)
                     how = search_for(mesh, shell.thickness, shell.skin, way)
@@ -187,12 +190,12 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                         how = search_with(how.thickness, how.edge, near.kept[0])
                     else:
                         no_pairs(near, how)
-                within = pushed / steps.dt, k * steps.dt, (steps.count - k) * steps.dt
+                free = STRAYING + pushed / steps.dt
+                within = free, k * steps.dt, (steps.count - k) * steps.dt
                 near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, within)
-                first = look_layer < 0 and solids  # when nobody knows yet how far they push
-                look_layer = k + 1 if first else k + 1 + int(min(LOOK_EVERY, holds_for / steps.dt))
-                pushed = 0.0
-                near.jerks.looked[:] = here.v
+                look_layer, pushed = k + 1 + int(min(holds_for / steps.dt, steps.count)), 0.0
+                straight = 0.0, free * holds_for, JOLT * shell.thickness / every
+                look_from(here.x, here.v, near.jerks)
             if near.now.count[1] + near.now.count[2] > 0:
                 late_pairs, nearest2 = repel(x, v, mesh, near, shell, steps.dt * shell.every, k)
                 if late_pairs and steps.breaks:

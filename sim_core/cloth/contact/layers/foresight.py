@@ -14,11 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from sim_core.cloth.contact.layers.jerks import SHAKEN
 from sim_core.cloth.contact.layers.patch_motion import apart, going_patches
 from sim_core.cloth.contact.layers.patch_places import are_beside, between, patch_pairs, place_now, sort_along
 from sim_core.cloth.contact.layers.patches import WHOLE
-from sim_core.cloth.contact.sleep import GAINED
 
 STRAY, STRAIN = 0.3, 0.14  # of an edge's length, that vertices, and edges' ends, may stray at least
 DOUBT = 2.0  # times as far as they did lately, that they may
@@ -89,26 +87,22 @@ def twisted(x, v, edges, course, seconds):
 
 
 @njit(cache=True, error_model="numpy")
-def on_course(x, v, edges, course, time, pushed):
-    """For how long [s] the cloth at x and v (V, 3) keeps to its course as it goes now; 0 where it does not, NaN where x
-    is not finite.
-
-    That is while nobody goes otherwise by SHAKEN; who is struck does at once, and has to be looked at then.
+def on_course(x, v, edges, course, time, free):
+    """For how long [s] the cloth at x and v (V, 3) keeps to its course while each vertex goes straight on, but for
+    `free` [m/s]; 0 where it does not, NaN where x is not finite.
     """
-    (begun, lasts), moving = (course.plan[0], course.plan[1]), 2.0 * pushed + GAINED + SHAKEN
+    begun, lasts = course.plan[0], course.plan[1]
     gone = time - begun if lasts > 0.0 else 0.0
     far, fast, tightest, total = strayed(x, v, course, gone)
     if not math.isfinite(total):
         return math.nan
     if far > STALE or gone >= LATEST * lasts:
         return 0.0
-    long = (1.0 - far) / (2.0 * fast + moving * tightest + 1e-30)
+    long = (1.0 - far) / (fast + free * tightest + 1e-30)
     far, fast, tautest = twisted(x, v, edges, course, gone)
     if far > STALE:
         return 0.0
-    return max(
-        1e-9, min(lasts - gone, long, (1.0 - far) / (2.0 * fast + (moving + SHAKEN) * tautest + 1e-30))
-    )
+    return max(1e-9, min(lasts - gone, long, (1.0 - far) / (fast + 2.0 * free * tautest + 1e-30)))
 
 
 @njit(cache=True, error_model="numpy")

@@ -23,12 +23,11 @@ from sim_core.cloth.contact.layers.foresight import (
     twisted,
     unsure_pairs,
 )
-from sim_core.cloth.contact.layers.jerks import SHAKEN, Jerks, jerks_of
+from sim_core.cloth.contact.layers.jerks import Jerks, jerks_of
 from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
 from sim_core.cloth.contact.layers.patch_motion import apart, furthest, going_patches, move_patches
 from sim_core.cloth.contact.layers.patch_places import between, flat_pair, place_now, place_parts
 from sim_core.cloth.contact.layers.patches import WHOLE, grown
-from sim_core.cloth.contact.sleep import GAINED
 
 LATE = 0.6  # of what patches may move against each other, from where on their pairs are looked for anew
 SOON = 0.5  # likewise for those that are looked for along with others
@@ -265,13 +264,14 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
 
 @njit(cache=True, error_model="numpy")
 def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
-    """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold at velocities v (V, 3).
+    """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold while each vertex goes
+    straight on at v (V, 3), but for what it strays: so long times `free` [m] at most.
 
-    within: the speed [m/s] at which solids push at most, beside the velocities; of a frame, now and what is left [s].
+    within: free [m/s]; of a frame, now and what is left [s].
     """
-    now, moved, course, (pushed, time, left) = near.now, shapes.moved, near.course, within
+    now, moved, course, (free, time, left) = near.now, shapes.moved, near.course, within
     near.tally[0] += 1
-    sure = on_course(x, v, mesh.edges, course, time, pushed)
+    sure = on_course(x, v, mesh.edges, course, time, free)
     if math.isnan(sure):
         now.count[:] = 0
         near.kept[1] = 0.0
@@ -280,17 +280,17 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     if now.count[0] == 0 and not fresh:
         return near, sure
     move_patches(x, v, now.mark, patches, shapes)
-    late = _gone_on(now, moved, pushed)
+    late = _gone_on(now, moved, free)
     if fresh:
         gone = time - course.plan[0] if course.plan[1] > 0.0 else 0.0
         sure = set_out(x, v, mesh, patches, course, gone, left, how.edge)
         course.plan[0], course.plan[1] = time, sure
-        sure = min(sure, STRAIN * how.edge / (2.0 * pushed + GAINED + 2.0 * SHAKEN))
+        sure = min(sure, STRAIN * how.edge / (2.0 * free))
     if late or fresh:
         near = _looked_through(x, v, mesh, patches, shapes, how, near, fresh)
         if fresh:
             moved[:, :WHOLE] = 0.0
-            _gone_on(near.now, moved, pushed)
+            _gone_on(near.now, moved, free)
     return near, max(0.0, min(_soonest(near.now), sure))
 
 
@@ -320,7 +320,7 @@ def listed_within(x, edges, near):
 
 
 @njit(cache=True, error_model="numpy")
-def _gone_on(near, moved, pushed):
+def _gone_on(near, moved, free):
     """How far the patches of each pair have moved against each other since the mark, and how fast they may go on, into
     near.ways; whether any have by LATE of what they may.
     """
@@ -328,7 +328,7 @@ def _gone_on(near, moved, pushed):
     for k in range(near.count[0]):
         p, q = pairs[k, 0], pairs[k, 1]
         ways[k, 0] = gone[k] + apart(moved, p, q, 0)
-        ways[k, 1] = 2.0 * (apart(moved, p, q, WHOLE) + pushed + SHAKEN) + GAINED
+        ways[k, 1] = apart(moved, p, q, WHOLE) + 2.0 * free
         late = late or not ways[k, 0] <= LATE * lasts[k]
     return late
 

@@ -13,7 +13,6 @@ from typing import NamedTuple
 from numba import njit
 
 from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
-from sim_core.cloth.contact.layers.jerks import SWAY
 from sim_core.cloth.contact.layers.pairs import Search
 from sim_core.cloth.contact.layers.patches import CONE
 from sim_core.cloth.contact.sleep import apart_for
@@ -121,7 +120,7 @@ def repel(x, v, mesh, near, shell, dt, step):
         mesh.inverse_mass,
     )
     faces, edges = mesh.faces, mesh.edges
-    going, jerked, some = near.jerks.going, near.jerks.jerked, near.jerks.some[0]
+    going, jerked, some, sway2 = near.jerks.going, near.jerks.jerked, near.jerks.some[0], near.jerks.sway2
     short, least, late = SHORT * shell.thickness, LEAST_ROOM * shell.thickness / dt, False
     nearest2, close2, close, restless = reach2, CLOSE * CLOSE * reach2, near.close, near.jerks.restless
     close[0] = 0
@@ -150,8 +149,9 @@ def repel(x, v, mesh, near, shell, dt, step):
         else:
             late = late or _too_fast(meets, gap2, short, least, dt)
             fast2 = max(_apart2(going, i, a), _apart2(going, i, b), _apart2(going, i, c))
+            sway = math.sqrt(sway2[i]) + math.sqrt(max(sway2[a], sway2[b], sway2[c]))
             points[k, 2] = step + min(
-                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, SWAY, dt)
+                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, sway, dt)
             )
     for k in range(counts[2]):
         if crossings[k, 2] > step and not some:
@@ -175,8 +175,9 @@ def repel(x, v, mesh, near, shell, dt, step):
             fast2 = max(
                 _apart2(going, a, c), _apart2(going, a, d), _apart2(going, b, c), _apart2(going, b, d)
             )
+            sway = math.sqrt(max(sway2[a], sway2[b])) + math.sqrt(max(sway2[c], sway2[d]))
             crossings[k, 2] = step + min(
-                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, SWAY, dt)
+                MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, sway, dt)
             )
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
         elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
