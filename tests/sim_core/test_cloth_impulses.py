@@ -33,14 +33,14 @@ def mesh_of(inverse: np.ndarray, faces: np.ndarray, edges: np.ndarray) -> Mesh:
     return Mesh(inverse, np.zeros((len(inverse), 2)), edges, faces, np.ones(len(edges)), same)
 
 
-def near_of(points: list[list[int]], crossings: list[list[int]]) -> NearPairs:
+def near_of(points: list[list[int]], crossings: list[list[int]], vertices: int = 4) -> NearPairs:
     """Lists that hold these pairs, awake."""
 
     def awake(pairs: list[list[int]]) -> np.ndarray:
         return np.array([[*pair, 0] for pair in pairs], np.int32).reshape(-1, 3)
 
     counts = np.array([0, len(points), len(crossings)])
-    lists = near_pairs_of(4, 2, 0)
+    lists = near_pairs_of(vertices, 2, 0)
     now = lists.now._replace(points=awake(points), crossings=awake(crossings), count=counts)
     return lists._replace(now=now)
 
@@ -85,6 +85,40 @@ def test_sliding_loses_friction_times_the_normal_impulse(kind: str, friction: fl
 @KINDS
 def test_friction_takes_half_of_the_sliding_at_most(kind: str) -> None:
     assert met(0.2 * THICKNESS, (0.4, -1.0, 0.0), 1.0, kind)[0] == pytest.approx(0.2, abs=1e-6)
+
+
+def test_a_pair_that_was_woken_in_contact_stays_awake() -> None:
+    """By a jerk long before it would have woken by itself: it is asked in the substep after, too, where nobody is."""
+    x = np.concatenate([[[0.0, 0.6 * THICKNESS, 0.0]], FACE])
+    v, mesh = (
+        np.zeros((4, 3)),
+        mesh_of(np.ones(4), np.array([[1, 2, 3]], np.int32), np.zeros((0, 2), np.int32)),
+    )
+    near = near_of([[0, 0]], [])
+    near.now.points[0, 2] = 100
+    near.jerks.sway2[:] = 0.01
+    for step, woken in ((50, True), (51, False), (60, False)):
+        near.jerks.jerked[0] = near.jerks.some[0] = woken
+        v[0, 1] = -0.05
+        _, nearest2 = repel(x, v, mesh, near, shell_of(0.0), 1e-3, step)
+        assert v[0, 1] > -0.05, step
+        assert nearest2 == pytest.approx((0.6 * THICKNESS) ** 2)
+
+
+@pytest.mark.parametrize(("speed", "asked"), [(-0.2, False), (-3.0, True)])
+def test_who_is_struck_wakes_its_pairs_in_the_same_pass(speed: float, asked: bool) -> None:
+    """A vertex meets a face; the pair of it and another face, which comes later, sleeps as long as the blow is soft."""
+    x = np.concatenate([[[0.0, 0.2 * THICKNESS, 0.0]], FACE, FACE + [0.0, 3 * THICKNESS, 0.0]])
+    faces = np.array([[1, 2, 3], [4, 5, 6]], np.int32)
+    near = near_of([[0, 0], [0, 1]], [], vertices=7)
+    v = np.zeros((7, 3))
+    v[0, 1] = speed
+    near.now.points[1, 2] = 100
+    near.jerks.going[:] = v.T
+    near.jerks.sway2[:] = 0.3
+    repel(x, v, mesh_of(np.ones(7), faces, np.zeros((0, 2), np.int32)), near, shell_of(0.0), 1e-3, 5)
+    assert v[0, 1] > 0.5 * speed
+    assert (near.now.points[1, 2] < 100) == asked
 
 
 @pytest.mark.parametrize("arm", [0.5, 0.1, 0.01, 1e-4])

@@ -30,9 +30,8 @@ SHARED = 0.5  # of the largest push of a vertex, that a sample is pushed by: a d
 SETTLED = (
     0.2  # of the clearance, up to which the last look of a frame insists: all of it would strain the cloth
 )
-STRAYING = 0.5  # [m/s] beside what solids push, by which lists allow for ways that are not straight; more of it makes
+STRAYING = 0.25  # [m/s] beside what solids push, by which lists allow for ways that are not straight; more of it makes
 # looks rarer that somebody strays to, and those more frequent that were planned
-JOLT = 0.25  # of the thickness in a substep: by which nobody may go otherwise in any case
 WATCH_EVERY = 8  # substeps between two looks at whether layers are too fast, whatever else is looked at
 FEW = 32  # such looks a frame at least, as far as it has substeps
 
@@ -163,7 +162,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
     """
     here, there = state, State(room.spare, state.v)
     shell, inverse, holds, solids = touch.shell, mesh.inverse_mass, touch.holds, len(touch.solid.kind) > 0
-    layers, pushed, straight = shell.thickness > 0.0, 0.0, (0.0, 0.0, 0.0)
+    layers, pushed, straight = shell.thickness > 0.0, 0.0, (0.0, 0.0)
     late, bounded = not steps.whole or min(holds.limit) < 1.0, len(holds.low) + len(holds.slaves) > 0
     touch.vertices.wake[:] = 0
     touch.middles.wake[:] = 0
@@ -180,7 +179,7 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
             if k == 0:
                 stand_by(here.x, here.v, near.jerks)
             else:
-                straight = straight[0] + every, straight[1], straight[2]
+                straight = straight[0] + every, straight[1]
                 astray = feel(here.x, here.v, near.jerks, every, straight)
             if k >= look_layer or astray:
                 if look_layer < 0:
@@ -192,9 +191,10 @@ def advance(layout, mesh, touch, frame, steps, room, state, near):
                         no_pairs(near, how)
                 free = STRAYING + pushed / steps.dt
                 within = free, k * steps.dt, (steps.count - k) * steps.dt
-                near, holds_for = renew_pairs(x, v, mesh, patches, shapes, how, near, within)
-                look_layer, pushed = k + 1 + int(min(holds_for / steps.dt, steps.count)), 0.0
-                straight = 0.0, free * holds_for, JOLT * shell.thickness / every
+                near, holds_for, stray = renew_pairs(x, v, mesh, patches, shapes, how, near, within)
+                # Until layers are asked the next time lists hold: who is too fast is seen from outside the shell.
+                look_layer = k + 1 + int(min(holds_for / steps.dt, steps.count)) - shell.every
+                straight, pushed = (0.0, stray), 0.0
                 look_from(here.x, here.v, near.jerks)
             if near.now.count[1] + near.now.count[2] > 0:
                 late_pairs, nearest2 = repel(x, v, mesh, near, shell, steps.dt * shell.every, k)

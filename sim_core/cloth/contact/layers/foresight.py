@@ -89,7 +89,7 @@ def twisted(x, v, edges, course, seconds):
 @njit(cache=True, error_model="numpy")
 def on_course(x, v, edges, course, time, free):
     """For how long [s] the cloth at x and v (V, 3) keeps to its course while each vertex goes straight on, but for
-    `free` [m/s]; 0 where it does not, NaN where x is not finite.
+    `free` [m/s]; 0 where it does not or the course ends, NaN where x is not finite.
     """
     begun, lasts = course.plan[0], course.plan[1]
     gone = time - begun if lasts > 0.0 else 0.0
@@ -102,7 +102,7 @@ def on_course(x, v, edges, course, time, free):
     far, fast, tautest = twisted(x, v, edges, course, gone)
     if far > STALE:
         return 0.0
-    return max(1e-9, min(lasts - gone, long, (1.0 - far) / (fast + 2.0 * free * tautest + 1e-30)))
+    return max(1e-9, min(long, (1.0 - far) / (fast + 2.0 * free * tautest + 1e-30)))
 
 
 @njit(cache=True, error_model="numpy")

@@ -62,11 +62,11 @@ def feel(x, v, jerks, dt, straight):
 
     Asked are the velocity and the way that was gone, of which pushes of solids are part and the velocity knows nothing:
     what lies on a body is pushed in every substep, which is allowed for from the first on.
-    straight: how long ago the cloth was looked at [s], how far a vertex may be from where it was bound for then [m],
-    and by how much it may go otherwise [m/s].
+    straight: how long ago the cloth was looked at [s], and how far a vertex may be from where it was bound for then
+    [m], now and, as it goes now, a step later.
     """
     jerked, sway2, per, some, astray, before = jerks.jerked, jerks.sway2, 1.0 / dt, 0, 0, jerks.turn[0]
-    gone, far2, jolt2 = straight[0], straight[1] ** 2, straight[2] ** 2
+    gone, far2 = straight[0], straight[1] ** 2
     (x0, x1, x2), (v0, v1, v2) = (x[0], x[1], x[2]), (v[0], v[1], v[2])
     last, now = jerks.last[before], jerks.last[1 - before]
     a0, a1, a2, n0, n1, n2 = last[0], last[1], last[2], now[0], now[1], now[2]
@@ -81,8 +81,8 @@ def feel(x, v, jerks, dt, straight):
         jerked[i] = off
         some += off
         dx, dy, dz = x0[i] - s0[i] - gone * b0[i], x1[i] - s1[i] - gone * b1[i], x2[i] - s2[i] - gone * b2[i]
-        by_speed = (v0[i] - b0[i]) ** 2 + (v1[i] - b1[i]) ** 2 + (v2[i] - b2[i]) ** 2
-        astray += (dx * dx + dy * dy + dz * dz > far2) | (by_speed > jolt2)
+        ex, ey, ez = dx + dt * (v0[i] - b0[i]), dy + dt * (v1[i] - b1[i]), dz + dt * (v2[i] - b2[i])
+        astray += (dx * dx + dy * dy + dz * dz > far2) | (ex * ex + ey * ey + ez * ez > far2)
         n0[i], n1[i], n2[i] = x0[i], x1[i], x2[i]
     if some > 0:
         for i in range(len(jerked)):

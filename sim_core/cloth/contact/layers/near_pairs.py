@@ -24,7 +24,7 @@ from sim_core.cloth.contact.layers.foresight import (
     unsure_pairs,
 )
 from sim_core.cloth.contact.layers.jerks import Jerks, jerks_of
-from sim_core.cloth.contact.layers.pairs import edges_on_edges, points_on_faces
+from sim_core.cloth.contact.layers.pairs import edges_on_edges, fold_room, points_on_faces
 from sim_core.cloth.contact.layers.patch_motion import apart, furthest, going_patches, move_patches
 from sim_core.cloth.contact.layers.patch_places import between, flat_pair, place_now, place_parts
 from sim_core.cloth.contact.layers.patches import WHOLE, grown
@@ -42,9 +42,7 @@ class Near(NamedTuple):
     patches: (
         np.ndarray
     )  # (K, 5) int32; while they are renewed p, q, the place in the lists before or -1, 0, what to do
-    gone: (
-        np.ndarray
-    )  # (K,) [m] how far the patches of each have moved against each other since they were looked for
+    gone: np.ndarray  # (K,) [m] how far the patches of each have moved since they were looked for
     lasts: np.ndarray  # (K,) [m] how far they may, until they are to be
     ways: np.ndarray  # (K, 2) how far they have by now [m], and how fast they may go on [m/s]
     count: np.ndarray  # (3,) int64 of pairs of patches, points, crossings
@@ -60,10 +58,9 @@ class NearPairs(NamedTuple):
     course: Course
     jerks: Jerks
     order: np.ndarray  # (K,) int32 working memory
-    close: (
-        np.ndarray
-    )  # (1 + K,) int32 how many pairs are close in this substep, then which: place k in now.points,
-    # or -1 - k in now.crossings; as far as there is room
+    # (1 + K,) int32 how many pairs are close now, then which, as far as there is room: place k in now.points,
+    # or -1 - k in now.crossings
+    close: np.ndarray
     kept: np.ndarray  # (2,) [m] the skin that the lists are looked for with; 1 while they hold
     tally: (
         np.ndarray
@@ -139,7 +136,7 @@ def _sifted(x, mesh, patches, shapes, how, near):
     pairs, gone, lasts, ways, skin = near.patches, near.gone, near.lasts, near.ways, how.reach - how.thickness
     placed, look, box = shapes.placed, shapes.look, shapes.box
     corners, start = patches.corners, patches.corner_start
-    due = through = 0
+    due, through, folded = 0, 0, fold_room(how)
     for k in range(near.count[0]):
         if gone[k] <= SOON * lasts[k]:
             pairs[k, 4] = KEEP
@@ -151,7 +148,11 @@ def _sifted(x, mesh, patches, shapes, how, near):
         due += 1
         pairs[k, 4], gone[k], ways[k, 0] = DROP, 0.0, 0.0
         lasts[k] = max(skin, between(x, corners, start, box, p, q) - how.thickness)
-        if lasts[k] == skin and not flat_pair(x, mesh, patches, shapes, p, q, how.wide):
+        if lasts[k] > skin:
+            continue
+        if flat_pair(x, mesh, patches, shapes, p, q, how.wide):
+            lasts[k] = folded
+        else:
             pairs[k, 4] = LOOK
             through += 1
     return due, through
@@ -264,8 +265,8 @@ def begin_pairs(x, mesh, patches, shapes, how, near):
 
 @njit(cache=True, error_model="numpy")
 def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
-    """Renews what has moved by x (V, 3); returns the lists, and for how long [s] they hold while each vertex goes
-    straight on at v (V, 3), but for what it strays: so long times `free` [m] at most.
+    """Renews what has moved by x (V, 3); returns the lists, for how long [s] they hold while each vertex goes straight
+    on at v (V, 3), and by how much [m] it may stray meanwhile: the more, the faster it is free to.
 
     within: free [m/s]; of a frame, now and what is left [s].
     """
@@ -275,23 +276,23 @@ def renew_pairs(x, v, mesh, patches, shapes, how, near, within):
     if math.isnan(sure):
         now.count[:] = 0
         near.kept[1] = 0.0
-        return near, 1.0
-    fresh = sure <= 0.0
+        return near, 1.0, free
+    fresh, ends = sure <= 0.0, course.plan[0] + course.plan[1] - time
     if now.count[0] == 0 and not fresh:
-        return near, sure
+        return near, min(sure, ends), free * sure
     move_patches(x, v, now.mark, patches, shapes)
     late = _gone_on(now, moved, free)
     if fresh:
         gone = time - course.plan[0] if course.plan[1] > 0.0 else 0.0
-        sure = set_out(x, v, mesh, patches, course, gone, left, how.edge)
-        course.plan[0], course.plan[1] = time, sure
-        sure = min(sure, STRAIN * how.edge / (2.0 * free))
+        ends = set_out(x, v, mesh, patches, course, gone, left, how.edge)
+        course.plan[0], course.plan[1], sure = time, ends, STRAIN * how.edge / (2.0 * free)
     if late or fresh:
         near = _looked_through(x, v, mesh, patches, shapes, how, near, fresh)
         if fresh:
             moved[:, :WHOLE] = 0.0
             _gone_on(near.now, moved, free)
-    return near, max(0.0, min(_soonest(near.now), sure))
+    sure = max(0.0, min(_soonest(near.now), sure))
+    return near, min(sure, ends), free * sure
 
 
 @njit(cache=True, error_model="numpy")

@@ -131,6 +131,9 @@ def _edges_near(x, a, b, c, d, reach):
     return gap < reach * reach
 
 
+NEARER = 0.5  # of the skin, by which sides of a fold may come nearer at least before they are looked at again
+
+
 class Search(NamedTuple):
     """What pairs are looked for.
 
@@ -144,6 +147,18 @@ class Search(NamedTuple):
     near: float
     edge: float  # [m] length of the edges at rest, on average
     wide: float = CONE  # cosine of the angle that normals may be apart in a stretch that cannot meet itself
+
+
+@njit(cache=True, error_model="numpy")
+def fold_room(how):
+    """How far [m] sides of the narrowest fold that counts as flat may come nearer before they touch, the skin at most.
+
+    Cloth that cannot meet itself is looked at again after so much: a fold is as wide as that an edge's height from its
+    crease.
+    """
+    skin, opening = how.reach - how.thickness, math.pi - math.acos(how.wide)
+    room = math.sqrt(3.0) * how.edge * math.sin(0.5 * opening) - how.thickness
+    return min(skin, max(NEARER * skin, room))
 
 
 @njit(cache=True, error_model="numpy")

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from numba import njit
 
 from sim_core.cloth.contact.closest_points import at, segment_parameters, triangle_weights
-from sim_core.cloth.contact.layers.pairs import Search
+from sim_core.cloth.contact.layers.pairs import NEARER, Search
 from sim_core.cloth.contact.layers.patches import CONE
 from sim_core.cloth.contact.sleep import apart_for
 
@@ -24,7 +24,6 @@ SHORT, LEAST_ROOM = (
 MOST_SLEEP = 10_000  # substeps: more than a frame has
 WIDEST = math.cos(math.radians(120.0))  # of two normals in a stretch of cloth that does not meet itself
 LEAST = 0.45  # of the skin, that calm cloth is looked through
-NEARER = 0.5  # of the skin, by which sides of a fold may come nearer before they are looked at again
 CLOSE = 0.5  # of the thickness: what is nearer is noted as close
 PARTING = 0.3  # of the thickness: as far as the spring lets a pair part in a step
 LEVER = 4.0  # times the change of the gap's speed that one vertex may change its own by: near a pin arms are short
@@ -46,7 +45,7 @@ class Shell(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _impulse(x, v, inverse_mass, index, weight, shell, dt):
-    """One contact between four vertices whose weights (signed, sum 0) span the separation."""
+    """One contact between four vertices whose weights (signed, sum 0) span the separation; whether it pushed."""
     dx = dy = dz = vx = vy = vz = 0.0
     total = most = 0.0
     for k in range(4):
@@ -58,7 +57,7 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
     total = max(total, most / LEVER)
     gap = math.sqrt(dx * dx + dy * dy + dz * dz)
     if gap >= shell.thickness or gap < 1e-9 or total == 0.0:
-        return
+        return False
     nx, ny, nz = dx / gap, dy / gap, dz / gap
     vn = vx * nx + vy * ny + vz * nz
     depth = 1.0 - gap / shell.thickness
@@ -78,6 +77,7 @@ def _impulse(x, v, inverse_mass, index, weight, shell, dt):
         v[index[k], 0] += share * (gain * nx - lost * tx)
         v[index[k], 1] += share * (gain * ny - lost * ty)
         v[index[k], 2] += share * (gain * nz - lost * tz)
+    return gain > 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -96,6 +96,20 @@ def _too_fast(meets, gap2, short, least, dt):
         return False
     gap = math.sqrt(gap2)
     return meets * dt > gap * (gap - short)
+
+
+@njit(error_model="numpy", inline="always")
+def _struck(v, jerks, index):
+    """Whether an impulse has made one of four vertices go otherwise than pairs that sleep reckon with: they are
+    woken in this very pass, as if nobody had slept."""
+    any_is = False
+    for i in index:
+        off2 = 0.0
+        for c in range(3):
+            off2 += (v[i, c] - jerks.going[c, i]) ** 2
+        if off2 > jerks.sway2[i]:
+            jerks.jerked[i] = any_is = True
+    return any_is
 
 
 @njit(error_model="numpy", inline="always")
@@ -145,7 +159,9 @@ def repel(x, v, mesh, near, shell, dt, step):
             nearest2 = min(nearest2, gap2)
             if gap2 < close2 or restless[i] or restless[a] or restless[b] or restless[c]:
                 _among(close, k)
-            _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt)
+            points[k, 2] = step
+            if _impulse(x, v, inverse_mass, (i, a, b, c), (1.0, -wa, -wb, -wc), shell, dt):
+                some = _struck(v, near.jerks, (i, a, b, c)) or some
         else:
             late = late or _too_fast(meets, gap2, short, least, dt)
             fast2 = max(_apart2(going, i, a), _apart2(going, i, b), _apart2(going, i, c))
@@ -179,12 +195,15 @@ def repel(x, v, mesh, near, shell, dt, step):
             crossings[k, 2] = step + min(
                 MOST_SLEEP, apart_for(math.sqrt(gap2) - shell.thickness, fast2, sway, dt)
             )
+            continue
+        crossings[k, 2] = step
         # A closest point at an end is a vertex near an edge, which the vertex-face pairs already hold.
-        elif 0.0 < s < 1.0 and 0.0 < t < 1.0:
+        if 0.0 < s < 1.0 and 0.0 < t < 1.0:
             nearest2 = min(nearest2, gap2)
             if gap2 < close2 or restless[a] or restless[b] or restless[c] or restless[d]:
                 _among(close, -1 - k)
-            _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt)
+            if _impulse(x, v, inverse_mass, (a, b, c, d), (1.0 - s, s, t - 1.0, -t), shell, dt):
+                some = _struck(v, near.jerks, (a, b, c, d)) or some
     return late, nearest2
 
 
