@@ -1,5 +1,5 @@
 """The hall of plain boxes, whose box moves by a clip, and what might have been tracked of it; one whose box somebody
-wears."""
+wears; one whose box is compared with two others."""
 
 from pathlib import Path
 
@@ -98,3 +98,56 @@ def write_worn_hall(folder: Path) -> tuple[Path, Clip]:
     assert clip.figure is not None
     clip.save(home / "sway.clip")
     return folder, clip
+
+
+COMPARISON = """
+[comparison]
+model = "three.glb"
+clip = "three.clip"
+text = { zh = "三个网格", en = "Three <b>boxes</b>" }
+
+[[comparison.side]]
+name = { zh = "粗", en = "Coarse" }
+colour = "#b07030"
+vertices = 8
+hausdorff_mm = 12.345
+milliseconds = 3
+
+[[comparison.side]]
+name = { zh = "学", en = "Learned" }
+colour = "#30a060"
+vertices = 16
+hausdorff_mm = 4
+milliseconds = 8.5
+
+[[comparison.side]]
+name = { zh = "细", en = "Fine" }
+colour = "#3060b0"
+vertices = 16
+milliseconds = 1104.6
+"""
+
+
+def write_comparing_hall(folder: Path) -> Path:
+    """Write the folder, whose still box compares three others beside each other, which sway; return it."""
+    import trimesh
+
+    write_moving_hall(folder)
+    home = folder / "exhibits" / "box"
+    scene, moved = trimesh.Scene(), {}
+    angle = 2 * np.pi * np.arange(FRAMES) / FRAMES
+    for number, colour in enumerate(([176, 112, 48, 255], [48, 160, 96, 255], [48, 96, 176, 255])):
+        box = trimesh.creation.box((0.5, 1.0, 0.5))
+        box.apply_translation((0.7 * (number - 1), 0.5, 0))
+        box.visual.vertex_colors = colour
+        scene.add_geometry(box, node_name=f"side {number}", geom_name=f"side {number}")
+        sway = np.zeros((FRAMES, len(box.vertices), 3))
+        sway[:, :, 0] = 0.2 * np.sin(angle)[:, None] * box.vertices[:, 1]
+        moved[f"side {number}"] = box.vertices + sway
+    model = scene.export(file_type="glb")
+    (home / "three.glb").write_bytes(model)
+    model_clip(model, moved, rate=RATE, loop=True).save(home / "three.clip")
+    toml = (home / "exhibit.toml").read_text("utf-8").replace('motion = "sway.clip"\n', "")
+    (home / "exhibit.toml").write_text(toml + COMPARISON, "utf-8")
+    (home / "sway.clip").unlink()
+    return folder

@@ -36,6 +36,10 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
             yield "models.close", file.models.close
     if file.motion:
         yield "motion", file.motion
+    if file.comparison:
+        yield "comparison.model", file.comparison.model
+        if file.comparison.clip:
+            yield "comparison.clip", file.comparison.clip
     if file.thumbnail:
         yield "thumbnail", file.thumbnail
     for number, medium in enumerate(file.media, 1):

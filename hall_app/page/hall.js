@@ -24,6 +24,7 @@ function createActions(parts) {
     enter: () => parts.visit.enter(),
     open: (id) => parts.visit.open(id),
     close: () => parts.visit.close(),
+    compare: (on) => parts.visit.compare(on),
     opened: () => parts.visit?.opened() ?? null,
     goTo: (...there) => parts.visit.goTo(...there),
     move: (forward, right) => parts.visit.move(forward, right),
@@ -102,9 +103,9 @@ function firstLook(beat) {
 
 /** What tests and curious visitors may use: to read, and to go where the minimap goes. */
 function publish({ visit, quality }, points, display) {
-  const { goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing } = visit;
+  const { goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing } = visit;
   window.hall = Object.freeze({
-    goTo, pose, mode, ahead, disagreement, opened, near, closeupAt, playing,
+    goTo, pose, mode, ahead, disagreement, opened, near, compares, closeupAt, playing,
     displayed: camera.displayed,
     display: () => display,
     quality: () => (quality ? { choice: quality.choice, level: quality.level } : null),

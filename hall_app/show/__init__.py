@@ -7,7 +7,7 @@ who is near what, what is clicked, and what follows from it.
 from hall_app.show.compression import best_frame
 from hall_app.show.exhibits import Drawn, drawn_exhibits
 from hall_app.show.pieces import LEAN, PICTURE, Pieces, split
-from hall_app.show.scene import STUDIO, Figure, HallScene
+from hall_app.show.scene import STUDIO, Figure, HallScene, Model
 from hall_app.show.stage import Actor, Figures, Stage
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "Figure",
     "Figures",
     "HallScene",
+    "Model",
     "Pieces",
     "Stage",
     "best_frame",

@@ -14,7 +14,7 @@ from hall_app.content.floor.footprints import foot_height
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.problems import Problem
-from hall_app.show.scene import Figure
+from hall_app.show.scene import Figure, Model
 
 __all__ = ["Drawn", "drawn_exhibits"]
 
@@ -52,16 +52,24 @@ def drawn_exhibits(
             continue
         else:
             try:
-                figure = _figure(content, exhibit, found)
+                compared = _compared(exhibit)
+            except (GlbError, OSError) as error:  # the exhibit itself is shown all the same
+                compared = None
+                problems.append(Problem(exhibit.toml, "comparison.model", str(error), _fix(error)))
+            try:
+                figure = _figure(content, exhibit, found, compared)
             except (GlbError, OSError) as error:
-                fix = error.fix if isinstance(error, GlbError) else "check the file"
                 what = f"{found.close.name}, {found.hall.name}: {error}"
-                problems.append(Problem(exhibit.toml, "models", what, fix))
+                problems.append(Problem(exhibit.toml, "models", what, _fix(error)))
         if figure is not None:
             models[exhibit.id] = found
             figures.append(figure)
     keys = {e.id: key_now(content, e) for e in content.exhibits if e.file.outfit is not None}
     return Drawn(tuple(figures), models, keys, tuple(problems))
+
+
+def _fix(error: GlbError | OSError) -> str:
+    return error.fix if isinstance(error, GlbError) else "check the file"
 
 
 def _own_model_missing(exhibit: Exhibit) -> bool:
@@ -89,18 +97,29 @@ def _held(model: Path) -> Callable[[], bytes]:
     return lambda: data
 
 
-def _figure(content: Content, exhibit: Exhibit, models: ExhibitModels) -> Figure:
+def _figure(content: Content, exhibit: Exhibit, models: ExhibitModels, compared: Model | None) -> Figure:
     place = exhibit.file.place
     read_glb(models.hall)  # a browser would only show a hole
-    low, high = models.bounds()
     return Figure(
         id=exhibit.id,
         hall=models.hall.read_bytes(),
-        close=models.close.read_bytes if models.baked is not None else _held(models.close),
+        close=_model(models.close, baked=models.baked is not None),
         x=place.x,
         y=foot_height(content.plan, exhibit.file),
         z=place.z,
         facing=place.facing,
-        centre=(low[1] + high[1]) / 2,
-        radius=0.5 * math.dist(low, high),
+        compared=compared,
     )
+
+
+def _compared(exhibit: Exhibit) -> Model | None:
+    """What its close-up shows side by side; a missing file is named by the content's own problems."""
+    told = exhibit.file.comparison
+    path = told and exhibit.folder / told.model
+    return _model(path, baked=False) if path and is_there(path) else None
+
+
+def _model(path: Path, *, baked: bool) -> Model:
+    info = read_glb(path)
+    glb = path.read_bytes if baked else _held(path)
+    return Model(glb, (info.low[1] + info.high[1]) / 2, 0.5 * math.dist(info.low, info.high))

@@ -15,27 +15,37 @@ from hall_app.visit.visitors import Marks, Visitor
 if TYPE_CHECKING:
     import viser
 
-__all__ = ["STUDIO", "Figure", "HallScene"]
+__all__ = ["STUDIO", "Figure", "HallScene", "Model"]
 
 # The studio lies far outside the hall: one WebGL context, no second page, and the walker's pose is untouched.
 STUDIO = (500.0, 0.0, 0.0)
 ENVIRONMENT = 0.4  # strength of the room's reflection beside the lights
+CLOSEUP, COMPARISON = "/closeup", "/comparison"  # what stands there, by the nodes the page knows
 FIELD_OF_VIEW = math.radians(58)  # 75 degrees, the client's own, stretches dress at the rim
 
 
 @dataclass(frozen=True)
+class Model:
+    """What is shown from close by: a GLB's bytes, the height [m] of its middle, and how far it reaches from there."""
+
+    glb: Callable[[], bytes]
+    centre: float
+    radius: float
+
+
+@dataclass(frozen=True)
 class Figure:
-    """One exhibit as drawn: models as GLB bytes, foot at (x, y, z) [m], `facing` [deg] about +y."""
+    """One exhibit as drawn: GLB bytes for the hall, foot at (x, y, z) [m], `facing` [deg] about +y; close: for the
+    close-up; compared: what it shows there side by side on request."""
 
     id: str
     hall: bytes
-    close: Callable[[], bytes]
+    close: Model
     x: float
     y: float
     z: float
     facing: float
-    centre: float
-    radius: float
+    compared: Model | None = None
 
 
 def node_name(exhibit: str) -> str:
@@ -158,20 +168,28 @@ class HallScene:
 
     def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]:
         """Put the fine model into the studio, for this visitor alone."""
-        figure = self._figures[exhibit]
+        return self._in_studio(visitor, CLOSEUP, self._figures[exhibit].close)
+
+    def show_comparison(self, visitor: Visitor, exhibit: str) -> dict[str, Any] | None:
+        """In its place, what the exhibit compares; None where that is nothing."""
+        compared = self._figures[exhibit].compared
+        return None if compared is None else self._in_studio(visitor, COMPARISON, compared)
+
+    def _in_studio(self, visitor: Visitor, node: str, model: Model) -> dict[str, Any]:
         client = self.server.get_clients().get(visitor.client) if visitor.client is not None else None
         if client is not None:
-            model = self.pieces.stand_in(figure.close())
-            client.scene.add_glb("/closeup", model, position=STUDIO, cast_shadow=False, receive_shadow=False)
+            glb = self.pieces.stand_in(model.glb())
+            client.scene.remove_by_name(COMPARISON if node == CLOSEUP else CLOSEUP)
+            client.scene.add_glb(node, glb, position=STUDIO, cast_shadow=False, receive_shadow=False)
             client.flush()
         x, y, z = STUDIO
-        studio = {"x": x, "y": y + figure.centre, "z": z, "radius": figure.radius}
-        return {"node": "/closeup", "studio": studio}
+        return {"node": node, "studio": {"x": x, "y": y + model.centre, "z": z, "radius": model.radius}}
 
     def hide_closeup(self, visitor: Visitor) -> None:
         client = self.server.get_clients().get(visitor.client) if visitor.client is not None else None
         if client is not None:
-            client.scene.remove_by_name("/closeup")
+            for node in (CLOSEUP, COMPARISON):
+                client.scene.remove_by_name(node)
 
     def aim_camera(self, client_id: int, eye: tuple[float, float, float], yaw: float) -> None:
         """Move a page's camera from here, for a page without hooks."""

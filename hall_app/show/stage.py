@@ -35,6 +35,7 @@ class Figures(Protocol):
 
     def node(self, exhibit: str) -> str: ...
     def show_closeup(self, visitor: Visitor, exhibit: str) -> dict[str, Any]: ...
+    def show_comparison(self, visitor: Visitor, exhibit: str) -> dict[str, Any] | None: ...
     def hide_closeup(self, visitor: Visitor) -> None: ...
 
 
@@ -112,12 +113,23 @@ class Stage:
         if exhibit not in self.actors or visitor.opened == exhibit:  # megabytes are sent once
             return
         studio = self.figures.show_closeup(visitor, exhibit)
-        visitor.opened = exhibit
+        visitor.opened, visitor.compares = exhibit, False
         visitor.say({"t": "open", "id": exhibit, **studio, **self._opening[exhibit]})
+
+    def compare(self, visitor: Visitor, on: bool) -> None:
+        """In the close-up: show what the exhibit compares side by side, or the exhibit again."""
+        exhibit = visitor.opened
+        if exhibit is None or exhibit not in self.actors or visitor.compares == on:
+            return
+        show = self.figures.show_comparison if on else self.figures.show_closeup
+        if (studio := show(visitor, exhibit)) is None:  # it compares nothing
+            return
+        visitor.compares = on
+        visitor.say({"t": "compared", "id": exhibit, "on": on, **studio})
 
     def close(self, visitor: Visitor) -> None:
         self.figures.hide_closeup(visitor)
-        visitor.opened = None
+        visitor.opened, visitor.compares = None, False
         visitor.say({"t": "closed"})
 
     # What happens to it.

@@ -19,13 +19,15 @@ MOST_WAITING = 256  # messages a page may lag behind before its socket is given 
 
 @dataclass(eq=False)
 class Visitor:
-    """One open page. client: viser's client id, None until the page has found its mark; near: what has noticed him;
-    turns: exhibit -> angle [rad], rate [rad/s] and time [s] that his page was told last."""
+    """One open page. client: viser's client id, None until the page has found its mark; opened: the exhibit he sees
+    from close by; compares: whether he sees what it compares instead; near: what has noticed him; turns: exhibit ->
+    angle [rad], rate [rad/s] and time [s] that his page was told last."""
 
     walk: WalkSession
     client: int | None = None
     display: str = "page"
     opened: str | None = None
+    compares: bool = False
     near: set[tuple[str, int]] = field(default_factory=set)
     turns: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     outbox: asyncio.Queue[dict[str, Any] | None] = field(default_factory=lambda: asyncio.Queue(MOST_WAITING))

@@ -1,13 +1,14 @@
-"""An exhibit that moves by a clip: its address, and what is wrong with a clip."""
+"""An exhibit that moves by a clip, and one that compares: addresses, and what is wrong with models and clips."""
 
 from pathlib import Path
 
 import numpy as np
 import pytest
-from moving_hall import box_clip, write_moving_hall
+from moving_hall import box_clip, write_comparing_hall, write_moving_hall
 
 from hall_app.check import check
-from hall_app.content import load, scene_json
+from hall_app.content import exhibit_json, load, scene_json
+from hall_app.show import drawn_exhibits
 from sim_core.garment.clip import Clip, Drawn, Moved
 
 
@@ -54,3 +55,44 @@ def test_a_clip_that_is_missing_or_damaged_or_of_another_model_is_named(folder: 
     assert "takes 60 MB in the page, at most 50 MB" in " ".join(motion_problems(folder))
     clip.unlink()
     assert "missing file sway.clip" in " ".join(motion_problems(folder))
+
+
+def comparison_problems(folder: Path) -> str:
+    return " | ".join(str(problem) for problem in check(folder) if "comparison" in problem.key)
+
+
+def test_a_comparison_is_told_to_the_page_and_no_problem(tmp_path: Path):
+    folder = write_comparing_hall(tmp_path / "content")
+    detail = exhibit_json(load(folder), "box")
+    assert detail is not None
+    told = detail["comparison"]
+    assert told["clip"].startswith("/media/box/three.clip?v=")
+    assert [side["colour"] for side in told["sides"]] == ["#b07030", "#30a060", "#3060b0"]
+    assert told["sides"][2]["hausdorff_mm"] is None
+    assert comparison_problems(folder) == ""
+    assert not any("three." in str(problem) for problem in check(folder))
+
+
+def test_a_comparison_whose_files_are_wrong_is_named_and_the_exhibit_stays(tmp_path: Path):
+    folder = write_comparing_hall(tmp_path / "content")
+    home = folder / "exhibits" / "box"
+    model, toml = (home / "three.glb").read_bytes(), (home / "exhibit.toml").read_text("utf-8")
+    (home / "three.glb").write_bytes((home / "box.glb").read_bytes())
+    assert "comparison.clip" in comparison_problems(folder)
+    assert "the model has no such mesh" in comparison_problems(folder)
+    (home / "three.glb").write_bytes(model[:300])
+    assert "three.glb cannot be drawn" in comparison_problems(folder)
+    drawn = drawn_exhibits(load(folder), tmp_path / "data")
+    assert [figure.id for figure in drawn.figures] == ["box"]
+    assert drawn.figures[0].compared is None
+    assert [problem.key for problem in drawn.unreadable] == ["comparison.model"]
+    (home / "three.glb").unlink()
+    assert "missing file three.glb" in comparison_problems(folder)
+    for wrong, words in (
+        (toml.split("[[comparison.side]]")[0], "comparison.side"),
+        (toml.replace("#b07030", "red"), "comparison.side"),
+        (toml.replace("vertices = 8\n", "vertices = 0\n"), "vertices"),
+        (toml.replace("milliseconds = 3\n", ""), "milliseconds"),
+    ):
+        (home / "exhibit.toml").write_text(wrong, "utf-8")
+        assert words in comparison_problems(folder)

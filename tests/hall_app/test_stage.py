@@ -19,7 +19,10 @@ class Shown:
         return f"/exhibits/{exhibit}"
 
     def show_closeup(self, visitor: Any, exhibit: str) -> dict[str, Any]:
-        return {}
+        return {"node": "/closeup"}
+
+    def show_comparison(self, visitor: Any, exhibit: str) -> dict[str, Any] | None:
+        return {"node": "/comparison"} if exhibit == "mirror" else None
 
     def hide_closeup(self, visitor: Any) -> None: ...
 
@@ -34,6 +37,7 @@ class Guest:
     near: set[tuple[str, int]] = field(default_factory=set)
     turns: dict[str, Any] = field(default_factory=dict)
     opened: str | None = None
+    compares: bool = False
 
     @property
     def walk(self) -> SimpleNamespace:
@@ -120,3 +124,23 @@ def test_a_click_opens_once_and_films_play(stage: Stage) -> None:
     assert guest.opened == "mirror"
     stage.close(guest)  # type: ignore[arg-type]
     assert guest.opened is None
+
+
+def test_what_is_compared_is_shown_in_the_closeup_on_request_and_leaves_with_it(stage: Stage) -> None:
+    guest = come(stage, 0, 2)
+    stage.compare(guest, True)  # type: ignore[arg-type]
+    assert guest.told("compared") == []  # nothing is open
+    stage.open(guest, "mirror")  # type: ignore[arg-type]
+    for on in (True, True, False, True):
+        stage.compare(guest, on)  # type: ignore[arg-type]
+    told = [(m["id"], m["on"], m["node"]) for m in guest.told("compared")]
+    assert told == [
+        ("mirror", True, "/comparison"),
+        ("mirror", False, "/closeup"),
+        ("mirror", True, "/comparison"),
+    ]
+    stage.close(guest)  # type: ignore[arg-type]
+    assert guest.compares is False
+    stage.open(guest, "coat")  # type: ignore[arg-type]
+    stage.compare(guest, True)  # type: ignore[arg-type]
+    assert len(guest.told("compared")) == 3  # it compares nothing

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from dataclasses import dataclass
+from pathlib import Path
 
 from hall_app.content.files import CLOSE_MOTION, MOTION, is_there, made_by_build, tracked_beside
 from hall_app.content.folder import Content, Exhibit
@@ -20,49 +21,63 @@ LARGEST_OPEN = 50 * MB  # in every visitor's page
 
 
 def clip_problems(content: Content) -> list[Problem]:
-    """Clips that cannot be read, are too large, or go with no mesh of their exhibit's model; points likewise."""
+    """Clips that cannot be read, are too large, or go with no mesh of what they move; points likewise."""
     return [
         problem
         for exhibit in content.exhibits
-        for name, kind in _named(exhibit)
-        if is_there(exhibit.folder / name)
-        for problem in _of(exhibit, name, kind)
+        for moving in _named(exhibit)
+        if is_there(exhibit.folder / moving.clip)
+        for problem in _of(exhibit, moving)
     ]
 
 
-def _named(exhibit: Exhibit) -> Iterator[tuple[str, Literal["hall", "close"]]]:
-    """The clips an exhibit may have, and which of its models each moves."""
-    if exhibit.file.motion:
-        yield exhibit.file.motion, "hall"
-    elif exhibit.file.outfit:
-        yield MOTION, "hall"
-    if exhibit.file.outfit:
-        yield CLOSE_MOTION, "close"
+@dataclass(frozen=True)
+class _Moving:
+    """A clip: the key it is named by, its file, the model it moves, and whether its wearer may have been tracked."""
+
+    key: str
+    clip: str
+    model: Path | None
+    tracked: bool = False
 
 
-def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Problem]:
-    path = exhibit.folder / name
+def _named(exhibit: Exhibit) -> Iterator[_Moving]:
+    """The clips an exhibit may have."""
+    file = exhibit.file
+    if (name := file.motion or (MOTION if file.outfit else None)) is not None:
+        yield _Moving("motion", name, exhibit.model_path("hall"), tracked=True)
+    if file.outfit:
+        yield _Moving("motion", CLOSE_MOTION, exhibit.model_path("close"))
+    if file.comparison and file.comparison.clip:
+        model = exhibit.folder / file.comparison.model
+        yield _Moving("comparison.clip", file.comparison.clip, model if is_there(model) else None)
+
+
+def _of(exhibit: Exhibit, moving: _Moving) -> list[Problem]:
+    name, path = moving.clip, exhibit.folder / moving.clip
     fix = (
         f"run: hall build --exhibit {exhibit.id}"
         if made_by_build(exhibit.file, name)
         else "write it by Clip.save"
     )
+    smaller = "use fewer frames, or a coarser model"
+
+    def problem(what: str, remedy: str = fix) -> Problem:
+        return Problem(exhibit.toml, moving.key, what, remedy)
+
     try:
         clip = Clip.load(path)
     except SimCoreError as error:
-        what = str(error).removeprefix(f"{path}: ")
-        return [Problem(exhibit.toml, "motion", f"{name}: {what}", fix)]
+        return [problem(f"{name}: {str(error).removeprefix(f'{path}: ')}")]
     found = []
     if (size := path.stat().st_size) > LARGEST:
-        what = f"{name} has {size / MB:.2f} MB, at most {LARGEST / MB:g} MB"
-        found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
-    if kind == "hall":
+        found.append(problem(f"{name} has {size / MB:.2f} MB, at most {LARGEST / MB:g} MB", smaller))
+    if moving.tracked:
         found += _tracked(exhibit, tracked_beside(name), clip, fix)
     if (whole := clip.steps.nbytes) > LARGEST_OPEN:
         what = f"{name} takes {whole / MB:.0f} MB in the page, at most {LARGEST_OPEN / MB:g} MB"
-        found.append(Problem(exhibit.toml, "motion", what, "use fewer frames, or a coarser model"))
-    model = exhibit.model_path(kind)
-    meshes = _meshes(model.read_bytes()) if model is not None else None
+        found.append(problem(what, smaller))
+    meshes = _meshes(moving.model.read_bytes()) if moving.model is not None else None
     if meshes is None:
         return found  # another check names it
     moved = (*clip.meshes, *((clip.figure,) if clip.figure else ()))
@@ -70,13 +85,9 @@ def _of(exhibit: Exhibit, name: str, kind: Literal["hall", "close"]) -> list[Pro
         if meshes.get(one.node) != len(one.index):
             has = f"{meshes[one.node]} vertices" if one.node in meshes else "no such mesh"
             what = f"{name} moves {len(one.index)} vertices of {one.node!r}, the model has {has}"
-            found.append(Problem(exhibit.toml, "motion", what, f"{fix}, for the model as it is now"))
+            found.append(problem(what, f"{fix}, for the model as it is now"))
     if not any(mesh.drawn for mesh in moved):
-        found.append(
-            Problem(
-                exhibit.toml, "motion", f"{name} moves no mesh of the model", "name what it draws: drawn_in"
-            )
-        )
+        found.append(problem(f"{name} moves no mesh of the model", "name what it draws: drawn_in"))
     return found
 
 

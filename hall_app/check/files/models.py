@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 from hall_app.content.bakes.store import bake_fault
-from hall_app.content.files import BAKED
+from hall_app.content.files import BAKED, is_there
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import GlbError, GlbInfo, read_glb
 from hall_app.content.problems import Problem
@@ -21,6 +21,8 @@ def scale_problems(content: Content) -> list[Problem]:
     for exhibit in content.exhibits:
         for key, path in exhibit.own_models().values():
             found += _model_problems(exhibit, key, path)
+        if (compared := exhibit.file.comparison) and is_there(exhibit.folder / compared.model):
+            found += _undrawable(exhibit, "comparison.model", exhibit.folder / compared.model)
     return found
 
 
@@ -30,17 +32,22 @@ def _model_problems(exhibit: Exhibit, key: str, path: Path) -> list[Problem]:
         if bake_fault(exhibit.folder / BAKED):
             return []  # the check of bakes names it
         fix = f"run: hall build --exhibit {exhibit.id}"
-    try:
-        fault = _drawing_fault(path)
-        info = read_glb(path)
-    except (GlbError, OSError) as error:
-        fault, info = str(error), None
-    if fault or info is None:
-        return [Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", fix)]
+    if problems := _undrawable(exhibit, key, path, fix):
+        return problems
+    info = read_glb(path)
     problems = _height(exhibit, key, info)
     if exhibit.file.models and not problems:  # a garment hangs where its stand holds it
         problems = _origin(exhibit.toml, key, info)
     return problems
+
+
+def _undrawable(exhibit: Exhibit, key: str, path: Path, fix: str = "export the model again") -> list[Problem]:
+    try:
+        fault = _drawing_fault(path)
+        read_glb(path)
+    except (GlbError, OSError) as error:
+        fault = str(error)
+    return [Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", fix)] if fault else []
 
 
 def _drawing_fault(path: Path) -> str | None:

@@ -1,8 +1,10 @@
 """The schemas of a content folder: hall.toml, plan.toml, exhibit.toml.
 
-values: what their tables share; hall, plan, exhibit: one file each; complaints: pydantic's words as a curator's.
+values: what their tables share; hall, plan, exhibit: one file each; comparison: a table of exhibit.toml;
+complaints: pydantic's words as a curator's.
 """
 
+from hall_app.content.schema.comparison import Comparison, Side
 from hall_app.content.schema.complaints import key_name, schema_problems, table_of, toml_problem
 from hall_app.content.schema.exhibit import Body, ExhibitFile, Media, Models, Place, Record, Show
 from hall_app.content.schema.hall import Eye, HallFile, Start
@@ -24,6 +26,7 @@ __all__ = [
     "Bay",
     "Bilingual",
     "Body",
+    "Comparison",
     "Curtain",
     "ExhibitFile",
     "Eye",
@@ -38,6 +41,7 @@ __all__ = [
     "Record",
     "Round",
     "Show",
+    "Side",
     "Sign",
     "Solid",
     "Start",

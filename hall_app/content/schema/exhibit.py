@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from hall_app.content.behaviours import BEHAVIOURS
+from hall_app.content.schema.comparison import Comparison
 from hall_app.content.schema.values import Bilingual, ContentPath, Metres, Table, Text
 
 
@@ -138,6 +139,7 @@ class ExhibitFile(Table):
     )
     media: tuple[Media, ...] = Field((), description="pictures, films, sounds, one [[media]] each")
     record: Record = Field(Record.model_construct(), description="catalogue record")
+    comparison: Comparison | None = Field(None, description="meshes shown side by side in the close-up")
     thumbnail: ContentPath | None = Field(None, description="small picture for lists; else the first picture")
     size_range: tuple[Metres, Metres] = Field(
         (0.3, 3.0), description="lowest and greatest height of the model that is right [m]"

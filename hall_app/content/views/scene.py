@@ -13,6 +13,7 @@ from hall_app.content.behaviours import kind_of
 from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there, tracked_beside
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
+from hall_app.content.schema.comparison import Comparison
 from hall_app.content.schema.exhibit import Media, Record
 from hall_app.content.views.markdown import html_of
 from hall_app.content.views.measurements import measured_lines
@@ -185,6 +186,18 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
         "questionnaire": file.questionnaire,
         "has_close": _has_close(exhibit, baked),
         "points": _points(exhibit, baked),
+        "comparison": file.comparison and _comparison(exhibit, file.comparison, baked),
+    }
+
+
+def _comparison(exhibit: Exhibit, told: Comparison, baked: Path | None) -> dict[str, Any] | None:
+    """What the page tells of meshes side by side; None once their model is gone."""
+    if not is_there(media_file(exhibit, told.model, baked)):
+        return None
+    return {
+        "clip": _url(exhibit, told.clip, baked) if told.clip else None,
+        "text": told.text.as_json() if told.text else None,
+        "sides": [side.model_dump() for side in told.side],
     }
 
 

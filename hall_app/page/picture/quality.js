@@ -7,6 +7,7 @@ import { shadeBySight } from "./sides.js";
 
 export const CHOICES = ["auto", ...LEVELS];
 const { recall, remember } = window.HALL.memory;
+const CLOSE = ["/closeup", "/comparison"]; // nodes of what is seen from close by
 const CHOSEN = "hall.quality", FOUND = "hall.quality.found";
 
 // A software renderer pays for every pixel; no use in finding that out by trial.
@@ -75,7 +76,7 @@ export function createQuality(onChange = () => {}) {
       reflect(reflections);
       sharpen(room, anisotropy, blend);
       for (const name of nodeNames()) {
-        if (!name.startsWith("/exhibits/") && name !== "/closeup") continue;
+        if (!name.startsWith("/exhibits/") && !CLOSE.includes(name)) continue;
         const meshes = meshesOf(name);
         sharpen(meshes, anisotropy, blend);
         shadeBySight(meshes);

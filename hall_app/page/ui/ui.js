@@ -29,7 +29,7 @@ const NARROW = "(max-width: 720px)"; // the open plan covers the way one wants t
  * createUi({root, scene, texts, lang, actions, clock, points}) -> ui
  *
  * scene: answer of /api/scene; texts: {zh, en} of texts.toml; lang: "zh" or "en".
- * clock: of what moves; points: what was tracked of who moves. actions: enter(), open(id), close(), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
+ * clock: of what moves; points: what was tracked of who moves. actions: enter(), open(id), close(), compare(on), opened(), goTo(x, z, yaw?, pitch?), setLang(lang), setQuality(choice), move(forward, right).
  */
 export function createUi({ root, scene, texts, lang, actions, clock, points }) {
   const words = createWords(texts, lang);
@@ -88,6 +88,7 @@ function createParts({ words, scene, actions, clock, points }) {
       onSurvey: (detail) => parts.survey.open(detail.questionnaire, detail.id),
       onEnlarge: (pictures, index) => parts.viewer.open(pictures, index),
       onSounding: (sounding) => music.duck(sounding),
+      onCompare: actions.compare,
       onFold: (folded) => foldPanel(parts, folded),
     }),
     curtain: createCurtain({ words }),

@@ -31,6 +31,7 @@ const clamp = (value) => Math.max(-1, Math.min(1, value));
  */
 export function createVisit({ scene, grid, display, ui, wake, connection, clock, points }) {
   let entered = false, opened = null, near = null, headingThere = null;
+  let compares = false, compared = null, comparison = null; // asked for; {clip} once it is shown; of the open exhibit
   let stick = { forward: 0, right: 0, since: 0 };
   const walking = () => entered && !opened;
   const { gaze, head } = createGaze(document.documentElement, scene.eye, walking, wake);
@@ -59,7 +60,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
   const mark = createMark(display, (client) => walk.send({ t: "client", client }));
   const walk = createWalk({
     scene, grid, display, mark: mark.find, at: arrival,
-    on: { moved, open: openExhibit, closed: leave, near: comeNear, turn: turning.heard, content: refresh, connection, heard: wake },
+    on: { moved, open: openExhibit, compared: showCompared, closed: leave, near: comeNear, turn: turning.heard, content: refresh, connection, heard: wake },
   });
 
   function open(id) { walk.send({ t: "open", id }); }
@@ -126,6 +127,22 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     keys.release();
     ui.hover(null);
     ui.showExhibit(detail, { play: message.play === true });
+    comparison = detail.comparison;
+    compared = null;
+    closeup.enter(message);
+    if (compares) walk.send({ t: "compare", on: true }); // the line was lost meanwhile
+  }
+
+  /** The close-up shows the exhibit's meshes side by side, or the exhibit again. */
+  function compare(on) {
+    if (compares === on) return;
+    compares = on;
+    walk.send({ t: "compare", on });
+  }
+
+  function showCompared(message) {
+    if (opened !== message.id || message.on !== compares) return; // something else meanwhile
+    compared = message.on ? { clip: comparison?.clip ?? null } : null;
     closeup.enter(message);
   }
 
@@ -136,7 +153,8 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
 
   function leave() {
     if (!opened) return;
-    opened = null;
+    opened = compared = null;
+    compares = false; // the server forgets it with the exhibit
     address.follow(null);
     ui.hideExhibit();
     closeup.leave();
@@ -167,7 +185,9 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     }
     if (opened && scene.exhibits.some((exhibit) => exhibit.id === opened)) {
       const id = opened, detail = await fetchJson(exhibitUrl(id)).catch(() => null);
-      if (detail && mine === asked && id === opened) ui.updateExhibit(detail);
+      if (!detail || mine !== asked || id !== opened) return;
+      comparison = detail.comparison;
+      ui.updateExhibit(detail);
     }
   }
 
@@ -199,7 +219,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     spot.note(now);
     if (walking()) step(dt, now);
     if (display !== "page") return;
-    clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened);
+    clips.frame(scene, { ...walk.pose, yaw: gaze.yaw }, opened, compared);
     points.frame(clips.shown(exhibitOf(opened) ?? {}));
     if (opened) return;
     camera.holdGestures();
@@ -229,6 +249,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     },
     open,
     close,
+    compare,
     /** To (x, z) [m], looking along `yaw` and `pitch` [rad] if given. */
     goTo(x, z, yaw, pitch = 0) {
       const sent = walk.send({ t: "goto", x, z });
@@ -245,6 +266,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     disagreement: () => walk.disagreement,
     opened: () => opened,
     near: () => near,
+    compares: () => compared !== null,
     closeupAt: closeup.drawnAt,
     playing: clips.playing,
   };

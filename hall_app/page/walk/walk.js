@@ -13,8 +13,8 @@ const REPEAT = 0.2; // [s] after which held keys are told again where the server
 const clock = () => performance.now() / 1000; // [s]
 
 /**
- * at: {x, z} [m] to come in at, null for the entrance. `on` receives moved(pose), open(message), closed(),
- * near(message), turn(message), content(message), connection(state, place), heard().
+ * at: {x, z} [m] to come in at, null for the entrance. `on` receives moved(pose), open(message), compared(message),
+ * closed(), near(message), turn(message), content(message), connection(state, place), heard().
  */
 export function createWalk({ scene, grid, display, mark, at, on }) {
   const pose = { x: scene.start.x, z: scene.start.z };
@@ -62,6 +62,7 @@ export function createWalk({ scene, grid, display, mark, at, on }) {
       tellWaiting();
     },
     open: (message) => on.open(message),
+    compared: (message) => on.compared(message),
     closed: (message) => on.closed(message),
     near: (message) => on.near(message),
     turn: (message) => on.turn(message),

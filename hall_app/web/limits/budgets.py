@@ -49,6 +49,7 @@ WALK: Mapping[str, Rate] = {
     "goto": Rate(20, 4),
     "open": Rate(10, 1),
     "close": Rate(20, 2),
+    "compare": Rate(10, 1),
     "client": Rate(8, 1),
     "other": Rate(30, 2),
 }

@@ -32,7 +32,7 @@ _LONGEST_PAGE = 64  # characters
 _UNSUPPORTED = 1003
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
-_KINDS = frozenset({"keys", "goto", "open", "close", "client"})  # and "in", paid by the input
+_KINDS = frozenset({"keys", "goto", "open", "close", "compare", "client"})  # and "in", paid by the input
 
 
 def add_walk_socket(app: FastAPI, house: House, views: Views, addresses: Addresses) -> None:
@@ -240,6 +240,7 @@ class _Visit:
             "keys": self._keys,
             "goto": self._goto,
             "open": self._open,
+            "compare": lambda message: self.house.stage.compare(self.visitor, message.get("on") is True),
             "client": self._client,
             "close": lambda message: self.house.stage.close(self.visitor),
         }

@@ -5,8 +5,8 @@ import { createPresence, inSight } from "../sight.js";
 import { readClip } from "./clip_file.js";
 import { createPlayback } from "./playback.js";
 
-/** The node of the model in the close-up. */
-export const CLOSEUP = "/closeup";
+/** The nodes of the model in the close-up, and of what it compares there. */
+export const CLOSEUP = "/closeup", COMPARISON = "/comparison";
 const SOONEST = 2e3, LONGEST = 60e3; // [ms] until what did not come is asked for again, longer every time
 
 async function fetched(url) {
@@ -16,9 +16,10 @@ async function fetched(url) {
 }
 
 /**
- * createClips({clock, wake}) -> {frame(scene, {x, z, yaw}, opened), playing(), shown(exhibit)}
+ * createClips({clock, wake}) -> {frame(scene, {x, z, yaw}, opened, compared), playing(), shown(exhibit)}
  *
- * frame() is called ahead of every picture; opened: id of the exhibit in the close-up, or null. playing(): nodes that a
+ * frame() is called ahead of every picture; opened: id of the exhibit in the close-up, or null; compared: null, or
+ * {clip: its address, or null} of what the close-up compares instead. playing(): nodes that a
  * clip has been written into; shown(): the frame that an exhibit shows in its close-up, null where its
  * clip does not move that.
  */
@@ -57,8 +58,12 @@ export function createClips({ clock, wake }) {
   }
 
   return {
-    frame(scene, from, opened) {
+    frame(scene, from, opened, compared) {
       if (document.hidden || !present()) return;
+      if (compared) {
+        if (compared.clip) play(compared.clip, COMPARISON);
+        return;
+      }
       for (const exhibit of scene.exhibits) {
         const { id, motion, close_motion } = exhibit;
         if (!motion) continue;

@@ -2,6 +2,7 @@
 
 import { el, setAttribute } from "../elements.js";
 import { icon } from "../icons.js";
+import { createComparePage } from "./compare.js";
 import { createDataPage } from "./data.js";
 import { createClip, createMediaPage } from "./media.js";
 import { createPicturesPage } from "./pictures.js";
@@ -30,7 +31,7 @@ function createTextPage(words, onSounding) {
   };
 }
 
-function createPages(words, { onEnlarge, onSounding, motion }) {
+function createPages(words, { onEnlarge, onSounding, onCompare, motion }) {
   return {
     intro: createTextPage(words, onSounding),
     pictures: createPicturesPage(words, onEnlarge),
@@ -38,6 +39,7 @@ function createPages(words, { onEnlarge, onSounding, motion }) {
     sound: createMediaPage(words, "audio", onSounding),
     data: createDataPage(words),
     why: createWhyPage(words, motion),
+    compare: createComparePage(words, { onCompare, clock: motion.clock }),
   };
 }
 
@@ -87,8 +89,8 @@ function createFold(words, turn) {
   return { button, grip, set };
 }
 
-/** createPanel({words, motion: {clock, points}, onClose, onSurvey, onEnlarge, onSounding, onFold}) -> {element, show, update, hide, answered, detail} */
-export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSounding, onFold }) {
+/** createPanel({words, motion: {clock, points}, onClose, onSurvey, onEnlarge, onSounding, onCompare, onFold}) -> {element, show, update, hide, answered, detail} */
+export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSounding, onCompare, onFold }) {
   let detail = null;
   let returnTo = null;
   let watcher = null;
@@ -102,7 +104,7 @@ export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSou
     icon("close"),
   );
   words.label(shut, "panel.close");
-  const pages = createPages(words, { onEnlarge, onSounding, motion });
+  const pages = createPages(words, { onEnlarge, onSounding, onCompare, motion });
   const tabs = createTabs(words, pages);
   const surveyText = el("span");
   const survey = el(
