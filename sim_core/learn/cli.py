@@ -18,6 +18,7 @@ Fine cloth from coarse: what a coarse simulation leaves out, learned from a fine
   evaluate  errors and times of what makes fine cloth of coarse, on sequences held back
   infer     simulate coarse, get fine: a film by trained weights
   draw      coarse, made fine and fine side by side, coloured by error: a PNG
+  show      coarse, made fine and fine side by side, moving: for the close-up of an exhibit
 """
 
 DATA = """\
@@ -35,6 +36,7 @@ time step. An error that is claimed from these data has to be at least three tim
 examples:
   simcore learn data hanging --out data/hanging --workers 2
   simcore learn data flag --sequences 2 --frames 50 --out data/try --json
+  simcore learn data flag --cluster tcp://10.0.0.7:8786 --out data/flag    # needs the extra `cluster` (Dask)
 """
 
 TRAIN = """\
@@ -89,6 +91,18 @@ examples:
   simcore learn draw --data data/flag --weights flag.safetensors --out flag.png
   simcore learn draw --data data/flag data/teapot data/hanging --weights *.safetensors --out figure.png
 """
+
+SHOW = """\
+Make what the close-up of an exhibit shows under "Compare": the coarse sheet, what the network makes of it and the fine
+sheet, side by side and moving by one clock, of the first sequence that is held back.
+
+DIR gets comparison.glb, comparison.clip (the hall takes 2 MB) and comparison.toml, the table for exhibit.toml: vertices
+of each, the Hausdorff distance from the fine sheet (mean over the frames shown), milliseconds a frame of one core.
+
+examples:
+  simcore learn show hanging --data data/hanging --weights hanging.safetensors --out comparison
+  simcore learn show flag --data data/flag --weights flag.safetensors --begin 200 --frames 50 --out comparison
+"""
 DEVICES = ("auto", "cpu", "cuda")
 
 
@@ -110,9 +124,11 @@ def add_parser(subparsers: Any) -> None:
     data.add_argument(
         "--seed", type=whole(0, 1_000_000), default=0, metavar="N", help="of the flags' gusts (0)"
     )
-    data.add_argument(
+    who = data.add_mutually_exclusive_group()
+    who.add_argument(
         "--workers", type=whole(1, 64), default=1, metavar="N", help="processes side by side (1)"
     )
+    who.add_argument("--cluster", metavar="ADDRESS", help="a Dask scheduler's, whose workers do it")
     data.add_argument(
         "--floor",
         type=whole(0, 1000),
@@ -122,6 +138,7 @@ def add_parser(subparsers: Any) -> None:
     )
     _add_infer(actions)
     _add_draw(actions)
+    _add_show(actions)
     train = _action(actions, "train", "train the learned steps", TRAIN)
     evaluate = _action(actions, "evaluate", "errors and times of ways from coarse to fine", EVALUATE)
     for reads in (train, evaluate):
@@ -183,6 +200,17 @@ def _add_draw(actions: Any) -> None:
     draw.add_argument("--frame", type=whole(1, 100_000), metavar="N", help="another frame")
 
 
+def _add_show(actions: Any) -> None:
+    show = _action(actions, "show", "meshes side by side, moving, for an exhibit", SHOW)
+    show.add_argument(
+        "--data", type=Path, required=True, metavar="DIR", help="what `simcore learn data` made"
+    )
+    show.add_argument("--weights", type=Path, required=True, metavar="FILE", help="of `simcore learn train`")
+    show.add_argument("--out", type=Path, required=True, metavar="DIR", help="the folder for all three")
+    show.add_argument("--begin", type=whole(1, 100_000), default=1, metavar="N", help="the first frame (1)")
+    show.add_argument("--frames", type=whole(2, 10_000), default=75, metavar="N", help="how many (75: 3 s)")
+
+
 def _action(
     actions: Any, name: str, words: str, description: str, *, scene: bool = True
 ) -> argparse.ArgumentParser:
@@ -218,4 +246,8 @@ def run(args: argparse.Namespace) -> int:
         from sim_core.learn.commands.drawing import draw
 
         return draw(args)
+    if args.action == "show":
+        from sim_core.learn.commands.showing import show
+
+        return show(args)
     return {"data": data, "evaluate": evaluate}[args.action](args)

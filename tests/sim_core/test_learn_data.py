@@ -134,6 +134,34 @@ def test_what_is_kept_is_what_was_made(tmp_path: Path) -> None:
     assert not list(tmp_path.glob(".*"))
 
 
+def test_a_cluster_makes_the_same_bytes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of two processes, by the command; an address where nobody answers is told."""
+    distributed = pytest.importorskip("distributed")
+    from sim_core.learn.commands import generation
+
+    words = ["learn", "data", "hanging", "--sequences", "2", "--frames", "2", "--floor", "0", "--json"]
+    cluster = distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    )
+    with cluster:
+        there = [*words, "--out", str(tmp_path / "there"), "--cluster", cluster.scheduler_address]
+        assert main(there) == 0
+    assert json.loads(capsys.readouterr().out)["sequences"] == 2
+    assert main([*words, "--out", str(tmp_path / "here")]) == 0
+    for name in ("hanging-01", "hanging-02"):
+        one, other = (read_sequence(tmp_path / where / f"{name}.seq")[1] for where in ("here", "there"))
+        assert np.array_equal(one.fine, other.fine)
+        assert np.array_equal(one.coarse, other.coarse)
+    monkeypatch.setattr(generation, "PATIENCE", 0.5)
+    capsys.readouterr()
+    assert main([*words, "--out", str(tmp_path / "none"), "--cluster", "tcp://127.0.0.1:9"]) == 1
+    assert "--cluster tcp://127.0.0.1:9: no scheduler answers" in capsys.readouterr().err
+    assert main([*words, "--out", str(tmp_path / "none"), "--cluster", "nowhere"]) == 1
+    assert "no scheduler answers" in capsys.readouterr().err
+
+
 def test_any_executor_makes_the_same_bytes(tmp_path: Path) -> None:
     wanted = [small(case=case, frames=2) for case in (1, 2, 3)]
     heard: list[float] = []

@@ -11,7 +11,7 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import DESIGNS, Design, Film, Recipe, film, generate
+from sim_core.learn.data import DESIGNS, Design, Film, Recipe, film, generate, read_films
 from sim_core.learn.inference import PATCH, Follower, Ground, Settings, Trained, read_weights, write_weights
 
 SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
@@ -313,3 +313,52 @@ def test_the_command_draws_a_scene_a_row(tmp_path: Path, capsys: pytest.CaptureF
         assert len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0)) > 200
     assert main([*words, "--frame", "7"]) == 1
     assert "--frame: 7 – hanging-03 has 6" in capsys.readouterr().err
+    write_weights(
+        weights, Trained(SMALL, drawn(5, 0.01), {"scene": "hanging", "learned_from": ["hanging-03"]})
+    )
+    assert main([*words, "--weights", str(weights)]) == 1
+    assert "learned from hanging-03, which would be tested on" in capsys.readouterr().err
+
+
+def test_the_command_shows_three_meshes_for_an_exhibit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import tomllib
+
+    from sim_core.garment.clip import Clip
+    from sim_core.gltf import glb_parts
+
+    generate(tmp_path / "data", [Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340) for case in (1, 3)])
+    weights, out = tmp_path / "ours.safetensors", tmp_path / "out"
+    told = {"scene": "hanging", "learned_from": ["hanging-01"]}
+    write_weights(weights, Trained(SMALL, drawn(5, 0.01), told))
+    words = ["learn", "show", "hanging", "--data", str(tmp_path / "data"), "--weights", str(weights)]
+    assert main([*words, "--out", str(out), "--begin", "2", "--frames", "4", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    coarse, learned, fine = facts["sides"]
+    assert 0 < learned["hausdorff_mm"]
+    assert "hausdorff_mm" not in fine
+    assert coarse["vertices"] < learned["vertices"] == fine["vertices"]
+    assert coarse["milliseconds"] < learned["milliseconds"]
+    clip, model = Clip.load(out / "comparison.clip"), glb_parts((out / "comparison.glb").read_bytes())
+    assert (clip.frames, clip.rate, clip.names) == (4, 25.0, ("coarse", "learned", "fine"))
+    film = read_films(tmp_path / "data")["hanging-03"][1]
+    for name, frames in (("coarse", film.coarse), ("fine", film.fine)):
+        places = np.stack([clip.positions(k, name) for k in range(4)])
+        away = places - frames[1:5]
+        assert np.abs(away - away[0, 0]).max() < 3e-4  # moved aside, and nothing else
+        assert places[:, :, 1].min() > -3e-4
+    right = [clip.positions(0, name)[:, 0] for name in clip.names]
+    assert right[0].max() < right[1].min()
+    assert right[1].max() < right[2].min()
+    for mesh, name in zip(model.document["meshes"], clip.names, strict=True):
+        places = model.numbers(mesh["primitives"][0]["attributes"]["POSITION"])
+        assert min(np.abs(clip.positions(k, name) - places).max() for k in range(4)) < 3e-4  # a frame of them
+    table = tomllib.loads((out / "comparison.toml").read_text("utf-8"))["comparison"]
+    assert [side["name"]["zh"] for side in table["side"]][1:] == ["粗网格模拟＋学习", "细网格模拟"]
+    assert table["side"][0]["hausdorff_mm"] == coarse["hausdorff_mm"]
+    assert main([*words, "--out", str(out), "--frames", "7"]) == 1
+    assert "hanging-03 has 6 frames" in capsys.readouterr().err
+    words[2] = "flag"
+    assert main([*words, "--out", str(out)]) == 1
+    assert "holds hanging" in capsys.readouterr().err

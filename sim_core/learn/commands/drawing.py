@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import progress
+from sim_core.learn.commands.parts import never_seen, progress, usual
 from sim_core.validation.files import check_target
 
 if TYPE_CHECKING:
@@ -33,12 +33,15 @@ def draw(args: argparse.Namespace) -> int:
     given = {}
     for path in args.weights:
         trained = read_weights(path)
-        given.setdefault(trained.told.get("scene"), []).append(row_of(trained))
+        given.setdefault(trained.told.get("scene"), []).append((path, trained))
     told, rows, facts = progress(), [], []
     for number, folder in enumerate(args.data):
         films = read_films(folder)
         recipe = split([one for one, _ in films.values()]).test[0]
-        follows = [Biharmonic(), *given.get(recipe.scene, ())]
+        learned = given.get(recipe.scene, ())
+        for path, trained in learned:
+            never_seen(path, trained, [recipe])
+        follows = [Biharmonic(), *(row_of(trained) for _, trained in learned)]
 
         def share(part: float, words: str, number: int = number) -> None:
             told((number + part) / len(args.data), words)
@@ -60,18 +63,19 @@ def _scene(
     """The meshes of a row: the coarse one, one for each way from it to the fine one, and the fine one."""
     from sim_core.learn.data import Pair
     from sim_core.learn.evaluation import Shown, frame_errors
+    from sim_core.learn.rows import followed
 
     if frame is not None and frame > len(film.fine):
         raise SimCoreError(f"--frame: {frame} – {recipe.name} has {len(film.fine)}")
     pair, made = Pair.of(recipe), []
     for number, row in enumerate(rows):
-        follow, frames = row.follow(recipe), []
-        for k, place in enumerate(film.coarse[:frame]):
-            frames.append(follow(np.asarray(place, float)).astype(np.float32))
+        frames = []
+        for k, (fine, _) in enumerate(followed(row, recipe, film.coarse[:frame])):
+            frames.append(fine.astype(np.float32))
             if k % 50 == 0:
                 told((number + k / len(film.coarse)) / len(rows), row.name)
         made.append(np.stack(frames))
-    which = _usual(made[-1], film.fine) if frame is None else frame - 1
+    which = usual(made[-1], film.fine) if frame is None else frame - 1
     fine = np.asarray(film.fine[which], float)
     shown = [
         Shown(
@@ -92,11 +96,3 @@ def _scene(
         shown.append(Shown(words, place, pair.fine.faces, np.linalg.norm(place - fine, axis=1)))
     shown.append(Shown(f"fine, {len(fine):,} vertices", fine, pair.fine.faces))
     return shown, {"sequence": recipe.name, "frame": which + 1, "errors": errors}
-
-
-def _usual(made: np.ndarray, fine: np.ndarray) -> int:
-    """The frame whose mean error is in the middle of all of them: neither the best nor the worst."""
-    errors = [
-        float(np.linalg.norm(one - other, axis=1).mean()) for one, other in zip(made, fine, strict=True)
-    ]
-    return int(np.argsort(errors)[len(errors) // 2])

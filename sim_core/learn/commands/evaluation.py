@@ -8,7 +8,7 @@ import sys
 from statistics import median
 from typing import Any
 
-from sim_core.learn.commands.parts import films_of, progress
+from sim_core.learn.commands.parts import films_of, never_seen, progress
 
 __all__ = ["PLAIN", "ROWS", "evaluate"]
 
@@ -36,8 +36,7 @@ def evaluate(args: argparse.Namespace) -> int:
     }
     parts = split([recipe for recipe, _ in films.values()])
     for path, trained in given.values():
-        if seen := {one.name for one in parts.test} & set(trained.told.get("learned_from", ())):
-            raise SimCoreError(f"{path}: learned from {', '.join(sorted(seen))}, which would be tested on")
+        never_seen(path, trained, parts.test)
     tested = [films[recipe.name] for recipe in parts.test]
     makers = {
         "linear": Linear,

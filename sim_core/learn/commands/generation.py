@@ -5,24 +5,27 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+from sim_core.errors import SimCoreError
 from sim_core.learn.commands.parts import progress
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from sim_core.learn.data import Floor, Manifest, Recipe
 
 __all__ = ["data"]
 
+PATIENCE = 10  # [s] for a cluster's scheduler to answer
+
 
 def data(args: argparse.Namespace) -> int:
     """Makes the data and tells what they are worth."""
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
-
     from sim_core.learn.data import Manifest, floor, generate, recipes
 
     wanted = recipes(args.scene, sequences=args.sequences, frames=args.frames, seed=args.seed)
@@ -32,14 +35,41 @@ def data(args: argparse.Namespace) -> int:
     if worth is not None and not args.json:
         sys.stdout.write(_floor_words(wanted[0], worth))
         sys.stdout.flush()
-    pool = nullcontext()
-    if args.workers > 1:
-        pool = ProcessPoolExecutor(args.workers, mp_context=get_context("spawn"))
-    with pool as executor:
+    with _executor(args) as executor:
         manifest = generate(args.out, wanted, executor=executor, progress=progress())
     facts = _facts(args.out, manifest) | ({"floor": _floor_facts(worth)} if worth else {})
     sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
     return 0
+
+
+def _executor(args: argparse.Namespace) -> AbstractContextManager[Executor | None]:
+    """Who makes sequences: a cluster, processes of this machine, or nobody but this one."""
+    if args.cluster is not None:
+        return _cluster(args.cluster)
+    if args.workers > 1:
+        from concurrent.futures import ProcessPoolExecutor
+        from multiprocessing import get_context
+
+        return ProcessPoolExecutor(args.workers, mp_context=get_context("spawn"))
+    return nullcontext()
+
+
+@contextmanager
+def _cluster(address: str) -> Iterator[Executor]:
+    """The workers of a Dask cluster. Raises SimCoreError where Dask is not installed or no scheduler answers."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise SimCoreError("--cluster: Dask is not installed – pip install '.[cluster]'") from None
+    try:
+        client = Client(address, timeout=PATIENCE)
+    except (OSError, ValueError, TypeError) as error:
+        why = str(error).splitlines()[0]
+        raise SimCoreError(
+            f"--cluster {address}: no scheduler answers ({why}) – run `dask scheduler` there, or correct the address"
+        ) from None
+    with client:
+        yield client.get_executor()
 
 
 def _facts(folder: Path, manifest: Manifest) -> dict[str, Any]:

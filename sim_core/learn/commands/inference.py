@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ __all__ = ["infer"]
 def infer(args: argparse.Namespace) -> int:
     """Writes the coarse and the fine film."""
     from sim_core.learn.data import DESIGNS, Pair, coarse_film, recipes
+    from sim_core.learn.rows import followed
 
     check_target(args.out)
     if args.case > DESIGNS[args.scene].sequences:
@@ -38,14 +38,10 @@ def infer(args: argparse.Namespace) -> int:
         coarse = film[1 + recipe.run_in :].astype(np.float32)
     else:
         coarse = _brought(args.coarse)
-    follow, frames, spent = row.follow(recipe), [], []
-    for number, place in enumerate(coarse):
-        begun = time.process_time()
-        try:
-            frames.append(follow(np.asarray(place, float)).astype(np.float32))
-        except SimCoreError as error:
-            raise SimCoreError(f"frame {number + 1}: {error}") from None
-        spent.append(time.process_time() - begun)
+    frames, spent = [], []
+    for number, (fine, seconds) in enumerate(followed(row, recipe, coarse)):
+        frames.append(fine.astype(np.float32))
+        spent.append(seconds)
         if number % 25 == 0:
             told(number / len(coarse), "fine")
     told(1.0, "")

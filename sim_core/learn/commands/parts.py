@@ -1,17 +1,21 @@
-"""What the commands of `simcore learn` share: the films of a folder, and how far they are."""
+"""What the commands of `simcore learn` share: films of a folder, weights that may be tested, how far they are."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Film, Recipe
+    from sim_core.learn.inference import RivalTrained, Trained
 
-__all__ = ["films_of", "progress"]
+__all__ = ["films_of", "never_seen", "progress", "usual"]
 
 
 def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
@@ -23,6 +27,14 @@ def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
     if (found := next(iter(every.values()))[0].scene) != args.scene:
         raise SimCoreError(f"{args.data}: holds {found} – give the folder of {args.scene}")
     return every
+
+
+def never_seen(path: Path, trained: Trained | RivalTrained, tested: Iterable[Recipe]) -> None:
+    """Raises SimCoreError for weights of a file that have learned from what they would be tested on."""
+    from sim_core.errors import SimCoreError
+
+    if seen := {one.name for one in tested} & set(trained.told.get("learned_from", ())):
+        raise SimCoreError(f"{path}: learned from {', '.join(sorted(seen))}, which would be tested on")
 
 
 def progress() -> Callable[[float, str], None]:
@@ -41,3 +53,11 @@ def progress() -> Callable[[float, str], None]:
             sys.stderr.flush()
 
     return told
+
+
+def usual(made: np.ndarray, fine: np.ndarray) -> int:
+    """The frame whose mean error is in the middle of all of them: neither the best nor the worst."""
+    errors = [
+        float(np.linalg.norm(one - other, axis=1).mean()) for one, other in zip(made, fine, strict=True)
+    ]
+    return int(np.argsort(errors)[len(errors) // 2])

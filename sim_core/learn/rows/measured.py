@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from sim_core.errors import SimCoreError
 from sim_core.learn.data import Film, Pair, Recipe, floor
 from sim_core.learn.evaluation import ErrorSummary, FrameErrors, frame_errors, summary
 from sim_core.learn.rows.row import Row
 
-__all__ = ["EVERY", "Measured", "Told", "measured", "reference"]
+__all__ = ["EVERY", "Measured", "Told", "followed", "measured", "reference"]
 
 EVERY = 5  # frames from one that is measured to the next
 Told = Callable[[float, str], None]
@@ -59,7 +60,7 @@ def measured(
     spent: list[float] = []
     for number, (recipe, film) in enumerate(films):
         pair, errors = Pair.of(recipe), found.setdefault(recipe.name, [])
-        for k, (fine, seconds) in enumerate(_followed(row, recipe, film)):
+        for k, (fine, seconds) in enumerate(followed(row, recipe, film.coarse)):
             spent.append(seconds)
             if k % every == every - 1 or len(film.fine) < every:
                 errors.append(
@@ -75,13 +76,19 @@ def measured(
     )
 
 
-def _followed(row: Row, recipe: Recipe, film: Film) -> Iterator[tuple[np.ndarray, float]]:
-    """Each frame as the row has it, and the seconds of processor time it took."""
+def followed(row: Row, recipe: Recipe, coarse: np.ndarray) -> Iterator[tuple[np.ndarray, float]]:
+    """Each frame of coarse (T, C, 3) [m] as the row has it, (V, 3), and the seconds of processor time it took.
+
+    Raises SimCoreError naming the frame that cannot be followed.
+    """
     follow = row.follow(recipe)
-    for coarse in film.coarse:
-        place = np.asarray(coarse, float)
+    for number, frame in enumerate(coarse, 1):
+        place = np.asarray(frame, float)
         begun = time.process_time()
-        fine = follow(place)
+        try:
+            fine = follow(place)
+        except SimCoreError as error:
+            raise SimCoreError(f"frame {number}: {error}") from None
         yield fine, time.process_time() - begun
 
 
