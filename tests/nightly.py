@@ -29,6 +29,7 @@ PARTS: dict[str, tuple[str, ...]] = {
         room: (*SUITE, "-m", "nightly", f"tests/{room}")
         for room in ("browser", "hall_app", "sim_core", "survey")
     },
+    "learn": (sys.executable, "tests/with_learn.py"),
     **{machine: (*OTHER, machine, *DAY) for machine in ("haswell", "zen", "skylakex", "generic", "oldest")},
 }
 

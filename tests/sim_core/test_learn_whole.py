@@ -1,0 +1,77 @@
+"""From nothing to fine cloth by commands alone: data, training, table, film, picture, and what an exhibit shows."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim_core.cli import main
+from sim_core.learn.data import DESIGNS
+
+SEQUENCES, FRAMES, UPDATES = 5, 60, 1500
+PRESET = replace(DESIGNS["flag"], coarse=90, fine=340)  # small enough to learn in a minute
+
+
+@pytest.mark.nightly
+def test_the_commands_lead_from_nothing_to_fine_cloth(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Flags of 340 vertices: what was learned from four is nearer on one held back than all that knows no network."""
+    pytest.importorskip("torch")
+    monkeypatch.setitem(DESIGNS, "flag", PRESET)
+
+    def said(*words: str) -> dict:
+        assert main(["learn", *words, "--json"]) == 0
+        return json.loads(capsys.readouterr().out)
+
+    folder, weights = str(tmp_path / "data"), str(tmp_path / "flag.safetensors")
+    made = said(
+        "data",
+        "flag",
+        "--sequences",
+        str(SEQUENCES),
+        "--frames",
+        str(FRAMES),
+        "--floor",
+        "0",
+        "--out",
+        folder,
+    )
+    assert made["frames"] == SEQUENCES * FRAMES
+    trained = said("train", "flag", "--data", folder, "--out", weights, "--updates", str(UPDATES))
+    assert trained["device"]
+    table = said(
+        "evaluate", "flag", "--data", folder, "--weights", weights,
+        "--rows", "linear,biharmonic,local_frames,ours",
+    )  # fmt: skip
+    assert not set(table["tested"]) & set(trained["learned_from"])
+    rows = table["rows"]
+    others = [rows[name]["mean_mm"] for name in ("linear", "biharmonic", "local_frames")]
+    assert rows["ours"]["mean_mm"] < 0.95 * min(others)
+    film = str(tmp_path / "film.npz")
+    said("infer", "flag", "--weights", weights, "--case", "3", "--frames", "5", "--out", film)
+    with np.load(film) as found:
+        assert np.isfinite(found["fine"]).all()
+    picture = tmp_path / "drawn.png"
+    drawn = said("draw", "--data", folder, "--weights", weights, "--out", str(picture))
+    assert [row["sequence"] for row in drawn["rows"]] == table["tested"]
+    shown = said(
+        "show",
+        "flag",
+        "--data",
+        folder,
+        "--weights",
+        weights,
+        "--frames",
+        "25",
+        "--out",
+        str(tmp_path / "shown"),
+    )
+    assert {path.name for path in (tmp_path / "shown").iterdir()} == {
+        "comparison.glb", "comparison.clip", "comparison.toml",
+    }  # fmt: skip
+    assert shown["sides"][1]["milliseconds"] < shown["sides"][2]["milliseconds"]
