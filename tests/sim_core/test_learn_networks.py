@@ -11,8 +11,22 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import DESIGNS, Design, Film, Recipe, film, generate, read_films
+from sim_core.learn.data import (
+    DESIGNS,
+    POOLINGS,
+    Design,
+    Film,
+    Pair,
+    Recipe,
+    Take,
+    film,
+    generate,
+    pooled_by_kind,
+    pooled_takes,
+    read_films,
+)
 from sim_core.learn.inference import PATCH, Follower, Ground, Settings, Trained, read_weights, write_weights
+from sim_core.learn.pooling import Pooled
 
 SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
 
@@ -20,7 +34,15 @@ SMALL = Settings(width=8, hidden=12, blocks=2, steps=2)
 @cache
 def hanging(case: int) -> tuple[Ground, Film]:
     recipe = Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340)
-    return Ground.of(recipe), film(recipe)
+    return Ground.of(Pair.of(recipe)), film(recipe)
+
+
+@cache
+def pooled(case: int) -> tuple[Ground, Film]:
+    """The same, from less than half of the fine vertices."""
+    whole = Take.of(Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340), hanging(case)[1])
+    (take,) = pooled_takes([whole], pooled_by_kind([whole], POOLINGS[1], 0.45))
+    return Ground.of(take.pair), take.film
 
 
 def drawn(seed: int, scale: float = 0.05) -> dict[str, np.ndarray]:
@@ -28,17 +50,19 @@ def drawn(seed: int, scale: float = 0.05) -> dict[str, np.ndarray]:
     return {name: rng.normal(0, scale, shape).astype(np.float32) for name, shape in SMALL.shapes().items()}
 
 
-def test_a_network_that_says_nothing_is_the_base() -> None:
-    ground, made = hanging(1)
+@pytest.mark.parametrize("sheets", [hanging, pooled])
+def test_a_network_that_says_nothing_is_the_base(sheets) -> None:
+    ground, made = sheets(1)
     follow = Follower(ground, SMALL, drawn(0, 0.0))
     for coarse in made.coarse:
         assert np.array_equal(follow(coarse), ground.pair.base @ coarse.astype(float))
 
 
-def test_the_follower_goes_along_when_the_sheet_is_moved_and_turned() -> None:
+@pytest.mark.parametrize("sheets", [hanging, pooled])
+def test_the_follower_goes_along_when_the_sheet_is_moved_and_turned(sheets) -> None:
     from scipy.spatial.transform import Rotation
 
-    ground, made = hanging(1)
+    ground, made = sheets(1)
     whole = Rotation.from_rotvec([0.4, -2.0, 0.9])
     one, other = (Follower(ground, SMALL, drawn(1)) for _ in range(2))
     far = 0.0
@@ -46,6 +70,8 @@ def test_the_follower_goes_along_when_the_sheet_is_moved_and_turned() -> None:
         fine, turned = one(coarse), other(whole.apply(coarse) + [3.0, -1.0, 7.0])
         assert np.abs(whole.apply(fine) + [3.0, -1.0, 7.0] - turned).max() < 1e-7
         far = max(far, np.abs(fine - ground.pair.base @ coarse).max())
+        if kept := list(ground.pair.kept):
+            assert np.abs(fine[kept] - coarse).max() < 1e-9
     assert far > 1e-4
 
 
@@ -78,7 +104,8 @@ def glued(grounds: list[Ground], *, gathered: bool = False):
 
 
 @pytest.mark.parametrize("gathered", [False, True])
-def test_torch_says_the_same_on_several_sheets_glued_together(gathered: bool) -> None:
+@pytest.mark.parametrize("sheets", [hanging, pooled])
+def test_torch_says_the_same_on_several_sheets_glued_together(gathered: bool, sheets) -> None:
     torch = pytest.importorskip("torch")
     from sim_core.learn.networks import LearnedSteps, Moment
 
@@ -86,7 +113,7 @@ def test_torch_says_the_same_on_several_sheets_glued_together(gathered: bool) ->
     weights = drawn(2)
     assert {name: tuple(value.shape) for name, value in network.state_dict().items()} == dict(SMALL.shapes())
     network.load_state_dict({name: torch.from_numpy(value) for name, value in weights.items()})
-    made = [hanging(1), hanging(13)]
+    made = [sheets(1), sheets(13)]
     whole = glued([ground for ground, _ in made], gathered=gathered)
     followers = [Follower(ground, SMALL, weights) for ground, _ in made]
     now, was, turn = torch.zeros(int(whole.fine[-1]), 3), torch.zeros(int(whole.coarse[-1]), PATCH), None
@@ -164,16 +191,17 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
     monkeypatch.setattr(record, "BETWEEN", 0.0)
     recipe = Recipe("hanging", 1, 7, 6, 0, coarse=90, fine=340)
     ground, made = hanging(1)
+    take = Take.of(recipe, made)
     schedule, file = Schedule(updates=400, lanes=2, rate=1e-2), tmp_path / "record.pt"
-    weights = train([(recipe, made)], SMALL, schedule)
+    weights = train([take], SMALL, schedule)
 
     def broken(share: float, words: str) -> None:
         if share > 0.4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        train([(recipe, made)], SMALL, schedule, record=file, told=broken)
-    again = train([(recipe, made)], SMALL, schedule, record=file)
+        train([take], SMALL, schedule, record=file, told=broken)
+    again = train([take], SMALL, schedule, record=file)
     assert all(np.array_equal(again[name], weights[name]) for name in weights)
     follow, off = Follower(ground, SMALL, weights), [[], []]
     for coarse, fine in zip(made.coarse.astype(float), made.fine, strict=True):
@@ -181,10 +209,10 @@ def test_what_was_trained_is_nearer_and_a_broken_off_training_ends_in_the_same_w
             off[kind].append(np.linalg.norm(place - fine, axis=1).mean())
     assert np.mean(off[0]) < 0.6 * np.mean(off[1])
     with pytest.raises(SimCoreError, match="begun with other settings"):
-        train([(recipe, made)], SMALL, Schedule(updates=121, lanes=2, rate=1e-2), record=file)
+        train([take], SMALL, Schedule(updates=121, lanes=2, rate=1e-2), record=file)
     file.write_bytes(b"half")
     with pytest.raises(SimCoreError, match="damaged .* delete it and train again"):
-        train([(recipe, made)], SMALL, schedule, record=file)
+        train([take], SMALL, schedule, record=file)
 
 
 def test_weights_are_kept_as_they_are_and_what_was_changed_is_refused(tmp_path: Path) -> None:
@@ -211,6 +239,11 @@ def test_weights_are_kept_as_they_are_and_what_was_changed_is_refused(tmp_path: 
     write_weights(path, Trained(Settings(), drawn(5), {}))
     with pytest.raises(SimCoreError, match="do not fit"):
         read_weights(path)
+    stays = {"9-20-1.0": Pooled(np.array([0, 2, 5]), np.array([[0, 1, 2]], np.int32), 0.5)}
+    write_weights(path, Trained(SMALL, drawn(5), {"share": 0.5}, stays))
+    found = read_weights(path)
+    assert np.array_equal(found.pooled["9-20-1.0"].kept, [0, 2, 5])
+    assert set(found.weights) == set(drawn(5))
 
 
 def test_the_commands_compare_what_was_trained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -224,6 +257,13 @@ def test_the_commands_compare_what_was_trained(tmp_path: Path, capsys: pytest.Ca
     assert rows["ours"]["net_ms"] > rows["biharmonic"]["net_ms"]
     assert main(["learn", "evaluate", *place, "--rows", "ours"]) == 1
     assert "give its --weights" in capsys.readouterr().err
+    for told, words in (
+        ({"scene": "flag"}, "has learned flag"),
+        ({"share": 0.5}, "trained with --share 0.5"),
+    ):
+        write_weights(out, Trained(SMALL, drawn(5), told))
+        assert main(["learn", "evaluate", *place, "--weights", str(out)]) == 1
+        assert words in capsys.readouterr().err
     write_weights(out, Trained(SMALL, drawn(5), {"learned_from": ["hanging-03"]}))
     assert main(["learn", "evaluate", *place, "--weights", str(out)]) == 1
     assert "learned from hanging-03, which would be tested on" in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -93,7 +94,7 @@ def test_nothing_is_missing_where_the_led_sheet_is_at_rest() -> None:
     """Against a minimiser of the energy that the accelerations are of."""
     sheets = pair()
     coarse = np.column_stack([sheets.coarse.rest, 0.08 * np.sin(5 * sheets.coarse.rest[:, 0])])
-    made = Imbalance.of(sheets, (), ())
+    made = Imbalance.of(replace(sheets, pins=((), ())))
     shared, start = made.shared(coarse), sheets.base @ coarse
     mass, led = sheets.fine.mass[:, None], (sheets.spread.T @ sheets.fine.mass)[:, None]
 
@@ -122,7 +123,7 @@ def test_nothing_is_missing_where_the_led_sheet_is_at_rest() -> None:
 def test_pins_want_to_go_nowhere() -> None:
     sheets = pair()
     coarse = np.column_stack([sheets.coarse.rest, 0.08 * np.sin(5 * sheets.coarse.rest[:, 0])])
-    made = Imbalance.of(sheets, (0, 5), (0, 9))
+    made = Imbalance.of(replace(sheets, pins=((0, 5), (0, 9))))
     ways, _ = made.ways(sheets.base @ coarse, coarse, made.shared(coarse))
     assert (ways[[0, 9]] == 0).all()
     assert (np.abs(ways).max(1) > 0).sum() == len(ways) - 2

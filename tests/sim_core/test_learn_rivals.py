@@ -11,7 +11,7 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Recipe, film, generate
+from sim_core.learn.data import Recipe, Take, film, generate
 from sim_core.learn.inference import RIVALS, Ground, RivalTrained, read_weights, write_weights
 from sim_core.learn.pooling import Pooled
 from sim_core.learn.rows import RivalRow
@@ -22,8 +22,8 @@ def small(case: int) -> Recipe:
 
 
 @cache
-def hanging(case: int) -> tuple[Recipe, Film]:
-    return small(case), film(small(case))
+def hanging(case: int) -> Take:
+    return Take.of(small(case), film(small(case)))
 
 
 def test_weights_keep_what_was_pooled_and_what_was_changed_is_refused(tmp_path: Path) -> None:
@@ -54,9 +54,9 @@ def test_features_turn_along_with_the_sheet_but_for_where_down_is() -> None:
 
     from sim_core.learn.networks.rivals import RivalSheet
 
-    recipe, made = hanging(1)
-    ground = Ground.of(recipe)
-    sheet = RivalSheet(ground, tuple(recipe.on(recipe.fine).pins), torch.device("cpu"))
+    made = hanging(1).film
+    ground = Ground.of(hanging(1).pair)
+    sheet = RivalSheet(ground, torch.device("cpu"))
     base = np.stack([ground.pair.base @ made.coarse[k].astype(float) for k in (7, 6, 5)])
     about = Rotation.from_rotvec([0.0, 0.7, 0.0])  # about what hangs: down stays
     turned = np.stack([about.apply(one) + [2.0, 1.0, -1.0] for one in base])
@@ -79,16 +79,16 @@ def test_a_rival_learns_what_it_is_shown(name: str) -> None:
     assert (not pooled) == (name == "mfsr")
     for one in pooled.values():
         assert one.share < RIVALS[name].share
-    ground, made = Ground.of(hanging(1)[0]), hanging(1)[1]
-    follow = RivalRow(RivalTrained(name, weights, pooled, {})).follow(hanging(1)[0])
+    pair, made = hanging(1).pair, hanging(1).film
+    follow = RivalRow(RivalTrained(name, weights, pooled, {})).follow(pair)
     off = [[], []]
     for coarse, fine in zip(made.coarse.astype(float), made.fine, strict=True):
-        for kind, place in enumerate((follow(coarse), ground.pair.base @ coarse)):
+        for kind, place in enumerate((follow(coarse), pair.base @ coarse)):
             off[kind].append(np.linalg.norm(place - fine, axis=1).mean())
     assert np.mean(off[0]) < 0.9 * np.mean(off[1])
     if pooled:
-        with pytest.raises(SimCoreError, match="no sheet of its kind"):
-            RivalRow(RivalTrained(name, weights, pooled, {})).follow(hanging(13)[0])
+        with pytest.raises(SimCoreError, match="no sheet of this kind"):
+            RivalRow(RivalTrained(name, weights, pooled, {})).follow(hanging(13).pair)
 
 
 def test_the_commands_train_rivals_and_set_them_beside_the_base(

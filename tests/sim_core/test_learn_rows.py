@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,8 +12,21 @@ import pytest
 
 from sim_core.cli import main
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import DESIGNS, Film, Pair, Recipe, film, generate, recipes, split
-from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, measured
+from sim_core.learn.data import (
+    DESIGNS,
+    GATE,
+    POOLINGS,
+    Pair,
+    Recipe,
+    Take,
+    film,
+    generate,
+    pooled_by_kind,
+    pooled_takes,
+    recipes,
+    split,
+)
+from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, counting, measured, reference
 
 
 def small(case: int, frames: int = 8) -> Recipe:
@@ -21,8 +35,8 @@ def small(case: int, frames: int = 8) -> Recipe:
 
 
 @cache
-def hanging(case: int) -> tuple[Recipe, Film]:
-    return small(case), film(small(case))
+def hanging(case: int) -> Take:
+    return Take.of(small(case), film(small(case)))
 
 
 def test_the_base_is_smooth_has_the_means_of_the_coarse_surface_and_keeps_affine_maps() -> None:
@@ -60,20 +74,19 @@ def test_what_learned_is_nearer_than_what_did_not() -> None:
     smooth = measured(Biharmonic(), seen, every=2)
     fitted = measured(LocalFrames.fitted(seen), seen, every=2)
     assert fitted.errors.mean.vertex < 0.7 * min(row.errors.mean.vertex for row in (plain, smooth))
-    assert set(fitted.by_sequence) == {"hanging-01", "hanging-02"}
+    assert set(fitted.frames) == {"hanging-01", "hanging-02"}
     assert plain.errors.frames == 8
     assert plain.milliseconds > 0.0
 
 
 def test_sheets_of_one_kind_share_what_was_learned_and_others_get_the_base() -> None:
     made = LocalFrames.fitted([hanging(1)])
-    (other, filmed), (wide, broad) = hanging(7), (small(13), film(small(13, 2)))
-    pair = Pair.of(other)
+    other, wide = hanging(7), Take.of(small(13), film(small(13, 2)))
     assert len(made.models) == 1
-    base = pair.base @ filmed.coarse[-1].astype(float)
-    assert np.abs(made.follow(other)(filmed.coarse[-1].astype(float)) - base).max() > 1e-6
-    place = broad.coarse[-1].astype(float)
-    assert np.array_equal(made.follow(wide)(place), Pair.of(wide).base @ place)
+    place = other.film.coarse[-1].astype(float)
+    assert np.abs(made.follow(other.pair)(place) - other.pair.base @ place).max() > 1e-6
+    place = wide.film.coarse[-1].astype(float)
+    assert np.array_equal(made.follow(wide.pair)(place), wide.pair.base @ place)
 
 
 def test_the_command_compares_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,3 +114,59 @@ def test_the_command_compares_rows(tmp_path: Path, capsys: pytest.CaptureFixture
     with pytest.raises(SystemExit):
         main(["learn", "evaluate", "flag", "--data", str(tmp_path), "--rows", "mine"])
     assert "'mine' – there are reference, linear" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("pooling", POOLINGS)
+def test_what_was_pooled_stays_where_it_is_and_is_not_in_the_mean(pooling: str) -> None:
+    seen = [hanging(1), hanging(2)]
+    pooled = pooled_by_kind(seen, pooling, 0.4)
+    (first, second) = pooled_takes(seen, pooled)
+    assert len(first.film.coarse[0]) == len(first.pair.kept) < 0.4 * len(first.film.fine[0])
+    assert first.pair.base is second.pair.base
+    place = first.film.coarse[-1].astype(float)
+    made = first.pair.base @ place
+    assert np.abs(made[list(first.pair.kept)] - place).max() < 1e-9
+    found = measured(Biharmonic(), [first], every=8)
+    off = np.linalg.norm(made - first.film.fine[-1], axis=1)
+    out = np.setdiff1d(np.arange(len(made)), first.pair.kept)
+    assert found.errors.mean.vertex == pytest.approx(off[out].mean(), rel=1e-6)
+    fitted = measured(LocalFrames.fitted([first, second]), [first, second], every=2)
+    smooth = measured(Biharmonic(), [first, second], every=2)
+    assert fitted.errors.mean.vertex < smooth.errors.mean.vertex
+    with pytest.raises(SimCoreError, match="no sheet of its kind"):
+        pooled_takes([Take.of(small(13, 2), film(small(13, 2)))], pooled)
+
+
+def test_frames_count_whose_floor_is_a_third_of_every_error() -> None:
+    takes = [hanging(1)]
+    floor, plain, smooth = reference(takes, 8), measured(Linear(), takes), measured(Biharmonic(), takes)
+    name = takes[0].name
+    assert [len(one.frames[name]) for one in (floor, plain)] == [1, 1]  # every fifth of eight
+    base = floor.frames[name][0]
+    assert 0 < base.vertex < GATE * smooth.frames[name][0].vertex
+    assert counting(floor, [plain, smooth]) == {name: (1, 1)}
+    claimed = replace(smooth, frames={name: (replace(base, vertex=2.9 * base.vertex),)})
+    assert counting(floor, [plain, claimed]) == {name: (0, 1)}
+
+
+def test_the_command_reconstructs_and_says_whether_the_gate_is_passed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    generate(tmp_path, [small(case, 5) for case in (1, 2, 3)])
+    words = ["learn", "evaluate", "hanging", "--data", str(tmp_path)]
+    assert main([*words, "--share", ".5", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert list(told["rows"]) == [
+        "reference", "linear", "biharmonic", "local_frames", "curvature_linear", "curvature_biharmonic",
+    ]  # fmt: skip
+    assert all(row["mean_mm"] > 0 for row in told["rows"].values())
+    assert told["gate"]["sequences"]["hanging-03"]["whole"] == 1
+    assert told["gate"]["passed"] in (True, False)
+    assert main([*words, "--share", ".5", "--rows", "reference,linear"]) == 0
+    assert "from 0.5 of the vertices" in (said := capsys.readouterr().out)
+    assert "gate " in said
+    assert main([*words, "--rows", "curvature_linear"]) == 1
+    assert "give --share" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main([*words, "--share", "1.5"])
+    assert "'1.5' – above 0, to 1" in capsys.readouterr().err

@@ -70,7 +70,7 @@ def _scene(
     pair, made = Pair.of(recipe), []
     for number, row in enumerate(rows):
         frames = []
-        for k, (fine, _) in enumerate(followed(row, recipe, film.coarse[:frame])):
+        for k, (fine, _) in enumerate(followed(row, pair, film.coarse[:frame])):
             frames.append(fine.astype(np.float32))
             if k % 50 == 0:
                 told((number + k / len(film.coarse)) / len(rows), row.name)

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
-from sim_core.learn.commands.parts import progress
+from sim_core.learn.commands.parts import progress, weights_of
 from sim_core.validation.files import check_target, read_npz, written_whole
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Recipe
-    from sim_core.learn.rows import Row
 
 __all__ = ["infer"]
 
@@ -24,12 +23,12 @@ __all__ = ["infer"]
 def infer(args: argparse.Namespace) -> int:
     """Writes the coarse and the fine film."""
     from sim_core.learn.data import DESIGNS, Pair, coarse_film, recipes
-    from sim_core.learn.rows import followed
+    from sim_core.learn.rows import followed, row_of
 
     check_target(args.out)
     if args.case > DESIGNS[args.scene].sequences:
         raise SimCoreError(f"--case: {args.case} – there are 1 to {DESIGNS[args.scene].sequences}")
-    row = _row(args.weights, args.scene)
+    row = row_of(weights_of(args.weights, args.scene))
     recipe: Recipe = recipes(args.scene, frames=args.frames, seed=args.seed)[args.case - 1]
     told, coarse_ms = progress(), 0.0
     if args.coarse is None:
@@ -38,15 +37,14 @@ def infer(args: argparse.Namespace) -> int:
         coarse = film[1 + recipe.run_in :].astype(np.float32)
     else:
         coarse = _brought(args.coarse)
-    frames, spent = [], []
-    for number, (fine, seconds) in enumerate(followed(row, recipe, coarse)):
+    pair, frames, spent = Pair.of(recipe), [], []
+    for number, (fine, seconds) in enumerate(followed(row, pair, coarse)):
         frames.append(fine.astype(np.float32))
         spent.append(seconds)
         if number % 25 == 0:
             told(number / len(coarse), "fine")
     told(1.0, "")
-    pair, fine = Pair.of(recipe), np.stack(frames)
-    faces, fine_faces = pair.coarse.faces, pair.fine.faces
+    fine, faces, fine_faces = np.stack(frames), pair.coarse.faces, pair.fine.faces
     with written_whole(args.out) as stream:
         np.savez_compressed(stream, coarse=coarse, fine=fine, coarse_faces=faces, fine_faces=fine_faces)
     net_ms = 1000.0 * float(np.median(spent))
@@ -63,17 +61,6 @@ def infer(args: argparse.Namespace) -> int:
     }
     sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
     return 0
-
-
-def _row(path: Path, scene: str) -> Row:
-    """What follows by weights; raises SimCoreError for those of another scene."""
-    from sim_core.learn.inference import read_weights
-    from sim_core.learn.rows import row_of
-
-    trained = read_weights(path)
-    if (own := trained.told.get("scene")) != scene:
-        raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}, or infer {own}")
-    return row_of(trained)
 
 
 def _brought(path: Path) -> np.ndarray:

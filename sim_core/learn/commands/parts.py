@@ -6,16 +6,18 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from sim_core.learn.data import Film, Recipe
+    from sim_core.learn.data import Film, Recipe, Take
     from sim_core.learn.inference import RivalTrained, Trained
+    from sim_core.learn.pooling import Pooled
 
-__all__ = ["films_of", "never_seen", "progress", "usual"]
+__all__ = ["Takes", "films_of", "never_seen", "progress", "reconstructed", "takes_of", "usual", "weights_of"]
 
 
 def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
@@ -29,7 +31,50 @@ def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
     return every
 
 
-def never_seen(path: Path, trained: Trained | RivalTrained, tested: Iterable[Recipe]) -> None:
+@dataclass(frozen=True)
+class Takes:
+    """Sequences that are learned from, and those that are held back."""
+
+    train: list[Take]
+    test: list[Take]
+
+
+def takes_of(args: argparse.Namespace, *, frames: int | None = None) -> Takes:
+    """The sequences of --data, of no more than so many frames each. Raises what `films_of` does."""
+    from sim_core.learn.data import Take, split
+
+    films = films_of(args)
+    parts = split([recipe for recipe, _ in films.values()])
+    train, test = (
+        [Take.of(*films[recipe.name]).first(frames) for recipe in part] for part in (parts.train, parts.test)
+    )
+    return Takes(train, test)
+
+
+def reconstructed(takes: Takes, share: float, pooling: str) -> tuple[Takes, dict[str, Pooled]]:
+    """The same from less than a share of their fine vertices, and which stay; decided by those learned from."""
+    from sim_core.learn.data import pooled_by_kind, pooled_takes
+
+    pooled = pooled_by_kind(takes.train, pooling, share)
+    return Takes(pooled_takes(takes.train, pooled), pooled_takes(takes.test, pooled)), pooled
+
+
+def weights_of(path: Path, scene: str) -> Trained | RivalTrained:
+    """Weights that make fine cloth of a scene's coarse one. Raises SimCoreError for others."""
+    from sim_core.errors import SimCoreError
+    from sim_core.learn.inference import read_weights
+
+    trained = read_weights(path)
+    if (own := trained.told.get("scene")) != scene:
+        raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}, or infer {own}")
+    if share := trained.told.get("share"):
+        raise SimCoreError(
+            f"{path}: trained with --share {share:g} – give weights that were trained without it"
+        )
+    return trained
+
+
+def never_seen(path: Path, trained: Trained | RivalTrained, tested: Iterable[Recipe | Take]) -> None:
     """Raises SimCoreError for weights of a file that have learned from what they would be tested on."""
     from sim_core.errors import SimCoreError
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import films_of, never_seen, progress, usual
+from sim_core.learn.commands.parts import films_of, never_seen, progress, usual, weights_of
 from sim_core.validation.files import written_whole
 
 if TYPE_CHECKING:
@@ -30,13 +30,10 @@ FINE = ("fine", "细网格模拟", "Fine simulation", "#3a66b0")
 def show(args: argparse.Namespace) -> int:
     """Writes comparison.glb, comparison.clip and comparison.toml."""
     from sim_core.learn.data import split
-    from sim_core.learn.inference import read_weights
     from sim_core.learn.rows import row_of
 
     films = films_of(args)
-    trained = read_weights(args.weights)
-    if (own := trained.told.get("scene")) != args.scene:
-        raise SimCoreError(f"{args.weights}: has learned {own} – give weights of {args.scene}")
+    trained = weights_of(args.weights, args.scene)
     recipe = split([one for one, _ in films.values()]).test[0]
     never_seen(args.weights, trained, [recipe])
     film = films[recipe.name][1]
@@ -62,14 +59,14 @@ def _written(args: argparse.Namespace, row: Row, recipe: Recipe, film: Film) -> 
     told, pair = progress(), Pair.of(recipe)
     first, last = args.begin - 1, args.begin - 1 + args.frames
     made, spent = [], []
-    for number, (fine, seconds) in enumerate(followed(row, recipe, film.coarse[:last])):
+    for number, (fine, seconds) in enumerate(followed(row, pair, film.coarse[:last])):
         spent.append(seconds)
         if number >= first:
             made.append(fine.astype(np.float32))
         if number % 25 == 0:
             told(0.5 * number / last, row.name)
     shown = {"coarse": film.coarse[first:last], "learned": np.stack(made), "fine": film.fine[first:last]}
-    linear = Linear().follow(recipe)
+    linear = Linear().follow(pair)
     surface = np.stack([linear(np.asarray(place, float)) for place in shown["coarse"]])
     told(0.5, "coarse")
     errors = {"coarse": _distance(surface, shown["fine"], pair)}

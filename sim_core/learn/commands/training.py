@@ -12,13 +12,16 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from sim_core.learn.commands.parts import films_of, progress
+from sim_core.learn.commands.parts import progress, reconstructed, takes_of
 
 if TYPE_CHECKING:
-    from sim_core.learn.data import Film, Recipe
+    from sim_core.learn.data import Take
     from sim_core.learn.inference import RivalTrained, Trained
+    from sim_core.learn.pooling import Pooled
 
 __all__ = ["train"]
+
+LICENCE = "CC0-1.0"  # of weights, as of all that is made here
 
 
 def train(args: argparse.Namespace) -> int:
@@ -27,15 +30,16 @@ def train(args: argparse.Namespace) -> int:
 
     from sim_core.cloth.run import ENGINE_VERSION
     from sim_core.errors import SimCoreError
-    from sim_core.learn.data import split
+    from sim_core.learn.data import POOLINGS, Manifest
     from sim_core.learn.inference import write_weights
 
     if args.out.suffix != ".safetensors":
         raise SimCoreError(f"--out: {args.out} – name a file that ends in .safetensors")
     if find_spec("torch") is None:
         raise SimCoreError("torch is not installed – pip install '.[learn]'; to use weights it is not needed")
-    films = films_of(args)
-    parts = split([recipe for recipe, _ in films.values()])
+    takes, pooled = takes_of(args), {}
+    if args.share:
+        takes, pooled = reconstructed(takes, args.share, POOLINGS[1])
     began, told = time.monotonic(), progress()
     device, words = _device(args.device)
     if not args.json:
@@ -44,13 +48,16 @@ def train(args: argparse.Namespace) -> int:
     facts = {
         "scene": args.scene,
         "row": args.row,
-        "learned_from": [recipe.name for recipe in parts.train],
+        **({"share": args.share} if args.share else {}),
+        "learned_from": [take.name for take in takes.train],
+        "data_sha256": Manifest.load(args.data).digest,
         "engine": ENGINE_VERSION,
         "updates": args.updates,
         "seed": args.seed,
         "device": words,
+        "licence": LICENCE,
     }
-    trained = _trained(args, [films[recipe.name] for recipe in parts.train], device, told, facts)
+    trained = _trained(args, takes.train, pooled, (device, told, facts))
     told(1.0, "")
     write_weights(args.out, trained)
     size = sum(value.size for value in trained.weights.values())
@@ -80,13 +87,14 @@ def _device(wanted: str) -> tuple[str, str]:
 
 def _trained(
     args: argparse.Namespace,
-    films: list[tuple[Recipe, Film]],
-    device: str,
-    told: Callable[[float, str], None],
-    facts: dict[str, Any],
+    takes: list[Take],
+    pooled: dict[str, Pooled],
+    way: tuple[str, Callable[[float, str], None], dict[str, Any]],
 ) -> Trained | RivalTrained:
+    """way: device, who hears how far it is, and what is told of it."""
     from sim_core.learn.inference import RIVALS, RivalTrained, Settings, Trained
 
+    device, told, facts = way
     record = args.out.with_suffix(".record")
 
     def heard(share: float, words: str) -> None:
@@ -96,12 +104,12 @@ def _trained(
         from sim_core.learn.networks.rivals import RivalSchedule, train_rival
 
         rival, plan = RIVALS[args.row], RivalSchedule(updates=args.updates, seed=args.seed)
-        weights, pooled = train_rival(films, rival, plan, device=device, record=record, told=heard)
+        weights, pooled = train_rival(takes, rival, plan, device=device, record=record, told=heard)
         return RivalTrained(args.row, weights, pooled, facts)
     from sim_core.learn.networks import Schedule
     from sim_core.learn.networks import train as trained
 
     settings, lanes = Settings(), 4 if device == "cpu" else 16
     schedule = Schedule(updates=args.updates, lanes=lanes, seed=args.seed)
-    weights = trained(films, settings, schedule, device=device, record=record, told=heard)
-    return Trained(settings, weights, facts)
+    weights = trained(takes, settings, schedule, device=device, record=record, told=heard)
+    return Trained(settings, weights, facts, pooled)

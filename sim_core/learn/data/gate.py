@@ -9,10 +9,11 @@ import numpy as np
 from sim_core.learn.data.film import coarse_film, fine_film
 from sim_core.learn.data.lead import Lead
 from sim_core.learn.data.recipe import Recipe
-from sim_core.learn.evaluation import ErrorSummary, frame_errors, summary
+from sim_core.learn.data.take import Take
+from sim_core.learn.evaluation import ErrorSummary, FrameErrors, frame_errors, summary
 from sim_core.learn.upsampling import linear
 
-__all__ = ["GATE", "Floor", "floor"]
+__all__ = ["GATE", "Floor", "floor", "halved"]
 
 GATE = 1 / 3  # of an error that is claimed, at most, may the floor be
 EVERY = 5  # frames from one that is measured to the next
@@ -51,3 +52,16 @@ def floor(recipe: Recipe, frames: int) -> Floor:
         for k, (_, other) in zip(rows, pairs, strict=True)
     ]
     return Floor(summary(halved), summary(flat), float(np.mean(slack)), fine_ms, halved_ms)
+
+
+def halved(take: Take, frames: int) -> tuple[FrameErrors, ...]:
+    """How far the first so many frames of a fine film that was kept are from what half the step makes, every fifth."""
+    recipe = replace(take.recipe, frames=min(frames, len(take.film.fine)))
+    coarse, _ = coarse_film(recipe)
+    again, _ = fine_film(recipe.halved(), coarse)
+    sheet, fine = take.pair.fine, take.film.fine
+    rows = range(min(EVERY, len(again)) - 1, len(again), EVERY)
+    return tuple(
+        frame_errors(np.asarray(fine[k], float), np.asarray(again[k], float), sheet.faces, sheet.rest)
+        for k in rows
+    )

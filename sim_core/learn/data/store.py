@@ -117,6 +117,12 @@ class Manifest:
     done: Mapping[str, Mapping[str, Any]]
     made: Mapping[str, Any] = field(default_factory=lambda: dict(MADE_BY))
 
+    @property
+    def digest(self) -> str:
+        """SHA-256 of what is finished: by it weights tell what they were trained on."""
+        lines = "".join(f"{name} {self.done[name]['sha256']}\n" for name in sorted(self.done))
+        return hashlib.sha256(lines.encode()).hexdigest()
+
     @staticmethod
     def of(folder: Path, recipes: Sequence[Recipe]) -> Manifest:
         """That of a folder for these recipes, with what of them is whole there.

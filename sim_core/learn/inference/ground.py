@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim_core.learn.data import Pair, Recipe
+from sim_core.learn.data import Pair
 from sim_core.learn.patches import Imbalance, Patches, Surroundings, limited
 
 __all__ = ["FURTHEST_WAY", "UNIT", "Ground"]
@@ -29,14 +29,11 @@ class Ground:
     unit: float
 
     @staticmethod
-    def of(recipe: Recipe) -> Ground:
-        """That of a sequence."""
-        pair = Pair.of(recipe)
-        coarse, fine = (recipe.on(count).pins for count in (recipe.coarse, recipe.fine))
-        patches = Patches.of(pair.coarse.rest, pair.coarse.faces, pair.fine.rest)
-        surroundings = Surroundings.of(pair.coarse.rest, pair.coarse.faces, tuple(coarse))
-        imbalance = Imbalance.of(pair, tuple(coarse), tuple(fine))
-        return Ground(pair, patches, surroundings, imbalance, UNIT * patches.length)
+    def of(pair: Pair) -> Ground:
+        """That of a pair."""
+        patches = Patches.of(pair.coarse.rest, pair.coarse.faces, pair.fine.rest, held=pair.kept)
+        surroundings = Surroundings.of(pair.coarse.rest, pair.coarse.faces, pair.pins[0])
+        return Ground(pair, patches, surroundings, Imbalance.of(pair), UNIT * patches.length)
 
     def lacking(
         self, fine: np.ndarray, coarse: np.ndarray, shared: np.ndarray, turn: np.ndarray

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +23,13 @@ OURS = "ours"
 
 @dataclass(frozen=True)
 class Trained:
-    """weights: float32 by the names of `Settings.shapes`; told: scene, sequences learned from, engine and updates."""
+    """weights: float32 by the names of `Settings.shapes`; told: scene, sequences learned from, engine and updates;
+    pooled: where it reconstructs, what stays of each kind of sheet, by `Pair.kind`."""
 
     settings: Settings
     weights: Mapping[str, np.ndarray]
     told: Mapping[str, Any]
+    pooled: Mapping[str, Pooled] = field(default_factory=dict)
     row: str = OURS
 
 
@@ -52,11 +54,10 @@ def write_weights(path: Path, trained: Trained | RivalTrained) -> None:
     head = {"format": FORMAT, "row": trained.row, "told": json.dumps(dict(trained.told))}
     if isinstance(trained, Trained):
         head["settings"] = json.dumps(asdict(trained.settings))
-    else:
-        for name, pooled in trained.pooled.items():
-            arrays[f"{name}/kept"] = np.ascontiguousarray(pooled.kept, np.int32)
-            arrays[f"{name}/faces"] = np.ascontiguousarray(pooled.faces, np.int32)
-        head["shares"] = json.dumps({name: pooled.share for name, pooled in trained.pooled.items()})
+    for name, pooled in trained.pooled.items():
+        arrays[f"{name}/kept"] = np.ascontiguousarray(pooled.kept, np.int32)
+        arrays[f"{name}/faces"] = np.ascontiguousarray(pooled.faces, np.int32)
+    head["shares"] = json.dumps({name: pooled.share for name, pooled in trained.pooled.items()})
     beside = path.with_name(f".{path.name}.part")
     beside.write_bytes(save(arrays, metadata=head | {"sha256": _digest(arrays)}))
     beside.replace(path)
@@ -79,30 +80,33 @@ def read_weights(path: Path) -> Trained | RivalTrained:
         row, told = head.get("row", OURS), dict(json.loads(head["told"]))
         if any(not np.isfinite(value).all() for value in arrays.values()):
             raise ValueError("numbers that are not finite")
+        pooled = _pooled(arrays, json.loads(head["shares"]))
+        weights = {name: value for name, value in arrays.items() if value.dtype == np.float32}
         if row == OURS:
-            return _ours(arrays, Settings(**json.loads(head["settings"])), told)
-        return _rival(arrays, row, json.loads(head["shares"]), told)
+            return _ours(weights, Settings(**json.loads(head["settings"])), told, pooled)
+        if row not in RIVALS:
+            raise ValueError(f"row {row!r}")
+        return RivalTrained(row, weights, pooled, told)
     except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
         raise SimCoreError(f"{path}: not weights, or damaged ({error}) – fetch or train them again") from None
 
 
-def _ours(arrays: Mapping[str, np.ndarray], settings: Settings, told: Mapping[str, Any]) -> Trained:
-    if {name: value.shape for name, value in arrays.items()} != dict(settings.shapes()):
+def _ours(
+    weights: Mapping[str, np.ndarray],
+    settings: Settings,
+    told: Mapping[str, Any],
+    pooled: Mapping[str, Pooled],
+) -> Trained:
+    if {name: value.shape for name, value in weights.items()} != dict(settings.shapes()):
         raise ValueError("arrays that do not fit its own settings")
-    return Trained(settings, arrays, told)
+    return Trained(settings, weights, told, pooled)
 
 
-def _rival(
-    arrays: Mapping[str, np.ndarray], row: str, shares: Mapping[str, float], told: Mapping[str, Any]
-) -> RivalTrained:
-    if row not in RIVALS:
-        raise ValueError(f"row {row!r}")
-    pooled = {
+def _pooled(arrays: Mapping[str, np.ndarray], shares: Mapping[str, float]) -> dict[str, Pooled]:
+    return {
         name: Pooled(arrays[f"{name}/kept"].astype(np.int64), arrays[f"{name}/faces"], float(share))
         for name, share in shares.items()
     }
-    weights = {name: value for name, value in arrays.items() if value.dtype == np.float32}
-    return RivalTrained(row, weights, pooled, told)
 
 
 def _digest(arrays: Mapping[str, np.ndarray]) -> str:

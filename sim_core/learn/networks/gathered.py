@@ -60,7 +60,7 @@ class Gathered:
             sheets = self.sheets
             fine = (moment.base + sheets.unit * off).double()
             missing = self._accelerations(fine) - moment.shared
-            missing = missing - STIFFNESS * self._spread(self._mean(fine - self._spread(moment.coarse)))
+            missing = missing - sheets.led * self._spread(self._mean(fine - self._spread(moment.coarse)))
             means = self._mean(torch.where(sheets.ease > 0.0, missing, 0.0)) / STIFFNESS
             ways = _limited(sheets.ease * missing / sheets.unit, FURTHEST_WAY)
             turned = (moment.turn * (_limited(means, SAG) / sheets.unit_coarse)[:, :, None]).sum(1)

@@ -28,8 +28,9 @@ class Sheets:
 
     near (C, L), corner (V, 3), share (V, 3), lift, fit (V, 3, CUBIC): of `Surroundings` and `Patches`; edges (E, 2),
     length2, own, around, coupling: of the fine `Stencil`; bent (B, 2), bend (B,): its bending, from which vertex to
-    which; edge_weight (E,): the mean length of a sheet's edges over each one's; mass, ease, unit (V, 1), unit_coarse
-    (C, 1): of `Imbalance` and `Ground`; about (C, 1): mass about a coarse vertex. Floats single, numbers int32.
+    which; edge_weight (E,): the mean length of a sheet's edges over each one's; mass, ease, led, unit (V, 1) and
+    unit_coarse (C, 1): of `Imbalance` and `Ground`; about (C, 1): mass about a coarse vertex. Floats single, numbers
+    int32.
     """
 
     near: Tensor
@@ -47,6 +48,7 @@ class Sheets:
     edge_weight: Tensor
     mass: Tensor
     ease: Tensor
+    led: Tensor
     unit: Tensor
     unit_coarse: Tensor
     about: Tensor
@@ -70,6 +72,7 @@ class Sheets:
             "edge_weight": lengths.mean() / lengths,
             "mass": mass[:, None],
             "ease": ground.imbalance.ease,
+            "led": np.full((len(mass), 1), ground.imbalance.led),
             "unit": np.full((len(mass), 1), ground.unit),
             "unit_coarse": np.full((patches.count, 1), ground.unit),
             "about": about[:, None],

@@ -18,7 +18,7 @@ import torch
 from torch import Tensor
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Recipe
+from sim_core.learn.data import Take
 from sim_core.learn.inference import Ground, Settings
 from sim_core.learn.inference.settings import PATCH
 from sim_core.learn.networks.learned_steps import Glued, LearnedSteps
@@ -58,8 +58,9 @@ class Schedule:
 class _Sequence:
     """One that is learned from. On a GPU all its frames are there from the begin on."""
 
-    def __init__(self, recipe: Recipe, film: Film, device: torch.device) -> None:
-        self.ground, self.frames = Ground.of(recipe), len(film.fine)
+    def __init__(self, take: Take, device: torch.device) -> None:
+        film = take.film
+        self.ground, self.frames = Ground.of(take.pair), len(film.fine)
         self.sheets = Sheets.of(self.ground, device)
         self._coarse = film.coarse
         places = film.coarse.astype(float)
@@ -105,18 +106,14 @@ class _Lane:
 class _Course:
     """The sequences, and the lanes over them."""
 
-    def __init__(
-        self, films: Sequence[tuple[Recipe, Film]], schedule: Schedule, device: torch.device, told: Told
-    ) -> None:
+    def __init__(self, takes: Sequence[Take], schedule: Schedule, device: torch.device, told: Told) -> None:
         self.schedule, self.device, self.rng = schedule, device, np.random.default_rng(schedule.seed)
         self.sequences: list[_Sequence] = []
-        for number, (recipe, film) in enumerate(films):
-            if len(film.fine) <= schedule.window + 2:
-                raise SimCoreError(
-                    f"{recipe.name}: {len(film.fine)} frames – give more than {schedule.window + 2}"
-                )
-            told(0.0, f"reads {recipe.name}, {number + 1} of {len(films)}")
-            self.sequences.append(_Sequence(recipe, film, device))
+        for number, take in enumerate(takes):
+            if (frames := len(take.film.fine)) <= schedule.window + 2:
+                raise SimCoreError(f"{take.name}: {frames} frames – give more than {schedule.window + 2}")
+            told(0.0, f"reads {take.name}, {number + 1} of {len(takes)}")
+            self.sequences.append(_Sequence(take, device))
         self.lanes: list[_Lane | None] = [None] * schedule.lanes
         self.glued: Glued | None = None
 
@@ -180,7 +177,7 @@ class _Course:
 
 
 def train(
-    films: Sequence[tuple[Recipe, Film]],
+    takes: Sequence[Take],
     settings: Settings,
     schedule: Schedule,
     *,
@@ -197,7 +194,7 @@ def train(
     """
     torch.manual_seed(schedule.seed)
     place, told = torch.device(device), told or (lambda share, words: None)
-    course, network = _Course(films, schedule, place, told), LearnedSteps(settings).to(place)
+    course, network = _Course(takes, schedule, place, told), LearnedSteps(settings).to(place)
     flat = [value for value in network.parameters() if value.ndim < 2]
     deep = [value for value in network.parameters() if value.ndim > 1]
     optimiser = torch.optim.AdamW(
@@ -209,7 +206,7 @@ def train(
     same = {
         "settings": asdict(settings),
         "schedule": asdict(schedule),
-        "films": [one.told() for one, _ in films],
+        "films": [take.told() for take in takes],
     }
     kept = Record(record, same) if record else None
     parts = {"network": network, "optimiser": optimiser}

@@ -7,6 +7,8 @@ what the sheets do themselves, and by what leads:
 
 a and A the accelerations by stretch and bending of the fine and the coarse sheet, k W P r the lead's. Whoever says r
 can be told q, as an iteration of a solver is, and mends what it learned wrongly on a cloth that it has never seen.
+Where the coarse sheet was pooled from the fine one nothing is led: the vertices that were kept stand where they are, as
+pins do, and q = a(W X + r) for the others.
 """
 
 from __future__ import annotations
@@ -30,27 +32,32 @@ SAG = 0.005  # [m] that means are told to be out of balance by, at most
 
 @dataclass(frozen=True)
 class Imbalance:
-    """Of a pair of sheets. ease (V, 1) [s2]: of an acceleration to about the way that undoes it, 0 where pinned;
-    free (C, 1): 0 where the coarse sheet is pinned."""
+    """Of a pair of sheets. ease (V, 1) [s2]: of an acceleration to about the way that undoes it, 0 where pinned or
+    kept; free (C, 1): 0 where the coarse sheet is pinned; led [1/s2]: how hard it leads."""
 
     pair: Pair
     ease: np.ndarray
     free: np.ndarray
+    led: float
 
     @staticmethod
-    def of(pair: Pair, pins_coarse: tuple[int, ...], pins_fine: tuple[int, ...]) -> Imbalance:
-        """With the pins of both sheets."""
+    def of(pair: Pair) -> Imbalance:
+        """That of a pair."""
         stencil, count = pair.fine.stencil, len(pair.fine.rest)
         stiff = 4.0 * stencil.own * stencil.length2  # [N/m] of an edge along itself, at rest
         total = np.bincount(stencil.edges.ravel(), np.repeat(stiff, 2), count)
-        ease = 1.0 / (total / pair.fine.mass + STIFFNESS)
-        ease[list(pins_fine)] = 0.0
+        led = 0.0 if pair.kept else STIFFNESS
+        ease = 1.0 / (total / pair.fine.mass + led)
         free = np.ones((len(pair.coarse.rest), 1))
-        free[list(pins_coarse)] = 0.0
-        return Imbalance(pair, ease[:, None], free)
+        for held, array in zip(pair.pins, (free, ease), strict=True):
+            array[list(held)] = 0.0
+        ease[list(pair.kept)] = 0.0
+        return Imbalance(pair, ease[:, None], free, led)
 
     def shared(self, coarse: np.ndarray) -> np.ndarray:
-        """W A(X) (V, 3) [m/s2] of a coarse sheet (C, 3) [m]."""
+        """W A(X) (V, 3) [m/s2] of a coarse sheet (C, 3) [m]; 0 where it was pooled."""
+        if self.pair.kept:
+            return np.zeros((len(self.ease), 3))
         return weighted_sums(self.pair.spread, self.free * accelerations(self.pair.coarse, coarse))
 
     def ways(self, fine: np.ndarray, coarse: np.ndarray, shared: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -59,9 +66,9 @@ class Imbalance:
         fine (V, 3), coarse (C, 3) [m]; shared: of `shared`.
         """
         pair = self.pair
-        off = weighted_sums(pair.mean, fine - weighted_sums(pair.spread, coarse))
         missing, ways = accelerations(pair.fine, fine), np.zeros((len(fine), 3))
-        _lacking(missing, shared, weighted_sums(pair.spread, off), self.ease, ways)
+        off = weighted_sums(pair.mean, fine - weighted_sums(pair.spread, coarse))
+        _lacking(missing, shared, self.led * weighted_sums(pair.spread, off), self.ease, ways)
         return ways, limited(weighted_sums(pair.mean, missing) / STIFFNESS, SAG)
 
 
@@ -70,7 +77,7 @@ def _lacking(missing, shared, led, ease, ways):
     """Takes from accelerations (V, 3) what is shared and what leads, in place, but of those that are pinned all."""
     for i in range(len(missing)):
         for c in range(3):
-            lacks = missing[i, c] - shared[i, c] - STIFFNESS * led[i, c]
+            lacks = missing[i, c] - shared[i, c] - led[i, c]
             ways[i, c], missing[i, c] = ease[i, 0] * lacks, lacks if ease[i, 0] > 0.0 else 0.0
 
 

@@ -29,7 +29,8 @@ class Patches:
     """Between C coarse and V fine vertices. length [m]: of a coarse edge, about.
 
     corner: (V, 3) int32, the coarse face in which each fine vertex lies at rest; share: (V, 3) float32, its weights;
-    lift: (V, 3, CUBIC) float32, shares times monomials about each corner, in lengths; fit: likewise, of least squares.
+    lift: (V, 3, CUBIC) float32, shares times monomials about each corner, in lengths, 0 where held; fit: likewise, of
+    least squares.
     """
 
     count: int
@@ -40,10 +41,16 @@ class Patches:
     fit: np.ndarray
 
     @staticmethod
-    def of(rest_coarse: np.ndarray, faces_coarse: np.ndarray, rest_fine: np.ndarray) -> Patches:
+    def of(
+        rest_coarse: np.ndarray,
+        faces_coarse: np.ndarray,
+        rest_fine: np.ndarray,
+        *,
+        held: tuple[int, ...] = (),
+    ) -> Patches:
         """From the coarse sheet at rest, (C, 2) [m] and (G, 3), and fine vertices at rest (V, 2) [m].
 
-        Raises SimCoreError for arrays of other shapes.
+        held: fine vertices that no patch displaces. Raises SimCoreError for arrays of other shapes.
         """
         rest, faces = checked_sheet(rest_coarse, faces_coarse)
         fine = coordinates("rest_fine", rest_fine)
@@ -59,6 +66,7 @@ class Patches:
         mean = np.trace(moments, axis1=1, axis2=2) / CUBIC
         moments += (RIDGE * np.maximum(mean, 1e-12))[:, None, None] * np.eye(CUBIC)
         fit = np.einsum("vcij,vcj->vci", np.linalg.inv(moments)[corner], lift)
+        lift[list(held)] = 0.0
         arrays = (np.ascontiguousarray(array, np.float32) for array in (share, lift, fit))
         return Patches(len(rest), length, corner, *arrays)
 

@@ -1,11 +1,11 @@
 """What is compared: ways from a coarse sheet to a fine one, each a `Row` that follows a sequence frame by frame.
 
 `plain` knows no training, `regression` fits local frames in closed form, `learned` runs a network; `measured` tells
-errors and times of any, `followed` its frames.
+errors and times of any, `followed` its frames, `counting` which of them the reference is good for.
 """
 
 from sim_core.learn.rows.learned import Ours
-from sim_core.learn.rows.measured import EVERY, Measured, followed, measured, reference
+from sim_core.learn.rows.measured import EVERY, Measured, counting, followed, measured, reference
 from sim_core.learn.rows.plain import Biharmonic, Linear
 from sim_core.learn.rows.regression import LocalFrames
 from sim_core.learn.rows.rivals import RivalRow, row_of
@@ -21,6 +21,7 @@ __all__ = [
     "Ours",
     "RivalRow",
     "Row",
+    "counting",
     "followed",
     "measured",
     "reference",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sim_core.learn.data import Recipe
+from sim_core.learn.data import Pair
 from sim_core.learn.inference import Follower, Ground, Trained
 from sim_core.learn.rows.row import Follow
 
@@ -18,5 +18,5 @@ class Ours:
     trained: Trained
     name: str = "ours"
 
-    def follow(self, recipe: Recipe) -> Follow:
-        return Follower(Ground.of(recipe), self.trained.settings, self.trained.weights)
+    def follow(self, pair: Pair) -> Follow:
+        return Follower(Ground.of(pair), self.trained.settings, self.trained.weights)

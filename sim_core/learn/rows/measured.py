@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Pair, Recipe, floor
+from sim_core.learn.data import GATE, Pair, Take, halved
 from sim_core.learn.evaluation import ErrorSummary, FrameErrors, frame_errors, summary
 from sim_core.learn.rows.row import Row
 
-__all__ = ["EVERY", "Measured", "Told", "followed", "measured", "reference"]
+__all__ = ["EVERY", "Measured", "Told", "counting", "followed", "measured", "reference"]
 
 EVERY = 5  # frames from one that is measured to the next
 Told = Callable[[float, str], None]
@@ -22,10 +22,11 @@ Told = Callable[[float, str], None]
 
 @dataclass(frozen=True)
 class Measured:
-    """A row: its errors over all measured frames of all sequences, by sequence, and ms of processor time a frame."""
+    """A row: its errors over all measured frames of all sequences, those of each sequence frame by frame, and ms of
+    processor time a frame."""
 
     errors: ErrorSummary
-    by_sequence: Mapping[str, ErrorSummary]
+    frames: Mapping[str, tuple[FrameErrors, ...]]
     milliseconds: float
 
     def told(self) -> dict[str, Any]:
@@ -49,39 +50,35 @@ def _mm(length: float) -> float:
     return round(1000.0 * length, 4)
 
 
-def measured(
-    row: Row, films: Sequence[tuple[Recipe, Film]], *, every: int = EVERY, told: Told | None = None
-) -> Measured:
-    """A row over sequences: all frames are followed, every so manyth is measured.
+def measured(row: Row, takes: Sequence[Take], *, every: int = EVERY, told: Told | None = None) -> Measured:
+    """A row over sequences: all frames are followed, every so manyth is measured; of pooled sheets a vertex's own
+    distance is the mean over those that were taken out.
 
     told(share, words): hears how far it is. Raises SimCoreError where there is no frame.
     """
     found: dict[str, list[FrameErrors]] = {}
     spent: list[float] = []
-    for number, (recipe, film) in enumerate(films):
-        pair, errors = Pair.of(recipe), found.setdefault(recipe.name, [])
-        for k, (fine, seconds) in enumerate(followed(row, recipe, film.coarse)):
+    for number, take in enumerate(takes):
+        sheet, truth, errors = take.pair.fine, take.film.fine, found.setdefault(take.name, [])
+        out = np.setdiff1d(np.arange(len(sheet.rest)), take.pair.kept)
+        for k, (fine, seconds) in enumerate(followed(row, take.pair, take.film.coarse)):
             spent.append(seconds)
-            if k % every == every - 1 or len(film.fine) < every:
-                errors.append(
-                    frame_errors(fine, np.asarray(film.fine[k], float), pair.fine.faces, pair.fine.rest)
-                )
+            if k % every == every - 1 or len(truth) < every:
+                wanted = np.asarray(truth[k], float)
+                errors.append(frame_errors(fine, wanted, sheet.faces, sheet.rest, over=out))
             if told is not None and k % 50 == 0:
-                told((number + k / len(film.fine)) / len(films), f"{row.name} {recipe.name}")
+                told((number + k / len(truth)) / len(takes), f"{row.name} {take.name}")
     whole = [error for errors in found.values() for error in errors]
-    return Measured(
-        summary(whole),
-        {name: summary(errors) for name, errors in found.items()},
-        1000.0 * float(np.median(spent)),
-    )
+    frames = {name: tuple(errors) for name, errors in found.items()}
+    return Measured(summary(whole), frames, 1000.0 * float(np.median(spent)))
 
 
-def followed(row: Row, recipe: Recipe, coarse: np.ndarray) -> Iterator[tuple[np.ndarray, float]]:
+def followed(row: Row, pair: Pair, coarse: np.ndarray) -> Iterator[tuple[np.ndarray, float]]:
     """Each frame of coarse (T, C, 3) [m] as the row has it, (V, 3), and the seconds of processor time it took.
 
     Raises SimCoreError naming the frame that cannot be followed.
     """
-    follow = row.follow(recipe)
+    follow = row.follow(pair)
     for number, frame in enumerate(coarse, 1):
         place = np.asarray(frame, float)
         begun = time.process_time()
@@ -92,22 +89,33 @@ def followed(row: Row, recipe: Recipe, coarse: np.ndarray) -> Iterator[tuple[np.
         yield fine, time.process_time() - begun
 
 
-def reference(recipes: Sequence[Recipe], frames: int, told: Told | None = None) -> Measured:
-    """The first row: how far fine films are from themselves with half the step, over the first so many frames of each,
-    and what the fine film costs. An error that another row claims has to be three times that."""
-    found, spent = {}, []
-    for number, recipe in enumerate(recipes):
+def reference(takes: Sequence[Take], frames: int, told: Told | None = None) -> Measured:
+    """The first row: how far fine films are from what half the step makes, over the first so many frames of each, and
+    what a frame of the fine film costs. An error that another row claims has to be three times that."""
+    found: dict[str, tuple[FrameErrors, ...]] = {}
+    for number, take in enumerate(takes):
         if told is not None:
-            told(number / len(recipes), f"reference {recipe.name}")
-        worth = floor(recipe, frames)
-        found[recipe.name] = worth.halved
-        spent.append(worth.fine_ms)
-    mean, p95 = (_over([getattr(one, part) for one in found.values()]) for part in ("mean", "p95"))
-    whole = ErrorSummary(mean, p95, sum(one.frames for one in found.values()))
-    return Measured(whole, found, float(np.median(spent)))
+            told(number / len(takes), f"reference {take.name}")
+        found[take.name] = halved(take, frames)
+    spent = float(np.median([take.film.fine_ms for take in takes]))
+    return Measured(summary([error for errors in found.values() for error in errors]), found, spent)
 
 
-def _over(errors: Sequence[FrameErrors]) -> FrameErrors:
-    return FrameErrors(
-        *(float(np.mean([getattr(one, f.name) for one in errors])) for f in fields(FrameErrors))
-    )
+def counting(floor: Measured, rows: Sequence[Measured]) -> dict[str, tuple[int, int]]:
+    """Of each sequence, how many of the frames whose floor was measured count, and how many those are.
+
+    A frame counts where its floor is no more than a third of every error that the rows have there, of vertices and by
+    Hausdorff distance.
+    """
+    found = {}
+    for name, floors in floor.frames.items():
+        own = zip(floors, *(row.frames[name][: len(floors)] for row in rows), strict=True)
+        count = sum(
+            all(
+                base.vertex <= GATE * error.vertex and base.hausdorff <= GATE * error.hausdorff
+                for error in errors
+            )
+            for base, *errors in own
+        )
+        found[name] = (count, len(floors))
+    return found

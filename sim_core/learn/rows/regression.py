@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim_core.learn.data import Film, Pair, Recipe
+from sim_core.learn.data import Pair, Take
 from sim_core.learn.rows.row import Follow
 from sim_core.learn.upsampling import LocalFrames as Model
 from sim_core.learn.upsampling import LocalFramesFit, weighted_sums
@@ -23,11 +23,11 @@ class LocalFrames:
     name: str = "local_frames"
 
     @staticmethod
-    def fitted(films: Sequence[tuple[Recipe, Film]], *, thin: int = 1) -> LocalFrames:
+    def fitted(takes: Sequence[Take], *, thin: int = 1) -> LocalFrames:
         """From every `thin`-th frame of these sequences; sheets of one kind are brought to one size."""
         fits: dict[str, LocalFramesFit] = {}
-        for recipe, film in films:
-            pair = Pair.of(recipe)
+        for take in takes:
+            pair, film = take.pair, take.film
             width = _width(pair)
             which = pair.kind
             if which not in fits:
@@ -37,8 +37,7 @@ class LocalFrames:
             fits[which].add(film.coarse[::thin] / width, film.fine[::thin] / width)
         return LocalFrames({which: fit.solve() for which, fit in fits.items()})
 
-    def follow(self, recipe: Recipe) -> Follow:
-        pair = Pair.of(recipe)
+    def follow(self, pair: Pair) -> Follow:
         model, width = self.models.get(pair.kind), _width(pair)
         if model is None:
             return lambda coarse: weighted_sums(pair.base, coarse)

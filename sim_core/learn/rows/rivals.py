@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Pair, Recipe
+from sim_core.learn.data import Pair
 from sim_core.learn.inference import RIVALS, Ground, RivalTrained, Trained
 from sim_core.learn.pooling import Pooled
 from sim_core.learn.rows.learned import Ours
@@ -30,7 +30,7 @@ class RivalRow:
     def name(self) -> str:
         return self.trained.row
 
-    def follow(self, recipe: Recipe) -> Follow:
+    def follow(self, pair: Pair) -> Follow:
         """Raises SimCoreError without torch, and for a kind of sheet that was not learned from, where one is pooled."""
         import torch
 
@@ -42,13 +42,13 @@ class RivalRow:
         network.load_state_dict(
             {name: torch.from_numpy(np.array(value)) for name, value in self.trained.weights.items()}
         )
-        ground = Ground.of(recipe)
-        sheet = RivalSheet(ground, tuple(recipe.on(recipe.fine).pins), device)
-        tables = made_of(rival, sheet, self._pooled(recipe) if rival.length else None)
+        ground = Ground.of(pair)
+        sheet = RivalSheet(ground, device)
+        tables = made_of(rival, sheet, self._pooled(pair) if rival.length else None)
         past: list[np.ndarray] = []
 
         def follow(coarse: np.ndarray) -> np.ndarray:
-            base = weighted_sums(ground.pair.base, coarse)
+            base = weighted_sums(pair.base, coarse)
             past.insert(0, base)
             del past[3:]
             three = [past[0], past[min(1, len(past) - 1)], past[-1]]
@@ -58,11 +58,11 @@ class RivalRow:
 
         return follow
 
-    def _pooled(self, recipe: Recipe) -> Pooled:
-        found = self.trained.pooled.get(Pair.of(recipe).kind)
+    def _pooled(self, pair: Pair) -> Pooled:
+        found = self.trained.pooled.get(pair.kind)
         if found is None:
             raise SimCoreError(
-                f"{recipe.name}: {self.name} has learned from no sheet of its kind – train it on one"
+                f"{self.name} has learned from no sheet of this kind ({pair.kind}) – train it on one"
             )
         return found
 

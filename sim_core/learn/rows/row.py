@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from sim_core.learn.data import Recipe
+from sim_core.learn.data import Pair
 
 __all__ = ["Follow", "Row"]
 
@@ -21,6 +21,6 @@ class Row(Protocol):
     @property
     def name(self) -> str: ...
 
-    def follow(self, recipe: Recipe) -> Follow:
-        """One that follows this sequence from its first kept frame on."""
+    def follow(self, pair: Pair) -> Follow:
+        """One that follows a sequence of these sheets from its first kept frame on."""
         ...

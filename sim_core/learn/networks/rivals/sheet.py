@@ -42,8 +42,8 @@ class RivalSheet:
     """A ground as tensors of a device. ring (V, R), along, across, mean (V, R): sums over a vertex and its neighbours
     that give derivatives and the neighbours' mean; known (V, 3): pinned, on the border, and the sheet's size; faces."""
 
-    def __init__(self, ground: Ground, pins: tuple[int, ...], device: torch.device) -> None:
-        sheet = ground.pair.fine
+    def __init__(self, ground: Ground, device: torch.device) -> None:
+        sheet, pins = ground.pair.fine, ground.pair.pins[1]
         count, unit = len(sheet.rest), ground.unit
         frames = tangent_frames(sheet.rest, sheet.faces)
         a, b = edges(sheet.faces).T

@@ -16,20 +16,19 @@ import torch
 from torch import Tensor
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.data import Film, Pair, Recipe
+from sim_core.learn.data import Take, pooled_by_kind
 from sim_core.learn.inference import Ground, Rival
 from sim_core.learn.networks.pace import HEARD, rate_at, stepped
 from sim_core.learn.networks.record import Record
 from sim_core.learn.networks.rivals.image_net import ImageNet, Images
 from sim_core.learn.networks.rivals.sheet import Frames, RivalSheet
 from sim_core.learn.networks.rivals.spiral_net import SpiralNet, Spirals
-from sim_core.learn.pooling import Pooled, collapse, decimate, mean_absolute_curvature
+from sim_core.learn.pooling import Pooled
 from sim_core.learn.upsampling import weighted_sums
 
 __all__ = ["RivalSchedule", "made_of", "network_of", "train_rival"]
 
 A, B, C = 1.0, 1.0, 0.02  # the paper's, distances in units
-QUADRIC_FRAMES, CURVATURE_FRAMES = 24, 200  # of training, that pooling looks at
 Told = Callable[[float, str], None]
 Tables = Spirals | Images
 
@@ -49,9 +48,10 @@ class RivalSchedule:
 
 
 class _Sequence:
-    def __init__(self, recipe: Recipe, film: Film, device: torch.device) -> None:
-        self.ground = Ground.of(recipe)
-        self.sheet = RivalSheet(self.ground, tuple(recipe.on(recipe.fine).pins), device)
+    def __init__(self, take: Take, device: torch.device) -> None:
+        film = take.film
+        self.ground = Ground.of(take.pair)
+        self.sheet = RivalSheet(self.ground, device)
         base = np.stack([weighted_sums(self.ground.pair.base, place) for place in film.coarse.astype(float)])
         self.base = torch.from_numpy(base.astype(np.float32)).to(device)
         self.truth = torch.from_numpy(np.asarray(film.fine, np.float32)).to(device)
@@ -63,34 +63,13 @@ class _Sequence:
         return self.sheet.frames(self.base[torch.from_numpy(before).to(self.base.device)])
 
 
-def pooled_for(rival: Rival, recipes: Sequence[Recipe], films: Sequence[Film]) -> Pooled:
-    """What stays of sheets of one kind, decided by frames of training alone."""
-    fine = recipes[0].on(recipes[0].fine)
-    sheet, pins = fine.sheet, sorted({pin for one in recipes for pin in one.on(one.fine).pins})
-    width = float(np.ptp(sheet.rest[:, 0]))
-
-    def drawn(count: int) -> np.ndarray:
-        """So many frames of all films, at one size."""
-        each = max(1, count // len(films))
-        parts = []
-        for recipe, film in zip(recipes, films, strict=True):
-            own = float(np.ptp(recipe.on(recipe.fine).sheet.rest[:, 0]))
-            parts.append(film.fine[np.linspace(0, len(film.fine) - 1, each).astype(int)] * (width / own))
-        return np.concatenate(parts).astype(float)
-
-    if rival.pooling == "Gauss curvature":
-        curvature = mean_absolute_curvature(drawn(CURVATURE_FRAMES), sheet.faces)
-        return decimate(sheet.rest, sheet.faces, curvature, rival.share, pins=pins)
-    return collapse(sheet.rest, sheet.faces, drawn(QUADRIC_FRAMES), rival.share, pins=pins)
-
-
 def made_of(rival: Rival, sheet: RivalSheet, pooled: Pooled | None) -> Tables:
     """What a rival's network needs of a sheet."""
     return Spirals.of(sheet, pooled, rival.length) if pooled is not None else Images.of(sheet)
 
 
 def train_rival(
-    films: Sequence[tuple[Recipe, Film]],
+    takes: Sequence[Take],
     rival: Rival,
     schedule: RivalSchedule,
     *,
@@ -102,30 +81,26 @@ def train_rival(
 
     record and told as of `train`. Raises SimCoreError for no film, and a record of another training.
     """
-    if not films:
-        raise SimCoreError("films: none – give one sequence at least")
+    if not takes:
+        raise SimCoreError("takes: none – give one sequence at least")
     torch.manual_seed(schedule.seed)
     place, rng, told = (
         torch.device(device),
         np.random.default_rng(schedule.seed),
         told or (lambda share, words: None),
     )
-    kinds: dict[str, list[tuple[Recipe, Film]]] = {}
-    for recipe, film in films:
-        kinds.setdefault(Pair.of(recipe).kind, []).append((recipe, film))
     pooled: dict[str, Pooled] = {}
     if rival.length:
-        for kind, own in kinds.items():
-            told(0.0, f"pools {own[0][0].name}")
-            pooled[kind] = pooled_for(rival, [recipe for recipe, _ in own], [film for _, film in own])
+        told(0.0, "pools")
+        pooled = pooled_by_kind(takes, rival.pooling, rival.share)
     sequences, tables = [], []
-    for recipe, film in films:
-        told(0.0, f"reads {recipe.name}")
-        sequences.append(_Sequence(recipe, film, place))
-        tables.append(made_of(rival, sequences[-1].sheet, pooled.get(Pair.of(recipe).kind)))
+    for take in takes:
+        told(0.0, f"reads {take.name}")
+        sequences.append(_Sequence(take, place))
+        tables.append(made_of(rival, sequences[-1].sheet, pooled.get(take.pair.kind)))
     network = network_of(rival).to(place)
     optimiser = torch.optim.AdamW(network.parameters(), lr=rival.rate, weight_decay=1e-2)
-    same = {"rival": asdict(rival), "schedule": asdict(schedule), "films": [one.told() for one, _ in films]}
+    same = {"rival": asdict(rival), "schedule": asdict(schedule), "films": [take.told() for take in takes]}
     kept = Record(record, same) if record else None
     parts = {"network": network, "optimiser": optimiser}
     begin = kept.read(parts, rng, place)[0] if kept else 0
