@@ -27,6 +27,8 @@ def main(*more: str) -> int:
         )
         if installed.returncode:
             return installed.returncode
+        if subprocess.run((python, "-c", "import torch"), check=False).returncode:
+            return 1  # else all would be skipped, and pass
         suite = (
             python,
             "-m",

@@ -38,6 +38,11 @@ class Exhibit:
             path = self.folder / (fine or self.file.models.hall)
         return path if is_there(path) else None
 
+    def compared_path(self) -> Path | None:
+        """The GLB of what it compares, or None where it names none or the file is not there."""
+        told = self.file.comparison
+        return self.folder / told.model if told and is_there(self.folder / told.model) else None
+
     def own_models(self) -> dict[str, tuple[str, Path]]:
         """Precision -> (key in its file, path) of the models that are there; a close-up without a file of its own
         is left out."""

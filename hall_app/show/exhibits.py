@@ -114,9 +114,8 @@ def _figure(content: Content, exhibit: Exhibit, models: ExhibitModels, compared:
 
 def _compared(exhibit: Exhibit) -> Model | None:
     """What its close-up shows side by side; a missing file is named by the content's own problems."""
-    told = exhibit.file.comparison
-    path = told and exhibit.folder / told.model
-    return _model(path, baked=False) if path and is_there(path) else None
+    path = exhibit.compared_path()
+    return None if path is None else _model(path, baked=False)
 
 
 def _model(path: Path, *, baked: bool) -> Model:

@@ -60,7 +60,8 @@ the fine film, every fifth measured: mean of how far vertices are off, Hausdorff
 faces; mean and 95th percentile over frames), normals, strain.
 
   reference     the fine film against itself with half the time step: no error below three times this is claimed
-  linear        the coarse surface
+  coarse        the coarse sheet as it is, its own vertices against their places on the fine one
+  linear        the coarse surface at the fine vertices
   biharmonic    the smoothest fine sheet with the coarse surface's means
   local_frames  that, and what frames of training add to it in closed form
   mfsr, mesh_conv, paper, ours    networks, of --weights; all but ours need torch

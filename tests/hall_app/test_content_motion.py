@@ -93,6 +93,7 @@ def test_a_comparison_whose_files_are_wrong_is_named_and_the_exhibit_stays(tmp_p
         (toml.replace("#b07030", "red"), "comparison.side"),
         (toml.replace("vertices = 8\n", "vertices = 0\n"), "vertices"),
         (toml.replace("milliseconds = 3\n", ""), "milliseconds"),
+        (toml.replace("hausdorff_mm = 4\n", ""), "only the reference itself has none"),
     ):
         (home / "exhibit.toml").write_text(wrong, "utf-8")
         assert words in comparison_problems(folder)

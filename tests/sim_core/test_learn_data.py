@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -134,6 +135,30 @@ def test_what_is_kept_is_what_was_made(tmp_path: Path) -> None:
     assert not list(tmp_path.glob(".*"))
 
 
+class Failing(ThreadPoolExecutor):
+    """Workers that end, or have another engine."""
+
+    def __init__(self, act) -> None:
+        super().__init__(1)
+        self.act = act
+
+    def submit(self, fn, /, *args, **kwargs):
+        return super().submit(self.act, fn, *args)
+
+
+def test_workers_that_fail_or_are_of_another_engine_are_named(tmp_path: Path) -> None:
+    def dies(make, recipe):
+        raise RuntimeError("killed\nand more")
+
+    def other(make, recipe):
+        data, facts = make(recipe)
+        return data, facts | {"made": facts["made"] | {"engine": 1}}
+
+    for act, words in ((dies, r"its worker failed \(RuntimeError: killed\)"), (other, "another engine")):
+        with Failing(act) as executor, pytest.raises(SimCoreError, match=f"hanging-01: .*{words}"):
+            generate(tmp_path / words[:3], [small(frames=2)], executor=executor)
+
+
 def test_a_cluster_makes_the_same_bytes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -160,6 +185,14 @@ def test_a_cluster_makes_the_same_bytes(
     assert "--cluster tcp://127.0.0.1:9: no scheduler answers" in capsys.readouterr().err
     assert main([*words, "--out", str(tmp_path / "none"), "--cluster", "nowhere"]) == 1
     assert "no scheduler answers" in capsys.readouterr().err
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        address = f"tcp://127.0.0.1:{mute.getsockname()[1]}"
+        assert main([*words, "--out", str(tmp_path / "none"), "--cluster", address]) == 1
+    assert "no scheduler answers (no answer within 1 s)" in capsys.readouterr().err
+    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as empty:
+        there = [*words, "--out", str(tmp_path / "none"), "--cluster", empty.scheduler_address]
+        assert main(there) == 1
+    assert "the scheduler has no workers" in capsys.readouterr().err
 
 
 def test_any_executor_makes_the_same_bytes(tmp_path: Path) -> None:

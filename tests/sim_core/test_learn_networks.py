@@ -249,7 +249,7 @@ def test_weights_are_kept_as_they_are_and_what_was_changed_is_refused(tmp_path: 
 def test_the_commands_compare_what_was_trained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     generate(tmp_path / "data", [Recipe("hanging", case, 7, 6, 0, coarse=90, fine=340) for case in (1, 3, 4)])
     place, out = ["hanging", "--data", str(tmp_path / "data")], tmp_path / "ours.safetensors"
-    write_weights(out, Trained(SMALL, drawn(5, 0.01), {"learned_from": ["hanging-01"]}))
+    write_weights(out, Trained(SMALL, drawn(5, 0.01), {"scene": "hanging", "learned_from": ["hanging-01"]}))
     assert (
         main(["learn", "evaluate", *place, "--rows", "biharmonic,ours", "--weights", str(out), "--json"]) == 0
     )
@@ -259,12 +259,12 @@ def test_the_commands_compare_what_was_trained(tmp_path: Path, capsys: pytest.Ca
     assert "give its --weights" in capsys.readouterr().err
     for told, words in (
         ({"scene": "flag"}, "has learned flag"),
-        ({"share": 0.5}, "trained with --share 0.5"),
+        ({"scene": "hanging", "share": 0.5}, "trained with --share 0.5"),
     ):
         write_weights(out, Trained(SMALL, drawn(5), told))
         assert main(["learn", "evaluate", *place, "--weights", str(out)]) == 1
         assert words in capsys.readouterr().err
-    write_weights(out, Trained(SMALL, drawn(5), {"learned_from": ["hanging-03"]}))
+    write_weights(out, Trained(SMALL, drawn(5), {"scene": "hanging", "learned_from": ["hanging-03"]}))
     assert main(["learn", "evaluate", *place, "--weights", str(out)]) == 1
     assert "learned from hanging-03, which would be tested on" in capsys.readouterr().err
     assert main(["learn", "train", *place, "--out", "ours.pt"]) == 1
@@ -401,4 +401,4 @@ def test_the_command_shows_three_meshes_for_an_exhibit(
     assert "hanging-03 has 6 frames" in capsys.readouterr().err
     words[2] = "flag"
     assert main([*words, "--out", str(out)]) == 1
-    assert "holds hanging" in capsys.readouterr().err
+    assert "has learned hanging – give weights of flag" in capsys.readouterr().err

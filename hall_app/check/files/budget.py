@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hall_app.content.files import is_there, walk_files
+from hall_app.content.files import walk_files
 from hall_app.content.folder import Content
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.problems import Problem
@@ -22,8 +22,8 @@ def budget_problems(content: Content) -> list[Problem]:
     for exhibit in content.exhibits:
         for precision, (key, path) in exhibit.own_models().items():
             found += _model(exhibit.toml, key, precision, path)
-        if (compared := exhibit.file.comparison) and is_there(exhibit.folder / compared.model):
-            found += _model(exhibit.toml, "comparison.model", "close", exhibit.folder / compared.model)
+        if (compared := exhibit.compared_path()) is not None:
+            found += _model(exhibit.toml, "comparison.model", "close", compared)
     total = 0
     for path in walk_files(content.folder):
         name, size = path.relative_to(content.folder).as_posix(), path.stat().st_size

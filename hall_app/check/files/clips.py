@@ -49,17 +49,18 @@ def _named(exhibit: Exhibit) -> Iterator[_Moving]:
     if file.outfit:
         yield _Moving("motion", CLOSE_MOTION, exhibit.model_path("close"))
     if file.comparison and file.comparison.clip:
-        model = exhibit.folder / file.comparison.model
-        yield _Moving("comparison.clip", file.comparison.clip, model if is_there(model) else None)
+        yield _Moving("comparison.clip", file.comparison.clip, exhibit.compared_path())
 
 
 def _of(exhibit: Exhibit, moving: _Moving) -> list[Problem]:
     name, path = moving.clip, exhibit.folder / moving.clip
     fix = (
-        f"run: hall build --exhibit {exhibit.id}"
-        if made_by_build(exhibit.file, name)
-        else "write it by Clip.save"
+        "write it by Clip.save"
+        if moving.key == "motion"
+        else "write both by simcore learn show, or Clip.save"
     )
+    if made_by_build(exhibit.file, name):
+        fix = f"run: hall build --exhibit {exhibit.id}"
     smaller = "use fewer frames, or a coarser model"
 
     def problem(what: str, remedy: str = fix) -> Problem:

@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 from hall_app.content.bakes.store import bake_fault
-from hall_app.content.files import BAKED, is_there
+from hall_app.content.files import BAKED
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.models.glb import GlbError, GlbInfo, read_glb
 from hall_app.content.problems import Problem
@@ -21,8 +21,8 @@ def scale_problems(content: Content) -> list[Problem]:
     for exhibit in content.exhibits:
         for key, path in exhibit.own_models().values():
             found += _model_problems(exhibit, key, path)
-        if (compared := exhibit.file.comparison) and is_there(exhibit.folder / compared.model):
-            found += _undrawable(exhibit, "comparison.model", exhibit.folder / compared.model)
+        if (compared := exhibit.compared_path()) is not None:
+            found += _comparison_problems(exhibit, compared)
     return found
 
 
@@ -32,22 +32,31 @@ def _model_problems(exhibit: Exhibit, key: str, path: Path) -> list[Problem]:
         if bake_fault(exhibit.folder / BAKED):
             return []  # the check of bakes names it
         fix = f"run: hall build --exhibit {exhibit.id}"
-    if problems := _undrawable(exhibit, key, path, fix):
-        return problems
-    info = read_glb(path)
+    info = _drawable(exhibit, key, path, fix)
+    if isinstance(info, Problem):
+        return [info]
     problems = _height(exhibit, key, info)
     if exhibit.file.models and not problems:  # a garment hangs where its stand holds it
         problems = _origin(exhibit.toml, key, info)
     return problems
 
 
-def _undrawable(exhibit: Exhibit, key: str, path: Path, fix: str = "export the model again") -> list[Problem]:
+def _comparison_problems(exhibit: Exhibit, path: Path) -> list[Problem]:
+    key = "comparison.model"
+    info = _drawable(exhibit, key, path, "export the model again")
+    return [info] if isinstance(info, Problem) else _origin(exhibit.toml, key, info)
+
+
+def _drawable(exhibit: Exhibit, key: str, path: Path, fix: str) -> GlbInfo | Problem:
+    """What the model holds, or why it cannot be drawn."""
     try:
         fault = _drawing_fault(path)
-        read_glb(path)
+        info = read_glb(path)
     except (GlbError, OSError) as error:
-        fault = str(error)
-    return [Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", fix)] if fault else []
+        fault, info = str(error), None
+    if fault or info is None:
+        return Problem(exhibit.toml, key, f"{path.name} cannot be drawn: {fault}", fix)
+    return info
 
 
 def _drawing_fault(path: Path) -> str | None:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from hall_app.content.bakes.store import bake_folder
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.models.glb import read_glb
 
 __all__ = ["ExhibitModels", "models_of"]
 
@@ -19,11 +18,6 @@ class ExhibitModels:
     hall: Path
     close: Path
     baked: Path | None
-
-    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-        """Lowest and highest corner of the close model [m]."""
-        info = read_glb(self.close)
-        return info.low, info.high
 
     def whole(self) -> bool:
         """Whether both files are (still) there."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from hall_app.content.schema.values import Bilingual, ContentPath, Table
 
@@ -37,3 +38,11 @@ class Comparison(Table):
     side: tuple[Side, ...] = Field(
         min_length=2, max_length=3, description="one [[comparison.side]] each, from left to right"
     )
+
+    @model_validator(mode="after")
+    def _one_reference(self) -> Comparison:
+        if sum(side.hausdorff_mm is None for side in self.side) > 1:
+            raise PydanticCustomError(
+                "one_reference", "side: two have no hausdorff_mm – only the reference itself has none"
+            )
+        return self

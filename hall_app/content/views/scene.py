@@ -13,7 +13,7 @@ from hall_app.content.behaviours import kind_of
 from hall_app.content.files import BAKED, CLOSE_MOTION, MOTION, digest, is_there, tracked_beside
 from hall_app.content.floor.footprints import plan_footprints
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.schema.comparison import Comparison
+from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.schema.exhibit import Media, Record
 from hall_app.content.views.markdown import html_of
 from hall_app.content.views.measurements import measured_lines
@@ -129,6 +129,7 @@ def _entry(exhibit: Exhibit, baked: Path | None) -> dict[str, Any]:
         "thumbnail": thumbnail(exhibit, baked),
         "motion": _motion(exhibit, baked),
         "close_motion": _url(exhibit, CLOSE_MOTION, baked) if file.outfit is not None else None,
+        "moves": bool(_motion(exhibit, baked)) or bool(file.comparison and file.comparison.clip),
         "kind": kind_of(file.behaviours),
         "caption": file.caption.as_json() if file.caption else None,
     }
@@ -186,16 +187,21 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
         "questionnaire": file.questionnaire,
         "has_close": _has_close(exhibit, baked),
         "points": _points(exhibit, baked),
-        "comparison": file.comparison and _comparison(exhibit, file.comparison, baked),
+        "comparison": _comparison(exhibit),
     }
 
 
-def _comparison(exhibit: Exhibit, told: Comparison, baked: Path | None) -> dict[str, Any] | None:
-    """What the page tells of meshes side by side; None once their model is gone."""
-    if not is_there(media_file(exhibit, told.model, baked)):
+def _comparison(exhibit: Exhibit) -> dict[str, Any] | None:
+    """What the page tells of meshes side by side; None where it compares nothing, or nothing that can be drawn."""
+    told, path = exhibit.file.comparison, exhibit.compared_path()
+    if told is None or path is None:
+        return None
+    try:
+        read_glb(path)
+    except (GlbError, OSError):
         return None
     return {
-        "clip": _url(exhibit, told.clip, baked) if told.clip else None,
+        "clip": _url(exhibit, told.clip, None) if told.clip else None,
         "text": told.text.as_json() if told.text else None,
         "sides": [side.model_dump() for side in told.side],
     }

@@ -21,6 +21,7 @@ const SETTLE = 1500; // [ms] viser may place its own first camera that long afte
 const EXHIBITS = "/exhibits/"; // scene nodes
 const exhibitUrl = (id) => `/api/exhibits/${encodeURIComponent(id)}`;
 const TEXT_PATIENCE = 15000; // [ms] an exhibit's text may take on a slow line
+const ASK_AFTER = 150, ASK_AGAIN = 3000; // [ms] that a tab rests before what it compares is asked for, and once more
 const clamp = (value) => Math.max(-1, Math.min(1, value));
 
 /**
@@ -31,7 +32,8 @@ const clamp = (value) => Math.max(-1, Math.min(1, value));
  */
 export function createVisit({ scene, grid, display, ui, wake, connection, clock, points }) {
   let entered = false, opened = null, near = null, headingThere = null;
-  let compares = false, compared = null, comparison = null; // asked for; {clip} once it is shown; of the open exhibit
+  let compares = false, compared = null, comparison = null; // wanted; {clip} while it is shown; of the open exhibit
+  let asking = 0, early = null; // the next time it is asked for; the last answer since the exhibit was opened
   let stick = { forward: 0, right: 0, since: 0 };
   const walking = () => entered && !opened;
   const { gaze, head } = createGaze(document.documentElement, scene.eye, walking, wake);
@@ -116,6 +118,7 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
 
   async function openExhibit(message) {
     opened = message.id;
+    compared = early = null; // the hall shows the exhibit itself first
     address.follow(opened);
     const detail = await fetchJson(exhibitUrl(message.id), AbortSignal.timeout(TEXT_PATIENCE)).catch(() => null);
     if (opened !== message.id) return; // closed again meanwhile
@@ -128,22 +131,33 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
     ui.hover(null);
     ui.showExhibit(detail, { play: message.play === true });
     comparison = detail.comparison;
-    compared = null;
     closeup.enter(message);
-    if (compares) walk.send({ t: "compare", on: true }); // the line was lost meanwhile
+    if (early) showCompared(early); // its tab was chosen while the text came
+    else ask(0); // or the line was lost meanwhile
   }
 
-  /** The close-up shows the exhibit's meshes side by side, or the exhibit again. */
+  /** The close-up shows the exhibit's meshes side by side, or the exhibit again, as the tab that is chosen wants it. */
   function compare(on) {
-    if (compares === on) return;
     compares = on;
-    walk.send({ t: "compare", on });
+    ask(ASK_AFTER); // of tabs that are run through, the one that is stayed on
+  }
+
+  /** Ask until it is shown: a line may lose it, or the hall have been asked too often. */
+  function ask(delay) {
+    clearTimeout(asking);
+    asking = setTimeout(() => {
+      if (!opened || compares === (compared !== null)) return;
+      walk.send({ t: "compare", on: compares });
+      ask(ASK_AGAIN);
+    }, delay);
   }
 
   function showCompared(message) {
-    if (opened !== message.id || message.on !== compares) return; // something else meanwhile
+    if (opened !== message.id) return; // another one meanwhile
+    early = message;
     compared = message.on ? { clip: comparison?.clip ?? null } : null;
     closeup.enter(message);
+    ask(ASK_AFTER);
   }
 
   function close() {
@@ -153,8 +167,9 @@ export function createVisit({ scene, grid, display, ui, wake, connection, clock,
 
   function leave() {
     if (!opened) return;
-    opened = compared = null;
+    opened = compared = early = null;
     compares = false; // the server forgets it with the exhibit
+    clearTimeout(asking);
     address.follow(null);
     ui.hideExhibit();
     closeup.leave();

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import never_seen, progress, usual
+from sim_core.learn.commands.parts import never_seen, progress, usual, weights_of
 from sim_core.validation.files import check_target
 
 if TYPE_CHECKING:
@@ -26,13 +26,12 @@ def draw(args: argparse.Namespace) -> int:
     """Draws a scene a row, each of the first sequence held back."""
     from sim_core.learn.data import read_films, split
     from sim_core.learn.evaluation import draw_side_by_side
-    from sim_core.learn.inference import read_weights
     from sim_core.learn.rows import Biharmonic, row_of
 
     check_target(args.out)
     given = {}
     for path in args.weights:
-        trained = read_weights(path)
+        trained = weights_of(path)
         given.setdefault(trained.told.get("scene"), []).append((path, trained))
     told, rows, facts = progress(), [], []
     for number, folder in enumerate(args.data):

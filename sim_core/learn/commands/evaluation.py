@@ -5,23 +5,24 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import Takes, never_seen, progress, reconstructed, takes_of
+from sim_core.learn.commands.parts import Takes, never_seen, progress, takes_of, weights_of
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Take
     from sim_core.learn.inference import RivalTrained, Trained
+    from sim_core.learn.pooling import Pooled
     from sim_core.learn.rows import Measured, Row
 
 __all__ = ["CURVED", "NETWORKS", "PLAIN", "ROWS", "evaluate"]
 
-REFERENCE = "reference"
-PLAIN = (REFERENCE, "linear", "biharmonic", "local_frames")
+REFERENCE, COARSE = "reference", "coarse"
+PLAIN = (REFERENCE, COARSE, "linear", "biharmonic", "local_frames")
 CURVED = ("curvature_linear", "curvature_biharmonic")  # from what the published pooling keeps
 NETWORKS = ("mfsr", "mesh_conv", "paper", "ours")
 ROWS = (*PLAIN, *CURVED, *NETWORKS)
@@ -31,102 +32,113 @@ Given = dict[str, tuple[Path, "Trained | RivalTrained"]]
 
 def evaluate(args: argparse.Namespace) -> int:
     """Measures rows on the sequences held back."""
-    from sim_core.learn.rows import measured, reference
+    from sim_core.learn.rows import coarse_measured, measured, reference
 
     given = _given(args)
-    wanted = args.rows or (
-        *PLAIN,
-        *(CURVED if args.share else ()),
-        *(row for row in NETWORKS if row in given),
-    )
+    wanted = args.rows or (*_plain(args), *(row for row in NETWORKS if row in given))
     for row in wanted:
         if row in NETWORKS and row not in given:
             raise SimCoreError(f"--rows {row} – give its --weights, which `simcore learn train` makes")
         if row in CURVED and not args.share:
             raise SimCoreError(f"--rows {row} – it begins with pooled vertices: give --share")
+        if row == COARSE and args.share:
+            raise SimCoreError(f"--rows {row} – with --share no coarse sheet is simulated: leave it out")
     takes = takes_of(args, frames=args.frames)
     for path, trained in given.values():
         never_seen(path, trained, takes.test)
-    makers, told, found = _makers(args, takes, given), progress(), {}
+    makers, told, found = _Makers(args, takes, given), progress(), {}
+    coarse_ms = 0.0 if args.share else median([take.film.coarse_ms for take in takes.test])
     for number, name in enumerate(wanted):
 
         def share(part: float, words: str, number: int = number) -> None:
             told((number + part) / len(wanted), words)
 
+        share(0.0, name)
         if name == REFERENCE:
-            found[name] = reference(takes.test, args.floor, share)
+            found[name], now = reference(takes.test, args.floor, share)
+            coarse_ms = 0.0 if args.share else now
+        elif name == COARSE:
+            found[name] = coarse_measured(takes.test)
         else:
-            row, tested = makers[name]()
+            row, tested = makers.made(name)
             found[name] = measured(row, tested, told=share)
     told(1.0, "")
     summary = {
         "scene": args.scene,
         **({"share": args.share} if args.share else {}),
         "tested": [take.name for take in takes.test],
-        "rows": {name: _facts(args, name, one, takes.test) for name, one in found.items()},
+        "rows": {name: _facts(name, one, coarse_ms) for name, one in found.items()},
         **({"gate": _gate(found, takes.test)} if REFERENCE in found and len(found) > 1 else {}),
     }
     sys.stdout.write(json.dumps(summary, indent=2) + "\n" if args.json else _table(summary))
     return 0
 
 
+def _plain(args: argparse.Namespace) -> tuple[str, ...]:
+    """Rows without a network; of reconstruction those of both poolings, but no coarse sheet: none was simulated."""
+    return (*(name for name in PLAIN if name != COARSE), *CURVED) if args.share else PLAIN
+
+
 def _given(args: argparse.Namespace) -> Given:
     """Row -> file and weights. Raises SimCoreError for weights of another scene or another task."""
-    from sim_core.learn.inference import read_weights
-
     found: Given = {}
     for path in args.weights:
-        trained = read_weights(path)
-        if (own := trained.told.get("scene", args.scene)) != args.scene:
-            raise SimCoreError(f"{path}: has learned {own} – give weights of {args.scene}")
-        if (own := trained.told.get("share")) != args.share:
-            raise SimCoreError(
-                f"{path}: trained with --share {own} – evaluate with the same"
-                if own
-                else f"{path}: trained without --share – leave it out"
-            )
+        trained = weights_of(path, args.scene, args.share)
         if trained.row in found:
             raise SimCoreError(f"{path}: a second network of the row {trained.row} – give one at a time")
         found[trained.row] = path, trained
     return found
 
 
-def _makers(
-    args: argparse.Namespace, takes: Takes, given: Given
-) -> dict[str, Callable[[], tuple[Row, list[Take]]]]:
-    """By name, what makes a row and the takes it is measured on."""
-    from sim_core.learn.data import POOLINGS
-    from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, row_of
+class _Makers:
+    """Rows by name, each with the takes it is measured on; poolings are made for who asks for them."""
 
-    gauss, quadric = POOLINGS
-    curved = takes
-    if args.share:
-        curved, _ = reconstructed(takes, args.share, gauss)
-        takes, _ = reconstructed(takes, args.share, quadric)
-    return {
-        "linear": lambda: (Linear(), takes.test),
-        "biharmonic": lambda: (Biharmonic(), takes.test),
-        "local_frames": lambda: (LocalFrames.fitted(takes.train), takes.test),
-        "curvature_linear": lambda: (Linear(CURVED[0]), curved.test),
-        "curvature_biharmonic": lambda: (Biharmonic(CURVED[1]), curved.test),
-        **{name: lambda own=trained: (row_of(own), takes.test) for name, (_, trained) in given.items()},
-    }
+    def __init__(self, args: argparse.Namespace, takes: Takes, given: Given) -> None:
+        self.share, self.takes, self.given = args.share, takes, given
+
+    def made(self, name: str) -> tuple[Row, list[Take]]:
+        """The row, and what it is tested on."""
+        from sim_core.learn.data import POOLINGS, pooled_takes
+        from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, row_of
+
+        gauss, quadric = POOLINGS
+        if name in self.given:
+            trained = self.given[name][1]
+            test = pooled_takes(self.takes.test, trained.pooled) if self.share else self.takes.test
+            return row_of(trained), test
+        pooling = gauss if name in CURVED else quadric
+        kind = name.removeprefix("curvature_")
+        if kind == "local_frames":
+            return LocalFrames.fitted(self._takes(pooling, "train")), self._takes(pooling, "test")
+        return {"linear": Linear, "biharmonic": Biharmonic}[kind](name), self._takes(pooling, "test")
+
+    def _takes(self, pooling: str, part: str) -> list[Take]:
+        from sim_core.learn.data import pooled_takes
+
+        own = getattr(self.takes, part)
+        return pooled_takes(own, self._pooled(pooling)) if self.share else own
+
+    @cache  # noqa: B019 – it lives as long as the command
+    def _pooled(self, pooling: str) -> dict[str, Pooled]:
+        from sim_core.learn.data import pooled_by_kind
+
+        return pooled_by_kind(self.takes.train, pooling, self.share)
 
 
-def _facts(args: argparse.Namespace, name: str, found: Measured, tested: list[Take]) -> dict[str, Any]:
+def _facts(name: str, found: Measured, coarse_ms: float) -> dict[str, Any]:
     if name == REFERENCE:
         return found.told() | {"net_ms": 0.0, "total_ms": round(found.milliseconds, 3)}
-    coarse = 0.0 if args.share else median([take.film.coarse_ms for take in tested])
-    return found.told() | {"total_ms": round(coarse + found.milliseconds, 3)}
+    return found.told() | {"total_ms": round(coarse_ms + found.milliseconds, 3)}
 
 
 def _gate(found: dict[str, Measured], tested: list[Take]) -> dict[str, Any]:
     """Of each sequence how many frames count, were measured, and would be measured of it whole; passed where half of
     each counts, None where too few were measured to say."""
-    from sim_core.learn.rows import EVERY, counting
+    from sim_core.learn.data import looked_at
+    from sim_core.learn.rows import counting
 
     counts = counting(found[REFERENCE], [one for name, one in found.items() if name != REFERENCE])
-    whole = {take.name: max(1, len(take.film.fine) // EVERY) for take in tested}
+    whole = {take.name: len(looked_at(len(take.film.fine))) for take in tested}
     passed = all(2 * count >= whole[name] for name, (count, _) in counts.items())
     may_pass = all(2 * (whole[name] - of + count) >= whole[name] for name, (count, of) in counts.items())
     return {

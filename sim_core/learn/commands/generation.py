@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from statistics import median
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from sim_core.errors import SimCoreError
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["data"]
 
-PATIENCE = 10  # [s] for a cluster's scheduler to answer
+PATIENCE = 10.0  # [s] for a cluster's scheduler to answer, and for a worker to be there
 
 
 def data(args: argparse.Namespace) -> int:
@@ -31,11 +32,11 @@ def data(args: argparse.Namespace) -> int:
     wanted = recipes(args.scene, sequences=args.sequences, frames=args.frames, seed=args.seed)
     args.out.mkdir(parents=True, exist_ok=True)
     Manifest.matching(args.out, wanted)  # what cannot go on is refused before anything runs
-    worth = floor(wanted[0], args.floor) if args.floor else None
-    if worth is not None and not args.json:
-        sys.stdout.write(_floor_words(wanted[0], worth))
-        sys.stdout.flush()
     with _executor(args) as executor:
+        worth = floor(wanted[0], args.floor) if args.floor else None
+        if worth is not None and not args.json:
+            sys.stdout.write(_floor_words(wanted[0], worth))
+            sys.stdout.flush()
         manifest = generate(args.out, wanted, executor=executor, progress=progress())
     facts = _facts(args.out, manifest) | ({"floor": _floor_facts(worth)} if worth else {})
     sys.stdout.write(json.dumps(facts, indent=2) + "\n" if args.json else _words(facts))
@@ -56,19 +57,36 @@ def _executor(args: argparse.Namespace) -> AbstractContextManager[Executor | Non
 
 @contextmanager
 def _cluster(address: str) -> Iterator[Executor]:
-    """The workers of a Dask cluster. Raises SimCoreError where Dask is not installed or no scheduler answers."""
+    """The workers of a Dask cluster. Raises SimCoreError where Dask is not installed, or nobody is there to work."""
     try:
         from distributed import Client
     except ImportError:
         raise SimCoreError("--cluster: Dask is not installed – pip install '.[cluster]'") from None
-    try:
-        client = Client(address, timeout=PATIENCE)
-    except (OSError, ValueError, TypeError) as error:
-        why = str(error).splitlines()[0]
+    found: list[Client | BaseException] = []
+
+    def connect() -> None:
+        try:
+            found.append(Client(address, timeout=PATIENCE))
+        except BaseException as error:
+            found.append(error)
+
+    # Whoever accepts a connection and says nothing is waited for without an end, whatever the client's own limit is.
+    thread = Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(2 * PATIENCE)
+    client = found[0] if found else TimeoutError(f"no answer within {2 * PATIENCE:g} s")
+    if isinstance(client, BaseException):
+        why = (str(client).splitlines() or [type(client).__name__])[0][:120]
         raise SimCoreError(
             f"--cluster {address}: no scheduler answers ({why}) – run `dask scheduler` there, or correct the address"
-        ) from None
+        )
     with client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError:
+            raise SimCoreError(
+                f"--cluster {address}: the scheduler has no workers – run `dask worker {address}` where they are"
+            ) from None
         yield client.get_executor()
 
 

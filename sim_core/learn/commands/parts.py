@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,9 +15,8 @@ import numpy as np
 if TYPE_CHECKING:
     from sim_core.learn.data import Film, Recipe, Take
     from sim_core.learn.inference import RivalTrained, Trained
-    from sim_core.learn.pooling import Pooled
 
-__all__ = ["Takes", "films_of", "never_seen", "progress", "reconstructed", "takes_of", "usual", "weights_of"]
+__all__ = ["Takes", "films_of", "never_seen", "progress", "takes_of", "usual", "weights_of"]
 
 
 def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
@@ -31,47 +30,47 @@ def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
     return every
 
 
-@dataclass(frozen=True)
 class Takes:
-    """Sequences that are learned from, and those that are held back."""
+    """Sequences that are learned from, whole, and those that are held back, of no more than so many frames each. What
+    is learned from is only made ready where someone asks for it."""
 
-    train: list[Take]
-    test: list[Take]
+    def __init__(self, films: Mapping[str, tuple[Recipe, Film]], frames: int | None = None) -> None:
+        from sim_core.learn.data import Take, split
+
+        self._films, self._parts = films, split([recipe for recipe, _ in films.values()])
+        self.test = [Take.of(*films[recipe.name]).first(frames) for recipe in self._parts.test]
+
+    @cached_property
+    def train(self) -> list[Take]:
+        from sim_core.learn.data import Take
+
+        return [Take.of(*self._films[recipe.name]) for recipe in self._parts.train]
 
 
 def takes_of(args: argparse.Namespace, *, frames: int | None = None) -> Takes:
-    """The sequences of --data, of no more than so many frames each. Raises what `films_of` does."""
-    from sim_core.learn.data import Take, split
-
-    films = films_of(args)
-    parts = split([recipe for recipe, _ in films.values()])
-    train, test = (
-        [Take.of(*films[recipe.name]).first(frames) for recipe in part] for part in (parts.train, parts.test)
-    )
-    return Takes(train, test)
+    """The sequences of --data. Raises what `films_of` does."""
+    return Takes(films_of(args), frames)
 
 
-def reconstructed(takes: Takes, share: float, pooling: str) -> tuple[Takes, dict[str, Pooled]]:
-    """The same from less than a share of their fine vertices, and which stay; decided by those learned from."""
-    from sim_core.learn.data import pooled_by_kind, pooled_takes
+def weights_of(path: Path, scene: str | None = None, share: float | None = None) -> Trained | RivalTrained:
+    """Weights that make fine cloth of a scene's coarse one (None: any), or of a share of its own vertices.
 
-    pooled = pooled_by_kind(takes.train, pooling, share)
-    return Takes(pooled_takes(takes.train, pooled), pooled_takes(takes.test, pooled)), pooled
-
-
-def weights_of(path: Path, scene: str) -> Trained | RivalTrained:
-    """Weights that make fine cloth of a scene's coarse one. Raises SimCoreError for others."""
+    Raises SimCoreError for others.
+    """
     from sim_core.errors import SimCoreError
     from sim_core.learn.inference import read_weights
 
     trained = read_weights(path)
-    if (own := trained.told.get("scene")) != scene:
-        raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}, or infer {own}")
-    if share := trained.told.get("share"):
-        raise SimCoreError(
-            f"{path}: trained with --share {share:g} – give weights that were trained without it"
-        )
+    if scene is not None and (own := trained.told.get("scene")) != scene:
+        raise SimCoreError(f"{path}: has learned {own} – give weights of {scene}")
+    if (own := trained.told.get("share")) != share:
+        words = f"trained with --share {own:g}" if own else "trained without --share"
+        raise SimCoreError(f"{path}: {words} – give weights that were trained {_with(share)}")
     return trained
+
+
+def _with(share: float | None) -> str:
+    return f"with --share {share:g}" if share else "without it"
 
 
 def never_seen(path: Path, trained: Trained | RivalTrained, tested: Iterable[Recipe | Take]) -> None:

@@ -10,13 +10,14 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from sim_core.learn.commands.parts import progress, reconstructed, takes_of
+from sim_core.learn.commands.parts import progress, takes_of
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from sim_core.learn.data import Take
-    from sim_core.learn.inference import RivalTrained, Trained
     from sim_core.learn.pooling import Pooled
 
 __all__ = ["train"]
@@ -30,16 +31,16 @@ def train(args: argparse.Namespace) -> int:
 
     from sim_core.cloth.run import ENGINE_VERSION
     from sim_core.errors import SimCoreError
-    from sim_core.learn.data import POOLINGS, Manifest
-    from sim_core.learn.inference import write_weights
+    from sim_core.learn.data import POOLINGS, Manifest, pooled_by_kind, pooled_takes
+    from sim_core.learn.inference import RivalTrained, Settings, Trained, write_weights
 
     if args.out.suffix != ".safetensors":
         raise SimCoreError(f"--out: {args.out} – name a file that ends in .safetensors")
     if find_spec("torch") is None:
         raise SimCoreError("torch is not installed – pip install '.[learn]'; to use weights it is not needed")
-    takes, pooled = takes_of(args), {}
-    if args.share:
-        takes, pooled = reconstructed(takes, args.share, POOLINGS[1])
+    if args.share and args.row != "ours":
+        raise SimCoreError(f"--share: {args.row} does not reconstruct – only ours does")
+    takes = takes_of(args).train
     began, told = time.monotonic(), progress()
     device, words = _device(args.device)
     if not args.json:
@@ -49,7 +50,7 @@ def train(args: argparse.Namespace) -> int:
         "scene": args.scene,
         "row": args.row,
         **({"share": args.share} if args.share else {}),
-        "learned_from": [take.name for take in takes.train],
+        "learned_from": [take.name for take in takes],
         "data_sha256": Manifest.load(args.data).digest,
         "engine": ENGINE_VERSION,
         "updates": args.updates,
@@ -57,7 +58,17 @@ def train(args: argparse.Namespace) -> int:
         "device": words,
         "licence": LICENCE,
     }
-    trained = _trained(args, takes.train, pooled, (device, told, facts))
+    pooled: dict[str, Pooled] = {}
+    if args.share:
+        told(0.0, "pools")
+        pooled = pooled_by_kind(takes, POOLINGS[1], args.share)
+        takes = pooled_takes(takes, pooled)
+    weights, more = _trained(args, takes, device, told)
+    trained = (
+        Trained(Settings(), weights, facts, pooled)
+        if more is None
+        else RivalTrained(args.row, weights, more, facts)
+    )
     told(1.0, "")
     write_weights(args.out, trained)
     size = sum(value.size for value in trained.weights.values())
@@ -86,15 +97,11 @@ def _device(wanted: str) -> tuple[str, str]:
 
 
 def _trained(
-    args: argparse.Namespace,
-    takes: list[Take],
-    pooled: dict[str, Pooled],
-    way: tuple[str, Callable[[float, str], None], dict[str, Any]],
-) -> Trained | RivalTrained:
-    """way: device, who hears how far it is, and what is told of it."""
-    from sim_core.learn.inference import RIVALS, RivalTrained, Settings, Trained
+    args: argparse.Namespace, takes: list[Take], device: str, told: Callable[[float, str], None]
+) -> tuple[dict[str, np.ndarray], dict[str, Pooled] | None]:
+    """Weights, and of a rival what its own pooling keeps."""
+    from sim_core.learn.inference import RIVALS, Settings
 
-    device, told, facts = way
     record = args.out.with_suffix(".record")
 
     def heard(share: float, words: str) -> None:
@@ -104,12 +111,9 @@ def _trained(
         from sim_core.learn.networks.rivals import RivalSchedule, train_rival
 
         rival, plan = RIVALS[args.row], RivalSchedule(updates=args.updates, seed=args.seed)
-        weights, pooled = train_rival(takes, rival, plan, device=device, record=record, told=heard)
-        return RivalTrained(args.row, weights, pooled, facts)
+        return train_rival(takes, rival, plan, device=device, record=record, told=heard)
     from sim_core.learn.networks import Schedule
     from sim_core.learn.networks import train as trained
 
-    settings, lanes = Settings(), 4 if device == "cpu" else 16
-    schedule = Schedule(updates=args.updates, lanes=lanes, seed=args.seed)
-    weights = trained(takes, settings, schedule, device=device, record=record, told=heard)
-    return Trained(settings, weights, facts, pooled)
+    schedule = Schedule(updates=args.updates, lanes=4 if device == "cpu" else 16, seed=args.seed)
+    return trained(takes, Settings(), schedule, device=device, record=record, told=heard), None

@@ -1,7 +1,7 @@
 """Data to learn from: published scenes simulated coarse and free, and fine, softly led by the coarse."""
 
 from sim_core.learn.data.film import Film, coarse_film, film, fine_film
-from sim_core.learn.data.gate import GATE, Floor, floor, halved
+from sim_core.learn.data.gate import GATE, Floor, floor, looked_at
 from sim_core.learn.data.generation import generate
 from sim_core.learn.data.lead import STIFFNESS, Lead
 from sim_core.learn.data.pair import Pair
@@ -31,7 +31,7 @@ __all__ = [
     "fine_film",
     "floor",
     "generate",
-    "halved",
+    "looked_at",
     "pooled_by_kind",
     "pooled_takes",
     "read_films",

@@ -9,59 +9,51 @@ import numpy as np
 from sim_core.learn.data.film import coarse_film, fine_film
 from sim_core.learn.data.lead import Lead
 from sim_core.learn.data.recipe import Recipe
-from sim_core.learn.data.take import Take
 from sim_core.learn.evaluation import ErrorSummary, FrameErrors, frame_errors, summary
 from sim_core.learn.upsampling import linear
 
-__all__ = ["GATE", "Floor", "floor", "halved"]
+__all__ = ["GATE", "Floor", "floor", "looked_at"]
 
 GATE = 1 / 3  # of an error that is claimed, at most, may the floor be
 EVERY = 5  # frames from one that is measured to the next
 
 
+def looked_at(frames: int) -> range:
+    """Which of so many frames are measured: every fifth, the last where there are fewer."""
+    return range(min(EVERY, frames) - 1, frames, EVERY)
+
+
 @dataclass(frozen=True)
 class Floor:
-    """halved: the errors of the fine film against that of half the step; linear: of the coarse surface against it, for
-    comparison; slack [m]: how far the fine means are from the coarse surface's; fine_ms, halved_ms: of a frame."""
+    """halved: the errors of the fine film against that of half the step, and frames: of each that was measured; linear:
+    of the coarse surface against it, for comparison; slack [m]: how far the fine means are from the coarse surface's;
+    coarse_ms, fine_ms, halved_ms: of a frame."""
 
     halved: ErrorSummary
+    frames: tuple[FrameErrors, ...]
     linear: ErrorSummary
     slack: float
+    coarse_ms: float
     fine_ms: float
     halved_ms: float
 
 
 def floor(recipe: Recipe, frames: int) -> Floor:
-    """The floor over the first so many frames of a sequence, every fifth of them."""
+    """The floor over the first so many frames of a sequence. All its films are simulated here and end alike: what was
+    kept of another machine's might follow another coarse film, and the last frame of a film is led otherwise than the
+    same frame of a longer one."""
     recipe = replace(recipe, frames=min(frames, recipe.frames))
-    coarse, _ = coarse_film(recipe)
+    coarse, coarse_ms = coarse_film(recipe)
     fine, fine_ms = fine_film(recipe, coarse)
     again, halved_ms = fine_film(recipe.halved(), coarse)
     sheet, below = recipe.on(recipe.fine).sheet, recipe.on(recipe.coarse).sheet
     spread = linear(below.rest, below.faces, sheet.rest)
     lead, own = Lead.of(spread, sheet.mass), coarse[1 + recipe.run_in :]
-    rows = range(min(EVERY, len(fine)) - 1, len(fine), EVERY)
-    pairs = [(np.asarray(fine[k], float), np.asarray(again[k], float)) for k in rows]
-    halved = [frame_errors(one, other, sheet.faces, sheet.rest) for one, other in pairs]
-    flat = [
-        frame_errors(spread @ own[k], other, sheet.faces, sheet.rest)
-        for k, (_, other) in zip(rows, pairs, strict=True)
-    ]
-    slack = [
-        np.linalg.norm(lead.away(other, own[k]), axis=1).mean()
-        for k, (_, other) in zip(rows, pairs, strict=True)
-    ]
-    return Floor(summary(halved), summary(flat), float(np.mean(slack)), fine_ms, halved_ms)
-
-
-def halved(take: Take, frames: int) -> tuple[FrameErrors, ...]:
-    """How far the first so many frames of a fine film that was kept are from what half the step makes, every fifth."""
-    recipe = replace(take.recipe, frames=min(frames, len(take.film.fine)))
-    coarse, _ = coarse_film(recipe)
-    again, _ = fine_film(recipe.halved(), coarse)
-    sheet, fine = take.pair.fine, take.film.fine
-    rows = range(min(EVERY, len(again)) - 1, len(again), EVERY)
-    return tuple(
-        frame_errors(np.asarray(fine[k], float), np.asarray(again[k], float), sheet.faces, sheet.rest)
-        for k in rows
-    )
+    halved, flat, slack = [], [], []
+    for k in looked_at(len(fine)):
+        one, other = np.asarray(fine[k], float), np.asarray(again[k], float)
+        halved.append(frame_errors(one, other, sheet.faces, sheet.rest))
+        flat.append(frame_errors(spread @ own[k], other, sheet.faces, sheet.rest))
+        slack.append(np.linalg.norm(lead.away(other, own[k]), axis=1).mean())
+    times = coarse_ms, fine_ms, halved_ms
+    return Floor(summary(halved), tuple(halved), summary(flat), float(np.mean(slack)), *times)

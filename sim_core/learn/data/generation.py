@@ -7,7 +7,9 @@ from concurrent.futures import Executor, Future, as_completed
 from pathlib import Path
 from typing import Any
 
+from sim_core.errors import SimCoreError
 from sim_core.learn.data.film import film
+from sim_core.learn.data.lead import MADE_BY
 from sim_core.learn.data.recipe import Recipe
 from sim_core.learn.data.store import Manifest, packed
 
@@ -29,7 +31,7 @@ def generate(
     `distributed.Client.get_executor()`): work goes out as recipes and comes back as files' bytes, so workers need no
     disk in common. None: one after the other, here. progress(share, words): of all sequences. Interrupted or killed,
     the same call goes on with what is missing.
-    Raises SimCoreError where the folder holds other data, or a worker's error.
+    Raises SimCoreError where the folder holds other data, or a worker failed.
     """
     folder.mkdir(parents=True, exist_ok=True)
     manifest = Manifest.of(folder, recipes)
@@ -49,12 +51,25 @@ def generate(
     }
     try:
         for done in as_completed(waiting):
-            manifest = manifest.adding(folder, waiting[done], *done.result())
+            manifest = manifest.adding(folder, waiting[done], *_result(waiting[done], done))
             told(len(manifest.done) / len(recipes), waiting[done].name)
     finally:
         for future in waiting:
             future.cancel()
     return manifest
+
+
+def _result(recipe: Recipe, done: Future[tuple[bytes, dict[str, Any]]]) -> tuple[bytes, dict[str, Any]]:
+    """What a worker made. Raises SimCoreError, its own or one that tells how the worker ended."""
+    try:
+        return done.result()
+    except SimCoreError:
+        raise
+    except Exception as error:
+        words = (str(error).splitlines() or ["no words"])[0][:120]
+        raise SimCoreError(
+            f"{recipe.name}: its worker failed ({type(error).__name__}: {words}) – the same command goes on"
+        ) from error
 
 
 def made(recipe: Recipe, told: Callable[[float], None] | None = None) -> tuple[bytes, dict[str, Any]]:
@@ -66,5 +81,6 @@ def made(recipe: Recipe, told: Callable[[float], None] | None = None) -> tuple[b
         "fine_vertices": both.fine.shape[1],
         "coarse_ms": round(both.coarse_ms, 3),
         "fine_ms": round(both.fine_ms, 3),
+        "made": MADE_BY,
     }
     return packed(recipe, both), facts

@@ -150,11 +150,15 @@ class Manifest:
                 f"{folder}: holds {found.words} – other settings; give another folder, or the same sequences, "
                 "frames and seed"
             )
-        if found.made != MADE_BY:
-            raise SimCoreError(
-                f"{folder}: was made by another engine ({found.made}, this is {MADE_BY}) – give another folder"
-            )
+        found.check_engine(folder, "give another folder")
         return found
+
+    def check_engine(self, folder: Path, remedy: str) -> None:
+        """Raises SimCoreError where the data are of another engine than this one."""
+        if self.made != MADE_BY:
+            raise SimCoreError(
+                f"{folder}: was made by another engine ({self.made}, this is {MADE_BY}) – {remedy}"
+            )
 
     @staticmethod
     def load(folder: Path) -> Manifest:
@@ -182,6 +186,10 @@ class Manifest:
 
     def adding(self, folder: Path, recipe: Recipe, data: bytes, told: Mapping[str, Any]) -> Manifest:
         """The manifest with one more sequence, whose file and which itself are written."""
+        if (made := told.get("made", self.made)) != self.made:
+            raise SimCoreError(
+                f"{recipe.name}: a worker has another engine ({made}, this is {self.made}) – install this version there"
+            )
         name = f"{recipe.name}.seq"
         _write(folder / name, data)
         kept = {"file": name, "sha256": hashlib.sha256(data).hexdigest(), **told}
@@ -203,6 +211,7 @@ def read_films(folder: Path) -> dict[str, tuple[Recipe, Film]]:
         raise SimCoreError(
             f"{folder}: no data – make them with `simcore learn data … --out {folder}`"
         ) from None
+    manifest.check_engine(folder, "make the data again in another folder")
     if manifest.left:
         raise SimCoreError(
             f"{folder}: {len(manifest.left)} of {len(manifest.recipes)} sequences are missing – run the same "

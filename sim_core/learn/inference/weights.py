@@ -80,14 +80,14 @@ def read_weights(path: Path) -> Trained | RivalTrained:
         row, told = head.get("row", OURS), dict(json.loads(head["told"]))
         if any(not np.isfinite(value).all() for value in arrays.values()):
             raise ValueError("numbers that are not finite")
-        pooled = _pooled(arrays, json.loads(head["shares"]))
+        pooled = _pooled(arrays, json.loads(head.get("shares", "{}")))
         weights = {name: value for name, value in arrays.items() if value.dtype == np.float32}
         if row == OURS:
             return _ours(weights, Settings(**json.loads(head["settings"])), told, pooled)
         if row not in RIVALS:
             raise ValueError(f"row {row!r}")
         return RivalTrained(row, weights, pooled, told)
-    except (OSError, SafetensorError, ValueError, KeyError, TypeError) as error:
+    except (OSError, SafetensorError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise SimCoreError(f"{path}: not weights, or damaged ({error}) – fetch or train them again") from None
 
 

@@ -5,14 +5,20 @@ errors and times of any, `followed` its frames, `counting` which of them the ref
 """
 
 from sim_core.learn.rows.learned import Ours
-from sim_core.learn.rows.measured import EVERY, Measured, counting, followed, measured, reference
+from sim_core.learn.rows.measured import (
+    Measured,
+    coarse_measured,
+    counting,
+    followed,
+    measured,
+    reference,
+)
 from sim_core.learn.rows.plain import Biharmonic, Linear
 from sim_core.learn.rows.regression import LocalFrames
 from sim_core.learn.rows.rivals import RivalRow, row_of
 from sim_core.learn.rows.row import Follow, Row
 
 __all__ = [
-    "EVERY",
     "Biharmonic",
     "Follow",
     "Linear",
@@ -21,6 +27,7 @@ __all__ = [
     "Ours",
     "RivalRow",
     "Row",
+    "coarse_measured",
     "counting",
     "followed",
     "measured",

@@ -123,7 +123,7 @@ export function createTools({ words, music, clock, scene, onList, onHelp, onSurv
   words.follow(() => element.setAttribute("aria-label", words.t("bar.tools")));
   const updateScene = (next) => {
     setAttribute(survey, "hidden", !next.questionnaire);
-    setAttribute(motion, "hidden", !next.exhibits.some((exhibit) => exhibit.motion));
+    setAttribute(motion, "hidden", !next.exhibits.some((exhibit) => exhibit.moves));
   };
   updateScene(scene);
   return { element, updateScene };
