@@ -177,7 +177,7 @@ def test_a_model_that_is_being_copied_leaves_the_last_whole_one(tmp_path: Path, 
     whole = fine.read_bytes()
     spoil(fine)
     after = drawn_exhibits(content, tmp_path, before.models, {figure.id: figure for figure in before.figures})
-    assert [figure.close() for figure in after.figures] == [whole]
+    assert [figure.close.glb() for figure in after.figures] == [whole]
     assert "fine.glb" in " ".join(map(str, (*load(folder).problems, *after.unreadable)))
 
 
