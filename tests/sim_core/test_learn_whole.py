@@ -60,7 +60,7 @@ def test_the_commands_lead_from_nothing_to_fine_cloth(
         assert np.isfinite(found["fine"]).all()
     picture = tmp_path / "drawn.png"
     drawn = said("draw", "--data", folder, "--weights", weights, "--out", str(picture))
-    assert [row["sequence"] for row in drawn["rows"]] == table["tested"]
+    assert [row["sequence"] for row in drawn["rows"]] == table["tested"][:1]
     shown = said(
         "show",
         "flag",
