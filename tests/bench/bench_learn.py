@@ -1,7 +1,7 @@
 """Learned cloth: data, trainings and tables of the published scenes; what FOLDER holds already is not made again.
 
     python tests/bench/bench_learn.py FOLDER [--scene flag …] [--step data|train|evaluate|reconstruct …] [--workers 2]
-    python tests/bench/bench_learn.py FOLDER --json docs/figures/learn.json && python tests/bench/readme_learn.py
+    python tests/bench/bench_learn.py FOLDER --json docs/figures/learn.json
 
 Everything goes through the commands of `simcore learn`, each run in a process of its own on one core, `--workers` of
 them side by side; interrupted or killed, the same command goes on. Steps, in this order: `data` (34,000 frames),
@@ -32,7 +32,7 @@ UPDATES = {"ours": 4000, "mesh_conv": 2400, "mfsr": 1000, "paper": 160}
 SEEDS = 3
 SHARES = (0.6, 0.25)
 COMMAND = (sys.executable, "-c", "import sys; from sim_core.cli import main; sys.exit(main(sys.argv[1:]))")
-QUICK = {"sequences": 3, "frames": 30, "updates": 40, "floor": 10}
+QUICK = {"sequences": 3, "frames": 30, "updates": 40}
 
 
 @dataclass(frozen=True)
