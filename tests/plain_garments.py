@@ -20,12 +20,26 @@ SHORT = (
 
 @dataclass(frozen=True)
 class Maps:
-    """What a weave's look is drawn by: albedo, normal (H, W, 3), opacity (H, W) uint8, and its size [m]."""
+    """What a weave's look is drawn by: albedo, normal, direction (H, W, 3), opacity, height and roughness (H, W) uint8,
+    its size and relief [m]; rough and level, its yarns along the weft, where it is not said otherwise."""
 
     albedo: np.ndarray
     normal: np.ndarray
     opacity: np.ndarray
     size: tuple[float, float]
+    relief: float = 1e-4
+
+    @property
+    def height(self) -> np.ndarray:
+        return np.full_like(self.opacity, 128)
+
+    @property
+    def roughness(self) -> np.ndarray:
+        return np.full_like(self.opacity, 153)
+
+    @property
+    def direction(self) -> np.ndarray:
+        return np.full_like(self.albedo, (255, 128, 128))
 
 
 def plain_maps(opacity: int = 255) -> Maps:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
+from math import pi, sqrt
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 
@@ -18,6 +20,7 @@ from sim_core.gltf import GlbFile
 from sim_core.picture import normals
 from sim_core.validation.files import written_whole
 from sim_core.weave import Loom, Weave
+from sim_core.weave.maps import FiguredMaps, MapsLike, far_look
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
@@ -25,6 +28,7 @@ LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
 PORE = 0.35  # of the mean colour
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
+FIGURE_PIXELS = 256  # of a figured cloth's repeat in the hall
 
 
 @dataclass(frozen=True)
@@ -35,19 +39,6 @@ class Shown:
     faces: np.ndarray
     normals: np.ndarray
     base: tuple[float, float]
-
-
-class MapsLike(Protocol):
-    """The part of `sim_core.weave.SurfaceMaps` a GLB holds."""
-
-    @property
-    def albedo(self) -> np.ndarray: ...
-    @property
-    def normal(self) -> np.ndarray: ...
-    @property
-    def opacity(self) -> np.ndarray: ...
-    @property
-    def size(self) -> tuple[float, float]: ...
 
 
 @dataclass(frozen=True)
@@ -86,9 +77,10 @@ def write_glb(
     Panels of one look are one node: the garment's name, then its name and a number. Twins on a seam share place and
     normal, so that no seam shows but for its change of colour. A figure and what it wears stand on its base.
 
-    Maps: tileable albedo, normal (n, m, 3) and opacity (n, m), uint8, size [m] of the tile. TEXCOORD_0 is in
-    pattern millimetres, v not flipped; KHR_texture_transform brings it to tiles. close: the weave itself; hall:
-    its mean colour and coverage and a coarser relief, since single yarns vanish beyond a hand's breadth.
+    Maps: tileable, uint8, size [m] of the tile. TEXCOORD_0 is in pattern millimetres, v not flipped;
+    KHR_texture_transform brings it to tiles. close: the weave itself; hall: its mean colour and coverage and a coarser
+    relief, since single yarns vanish beyond a hand's breadth. A figured cloth shows its repeat in both. Highlights are
+    narrow along the yarns and wide across (KHR_materials_anisotropy), of a figured cloth by a texture of directions.
     """
     if precision not in ("close", "hall"):
         raise SimCoreError(f"precision: {precision!r} – give 'close' or 'hall'")
@@ -116,7 +108,9 @@ def write_glb(
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
-    data = glb.bytes(outermost.name, ["KHR_materials_sheen", "KHR_texture_transform"])
+    data = glb.bytes(
+        outermost.name, ["KHR_materials_anisotropy", "KHR_materials_sheen", "KHR_texture_transform"]
+    )
     with written_whole(Path(path)) as stream:
         stream.write(data)
     return len(data)
@@ -160,13 +154,27 @@ def _coverage(maps: MapsLike) -> float:
     return float(maps.opacity.mean()) / 255
 
 
-def _filled(maps: MapsLike, mean: np.ndarray) -> np.ndarray:
-    """Albedo (n, m, 3) uint8 of a dense cloth: its pores take the shade of the yarns round them."""
-    shade = 255 * np.where(
-        mean * PORE <= 0.0031308, 12.92 * mean * PORE, 1.055 * (mean * PORE) ** (1 / 2.4) - 0.055
-    )
-    cover = maps.opacity[..., None] / 255.0
-    return np.round(maps.albedo * cover + shade * (1 - cover)).astype(np.uint8)
+def _srgb(linear: np.ndarray) -> np.ndarray:
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def _coloured(
+    maps: MapsLike, mean: np.ndarray, dye: Colour | None, opaque: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Albedo (n, m, 3) uint8 and what it is multiplied by (3,): the yarns' own colours, or what they differ from a dye.
+
+    The pores of an opaque cloth take the shade of the yarns round them.
+    """
+    light = _linear(maps.albedo / 255.0)
+    if opaque:
+        cover = maps.opacity[..., None] / 255.0
+        light = light * cover + PORE * mean * (1 - cover)
+    if dye is None:
+        return np.round(255 * _srgb(light)).astype(np.uint8), np.ones(3)
+    # As bright as the dye leaves room for: a factor of glTF is 1 at most.
+    wanted, share = _linear(np.asarray(dye)), light / np.maximum(mean, 1e-3)
+    peak = min(float(np.quantile(share, 0.98)), 1.0 / max(float(wanted.max()), 1e-3))
+    return np.round(255 * _srgb(np.clip(share / peak, 0, 1))).astype(np.uint8), wanted * peak
 
 
 def _dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
@@ -199,6 +207,11 @@ def _once(kept: dict[str, Any], name: str, make: Callable[[], dict[str, Any]]) -
     return kept[name]
 
 
+def _look_of(picture: np.ndarray) -> str:
+    """Equal for equal pictures: panels of several dyes that are as bright share what their yarns differ by."""
+    return sha256(picture.tobytes()).hexdigest()
+
+
 def _linen() -> dict[str, Any]:
     """The figure's cover: matt, light, without colour of its own."""
     return {
@@ -222,19 +235,45 @@ def _lacquer() -> dict[str, Any]:
     }
 
 
+def _gleam(
+    glb: GlbFile, material: dict[str, Any], maps: MapsLike, textures: dict[str, Any], step: int
+) -> None:
+    """Makes the highlight narrow along the yarns, wide across; step: a figured cloth keeps every so-manieth pixel.
+
+    glTF's direction is the one in which the highlight is wide.
+    """
+    look = far_look(maps)
+    share = (look.across - look.along) / max(1.0 - look.along, 1e-6)
+    gleam: dict[str, Any] = {
+        "anisotropyStrength": sqrt(max(share, 0.0)),
+        "anisotropyRotation": look.angle + pi / 2,
+    }
+    if isinstance(maps, FiguredMaps):
+        across = maps.direction[::step, ::step].astype(float)
+        run, strength = across[..., :2] / 127.5 - 1, across[..., 2:]
+        turned = np.dstack([127.5 - 127.5 * run[..., 1:], 127.5 + 127.5 * run[..., :1], strength])
+        tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
+        texture = _once(textures, "gleam", lambda: glb.texture(np.rint(turned).astype(np.uint8), tile))
+        gleam = {"anisotropyStrength": 1.0, "anisotropyTexture": texture}
+        material["pbrMetallicRoughness"]["roughnessFactor"] = float(np.mean(maps.roughness)) / 255
+    else:
+        material["pbrMetallicRoughness"]["roughnessFactor"] = sqrt(look.along)
+    material["extensions"]["KHR_materials_anisotropy"] = gleam
+
+
 def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
-    mean = _mean_colour(maps)
-    # The map is dyed by a factor, so that its mean becomes the dye and its variation stays the yarns'.
-    factor = _dyed(dye, mean) / np.maximum(mean, 1e-3)
+    mean, sheer = _mean_colour(maps), _coverage(maps) < SHEER
+    picture, factor = _coloured(maps, mean, dye, not sheer)
     material = _silk(factor, 1.0, "silk_close")
-    sheer = _coverage(maps) < SHEER
-    picture = np.dstack([maps.albedo, maps.opacity]) if sheer else _filled(maps, mean)
+    if sheer:
+        picture = np.dstack([picture, maps.opacity])
     tile = [1e-3 / float(maps.size[0]), 1e-3 / float(maps.size[1])]
     material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
-        textures, "colour", lambda: glb.texture(picture, tile)
+        textures, _look_of(picture), lambda: glb.texture(picture, tile)
     )
     normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile))
     material["normalTexture"] = {**normal, "scale": 1.0}
+    _gleam(glb, material, maps, textures, 1)
     if sheer:
         material["alphaMode"] = "BLEND"
     tint = _dyed(dye, mean)
@@ -245,11 +284,23 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
 
 
 def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
-    cover = _coverage(maps)
-    material = _silk(_dyed(dye, _mean_colour(maps)), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
+    cover, mean = _coverage(maps), _mean_colour(maps)
+    material = _silk(_dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
     normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
+    own = textures.setdefault(f"of {id(maps)}", {})
+    if isinstance(maps, FiguredMaps):
+        step = max(1, maps.albedo.shape[0] // FIGURE_PIXELS)
+        picture, factor = _coloured(maps, mean, dye, cover >= SHEER)
+        picture, repeat = picture[::step, ::step], [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
+        material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
+            own, _look_of(picture), lambda: glb.texture(picture, repeat)
+        )
+        material["pbrMetallicRoughness"]["baseColorFactor"][:3] = [float(c) for c in np.clip(factor, 0, 1)]
+        _gleam(glb, material, maps, own, step)
+    else:
+        _gleam(glb, material, maps, own, 1)
     if cover < SHEER:
         material["alphaMode"] = "BLEND"
     return glb.material(material)

@@ -17,11 +17,12 @@ from sim_core.weave.files.profiles import unit_of
 from sim_core.weave.files.sources import Source, blocked_source, dressed, source_of
 from sim_core.weave.files.wif.model import wif_of
 from sim_core.weave.files.wif.writer import write_wif
-from sim_core.weave.maps.surface import lit_cloth, surface_maps
+from sim_core.weave.maps.figured_maps import FiguredMaps, drawn_maps
+from sim_core.weave.maps.surface import SurfaceMaps, lit_cloth
 from sim_core.weave.maps.tubes import write_yarns
 from sim_core.weave.model import Weave
 from sim_core.weave.summary import facts_of, summary_of, summary_text
-from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import (
     MOST_STEPS,
     NotAtRest,
@@ -52,7 +53,8 @@ SOURCE is one of
   twill:2/1                 over 2, under 1; Z, advancing one end a pick
   satin:8/3                 warp-faced, the one weft point of pick i on end 3 i mod 8
     suffixes                :S mirrors, :weft takes the weft-faced weave (twill:3/1:S, satin:8/3:weft)
-  FILE.toml                 a weave file, such as those in assets/weaves
+  FILE.toml                 a weave file, such as those in assets/weaves; where a motif file says what is woven where,
+                            it is relaxed and drawn by its cells, one for each number of the motif
   FILE.wif, FILE.dtx        a draft of another program (WIF 1.0 or 1.1, Fiberworks), read tolerantly
   FILE.json                 what Weave.to_dict or draft_to_dict wrote
   FILE.png, .jpg ...        a motif, one pixel a crossing: dark becomes figure of a satin damask
@@ -67,8 +69,9 @@ cannot be done, the summary is printed all the same, one line says why, and the 
 A bare draft is woven of an assumed silk, which the summary says.
 
 Written on demand:
-  --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json
-  --yarns FILE  the yarns of one repeat: tubes as .glb, axes as .ply
+  --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json; of a
+                figured weave its whole repeat, number.png (which cell lies where), and each cell's maps in cell-0 ...
+  --yarns FILE  the yarns of one repeat: tubes as .glb, axes as .ply; of a figured weave of each cell, FILE-0 ...
   --wif FILE    WIF 1.1; what WIF cannot say goes into a private section
   --draft FILE  threading, tie-up, treadling and drawdown with heddles a shaft, repeats, colours, sett and yarn counts:
                 .svg to print, on the smallest sheet on which its cells can be read (pages FILE-1, FILE-2 ... beyond 500
@@ -127,7 +130,7 @@ def run(args: argparse.Namespace) -> int:
     if args.wif:
         _write_wif(source, args.wif)
     if cloth is not None and args.yarns:
-        write_yarns(strands(cloth.weave, cloth.geometry), args.yarns)
+        _write_yarns(cloth, args.yarns)
     if cloth is not None and args.maps:
         _write(args.maps, cloth, args.size, summary)
     drawn = draw(args, source)
@@ -170,7 +173,7 @@ class _Cloth:
     """A weave that was relaxed, and what its summary says."""
 
     weave: Weave
-    geometry: YarnGeometry | ParticleCell
+    geometry: YarnGeometry | ParticleCell | FiguredGeometry
     summary: dict
 
 
@@ -181,7 +184,10 @@ def _cloth(args: argparse.Namespace, source: Source) -> tuple[_Cloth | None, str
     """
     asked = args.relax or args.maps or args.yarns
     crossings = source.factors.picks * source.factors.ends
-    if not asked and crossings > (MOST_OURS if source.made is not None else MOST_UNASKED):
+    figured = (
+        source.made is not None and source.made[0].figure is not None
+    )  # relaxed by its cells, which are small
+    if not asked and not figured and crossings > (MOST_OURS if source.made is not None else MOST_UNASKED):
         return None, f"{crossings:,} crossings are relaxed only with --relax, --maps or --yarns"
     try:
         weave, origin = source.weave
@@ -209,7 +215,7 @@ def _relaxed(weave, particles: bool):
     Satins and twills are no large repeats: one pick of them is relaxed, or pins bring them to rest soon.
     """
     count = 2 * PER * weave.draft.lift.size
-    large = particles and is_figure(weave.draft.lift)
+    large = particles and weave.figure is None and is_figure(weave.draft.lift)
     with progress_report(weave.name) as watch:
         if large and count > MOST_PARTICLES:
             reason = f"a repeat of {count:,} particles, more than {MOST_PARTICLES:,}"
@@ -223,12 +229,31 @@ def _relaxed(weave, particles: bool):
             return solve(weave), {"note": f"stage A, at the crossings: {error}"}
 
 
+def _write_yarns(cloth: _Cloth, path: Path) -> None:
+    """The yarns of one repeat; of a figured cloth those of each cell, in files of their own."""
+    if not isinstance(cloth.geometry, FiguredGeometry):
+        return write_yarns(strands(cloth.weave, cloth.geometry), path)
+    for number, (cell, rest) in enumerate(zip(cloth.weave.cells, cloth.geometry.cells, strict=True)):
+        write_yarns(strands(cell, rest), path.with_name(f"{path.stem}-{number}{path.suffix}"))
+
+
 def _write(folder: Path, cloth: _Cloth, size: int, summary: dict) -> None:
     from PIL import Image
 
-    maps = surface_maps(cloth.weave, cloth.geometry, pixels=size)
-    for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():
-        Image.fromarray(picture).save(folder / f"{name}.png")
+    maps = drawn_maps(cloth.weave, cloth.geometry, pixels=size)
+    _write_pictures(folder, maps)
+    if isinstance(maps, FiguredMaps):
+        Image.fromarray(maps.number).save(folder / "number.png")
+        for number, cell in enumerate(maps.cells):
+            (folder / f"cell-{number}").mkdir(exist_ok=True)
+            _write_pictures(folder / f"cell-{number}", cell)
     tile = {"size": list(maps.size), "relief": maps.relief, "repeats": list(maps.repeats), "unit": "m"}
     text = json.dumps({**summary, "tile": tile}, ensure_ascii=False, indent=2)
     (folder / "parameters.json").write_text(text + "\n", "utf-8")
+
+
+def _write_pictures(folder: Path, maps: SurfaceMaps) -> None:
+    from PIL import Image
+
+    for name, picture in {**maps.pictures(), "lit": lit_cloth(maps)}.items():
+        Image.fromarray(picture).save(folder / f"{name}.png")

@@ -12,7 +12,7 @@ from sim_core.weave.draft.draft import plain
 from sim_core.weave.model import Weave
 from sim_core.weave.yarn import Yarn
 from sim_core.weave.yarns.beams import relax
-from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.paths import strands
 from sim_core.weave.yarns.shifts import MANY
@@ -195,18 +195,26 @@ def _bending_bounds(weave: Weave, geometry: YarnGeometry) -> list[tuple[float, f
     return bounds
 
 
-def measured(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict[str, float]:
-    """Crimp, thickness [m] and areal density [kg/m2] of the relaxed repeat, all yarns and only where they are."""
+def measured(weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry) -> dict[str, float]:
+    """Crimp, thickness [m] and areal density [kg/m2] of the relaxed repeat, all yarns and only where they are.
+
+    Of a figured weave the means of its cells by their area, and the thickness of the thickest.
+    """
+    if isinstance(geometry, FiguredGeometry):
+        cells = [measured(cell, rest) for cell, rest in zip(weave.cells, geometry.cells, strict=True)]
+        mean = {key: float(np.dot(geometry.shares, [cell[key] for cell in cells])) for key in cells[0]}
+        return mean | {"thickness": max(cell["thickness"] for cell in cells)}
     warp, weft = float(np.mean(geometry.warp_crimp)), float(np.mean(geometry.weft_crimp))
     width, height = weave.size
     mass = weave.draft.ends * height * (1 + warp) * weave.warp.tex
     systems = strands(weave, geometry)
     for k, system in enumerate(systems[1:]):
         # a yarn that ends at a slit gives one place of its path to the slit, which is no yarn missing
-        there = (system.colour >= 0).mean(axis=1) if k else np.ones(len(system.place))
-        mass += float(there.sum()) * width * (1 + (weft if k == 0 else 0.0)) * system.yarn.tex
-    tops = [(s.height + s.yarn.height / 2)[s.colour >= 0].max() for s in systems]
-    bottoms = [(s.height - s.yarn.height / 2)[s.colour >= 0].min() for s in systems]
+        share = (system.colour >= 0).mean(axis=1) if k else np.ones(len(system.place))
+        mass += float(share.sum()) * width * (1 + (weft if k == 0 else 0.0)) * system.yarn.tex
+    there = [system for system in systems if (system.colour >= 0).any()]
+    tops = [(s.height + s.half_height)[s.colour >= 0].max() for s in there]
+    bottoms = [(s.height - s.half_height)[s.colour >= 0].min() for s in there]
     return {
         "crimp_warp": warp,
         "crimp_weft": weft,
@@ -215,13 +223,16 @@ def measured(weave: Weave, geometry: YarnGeometry | ParticleCell) -> dict[str, f
     }
 
 
-def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothParameters:
+def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry) -> ClothParameters:
     """Parameters of a relaxed cloth for `cloth.Material.of`: density and thickness of the cell that is given, stiffness
     from stage A of the ground.
 
     What the model cannot settle is a band in `bounds`: bending between free and stuck fibres, shear between slipping
-    and stuck crossings. The ends of a leno or compound weave are counted as if each had its own place.
+    and stuck crossings. The ends of a leno or compound weave are counted as if each had its own place. A figured cloth
+    has the means of its cells by their area, in bands that hold those of all cells.
     """
+    if isinstance(geometry, FiguredGeometry):
+        return _of_cells(weave, geometry)
     channels = weave.draft.channels
     ground = replace(ground_of(weave), extra=None)
     if channels.order is not None or channels.layer is not None:
@@ -241,6 +252,35 @@ def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell) -> ClothP
     stage = "the relaxed particles" if isinstance(geometry, ParticleCell) else "the relaxed beams"
     note["density"] += f"; yarn paths of {stage}"
     return replace(made, density=size["areal_density"], thickness=size["thickness"], provenance=note)
+
+
+def _of_cells(weave: Weave, geometry: FiguredGeometry) -> ClothParameters:
+    """Cells side by side: stiffness and weight as much of each as its share of the area."""
+    cells = [parameters_of(cell, rest) for cell, rest in zip(weave.cells, geometry.cells, strict=True)]
+    told = [cell.to_dict() for cell in cells]
+    shares = ", ".join(f"{share:.0%}" for share in geometry.shares)
+    values = {
+        key: float(np.dot(geometry.shares, [one[key] for one in told]))
+        for key, value in told[0].items()
+        if isinstance(value, float)
+    }
+    values |= {
+        "thickness": max(cell.thickness for cell in cells),
+        "bend": sqrt(values["bend_warp"] * values["bend_weft"]),
+    }
+    note = {
+        key: f"{text}; mean of {len(cells)} cells by area ({shares})"
+        for key, text in cells[0].provenance.items()
+    }
+    note["thickness"] = f"{cells[0].provenance['thickness']}; of the thickest of {len(cells)} cells"
+    bounds = {
+        key: (
+            min(values[key], *(least for cell in cells for least in (cell.bounds[key][0],))),
+            max(values[key], *(most for cell in cells for most in (cell.bounds[key][1],))),
+        )
+        for key in cells[0].bounds
+    }
+    return ClothParameters(**values, bounds=bounds, provenance=note)
 
 
 def _stand_in(weave: Weave) -> Weave:

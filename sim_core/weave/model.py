@@ -1,7 +1,9 @@
 """The `Weave` value: a draft, its two yarns and the sett."""
 
+from __future__ import annotations
+
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import numpy as np
 
 from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Channels, Draft
+from sim_core.weave.draft.figured import Figure
 from sim_core.weave.weave_file import read_weave_file
 from sim_core.weave.yarn import Yarn
 
@@ -24,6 +27,7 @@ class Weave:
     ends_per_m, picks_per_m: [1/m].  friction: coefficient between two layers of the cloth.
     extra: yarn of the supplementary wefts of a brocade, None where there are none.
     warp_colours: sRGB of the warp series, weft_colours: of the weft regions or series; empty: the yarns' own colours.
+    figure: the recipe by which the draft was made; such a cloth is relaxed and drawn by its `cells`.
     Raises WeaveError where the sett is not positive, or a yarn of the ground never interlaces.
     """
 
@@ -37,6 +41,7 @@ class Weave:
     extra: Yarn | None = None
     warp_colours: tuple[tuple[float, float, float], ...] = ()
     weft_colours: tuple[tuple[float, float, float], ...] = ()
+    figure: Figure | None = None
 
     def __post_init__(self) -> None:
         for key in ("ends_per_m", "picks_per_m"):
@@ -82,8 +87,24 @@ class Weave:
         """Width (along the weft) and height (along the warp) of one repeat [m]."""
         return self.draft.ends * self.end_spacing, self.draft.picks * self.pick_spacing
 
+    @property
+    def numbers(self) -> np.ndarray | None:
+        """Which cell lies at each crossing, (picks, ends) int8; None where there is no figure."""
+        return self.figure.numbers(self.ends_per_m, self.picks_per_m) if self.figure else None
+
+    @cached_property
+    def cells(self) -> tuple[Weave, ...]:
+        """The small weaves that a figured one is made of, by number; a weave without a figure is its own."""
+        numbers = self.numbers
+        if self.figure is None or numbers is None:
+            return (self,)
+        drafts = self.figure.cells(1 + int(numbers.max()))
+        return tuple(
+            replace(self, name=f"{self.name} {k}", draft=draft, figure=None) for k, draft in enumerate(drafts)
+        )
+
     @classmethod
-    def load(cls, path: str | Path) -> "Weave":
+    def load(cls, path: str | Path) -> Weave:
         """Read a weave file (TOML); raises FileProblem or WeaveError naming file, key, value and remedy."""
         values = read_weave_file(Path(path))
         try:
@@ -99,7 +120,11 @@ class Weave:
     def to_dict(self) -> dict:
         """A plain dictionary that JSON can hold and `from_dict` reads back."""
         values = {key: getattr(self, key) for key in ("name", "ends_per_m", "picks_per_m", "friction")}
-        values |= {"draft": draft_to_dict(self.draft), "warp": asdict(self.warp), "weft": asdict(self.weft)}
+        if self.figure:
+            values["figure"] = self.figure.to_dict()
+        else:
+            values["draft"] = draft_to_dict(self.draft)
+        values |= {"warp": asdict(self.warp), "weft": asdict(self.weft)}
         if self.extra:
             values["extra"] = asdict(self.extra)
         for key in ("warp_colours", "weft_colours"):
@@ -108,11 +133,16 @@ class Weave:
         return values
 
     @classmethod
-    def from_dict(cls, values: dict) -> "Weave":
+    def from_dict(cls, values: dict) -> Weave:
         """The inverse of `to_dict`; raises WeaveError for a missing or unknown key."""
         try:
             rest = dict(values)
-            draft = draft_from_dict(rest.pop("draft"))
+            if "figure" in rest:
+                rest["figure"] = figure = Figure(**rest["figure"])
+                sett = float(rest["ends_per_m"]), float(rest["picks_per_m"])
+                draft = figure.draft(figure.numbers(*sett), str(rest["name"]))
+            else:
+                draft = draft_from_dict(rest.pop("draft"))
             yarns = {side: Yarn(**rest.pop(side)) for side in ("warp", "weft", "extra") if side in rest}
             return cls(draft=draft, **yarns, **rest)
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:

@@ -9,7 +9,7 @@ from sim_core.weave.draft.factors import Factors
 from sim_core.weave.files.sources import Source
 from sim_core.weave.files.wif.sections import listed
 from sim_core.weave.model import Weave
-from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.solver import solve
 
@@ -86,25 +86,49 @@ def _rows(factors: Factors) -> list[str]:
     return ["".join("1" if over else "0" for over in pick) for pick in factors.lift()]
 
 
-def summary_of(weave: Weave, geometry: YarnGeometry | ParticleCell, seconds: float, origin: str) -> dict:
+def summary_of(
+    weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry, seconds: float, origin: str
+) -> dict:
     """What the relaxed cloth tells: the keys of the command's JSON beside `facts_of`.
 
-    seconds: that the relaxation took.  origin: of yarns and sett.
+    seconds: that the relaxation took.  origin: of yarns and sett.  Of a figured cloth also `cells`: the share of the
+    area, the weave and the summary of each; what is told of the whole is their mean, or the worst of them.
     """
     size = measured(weave, geometry)
     parameters = parameters_of(weave, geometry)
-    deep = geometry.penetration
-    if not isinstance(geometry, ParticleCell):
-        deep /= (weave.warp.height + weave.weft.height) / 2
+    if isinstance(geometry, FiguredGeometry):
+        cells = [
+            {
+                "share": share,
+                "repeat": {"ends": cell.draft.ends, "picks": cell.draft.picks},
+                "face": cell.draft.face,
+            }
+            | summary_of(cell, rest, 0.0, origin)
+            for share, cell, rest in zip(geometry.shares, weave.cells, geometry.cells, strict=True)
+        ]
+        for cell in cells:
+            del cell["seconds"]
+        whole = {key: max(cell[key] for cell in cells) for key in ("residual", "penetration")}
+        take_up = {
+            f"take_up_{side}": {"value": crimp / (1 + crimp), "unit": "1", "provenance": TAKE_UP}
+            for side, crimp in (("warp", size["crimp_warp"]), ("weft", size["crimp_weft"]))
+        }
+        covered = cells[0]["penetration_of"]
+    else:
+        deep = geometry.penetration
+        if not isinstance(geometry, ParticleCell):
+            deep /= (weave.warp.height + weave.weft.height) / 2
+        whole = {"residual": geometry.residual, "penetration": deep}
+        take_up, covered, cells = _take_up(weave, geometry), _covered(weave, geometry), []
     return {
         "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
         "thickness": size["thickness"],
         "areal_density": size["areal_density"],
-        "residual": geometry.residual,
-        "penetration": deep,
-        "penetration_of": _covered(weave, geometry),
+        **whole,
+        "penetration_of": covered,
         "seconds": seconds,
-        "parameters": {**_entries(parameters), **_take_up(weave, geometry), "yarns_from": origin},
+        "parameters": {**_entries(parameters), **take_up, "yarns_from": origin},
+        **({"cells": cells} if cells else {}),
     }
 
 
@@ -173,6 +197,13 @@ def summary_text(name: str, summary: dict) -> str:
             band = entry.get("band")
             between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
             lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
+    for number, cell in enumerate(summary.get("cells", ())):
+        repeat, crimp = cell["repeat"], cell["crimp"]
+        lines.append(
+            f"  cell {number}: {cell['share']:.0%} of the cloth, {repeat['ends']} ends x {repeat['picks']} picks, "
+            f"{cell['face']} face, crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, "
+            f"{cell['areal_density'] * 1e3:.1f} g/m2"
+        )
     if "note" in summary:
         lines.append(f"  {summary['note']}")
     if "drawn" in summary:

@@ -10,6 +10,8 @@ from sim_core.errors import SimCoreError, WeaveError
 from sim_core.validation.files import read_toml, shown
 from sim_core.weave.draft.draft import MOST_MOTIF as MOST
 from sim_core.weave.draft.draft import Draft, plain, satin, twill
+from sim_core.weave.draft.figured import Figure, FigureKind
+from sim_core.weave.draft.motifs import program_of
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 
 __all__ = ["read_weave_file"]
@@ -17,9 +19,13 @@ __all__ = ["read_weave_file"]
 
 Colour = Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")]
 # A motif written out: one string a row, the top row of the picture first; "." is 0, digits are themselves.
-Motif = Annotated[
+Rows = Annotated[
     list[Annotated[str, Field(pattern=r"^[.0-9]+$", max_length=MOST)]], Field(min_length=1, max_length=MOST)
 ]
+MotifFile = Annotated[
+    str, Field(pattern=r"\.toml$", max_length=200)
+]  # its path, from the weave file's folder
+Parameters = dict[str, Annotated[float, Field(gt=0)]]  # of the motif's program, other than its file has them
 
 
 def _motif(rows: list[str]) -> np.ndarray:
@@ -33,10 +39,31 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False, strict=True)
 
 
+class _Motif(_Part):
+    """A weave that a motif chooses in: rows written out, or a motif file and what is changed in it."""
+
+    motif: Rows | MotifFile
+    parameters: Parameters = {}
+
+    def figure(self, folder: Path, kind: FigureKind, **rest: Any) -> Figure | None:
+        """The figure of a motif file; None where rows are written out."""
+        if isinstance(self.motif, str):
+            program, parameters = program_of(folder / self.motif, self.parameters)
+            return Figure(kind, program, tuple(sorted(parameters.items())), **rest)
+        if self.parameters:
+            raise WeaveError("draft.parameters: of a motif file – the rows of draft.motif have none")
+        return None
+
+    def rows(self) -> np.ndarray:
+        """The rows written out, (picks, ends) int."""
+        assert not isinstance(self.motif, str)
+        return _motif(self.motif)
+
+
 class _Plain(_Part):
     kind: Literal["plain"]
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         return plain()
 
 
@@ -46,7 +73,7 @@ class _Twill(_Part):
     down: int = Field(ge=1, le=MOST)
     step: int = Field(1, ge=-MOST, le=MOST)
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         return twill(self.up, self.down, self.step)
 
 
@@ -56,72 +83,90 @@ class _Satin(_Part):
     step: int = Field(ge=-MOST, le=MOST)
     face: Literal["warp", "weft"] = "warp"
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         made = satin(self.ends, self.step)
         return made if self.face == "warp" else Draft(f"{made.name} (weft face)", ~made.lift.T)
 
 
-class _Damask(_Part):
+class _Damask(_Motif):
     """Figure on a ground by a motif; ground and figure as on the command line, such as "satin:8/3"."""
 
     kind: Literal["damask"]
-    motif: Motif
     ground: str = "satin:5/2"
-    figure: str | None = None
+    figured: str | list[str] | None = Field(None, alias="figure")
     longest: int = Field(0, ge=0, le=MOST)
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         from sim_core.weave.draft.generators import damask
         from sim_core.weave.draft.notation import draft_of_words
 
-        figure = draft_of_words(self.figure) if self.figure else None
-        return damask(_motif(self.motif) > 0, draft_of_words(self.ground), figure, longest=self.longest)
+        named = [self.figured] if isinstance(self.figured, str) else self.figured or []
+        if isinstance(self.motif, str) and not named:
+            raise WeaveError('draft.figure: missing – name the weave of the figure, such as "satin:5/2:weft"')
+        made = self.figure(folder, "damask", words=(self.ground, *named), longest=self.longest)
+        if made:
+            return made
+        if len(named) > 1:
+            raise WeaveError("draft.figure: several weaves – rows written out have one; take a motif file")
+        figure = draft_of_words(named[0]) if named else None
+        return damask(self.rows() > 0, draft_of_words(self.ground), figure, longest=self.longest)
 
 
 class _Leno(_Part):
     kind: Literal["leno"]
-    form: Literal["pair", "four-end"] = "pair"
+    form: Literal["pair", "four-end", "figured"] = "pair"
+    motif: MotifFile | None = None
+    parameters: Parameters = {}
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
+        if (self.form == "figured") != (self.motif is not None):
+            raise WeaveError('draft.form: "figured" has a motif, and no other form – give both, or none')
+        if self.motif:
+            program, parameters = program_of(folder / self.motif, self.parameters)
+            return Figure("leno", program, tuple(sorted(parameters.items())))
         from sim_core.weave.draft.structures import four_end_gauze, gauze
 
         return gauze() if self.form == "pair" else four_end_gauze()
 
 
-class _Compound(_Part):
+class _Compound(_Motif):
     kind: Literal["compound"]
-    motif: Motif
     series: int = Field(ge=2, le=8)
     face: Literal["warp", "weft"] = "warp"
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         from sim_core.weave.draft.structures import warp_compound, weft_compound
 
+        kind: FigureKind = "warp-compound" if self.face == "warp" else "weft-compound"
+        figure = self.figure(folder, kind, series=self.series)
+        if figure:
+            return figure
         made = warp_compound if self.face == "warp" else weft_compound
-        return made(_motif(self.motif), self.series)
+        return made(self.rows(), self.series)
 
 
-class _Tapestry(_Part):
+class _Tapestry(_Motif):
     kind: Literal["tapestry"]
-    motif: Motif
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         from sim_core.weave.draft.structures import tapestry
 
-        return tapestry(_motif(self.motif))
+        return self.figure(folder, "tapestry") or tapestry(self.rows())
 
 
-class _Brocade(_Part):
+class _Brocade(_Motif):
     kind: Literal["brocade"]
-    motif: Motif
     ground: str = "plain"
     every: int = Field(4, ge=2, le=32)
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         from sim_core.weave.draft.notation import draft_of_words
         from sim_core.weave.draft.structures import brocade
 
-        return brocade(_motif(self.motif) - 1, ground=draft_of_words(self.ground), every=self.every)
+        figure = self.figure(folder, "brocade", words=(self.ground,), every=self.every)
+        if figure:
+            return figure
+        return brocade(self.rows() - 1, ground=draft_of_words(self.ground), every=self.every)
 
 
 class _Lift(_Part):
@@ -132,7 +177,7 @@ class _Lift(_Part):
         min_length=1, max_length=MOST
     )
 
-    def draft(self) -> Draft:
+    def draft(self, folder: Path) -> Draft | Figure:
         if len({len(row) for row in self.lift}) != 1:
             raise WeaveError("draft.lift: rows differ in length – give every pick the same number of ends")
         return Draft("lift", np.array([[c == "1" for c in row] for row in self.lift]))
@@ -149,6 +194,7 @@ class _Yarn(_Part):
     filament: float = SILK_FILAMENT
     tension: float = 0.0
     unevenness: float = 0.0
+    twist: float = 0.0
 
     def yarn(self) -> Yarn:
         values = self.model_dump()
@@ -190,15 +236,18 @@ def read_weave_file(path: Path) -> dict[str, Any]:
     """
     values = read_toml(path, "a weave file (TOML), such as those in assets/weaves")
     try:
-        return _values(_WeaveFile.model_validate(values))
+        return _values(_WeaveFile.model_validate(values), path.parent)
     except ValidationError as error:
         raise WeaveError(f"{path}: {_first(error)}") from error
     except SimCoreError as error:
         raise WeaveError(f"{path}: {error}") from error
 
 
-def _values(file: _WeaveFile) -> dict[str, Any]:
-    yarns = {}
+def _values(file: _WeaveFile, folder: Path) -> dict[str, Any]:
+    yarns, made = {}, file.draft.draft(folder)
+    figure, draft = (made, None) if isinstance(made, Figure) else (None, made)
+    if figure is not None:
+        draft = figure.draft(figure.numbers(file.ends_per_m, file.picks_per_m), file.name)
     for side in ("warp", "weft", "extra"):
         try:
             if getattr(file, side):
@@ -207,7 +256,8 @@ def _values(file: _WeaveFile) -> dict[str, Any]:
             raise WeaveError(f"{side}: {error}") from error
     return dict(
         name=file.name,
-        draft=file.draft.draft(),
+        draft=draft,
+        figure=figure,
         ends_per_m=file.ends_per_m,
         picks_per_m=file.picks_per_m,
         friction=file.friction,

@@ -20,6 +20,9 @@ LIMITS = {
     "filament": (1e-8, 0.05, "m"),
 }
 MOST_TENSION = 1e4  # [N]
+MOST_TWIST = 1e4  # [1/m]
+SPREAD = 0.35  # of its width: how much farther filaments without twist spread on a float, assumption
+HOLDING = 600.0  # [1/m] twist that holds filaments together on a float, assumption (crêpe has 2,000 and more)
 STIFFNESS = 1e-20, 1.0  # EI [N m2]
 
 
@@ -33,6 +36,7 @@ class Yarn:
     modulus [Pa], density [kg/m3], filament [m]: of the fibre, for the bending bounds and the axial stiffness.
     tension: [N] of one yarn while the cloth was woven and finished, which sets its shape: floats lie flatter.
     unevenness: coefficient of variation of the diameter along the yarn; only the texture maps use it.
+    twist: [1/m] turns a metre, below 0 for S; none in reeled silk. It holds the filaments together and turns them.
     Raises WeaveError for a value that no yarn can have.
     """
 
@@ -46,6 +50,7 @@ class Yarn:
     filament: float = SILK_FILAMENT
     tension: float = 0.0
     unevenness: float = 0.0
+    twist: float = 0.0
 
     def __post_init__(self) -> None:
         for name, (least, most, unit) in LIMITS.items():
@@ -62,6 +67,10 @@ class Yarn:
             )
         if not 0 <= self.unevenness <= 0.5:
             raise WeaveError(f"yarn: unevenness is {self.unevenness} – a fraction between 0 and 0.5")
+        if not abs(self.twist) <= MOST_TWIST:
+            raise WeaveError(
+                f"yarn: twist is {self.twist} – turns a metre, Z above 0 and S below, to {MOST_TWIST:g}"
+            )
         if len(self.colour) != 3 or not all(0 <= c <= 1 for c in self.colour):
             raise WeaveError(f"yarn: colour is {self.colour} – three sRGB values between 0 and 1")
         if self.tex > self.density * pi / 4 * self.diameter**2:
@@ -86,6 +95,11 @@ class Yarn:
     def width(self) -> float:
         """Width [m] of the flattened section."""
         return self.flattening * self.height
+
+    @property
+    def spread(self) -> float:
+        """How much wider than its width the yarn may become on a float, where nothing but twist holds it together."""
+        return SPREAD * max(0.0, 1.0 - abs(self.twist) / HOLDING)
 
     @property
     def fibre_area(self) -> float:

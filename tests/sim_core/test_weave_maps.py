@@ -10,8 +10,9 @@ from sim_core.errors import WeaveError
 from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax, surface_maps
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-# leno, compound and brocade: test_weave_surface.py
-WEAVES = [path for path in sorted(FOLDER.glob("*.toml")) if not Weave.load(path).draft.channels.items()]
+# leno, compound and brocade: test_weave_surface.py; figured ones: test_weave_figured.py
+PLAIN = [path for path in sorted(FOLDER.glob("*.toml")) if 'motif = "' not in path.read_text("utf-8")]
+WEAVES = [path for path in PLAIN if not Weave.load(path).draft.channels.items()]
 
 
 @pytest.fixture(scope="module", params=WEAVES, ids=lambda path: path.stem)

@@ -12,6 +12,7 @@ from sim_core.weave import Weave, Yarn, measured, parameters_of, plain, summary_
 from sim_core.weave.draft import basket
 from sim_core.weave.files import weave_of
 from sim_core.weave.maps import (
+    drawn_maps,
     figure_one,
     figure_one_picture,
     lit_cloth,
@@ -49,6 +50,8 @@ def test_at_least_ten_named_han_weaves_with_their_sources():
 def test_a_tile_continues_into_its_copy(relaxed, name):
     """The same cloth drawn half a tile further is the tile rolled by half: no seam anywhere."""
     weave, geometry = relaxed(name)
+    if weave.figure:  # drawn of its cells, each of which has to
+        weave, geometry = weave.cells[-1], geometry.cells[-1]
     maps = surface_maps(weave, geometry, pixels=128)
     moved = surface_maps(weave, geometry, pixels=128, origin=(maps.size[0] / 2, maps.size[1] / 2))
     for key, picture in maps.pictures().items():
@@ -75,6 +78,26 @@ def test_gauze_is_seen_through_and_satin_is_not(relaxed):
     assert surface_maps(*relaxed("satin"), pixels=256).opacity.mean() / 255 > 0.98
 
 
+SHEER = {"cotton", "cup-luo", "gauze", "gown-gauze", "heavy-sha", "luo", "ramie", "sha", "zhou"}
+# Worn by garments that were baked before sections relaxed: they close with the next bake.
+WORN = {"juan", "ling"}
+
+
+@pytest.mark.parametrize(
+    "name", [n if n not in WORN else pytest.param(n, marks=pytest.mark.xfail(strict=True)) for n in NAMES]
+)
+def test_cloths_that_are_not_sheer_are_closed(relaxed, name):
+    """At most half a per cent of the area is open; of what is meant to be seen through, at least a tenth.
+
+    A tapestry is closed but for its slits, where two colours meet along an end.
+    """
+    cover = drawn_maps(*relaxed(name), pixels=512).opacity.mean() / 255
+    if name in SHEER:
+        assert cover < 0.9
+    else:
+        assert cover > (0.98 if name == "kesi" else 0.995)
+
+
 def test_brocades_figure_stands_on_its_ground(relaxed):
     weave, geometry = relaxed("zhuanghua")
     maps = surface_maps(weave, geometry, pixels=256)
@@ -84,13 +107,16 @@ def test_brocades_figure_stands_on_its_ground(relaxed):
 
 
 def test_satin_gleams_along_its_floats(relaxed):
-    """Of the lit picture, the brightest pixels lie on warp floats; turned by a right angle they do not gleam alike."""
+    """For a lamp tilted across the floats the brightest pixels lie on them; turned by a right angle, on wefts too."""
     weave, geometry = relaxed("satin")
     maps = surface_maps(weave, geometry, pixels=256)
-    lit = lit_cloth(maps, light=(0.0, 0.5, 0.85), gloss=0.6).mean(axis=2)
-    along = np.abs(maps.direction[..., 1].astype(float) - 127.5) > 100
-    assert along.mean() > 0.7
-    assert along[lit > np.quantile(lit, 0.97)].mean() > 0.95
+    warp = np.abs(maps.direction[..., 1].astype(float) - 127.5) > 100
+    assert warp.mean() > 0.9
+    share = []
+    for lamp in ((0.5, 0.0, 0.85), (0.0, 0.5, 0.85)):
+        lit = lit_cloth(maps, light=lamp).mean(axis=2)
+        share.append(warp[lit > np.quantile(lit, 0.97)].mean())
+    assert share[0] > 0.98 > share[1] + 0.2
 
 
 def test_yarn_numbers_and_directions(relaxed):
@@ -99,7 +125,7 @@ def test_yarn_numbers_and_directions(relaxed):
     ends = maps.repeats[0] * weave.draft.ends
     warp = (maps.yarn > 0) & (maps.yarn <= ends)
     run = maps.direction.astype(float) / 127.5 - 1
-    clear = maps.direction[..., 2] > 250
+    clear = maps.direction[..., 2] > 150
     assert np.abs(run[..., 1][warp & clear]).min() > 0.8
     assert len(np.unique(maps.yarn)) >= ends + maps.repeats[1] * weave.draft.picks
     assert maps.roughness.std() > 1
@@ -244,8 +270,8 @@ def test_tubes_go_on_in_the_next_repeat_without_a_seam(relaxed, name):
 
     weave, geometry = relaxed(name)
     warp = strands(weave, geometry)[0]
-    for points, _, around in coloured_stretches(warp):
-        vertices, _ = tube_mesh(points, 1e-4, 5e-5, around=around)
+    for points, _, around, halves in coloured_stretches(warp):
+        vertices, _ = tube_mesh(points, *halves, around=around)
         rings = vertices.reshape(len(points), -1, 3)
         np.testing.assert_allclose(rings[-1], rings[0] + [0, warp.length, 0], atol=1e-12)
         assert np.abs(np.diff(points[:, 2])).max() > 0

@@ -4,6 +4,7 @@ import { drawAt, framesDrawn, meshesOf, nodeNames, renderer } from "../viser/vis
 import { judge, LEVELS, newJudgement } from "./judge.js";
 import { layLight, plainTones, reflect, sharpen } from "./light.js";
 import { shadeBySight } from "./sides.js";
+import { gleam } from "./silk.js";
 
 export const CHOICES = ["auto", ...LEVELS];
 const { recall, remember } = window.HALL.memory;
@@ -80,6 +81,7 @@ export function createQuality(onChange = () => {}) {
         const meshes = meshesOf(name);
         sharpen(meshes, anisotropy, blend);
         shadeBySight(meshes);
+        gleam(meshes);
       }
       drawAt(resolution(level(), window.devicePixelRatio));
     },

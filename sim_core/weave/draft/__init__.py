@@ -1,14 +1,16 @@
 """Drafts: what a loom is told, as arrays, before any yarn has a size.
 
 `draft` holds the value and the three basic weaves; `notation` reads them by name or from a picture of a motif,
-`generators` makes what is derived of them, `structures` what a 0/1 matrix cannot say. `algebra` turns threading, tie-
-up and treadling into the lift and back, `factors` counts by kinds of ends and picks, `analysis` says what follows.
+`generators` makes what is derived of them, `structures` what a 0/1 matrix cannot say, `figured` what a motif chooses
+among. `algebra` turns threading, tie-up and treadling into the lift and back, `factors` counts by kinds of ends and
+picks, `analysis` says what follows.
 """
 
 from sim_core.weave.draft.algebra import Harness, drawdown, harness, lift_plan, tie_up
 from sim_core.weave.draft.analysis import float_statistics, hangs_together, summary, summary_of_factors
 from sim_core.weave.draft.draft import Channels, Draft, plain, satin, twill
 from sim_core.weave.draft.factors import Factors
+from sim_core.weave.draft.figured import Figure
 from sim_core.weave.draft.generators import (
     basket,
     damask,
@@ -32,6 +34,7 @@ __all__ = [
     "Channels",
     "Draft",
     "Factors",
+    "Figure",
     "Harness",
     "basket",
     "brocade",

@@ -13,6 +13,7 @@ __all__ = [
     "limit_floats",
     "satin_of_six",
     "weft_faced",
+    "woven",
 ]
 
 
@@ -69,18 +70,19 @@ def damask(
     Raises WeaveError where the limit cannot be kept (see `limit_floats`).
     """
     mask = np.array(motif)
-    if mask.ndim != 2 or mask.size == 0 or not np.isin(mask, (0, 1)).all():
+    if mask.ndim != 2 or mask.size == 0 or mask.dtype != bool and not np.isin(mask, (0, 1)).all():
         raise WeaveError(f"{name}: the motif has shape {mask.shape} – give rows of picks by ends, 0 and 1")
     check_size(name, *mask.shape)
     ground = ground or satin(5, 2)
     figure = figure or weft_faced(ground)
-    rows, columns = np.indices(mask.shape)
-    lift = np.where(
-        mask.astype(bool),
-        figure.lift[rows % figure.picks, columns % figure.ends],
-        ground.lift[rows % ground.picks, columns % ground.ends],
-    )
+    lift = np.where(mask.astype(bool), woven(figure, mask.shape), woven(ground, mask.shape))
     return Draft(name, limit_floats(lift, longest, name=name) if longest else lift)
+
+
+def woven(draft: Draft, shape: tuple[int, int]) -> np.ndarray:
+    """The lift of a draft woven on over (picks, ends), cut off where that is no whole number of repeats."""
+    picks, ends = (np.arange(count) % own for count, own in zip(shape, draft.lift.shape, strict=True))
+    return draft.lift[np.ix_(picks, ends)]
 
 
 def limit_floats(lift: np.ndarray, longest: int, *, name: str = "draft") -> np.ndarray:
@@ -106,19 +108,19 @@ def limit_floats(lift: np.ndarray, longest: int, *, name: str = "draft") -> np.n
 def _long_runs(lift: np.ndarray, longest: int) -> list[tuple[int, int, int, int]]:
     """(axis the float runs along, line, start, length) of the overlong floats; 0 runs along an end."""
     found = []
-    for axis, lines in ((0, lift.T), (1, lift)):
+    for axis, lines in ((0, np.ascontiguousarray(lift.T)), (1, lift)):
         count = lines.shape[1]
-        if count <= longest and not (lines.all(axis=1) | ~lines.any(axis=1)).any():
-            continue
-        for number, line in enumerate(lines):
-            starts = np.flatnonzero(line != np.roll(line, 1))
-            if starts.size == 0:
-                found.append((axis, number, 0, count))
-                continue
-            lengths = np.diff(np.append(starts, starts[0] + count))
-            found += [
-                (axis, number, int(s), int(n)) for s, n in zip(starts, lengths, strict=True) if n > longest
-            ]
+        begins = np.flatnonzero(lines != np.roll(lines, 1, axis=1))
+        rows, starts = np.divmod(begins, count)
+        found += [(axis, int(row), 0, count) for row in np.setdiff1d(np.arange(len(lines)), rows)]
+        # A float ends where the next begins, the last of a line where its first does, a lap further.
+        last = np.append(rows[1:] != rows[:-1], True)[: rows.size]
+        first = starts[np.searchsorted(rows, rows)]
+        lengths = np.where(last, first + count, np.roll(starts, -1)) - starts
+        long = np.flatnonzero(lengths > longest)
+        found += [
+            (axis, *one) for one in zip(*(v[long].tolist() for v in (rows, starts, lengths)), strict=True)
+        ]
     return found
 
 

@@ -84,13 +84,19 @@ def tapestry(regions: np.ndarray, *, name: str = "tapestry") -> Draft:
 
 
 def brocade(
-    motif: np.ndarray, *, ground: Draft | None = None, every: int = 4, name: str = "brocade"
+    motif: np.ndarray,
+    *,
+    ground: Draft | None = None,
+    every: int = 4,
+    always: bool = False,
+    name: str = "brocade",
 ) -> Draft:
     """妆花: after each pick of the ground an extra pick in colour, from the first to the last crossing of its figure.
 
     motif: (picks of the ground, ends) int, colour number, -1 where the ground shows.  every: within a figure each
     `every`-th end binds the extra weft, moved on by half of that from pick to pick.  Ground picks without figure get
-    no extra pick; stretches of one or two crossings are left out. Where an extra pick is absent its lift is 1.
+    no extra pick, or `always` one that is nowhere; stretches of one or two crossings are left out. Where an extra pick
+    is absent its lift is 1.
     """
     colours = np.array(motif)
     if colours.ndim != 2 or colours.size == 0 or colours.dtype.kind not in "iu" or colours.min() < -1:
@@ -108,7 +114,7 @@ def brocade(
         lines.append(under[row])
         regions.append(np.zeros(colour.size, int))
         kinds.append(MAIN)
-        if (colour >= 0).any():
+        if always or (colour >= 0).any():
             binding = (np.arange(colour.size) + (row % 2) * (every // 2)) % every == 0
             binding = _bound(colour, binding)
             lines.append((colour < 0) | binding)

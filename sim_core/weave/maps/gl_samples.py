@@ -97,10 +97,11 @@ def _ribbons(tile: Tile, shape: tuple[int, int], size: tuple[float, float]) -> t
     top = np.sqrt(np.maximum(1 - np.abs(offset) ** tile.power, 0))
     fall = tile.power / 2 * np.abs(offset) ** (tile.power - 1) / np.maximum(top, 0.1)
     c, h, wide, tall = (v[:, at, None] for v in (tile.centre, tile.height, tile.half, tile.tall))
-    slope, lean, tint = (
+    slope, lean, taper, tint = (
         np.broadcast_to(v[:, at, None], (yarns, len(at), ACROSS + 1))
-        for v in (tile.slope, tile.lean, tile.colour)
+        for v in (tile.slope, tile.lean, tile.taper, tile.colour)
     )
+    lean = lean + offset * taper
     across, z = c + wide * offset, h + tall * top
     steep = -tall / wide * fall * np.sign(offset)
     other = slope - steep * lean

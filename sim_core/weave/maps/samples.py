@@ -21,7 +21,8 @@ class Tile:
     """Yarn paths over whole repeats, sampled for a picture of rows x columns samples; see Strands for the meaning.
 
     along 0: yarns run up the cloth (warp), 1: to the right.  centre, height, slope, lean: (yarns, places) place across
-    [m], axis height [m], dz/d along, d across/d along.  half: (yarns, places) half width [m], tall: half height [m].
+    [m], axis height [m], dz/d along, d across/d along.  half: (yarns, places) half width [m], tall: half height [m],
+    taper: d half/d along, by which what lies beside the axis leans more than it.
     colour: (yarns, places) int16 into colours, -1 absent.  first: number of the first yarn (for the yarn id).
     """
 
@@ -32,6 +33,7 @@ class Tile:
     lean: np.ndarray
     half: np.ndarray
     tall: np.ndarray
+    taper: np.ndarray
     colour: np.ndarray
     first: int
     power: float
@@ -77,7 +79,9 @@ def tile_of(
         k = np.floor(at).astype(int)
         t = at - k
         side, lean = _cubic(system.side, k % n, t, system.length / n)
-        height, slope = _cubic(system.height, k % n, t, system.length / n)
+        height, _ = _cubic(system.height, k % n, t, system.length / n)
+        crest, slope = _cubic(system.height + system.half_height, k % n, t, system.length / n)
+        half, taper = _cubic(system.half_width, k % n, t, system.length / n)
         near = (
             np.floor(at + 0.5 + 1e-6).astype(int) % n
         )  # halfway always the same way, wherever the tile begins
@@ -105,8 +109,8 @@ def tile_of(
         steep = np.sqrt(1 + slope[of] ** 2)  # the envelope of a sloping tube is taller
         tiles.append(
             Tile(
-                along, centre, height[of], slope[of], lean[of], system.yarn.width / 2 * swell,
-                system.yarn.height / 2 * swell * steep, colour.astype(np.int16), first,
+                along, centre, height[of], slope[of], lean[of], half[of] * swell,
+                (crest - height)[of] * swell * steep, taper[of] * swell, colour.astype(np.int16), first,
                 1 + min(system.yarn.width / system.yarn.height, 3.0),
             )
         )  # fmt: skip
@@ -146,14 +150,14 @@ def sample_surface(tiles: list[Tile], shape: tuple[int, int], size: tuple[float,
         fall = tile.power / 2 * offset ** (tile.power - 1) / np.maximum(top, FLANK)
         draw = _draw_warp if tile.along == 0 else _draw_weft
         step = size[0] / shape[1] if tile.along == 0 else size[1] / shape[0]
-        draw(tile.centre, tile.height, tile.slope, tile.lean, tile.half, tile.tall, tile.colour, tile.first, top, fall,
-             step, height, yarn, dx, dy, run, colour, across)  # fmt: skip
+        draw(tile.centre, tile.height, tile.slope, tile.lean, tile.half, tile.tall, tile.taper, tile.colour, tile.first,
+             top, fall, step, height, yarn, dx, dy, run, colour, across)  # fmt: skip
     return Samples(height, yarn, dx, dy, run, colour, across)
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_warp(centre, axis, slope, lean, half, tall, tint, first, top, fall, step, height, yarn, dx, dy, run, colour,
-               across):  # fmt: skip
+def _draw_warp(centre, axis, slope, lean, half, tall, taper, tint, first, top, fall, step, height, yarn, dx, dy, run,
+               colour, across):  # fmt: skip
     rows, columns = height.shape
     profile = top.size - 1
     for row in range(rows):
@@ -164,7 +168,6 @@ def _draw_warp(centre, axis, slope, lean, half, tall, tint, first, top, fall, st
             c, h, wide, high = centre[y, place], axis[y, place], half[y, place], tall[y, place]
             begin = int(np.ceil((c - wide) / step - 0.5))
             end = int(np.floor((c + wide) / step - 0.5))
-            angle = np.pi / 2 - np.arctan(lean[y, place])
             for q in range(begin, end + 1):
                 o = ((q + 0.5) * step - c) / wide
                 part = int(abs(o) * profile + 0.5)
@@ -174,18 +177,19 @@ def _draw_warp(centre, axis, slope, lean, half, tall, tint, first, top, fall, st
                 column = q % columns
                 if z > height[row, column]:
                     steep = -high / wide * fall[part] * (1.0 if o > 0 else -1.0)
+                    leans = lean[y, place] + o * taper[y, place]
                     height[row, column] = z
                     yarn[row, column] = first + y
                     dx[row, column] = steep
-                    dy[row, column] = slope[y, place] - steep * lean[y, place]
-                    run[row, column] = angle
+                    dy[row, column] = slope[y, place] - steep * leans
+                    run[row, column] = np.pi / 2 - np.arctan(leans)
                     colour[row, column] = tint[y, place]
                     across[row, column] = o
 
 
 @njit(cache=True, error_model="numpy")
-def _draw_weft(centre, axis, slope, lean, half, tall, tint, first, top, fall, step, height, yarn, dx, dy, run, colour,
-               across):  # fmt: skip
+def _draw_weft(centre, axis, slope, lean, half, tall, taper, tint, first, top, fall, step, height, yarn, dx, dy, run,
+               colour, across):  # fmt: skip
     rows, columns = height.shape
     profile = top.size - 1
     for y in range(centre.shape[0]):
@@ -203,10 +207,11 @@ def _draw_weft(centre, axis, slope, lean, half, tall, tint, first, top, fall, st
                 z = axis[y, k] + tall[y, k] * top[part]
                 if z > height[row, k]:
                     steep = -tall[y, k] / half[y, k] * fall[part] * (1.0 if o > 0 else -1.0)
+                    leans = lean[y, k] + o * taper[y, k]
                     height[row, k] = z
                     yarn[row, k] = first + y
                     dy[row, k] = steep
-                    dx[row, k] = slope[y, k] - steep * lean[y, k]
-                    run[row, k] = np.arctan(lean[y, k])
+                    dx[row, k] = slope[y, k] - steep * leans
+                    run[row, k] = np.arctan(leans)
                     colour[row, k] = tint[y, k]
                     across[row, k] = o

@@ -14,8 +14,16 @@ __all__ = ["coloured_stretches", "tube_mesh", "write_yarns"]
 ROUND = 12  # vertices round a yarn
 
 
-def tube_mesh(points: np.ndarray, half_width: float, half_height: float, sides: int = ROUND, *, around=None):
-    """Open tube round an axis with an elliptic section. points: (n, 3) [m], z up; returns vertices and faces.
+def tube_mesh(
+    points: np.ndarray,
+    half_width: np.ndarray | float,
+    half_height: np.ndarray | float,
+    sides: int = ROUND,
+    *,
+    around=None,
+):
+    """Open tube round an axis with an elliptic section. points: (n, 3) [m], z up; half_width, half_height: (n,) or one
+    [m]; returns vertices and faces.
 
     around: the point before the first and the one after the last, so that a tube that goes on there fits without a
     seam.  The section stands across the axis, its width in the plane of the cloth: vertices (n * sides, 3), faces
@@ -30,10 +38,8 @@ def tube_mesh(points: np.ndarray, half_width: float, half_height: float, sides: 
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     up = np.cross(tangent, across)
     angle = 2 * np.pi * np.arange(sides) / sides
-    ring = (
-        half_width * np.cos(angle)[:, None] * across[:, None]
-        + half_height * np.sin(angle)[:, None] * up[:, None]
-    )
+    wide, tall = (np.broadcast_to(half, len(points))[:, None, None] for half in (half_width, half_height))
+    ring = wide * np.cos(angle)[:, None] * across[:, None] + tall * np.sin(angle)[:, None] * up[:, None]
     vertices = (points[:, None] + ring).reshape(-1, 3)
     i, k = np.indices((len(points) - 1, sides))
     a, b = i * sides + k, i * sides + (k + 1) % sides
@@ -58,7 +64,8 @@ def write_yarns(systems: tuple[Strands, ...], path: str | Path) -> None:
 
 
 def coloured_stretches(system: Strands):
-    """(points, colour index, points before and after) of each stretch of yarn that is there and of one colour.
+    """(points, colour index, points before and after, half widths and half heights) of each stretch of yarn that is
+    there and of one colour.
 
     Whole yarns close: their last point is the first of the next repeat.
     """
@@ -67,6 +74,8 @@ def coloured_stretches(system: Strands):
         step = np.zeros(3)
         step[1 if system.along == "warp" else 0] = system.length
         around = np.vstack([points[-1:] - step, points, points[:2] + step])
+        halves = np.column_stack([system.half_width[number], system.half_height[number]])
+        halves = np.vstack([halves, halves[:1]])
         points, colour = around[1:-1], np.append(colour, colour[0])
         cuts = np.flatnonzero(np.diff(colour)) + 1
         for part in np.split(np.arange(len(colour)), cuts):
@@ -74,7 +83,12 @@ def coloured_stretches(system: Strands):
                 if part[-1] + 1 < len(colour) and colour[part[-1] + 1] >= 0:
                     part = np.append(part, part[-1] + 1)
                 if len(part) > 1:
-                    yield points[part], int(colour[part[0]]), (around[part[0]], around[part[-1] + 2])
+                    yield (
+                        points[part],
+                        int(colour[part[0]]),
+                        (around[part[0]], around[part[-1] + 2]),
+                        halves[part].T,
+                    )
 
 
 def _glb(systems: tuple[Strands, ...]) -> bytes:
@@ -85,8 +99,8 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
     scene = trimesh.Scene()
     for system in systems:
         made: dict[int, tuple[list, list, int]] = {}
-        for points, colour, around in coloured_stretches(system):
-            vertices, faces = tube_mesh(points, system.yarn.width / 2, system.yarn.height / 2, around=around)
+        for points, colour, around, halves in coloured_stretches(system):
+            vertices, faces = tube_mesh(points, *halves, around=around)
             vs, fs, count = made.get(colour, ([], [], 0))
             made[colour] = ([*vs, vertices], [*fs, faces + count], count + len(vertices))
         for colour, (vertices, faces, _) in made.items():
@@ -101,7 +115,7 @@ def _glb(systems: tuple[Strands, ...]) -> bytes:
 def _ply(systems: tuple[Strands, ...]) -> bytes:
     points, tints, edges, count = [], [], [], 0
     for system in systems:
-        for part, colour, _ in coloured_stretches(system):
+        for part, colour, _, _ in coloured_stretches(system):
             points.append(part)
             tints.append(np.tile(np.rint(system.palette[colour] * 255).astype(int), (len(part), 1)))
             edges.append(count + np.column_stack([np.arange(len(part) - 1), np.arange(1, len(part))]))

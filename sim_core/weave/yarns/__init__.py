@@ -7,7 +7,7 @@ among these.
 """
 
 from sim_core.weave.yarns.beams import beam_stiffness, relax
-from sim_core.weave.yarns.geometry import Strands, YarnGeometry
+from sim_core.weave.yarns.geometry import FiguredGeometry, Strands, YarnGeometry
 from sim_core.weave.yarns.jam import check_jam, jam_limits
 from sim_core.weave.yarns.leno_brocade import lay_beams
 from sim_core.weave.yarns.particles import NotAtRest, ParticleCell, relax_particles
@@ -18,6 +18,7 @@ from sim_core.weave.yarns.solver import ground_of, solve
 from sim_core.weave.yarns.splines import resampled
 
 __all__ = [
+    "FiguredGeometry",
     "NotAtRest",
     "ParticleCell",
     "Strands",

@@ -1,12 +1,13 @@
 """The values that come out of the weave room: yarn geometry, yarn paths and cloth parameters."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from sim_core.weave.yarn import Yarn
 
-__all__ = ["Strands", "YarnGeometry"]
+__all__ = ["FiguredGeometry", "Strands", "YarnGeometry"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +44,7 @@ class Strands:
     there and above the middle plane, n places a repeat length apart by length / n, the first at crossing 0.
     colour: (yarns, n) int, index into palette, -1 where the yarn is not there.  palette: (colours, 3) sRGB.
     yarn: its size.  length, across: [m] of the repeat along the yarns and across them.
+    half_width, half_height: (yarns, n) [m] of the section, across the yarn in the plane of the cloth and upright.
     """
 
     along: str
@@ -54,6 +56,8 @@ class Strands:
     yarn: Yarn
     length: float
     across: float
+    half_width: np.ndarray
+    half_height: np.ndarray
 
     def points(self, number: int) -> np.ndarray:
         """(n, 3) [m] axis of one yarn over the repeat: x to the right, y up the cloth, z towards the eye."""
@@ -62,3 +66,12 @@ class Strands:
         across = self.place[number] + self.side[number]
         first, second = (across, along) if self.along == "warp" else (along, across)
         return np.column_stack([first, second, self.height[number]])
+
+
+@dataclass(frozen=True, eq=False)
+class FiguredGeometry:
+    """Yarns of a figured weave at rest, cell by cell. cells: YarnGeometry or ParticleCell of each of `Weave.cells`;
+    shares: of the cloth's area that each makes up, 1 together."""
+
+    cells: tuple[Any, ...]
+    shares: tuple[float, ...]

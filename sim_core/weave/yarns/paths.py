@@ -10,6 +10,7 @@ from sim_core.weave.yarn import Yarn
 from sim_core.weave.yarns.geometry import Strands, YarnGeometry
 from sim_core.weave.yarns.leno_brocade import brocade_heights, leno_paths
 from sim_core.weave.yarns.particles.cell import ParticleCell
+from sim_core.weave.yarns.sections import relaxed_sections
 from sim_core.weave.yarns.splines import resampled
 
 __all__ = ["main_picks", "strands"]
@@ -20,25 +21,29 @@ BENEATH = (
 
 
 def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8) -> tuple[Strands, ...]:
-    """Warp, weft and, where there are any, extra wefts of a relaxed cloth.
+    """Warp, weft and, where there are any, extra wefts of a relaxed cloth, their sections at rest.
 
     geometry: of `solve` for this weave. per: places a crossing where stage A gives heights at crossings only.
     Raises WeaveError for the geometry of another draft.
     """
-    draft, channels = weave.draft, weave.draft.channels
-    width, height = weave.size
-    main = main_picks(weave)
+    draft, main = weave.draft, main_picks(weave)
     if geometry.force.shape != (len(main), draft.ends):
         raise WeaveError(f"weave {weave.name}: the yarn geometry belongs to another draft – solve this weave")
-    palette_warp, palette_weft = (
-        _palette(weave.warp_colours, weave.warp),
-        _palette(weave.weft_colours, weave.weft),
-    )
+    made = _axes(weave, geometry, main, geometry.per if isinstance(geometry, ParticleCell) else per)
+    if draft.channels.order is not None and draft.channels.layer is None:
+        return tuple(made)  # the ends of a leno hold each other and have no floats
+    lift = draft.lift[main]
+    above = [lift.T, ~lift, ~np.delete(draft.lift, main, axis=0)]
+    crowded = 2 * _series(weave)
+    return tuple(relaxed_sections(one, up, crowded) for one, up in zip(made, above, strict=False))
+
+
+def _axes(weave: Weave, geometry: YarnGeometry | ParticleCell, main: np.ndarray, per: int) -> list[Strands]:
+    """The axes of all yarns, each as wide and high everywhere as its file says."""
+    draft, channels = weave.draft, weave.draft.channels
+    width, height = weave.size
     if isinstance(geometry, ParticleCell):
-        per, paths = (
-            geometry.per,
-            (geometry.warp_side, geometry.warp_height, geometry.weft_side, geometry.weft_height),
-        )
+        paths = geometry.warp_side, geometry.warp_height, geometry.weft_side, geometry.weft_height
     elif channels.order is not None and channels.layer is None:
         paths = leno_paths(weave, per)
     else:
@@ -46,32 +51,50 @@ def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8
         paths = np.zeros_like(wz), wz, np.zeros_like(fz), fz
     if channels.layer is not None:
         paths = _layered(weave, paths)
-    ends_at = np.arange(draft.ends) * weave.end_spacing
-    if channels.layer is not None and channels.order is not None:  # a unit's ends share one place
-        unit = 1 + int(channels.end_series.max()) if channels.end_series is not None else 1
-        own = channels.end_series if channels.end_series is not None else 0
-        ends_at = (channels.order[0] + (unit - 1) / 2 + 0.2 * (own - (unit - 1) / 2)) * weave.end_spacing
+    palettes = _palette(weave.warp_colours, weave.warp), _palette(weave.weft_colours, weave.weft)
     pick_step = height / len(main)
     picks_at = np.arange(len(main)) * pick_step
     if channels.layer is not None and channels.pick_series is not None:
         picks_at = _grouped(channels.pick_series[main]) * pick_step
     end_colour = channels.end_series if channels.end_series is not None else np.zeros(draft.ends, int)
-    warp_colour = np.repeat((end_colour % len(palette_warp))[:, None], paths[0].shape[1], axis=1)
-    weft_colour = _weft_colours(weave, main, len(palette_weft), paths[2].shape[1])
+    warp_colour = np.repeat((end_colour % len(palettes[0]))[:, None], paths[0].shape[1], axis=1)
+    weft_colour = _weft_colours(weave, main, len(palettes[1]), paths[2].shape[1])
+
+    def system(along, place, side, z, colour, palette, yarn) -> Strands:
+        length, across = (height, width) if along == "warp" else (width, height)
+        wide, tall = np.full(z.shape, yarn.width / 2), np.full(z.shape, yarn.height / 2)
+        return Strands(along, place, side, z, colour, palette, yarn, length, across, wide, tall)
+
+    warp_side, warp_height, weft_side, weft_height = paths
     made = [
-        Strands("warp", ends_at, paths[0], paths[1], warp_colour, palette_warp, weave.warp, height, width),
-        Strands("weft", picks_at, paths[2], paths[3], weft_colour, palette_weft, weave.weft, width, height),
+        system("warp", _ends_at(weave), warp_side, warp_height, warp_colour, palettes[0], weave.warp),
+        system("weft", picks_at, weft_side, weft_height, weft_colour, palettes[1], weave.weft),
     ]
     extra = np.setdiff1d(np.arange(draft.picks), main)
     if extra.size and weave.extra:
-        after = np.searchsorted(main, extra) - 1
-        z = brocade_heights(weave, made[0], extra, (after + 0.5) * pick_step, per)
-        colour = _weft_colours(weave, extra, len(palette_weft), z.shape[1])
-        place = (after + 0.5) * pick_step
-        made.append(
-            Strands("weft", place, np.zeros_like(z), z, colour, palette_weft, weave.extra, width, height)
-        )
-    return tuple(made)
+        place = (np.searchsorted(main, extra) - 0.5) * pick_step
+        z = brocade_heights(weave, made[0], extra, place, per)
+        colour = _weft_colours(weave, extra, len(palettes[1]), z.shape[1])
+        made.append(system("weft", place, np.zeros_like(z), z, colour, palettes[1], weave.extra))
+    return made
+
+
+def _ends_at(weave: Weave) -> np.ndarray:
+    """(ends,) [m] where each end lies; those of a compound unit share one place."""
+    channels = weave.draft.channels
+    if channels.layer is None or channels.order is None:
+        return np.arange(weave.draft.ends) * weave.end_spacing
+    unit = 1 + int(channels.end_series.max()) if channels.end_series is not None else 1
+    own = channels.end_series if channels.end_series is not None else 0
+    return (channels.order[0] + (unit - 1) / 2 + 0.2 * (own - (unit - 1) / 2)) * weave.end_spacing
+
+
+def _series(weave: Weave) -> int:
+    """How many yarns of a compound weave share one place; 1 of any other."""
+    channels = weave.draft.channels
+    if channels.layer is None:
+        return 1
+    return max(1 + int(s.max()) for s in (channels.end_series, channels.pick_series) if s is not None)
 
 
 def _layered(weave: Weave, paths: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Draft
 from sim_core.weave.model import Weave
 from sim_core.weave.yarns.beams import relax
-from sim_core.weave.yarns.geometry import YarnGeometry
+from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import MOST_STEPS, ParticleCell, relax_particles
 from sim_core.weave.yarns.paths import main_picks
 
@@ -38,13 +39,29 @@ def solve(
     tolerance: float = 1e-3,
     watch: np.ndarray | None = None,
     most: int | None = None,
-):
-    """Relax a weave: stage A, and stage B on it with `particles`. Returns YarnGeometry or ParticleCell over the draft.
+) -> Any:
+    """Relax a weave: stage A, and stage B on it with `particles`. Returns YarnGeometry or ParticleCell over the draft,
+    of a figured weave FiguredGeometry: each of its cells by itself.
 
     The ground of a brocade is relaxed alone. Leno and compound weaves stay at stage A (their ends cross or lie over
     one another, which the particles' grid of crossings does not hold).  watch, most: as of relax_particles.
     Raises WeaveError for more than a million crossings, a jammed sett, or yarns that do not come to rest.
     """
+    if weave.numbers is not None:
+        numbers = weave.numbers
+        cells = tuple(
+            solve(
+                cell,
+                particles=particles,
+                per=per,
+                friction=friction,
+                tolerance=tolerance,
+                watch=watch,
+                most=most,
+            )
+            for cell in weave.cells
+        )
+        return FiguredGeometry(cells, tuple(float((numbers == k).mean()) for k in range(len(cells))))
     if weave.draft.lift.size > MOST_RELAXED:
         raise WeaveError(
             f"{weave.name}: a repeat of {weave.draft.lift.size:,} crossings – at most {MOST_RELAXED:,} are relaxed"

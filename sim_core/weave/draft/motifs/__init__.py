@@ -4,7 +4,7 @@
 """
 
 from sim_core.weave.draft.motifs.motif import Motif, cut
-from sim_core.weave.draft.motifs.motif_file import motif_of_program, read_motif
+from sim_core.weave.draft.motifs.motif_file import motif_of_program, program_of, read_motif
 from sim_core.weave.draft.motifs.programs import PROGRAMS
 
-__all__ = ["PROGRAMS", "Motif", "cut", "motif_of_program", "read_motif"]
+__all__ = ["PROGRAMS", "Motif", "cut", "motif_of_program", "program_of", "read_motif"]

@@ -14,7 +14,7 @@ from sim_core.validation.files import read_toml, shown
 from sim_core.weave.draft.motifs.motif import Motif
 from sim_core.weave.draft.motifs.programs import PROGRAMS
 
-__all__ = ["motif_of_program", "read_motif"]
+__all__ = ["motif_of_program", "program_of", "read_motif"]
 
 MM = 1e-3  # [m]
 Number = Annotated[float, Field(gt=0, le=4000)]
@@ -40,10 +40,21 @@ def read_motif(path: Path, changes: Mapping[str, float] | None = None) -> Motif:
 
     Raises FileProblem where the file cannot be read, WeaveError (file: key: what – remedy) for what it cannot mean.
     """
+    return _drawn(path, changes)[2]
+
+
+def program_of(path: Path, changes: Mapping[str, float] | None = None) -> tuple[str, dict[str, float]]:
+    """Program and parameters of a motif file, those that `changes` names changed; raises as `read_motif` does."""
+    program, parameters, _ = _drawn(path, changes)
+    return program, parameters
+
+
+def _drawn(path: Path, changes: Mapping[str, float] | None) -> tuple[str, dict[str, float], Motif]:
     values = read_toml(path, "a motif file (TOML), such as those in assets/motifs")
     try:
         file = _MotifFile.model_validate(values)
-        return motif_of_program(file.name, file.program, file.parameters | dict(changes or {}))
+        parameters = file.parameters | dict(changes or {})
+        return file.program, parameters, motif_of_program(file.name, file.program, parameters)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
         key = ".".join(str(part) for part in first["loc"]) or "file"
