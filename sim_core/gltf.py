@@ -126,14 +126,20 @@ class GlbFile:
         self.accessors.append(accessor)
         return len(self.accessors) - 1
 
-    def texture(self, picture: np.ndarray, scale: list[float]) -> dict[str, Any]:
-        """Stores a picture as PNG; returns a texture reference whose transform maps mm to tiles."""
+    def texture(
+        self, picture: np.ndarray, scale: list[float], *, quality: int | None = None
+    ) -> dict[str, Any]:
+        """Stores a picture as PNG, or as JPEG of a quality; returns a reference whose transform maps mm to tiles."""
         from PIL import Image
 
         stream = BytesIO()
-        Image.fromarray(picture).save(stream, "PNG", optimize=True)
+        if quality is None:
+            Image.fromarray(picture).save(stream, "PNG", optimize=True)
+        else:
+            Image.fromarray(picture).save(stream, "JPEG", quality=quality, subsampling=0, optimize=True)
         transform = {"KHR_texture_transform": {"scale": scale}}
-        return {**self.picture(stream.getvalue(), "image/png"), "extensions": transform}
+        kind = "image/png" if quality is None else "image/jpeg"
+        return {**self.picture(stream.getvalue(), kind), "extensions": transform}
 
     def picture(self, data: bytes, mime: str) -> dict[str, Any]:
         """Stores an encoded picture, "image/png", "image/jpeg" or "image/webp"; returns a reference to its texture.

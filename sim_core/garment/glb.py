@@ -29,6 +29,7 @@ SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the sha
 PORE = 0.35  # of the mean colour
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 FIGURE_PIXELS = 256  # of a figured cloth's repeat in the hall
+CELL_QUALITY = 88  # JPEG
 
 
 @dataclass(frozen=True)
@@ -108,9 +109,8 @@ def write_glb(
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
-    data = glb.bytes(
-        outermost.name, ["KHR_materials_anisotropy", "KHR_materials_sheen", "KHR_texture_transform"]
-    )
+    used = {name for material in glb.materials for name in material.get("extensions", ())}
+    data = glb.bytes(outermost.name, sorted(used | {"KHR_texture_transform"}))
     with written_whole(Path(path)) as stream:
         stream.write(data)
     return len(data)
@@ -261,6 +261,40 @@ def _gleam(
     material["extensions"]["KHR_materials_anisotropy"] = gleam
 
 
+def _cells(glb: GlbFile, material: dict[str, Any], maps: FiguredMaps, textures: dict[str, Any]) -> None:
+    """Adds what is seen from a hand's breadth: which cell lies at each crossing, and the yarns of each.
+
+    glTF has no place for them. They go where lacquer and iridescence have their textures, whose factors of 0 keep them
+    from being seen; our page reads them by `extras.silk`. A cell's picture holds its normal (red, green) and its
+    brightness over its mean (blue, 128 = 1). Beyond four cells nothing is added: the repeat's picture has to do.
+    """
+    if len(maps.cells) > 4:
+        return
+    repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
+
+    def pattern(cell: MapsLike) -> dict[str, Any]:
+        light = _linear(cell.albedo / 255.0) @ (0.2126, 0.7152, 0.0722)
+        bright = np.clip(128 * light / light.mean(), 0, 255)
+        picture = np.dstack([cell.normal[..., :2], np.rint(bright)]).astype(np.uint8)
+        return glb.texture(picture, [1e-3 / cell.size[0], 1e-3 / cell.size[1]], quality=CELL_QUALITY)
+
+    kept = [
+        _once(textures, f"cell {k}", lambda cell=cell: pattern(cell)) for k, cell in enumerate(maps.cells)
+    ]
+    number = _once(textures, "number", lambda: glb.texture(maps.crossings[::-1], repeat))
+    lacquer = dict(zip(("clearcoatNormalTexture", "clearcoatRoughnessTexture"), kept[:2], strict=False))
+    film = dict(zip(("iridescenceTexture", "iridescenceThicknessTexture"), kept[2:], strict=False))
+    material["extensions"]["KHR_materials_clearcoat"] = {
+        "clearcoatFactor": 0.0,
+        "clearcoatTexture": number,
+        **lacquer,
+    }
+    if film:
+        material["extensions"]["KHR_materials_iridescence"] = {"iridescenceFactor": 0.0, **film}
+    sizes = [[float(side) for side in cell.size] for cell in maps.cells]
+    material["extras"] = {"silk": {"repeat": [float(side) for side in maps.size], "cells": sizes}}
+
+
 def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
     mean, sheer = _mean_colour(maps), _coverage(maps) < SHEER
     picture, factor = _coloured(maps, mean, dye, not sheer)
@@ -274,6 +308,8 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
     normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile))
     material["normalTexture"] = {**normal, "scale": 1.0}
     _gleam(glb, material, maps, textures, 1)
+    if isinstance(maps, FiguredMaps):
+        _cells(glb, material, maps, textures)
     if sheer:
         material["alphaMode"] = "BLEND"
     tint = _dyed(dye, mean)

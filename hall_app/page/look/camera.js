@@ -76,6 +76,15 @@ export function lookAt(eye, target) {
   if (control) control.setLookAt(...toThree(eye), ...toThree(target), false);
 }
 
+/** Look at a point of three.js' own world from the side the eye is on now, so many metres away; turning goes round it. */
+export function comeNear(point, metres) {
+  const control = cameraControl(), eye = camera()?.position;
+  if (!control || !eye) return;
+  const [x, y, z] = [eye.x - point[0], eye.y - point[1], eye.z - point[2]];
+  const share = metres / Math.max(Math.hypot(x, y, z), 1e-6);
+  control.setLookAt(point[0] + share * x, point[1] + share * y, point[2] + share * z, ...point, false);
+}
+
 export function orbit(azimuth, polar) { cameraControl()?.rotate(azimuth, polar, false); }
 
 export function dolly(metres) { cameraControl()?.dolly(metres, false); }

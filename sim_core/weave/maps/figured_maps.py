@@ -26,10 +26,12 @@ STRIP = 128  # rows drawn at a time
 
 @dataclass(frozen=True, eq=False)
 class FiguredMaps(SurfaceMaps):
-    """As SurfaceMaps, of the whole repeat. number: (n, n) uint8, the cell most of a pixel is; cells: their maps."""
+    """As SurfaceMaps, of the whole repeat. number: (n, n) uint8, the cell most of a pixel is; cells: their maps;
+    crossings: (picks, ends) uint8, the cell at every place of the draft, the first pick lowest."""
 
     number: np.ndarray
     cells: tuple[SurfaceMaps, ...]
+    crossings: np.ndarray
 
 
 def drawn_maps(
@@ -70,8 +72,16 @@ def figured_maps(
     )
     number = shares.argmax(axis=0).astype(np.uint8)
     yarn = number.astype(np.uint16) + 1
+    drawn = albedo, normal, height, roughness, direction, opacity
     return FiguredMaps(
-        albedo, normal, height, roughness, direction, opacity, yarn, weave.size, relief, (1, 1), number, cells
+        *drawn,
+        yarn,
+        weave.size,
+        relief,
+        (1, 1),
+        number=number,
+        cells=cells,
+        crossings=numbers.astype(np.uint8),
     )
 
 

@@ -16,6 +16,7 @@ const SECTIONS = {
     [["Enter"], "open"],
     [["←", "→"], "turn"],
     [["+", "−"], "nearer"],
+    [["Z", "0"], "yarns"],
     [["P"], "motion"],
     [["Esc"], "back"],
     [["?"], "show_help"],
@@ -24,6 +25,7 @@ const SECTIONS = {
     [["{left_drag}"], "look"],
     [["{middle_drag}"], "eye"],
     [["{click_key}"], "click"],
+    [["{twice_key}"], "yarns"],
     [["{map_key}"], "map"],
   ],
   touch: [
@@ -33,6 +35,7 @@ const SECTIONS = {
     [["{map_tap_key}"], "map"],
     [["{turn_key}"], "turn"],
     [["{pinch_key}"], "nearer"],
+    [["{twice_tap_key}"], "yarns"],
   ],
 };
 

@@ -17,11 +17,13 @@ const HINTS = {
   orbit: [
     [["{orbit_key}"], "orbit"],
     [["{zoom_key}"], "zoom"],
+    [["{twice}"], "yarns"],
     [["{back_key}"], "back"],
   ],
   orbit_touch: [
     [["{touch_drag}"], "orbit"],
     [["{pinch}"], "zoom"],
+    [["{twice_tap}"], "yarns"],
   ],
 };
 const WALKED = 8; // [m] and
