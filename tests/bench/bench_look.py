@@ -1,6 +1,7 @@
 """What the hall's light costs: CPU time a picture of the same hall, lit in four ways, with software WebGL.
 
     python tests/bench/bench_look.py [--rounds 4] [--content FOLDER] [--json FILE]
+    python tests/bench/bench_look.py --silk [--rounds 4] [--json FILE]      what silk's gleam costs: look_silk.py
 
 shipped    room unlit, its light baked; two lights and the room's reflection for the exhibits
 ambient    the same models with lit materials, one ambient light and nothing else
@@ -138,6 +139,18 @@ def summary(found: dict[str, dict[str, list[float]]]) -> dict:
     return {"cpu_ms": best, "share": share, "reached": reached}
 
 
+def silk(rounds: int, seconds: float, path: Path | None) -> int:
+    """Measures the gleam of a figured silk and prints it."""
+    from bench.look_silk import measured, table
+
+    found = measured(rounds, seconds, cost, gpu_process)
+    text, numbers = table(found)
+    print(f"\nbest of {rounds}\n{text}")
+    if path:
+        path.write_text(json.dumps({"summary": numbers, "rounds": found}, indent=1))
+    return 0
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -146,7 +159,10 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=2.5, help="of drawing, each time")
     parser.add_argument("--content", type=Path, default=ROOT / "assets")
     parser.add_argument("--json", type=Path, metavar="FILE")
+    parser.add_argument("--silk", action="store_true", help="what the gleam of a figured silk costs, alone")
     arguments = parser.parse_args()
+    if arguments.silk:
+        return silk(arguments.rounds, arguments.seconds, arguments.json)
     found = measured(arguments.rounds, arguments.seconds, arguments.content)
     result = summary(found)
     print(f"\n{'CPU ms a picture, best of ' + str(arguments.rounds):34}{'entry':>10}{'exhibit':>10}")

@@ -1,4 +1,4 @@
-"""Contact sheet of all shipped weaves, Figure 1, and the plot of speed against error.
+"""Contact sheet of all shipped weaves under three lights, Figure 1, and the plot of speed against error.
 
 python tests/bench/bench_weave.py --sheet docs/pictures/weaves.jpg
 """
@@ -9,68 +9,70 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from sim_core.weave import ParticleCell, Weave, lit_cloth, solve, surface_maps
+from sim_core.weave import ParticleCell, Weave, lit_cloth, solve
 from sim_core.weave.files import weave_of
-from sim_core.weave.maps import figure_one, figure_one_picture
+from sim_core.weave.maps import (
+    FiguredMaps,
+    SurfaceMaps,
+    drawn_maps,
+    figure_one,
+    figure_one_picture,
+    surface_maps,
+)
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-SIDE, COLUMNS, FOOT = 330, 5, 34
-WINDOW = 2.6  # [mm] shown of a weave without a figure; of a figured one, its whole repeat
-# A figure in one colour is told from its ground by the gleam of its floats alone: two repeats each way, and a lamp that
-# stands across the warp.
-ACROSS_WARP = {"light": (-0.75, 0.0, 0.65), "gloss": 0.75}
+SIDE, COLUMNS, FOOT, GAP = 132, 4, 40, 4
+NEAR, FAR = 2.2, 22.0  # [mm] shown of a weave's yarns, and of one without a figure from farther away
+TILT = np.radians(40)
+# The eye is above: a lamp tilted across the warp, one at the upper left, and one tilted along the warp.
+LIGHTS = ((np.sin(TILT), 0.0, np.cos(TILT)), (-0.35, 0.5, 0.75), (0.0, np.sin(TILT), np.cos(TILT)))
 
 
 def draw(path: Path) -> None:
-    """The lit face of every weave of assets/weaves in true proportions, its names below; and Figure 1 beside it."""
+    """Every weave of assets/weaves under three lights, its yarns above and its figure below; and Figure 1 beside it."""
     files = sorted(FOLDER.glob("*.toml"))
+    wide, high = 3 * (SIDE + GAP) + 3 * GAP, 2 * (SIDE + GAP) + FOOT
     rows = -(-len(files) // COLUMNS)
-    sheet = Image.new("RGB", (SIDE * COLUMNS + 8, (SIDE + FOOT) * rows + 8), (24, 24, 24))
+    sheet = Image.new("RGB", (wide * COLUMNS + GAP, high * rows + GAP), (24, 24, 24))
     pen = ImageDraw.Draw(sheet)
-    small, large = ImageFont.load_default(13), ImageFont.load_default(15)
+    small, large = ImageFont.load_default(12), ImageFont.load_default(14)
     for k, file in enumerate(files):
         weave = Weave.load(file)
         title = tomllib.loads(file.read_text("utf-8"))["title"]["en"]
         geometry = solve(weave, particles=True)
-        stage = "particles" if isinstance(geometry, ParticleCell) else "beams"
-        picture, wide = swatch(weave, geometry)
-        x, y = k % COLUMNS * SIDE + 8, k // COLUMNS * (SIDE + FOOT) + 8
-        sheet.paste(picture, (x, y))
-        pen.text((x + 2, y + SIDE - 8), f"{file.stem}: {title}", fill=(235, 235, 230), font=large)
-        pen.text(
-            (x + 2, y + SIDE + 9),
-            f"{wide:.1f} mm across, relaxed as {stage}",
-            fill=(165, 165, 160),
-            font=small,
+        stage = (
+            "particles" if isinstance(getattr(geometry, "cells", [geometry])[0], ParticleCell) else "beams"
         )
+        maps = drawn_maps(weave, geometry, pixels=1024)
+        far = weave.figure is not None or max(weave.draft.lift.shape) > 16
+        shown = 1e3 * min(weave.size) if far else FAR
+        cell = maps.cells[-1] if isinstance(maps, FiguredMaps) else surface_maps(weave, geometry, pixels=1024)
+        x, y = k % COLUMNS * wide + GAP, k // COLUMNS * high + GAP
+        for column, lamp in enumerate(LIGHTS):
+            for row, (what, millimetres) in enumerate(((cell, NEAR), (maps, shown))):
+                place = (x + column * (SIDE + GAP), y + row * (SIDE + GAP))
+                sheet.paste(swatch(what, lamp, millimetres), place)
+        foot = y + 2 * (SIDE + GAP)
+        pen.text((x + 1, foot - 2), f"{file.stem}: {title}", fill=(235, 235, 230), font=large)
+        below = f"above {NEAR:.1f} mm, below {shown:.0f} mm across; {stage}"
+        pen.text((x + 1, foot + 16), below, fill=(165, 165, 160), font=small)
     path.parent.mkdir(parents=True, exist_ok=True)
-    sheet.save(path, quality=90)
+    sheet.save(path, quality=84)
     weave, _ = weave_of("twill:2/1")
     picture = figure_one_picture(figure_one(weave, solve(weave, particles=True), pixels=300))
     Image.fromarray(picture).save(path.with_name(f"{path.stem}-figure1{path.suffix}"), quality=90)
 
 
-def swatch(weave: Weave, geometry) -> tuple[Image.Image, float]:
-    """A square piece of the lit cloth, as wide as high on the loom, and how many millimetres that is."""
-    side = SIDE - 8
-    figured = max(weave.draft.lift.shape) > 16
-    one_colour = (
-        figured and weave.warp.colour == weave.weft.colour and not (weave.warp_colours or weave.extra)
-    )
-    many = 2 if one_colour else 1
-    window = many * max(weave.size) * 1e3 if figured else WINDOW
-    across, up = (1 if figured else max(1, round(WINDOW / 1e3 / size)) for size in weave.size)
-    maps = surface_maps(weave, geometry, pixels=1024, repeats=(across, up))
-    scale = side / window / 1e-3  # pixels a metre
+def swatch(maps: SurfaceMaps, lamp: tuple[float, float, float], millimetres: float) -> Image.Image:
+    """A square piece of a lit cloth so many millimetres wide, as wide as high on the loom."""
+    scale = SIDE / millimetres / 1e-3  # pixels a metre
     high, wide = (max(1, round(size * scale)) for size in maps.size[::-1])
-    tile = Image.fromarray(lit_cloth(maps, **ACROSS_WARP) if one_colour else lit_cloth(maps)).resize(
-        (wide, high), Image.Resampling.BOX
-    )
-    picture = Image.new("RGB", (side, side))
-    for x in range(0, side, wide):
-        for y in range(side - high, -high, -high):
+    tile = Image.fromarray(lit_cloth(maps, light=lamp)).resize((wide, high), Image.Resampling.BOX)
+    picture = Image.new("RGB", (SIDE, SIDE))
+    for x in range(0, SIDE, wide):
+        for y in range(SIDE - high, -high, -high):
             picture.paste(tile, (x, y))
-    return picture, window
+    return picture
 
 
 def plot(found: dict, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import struct
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,8 @@ from sim_core.cloth.contact import solid_mesh
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
 from sim_core.garment import Clothed, Garment, Pattern, Settled, Stand, choose_detail, write_glb
 from sim_core.mesh import panel_mesh
+from sim_core.weave import Weave, solve
+from sim_core.weave.maps import FiguredMaps, figured_maps
 
 SHEET = 'name = "test"\nedge = 0.05\nsize = [0.4, 1.0]\n'
 
@@ -314,3 +317,60 @@ def test_wrong_precision_and_maps_are_named(tmp_path: Path) -> None:
     with pytest.raises(SimCoreError, match="maps"):
         write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), wrong)])
     assert not (tmp_path / "g.glb").exists()
+
+
+def picture_of(document: dict, blob: bytes, reference: dict) -> np.ndarray:
+    """The picture that a texture reference of a material names, as it is stored."""
+    view = document["bufferViews"][
+        document["images"][document["textures"][reference["index"]]["source"]]["bufferView"]
+    ]
+    start = view.get("byteOffset", 0)
+    return np.asarray(Image.open(BytesIO(blob[start : start + view["byteLength"]])))
+
+
+@pytest.fixture(scope="module")
+def lozenges() -> FiguredMaps:
+    """A figured silk of small lozenges, of one colour."""
+    told = Weave.load(Path(__file__).parents[2] / "assets" / "weaves" / "lozenge-qi.toml").to_dict()
+    told["figure"]["parameters"] = [["width", 10.0], ["height", 16.0], ["lines", 2.0]]
+    weave = Weave.from_dict(told)
+    return figured_maps(weave, solve(weave), pixels=256)
+
+
+@pytest.mark.parametrize("precision", ["close", "hall"])
+def test_a_figured_silk_shows_its_repeat_and_the_way_it_gleams(tmp_path: Path, precision, lozenges) -> None:
+    write_glb(tmp_path / "g.glb", [Clothed(arched(0.04), lozenges)], precision=precision)
+    document, blob = chunks(tmp_path / "g.glb")
+    cloth = document["materials"][0]
+    gleam = cloth["extensions"]["KHR_materials_anisotropy"]
+    across = picture_of(document, blob, gleam["anisotropyTexture"])[..., :2] / 127.5 - 1
+    assert np.abs(np.linalg.norm(across, axis=2) - 1).max() < 0.02
+    assert set(cloth["extensions"]) <= set(document["extensionsUsed"])
+    tile = [1 / (1e3 * side) for side in lozenges.size]
+    colour = cloth["pbrMetallicRoughness"]["baseColorTexture"]
+    assert colour["extensions"]["KHR_texture_transform"]["scale"] == pytest.approx(tile)
+    extras = cloth.get("extras", {}).get("silk")
+    if precision == "hall":
+        assert extras is None
+        return
+    assert extras["repeat"] == pytest.approx(list(lozenges.size))
+    assert extras["cells"] == [pytest.approx(list(cell.size)) for cell in lozenges.cells]
+    lacquer = cloth["extensions"]["KHR_materials_clearcoat"]
+    assert lacquer["clearcoatFactor"] == 0  # seen by nobody but our page
+    number = picture_of(document, blob, lacquer["clearcoatTexture"])
+    np.testing.assert_array_equal(number, lozenges.crossings[::-1])
+    assert len(document["images"]) == 6  # colour, normal, gleam, number, two cells
+
+
+@pytest.mark.parametrize("dye", [(0.2, 0.3, 0.6), (0.95, 0.9, 0.85), (0.1, 0.05, 0.05)])
+def test_a_dye_is_the_mean_colour_whatever_the_cloth_was_woven_in(tmp_path: Path, dye, lozenges) -> None:
+    garment = arched(0.04)
+    dyed = replace(garment, dyes=(dye,) * len(garment.panels))
+    write_glb(tmp_path / "g.glb", [Clothed(dyed, lozenges)], precision="close")
+    document, blob = chunks(tmp_path / "g.glb")
+    surface = document["materials"][0]["pbrMetallicRoughness"]
+    picture = picture_of(document, blob, surface["baseColorTexture"]) / 255
+    light = np.where(picture <= 0.04045, picture / 12.92, ((picture + 0.055) / 1.055) ** 2.4)
+    shown = light.mean((0, 1)) * surface["baseColorFactor"][:3]
+    wanted = np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in dye])
+    assert shown == pytest.approx(wanted, rel=0.12)  # of what is brighter than white a little is cut off

@@ -81,7 +81,7 @@ export function createQuality(onChange = () => {}) {
         const meshes = meshesOf(name);
         sharpen(meshes, anisotropy, blend);
         shadeBySight(meshes);
-        gleam(meshes);
+        gleam(meshes, blend);
       }
       drawAt(resolution(level(), window.devicePixelRatio));
     },

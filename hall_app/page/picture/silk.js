@@ -15,7 +15,7 @@ const TURNED = "#include <normal_fragment_maps>";
 const SHINE = 0.048; // of a lobe's height; as sim_core's lit_cloth has it beside its sun
 const NEAR = [12e-6, 60e-6]; // [m] of cloth a pixel: yarns alone, the repeat's picture alone
 const YARN = [0.2, 0.42]; // alpha along and across a yarn whose filaments are drawn
-const NEAREST = 1003; // three.js
+const NEAREST = 1003, NEAREST_SIZE = 1007, BETWEEN_SIZES = 1008; // three.js: Nearest, LinearMipmapNearest, …Linear
 
 const LOBE = `${FACETS}
 uniform vec4 silkLobe; // alpha along the yarns; how much wider across, 0 to 1; cosine and sine of the way across
@@ -72,8 +72,8 @@ const frame = (cells) => `${TURNED}
     }
   }
   #endif
-  silkAcross = normalize(normalize(tbn[0]) * silk.z + normalize(tbn[1]) * silk.w);
-  silkAlong = normalize(cross(normal, silkAcross));
+  silkAcross = normalize(tbn[0] * silk.z + tbn[1] * silk.w);
+  silkAlong = cross(normal, silkAcross);
   silkTint = mix(vec3(.35), vec3(1.), diffuseColor.rgb / max(max(diffuseColor.r, diffuseColor.g), max(diffuseColor.b, .05)));
   silkTint *= ${SHINE} / (silkWidth.x * silkWidth.y);
 `;
@@ -92,16 +92,31 @@ function cellsOf(material) {
   return { number, cells, sizes: told.cells.flat(), repeat: told.repeat };
 }
 
-/** Give meshes whose material has a direction of gleam the cheaper lobe; idempotent, keeps what changed them before. */
-export function gleam(meshes) {
+/** Mix two sizes of each cell's picture, or take the nearer one, which a software renderer draws faster. */
+function filter(cells, blend) {
+  for (const cell of cells) {
+    const wanted = blend ? BETWEEN_SIZES : NEAREST_SIZE;
+    if (cell.minFilter === wanted) continue;
+    cell.minFilter = wanted;
+    cell.needsUpdate = true;
+  }
+}
+
+/**
+ * Give meshes whose material has a direction of gleam the cheaper lobe; idempotent, keeps what changed them before.
+ * blend: as of `sharpen`.
+ */
+export function gleam(meshes, blend = true) {
   let changed = false;
   for (const { material } of meshes) {
+    if (material?.userData.cells) filter(material.userData.cells, blend);
     if (!material?.isMeshPhysicalMaterial || material.userData.gleams || !material.normalMap) continue;
     const { anisotropy, anisotropyRotation: angle, anisotropyMap: map, roughness } = material;
     if (!(anisotropy > 0)) continue;
     material.userData.gleams = true;
     const lobe = [roughness ** 2, anisotropy ** 2, Math.cos(angle), Math.sin(angle)];
     const near = cellsOf(material), drawn = Boolean(map && material.map);
+    material.userData.cells = near?.cells;
     material.anisotropy = 0;
     material.sheen = 0;
     material.anisotropyMap = null;
