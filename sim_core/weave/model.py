@@ -18,6 +18,7 @@ from sim_core.weave.yarn import Yarn
 __all__ = ["Weave", "draft_from_dict", "draft_to_dict"]
 
 MOST_PER_METRE = 1e6
+EXTRA = 2  # of Channels.pick_kind
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,26 @@ class Weave:
         return (1 - warp) * (1 - weft)
 
     @property
+    def closeness(self) -> tuple[float, float]:
+        """Width of a warp and of a weft yarn where it is widest, in its spacing: cloths are closed where one is 1.
+
+        Filaments spread on floats; yarns of a compound unit share one place, extra picks lie between the ground's.
+        """
+        channels, counts = self.draft.channels, list(self.draft.lift.shape[::-1])
+        if channels.pick_kind is not None and channels.layer is None:
+            counts[1] = int((channels.pick_kind != EXTRA).sum())
+        if channels.layer is not None:
+            for axis, series in ((0, channels.end_series), (1, channels.pick_series)):
+                counts[axis] //= 1 if series is None else 1 + int(series.max())
+        floats = self.draft.interlacings()
+        found = []
+        for axis, (yarn, side) in enumerate(((self.warp, self.size[0]), (self.weft, self.size[1]))):
+            over = self.draft.lift.shape[axis]
+            spread = yarn.spread if int(floats[axis].min()) < over else 0.0
+            found.append(yarn.width * (1 + spread) * counts[axis] / side)
+        return found[0], found[1]
+
+    @property
     def size(self) -> tuple[float, float]:
         """Width (along the weft) and height (along the warp) of one repeat [m]."""
         return self.draft.ends * self.end_spacing, self.draft.picks * self.pick_spacing
@@ -105,12 +126,36 @@ class Weave:
 
     @classmethod
     def load(cls, path: str | Path) -> Weave:
-        """Read a weave file (TOML); raises FileProblem or WeaveError naming file, key, value and remedy."""
+        """Read a weave file (TOML); raises FileProblem or WeaveError naming file, key, value and remedy.
+
+        A file that says `sheer = false` means a cloth that nobody sees through: its yarns have to touch one way.
+        """
         values = read_weave_file(Path(path))
+        sheer = values.pop("sheer")
         try:
-            return cls(**values)
+            weave = cls(**values)
+            if sheer is False:
+                weave._check_closed()
         except WeaveError as error:
             raise WeaveError(f"{path}: {error}") from error
+        return weave
+
+    def _check_closed(self) -> None:
+        close, channels = self.closeness, self.draft.channels
+        if channels.order is not None and channels.layer is None:
+            raise WeaveError("sheer = false, but a leno holds its yarns apart – write sheer = true")
+        if (
+            max(close) >= 1 or channels.layer is not None
+        ):  # hidden yarns of a compound fill what gaps there are
+            return
+        lacking = [
+            f"the {name} is {share:.0%} of its spacing wide"
+            for name, share in zip(("warp", "weft"), close, strict=True)
+        ]
+        raise WeaveError(
+            f"sheer = false, but its yarns cannot touch: {' and '.join(lacking)} – flatten one by "
+            f"{1 / max(close) ** 2:.1f} times more, set more yarns, or write sheer = true"
+        )
 
     @cached_property
     def key(self) -> str:

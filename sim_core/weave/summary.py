@@ -8,6 +8,7 @@ from sim_core.weave.cloth import ClothParameters, measured, parameters_of
 from sim_core.weave.draft.factors import Factors
 from sim_core.weave.files.sources import Source
 from sim_core.weave.files.wif.sections import listed
+from sim_core.weave.maps.figured_maps import drawn_maps
 from sim_core.weave.model import Weave
 from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
@@ -15,6 +16,7 @@ from sim_core.weave.yarns.solver import solve
 
 __all__ = ["facts_of", "summary_of", "summary_text"]
 
+OPENNESS_PIXELS = 256  # of the map that tells how much of a cloth is open
 MOST_SHOWN = 65_536  # crossings of a drawdown told in full
 UNITS = {
     "density": "kg/m2",
@@ -124,6 +126,7 @@ def summary_of(
         "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
         "thickness": size["thickness"],
         "areal_density": size["areal_density"],
+        "openness": 1.0 - float(drawn_maps(weave, geometry, pixels=OPENNESS_PIXELS).opacity.mean()) / 255,
         **whole,
         "penetration_of": covered,
         "seconds": seconds,
@@ -190,7 +193,7 @@ def summary_text(name: str, summary: dict) -> str:
         crimp = summary["crimp"]
         lines.append(
             f"  crimp {crimp['warp']:.2%} warp {crimp['weft']:.2%} weft, {summary['thickness'] * 1e6:.0f} um thick, "
-            f"{summary['areal_density'] * 1e3:.1f} g/m2"
+            f"{summary['areal_density'] * 1e3:.1f} g/m2, {summary['openness']:.1%} open"
         )
     for key, entry in summary.get("parameters", {}).items():
         if isinstance(entry, dict) and "value" in entry:

@@ -218,6 +218,7 @@ class _WeaveFile(_Part):
     picks_per_m: float
     friction: float = 0.3
     source: str | None = None
+    sheer: bool | None = None  # False: an opaque cloth, whose yarns have to touch
     draft: Annotated[
         _Plain | _Twill | _Satin | _Damask | _Leno | _Compound | _Tapestry | _Brocade | _Lift,
         Field(discriminator="kind"),
@@ -258,6 +259,7 @@ def _values(file: _WeaveFile, folder: Path) -> dict[str, Any]:
         name=file.name,
         draft=draft,
         figure=figure,
+        sheer=file.sheer,
         ends_per_m=file.ends_per_m,
         picks_per_m=file.picks_per_m,
         friction=file.friction,
