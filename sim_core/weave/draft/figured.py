@@ -68,7 +68,7 @@ class Figure:
     @property
     def motif(self) -> Motif:
         """The motif as it is drawn."""
-        return motif_of_program(self.program, self.program, dict(self.parameters))
+        return _motif(self.program, self.parameters)
 
     def numbers(self, ends_per_m: float, picks_per_m: float) -> np.ndarray:
         """The number at each place (picks, ends) int8 of the whole draft, the first pick lowest.
@@ -136,6 +136,11 @@ class Figure:
         """A plain dictionary that JSON can hold and `Figure(**it)` reads back."""
         values = asdict(self)
         return values | {"parameters": [list(pair) for pair in self.parameters], "words": list(self.words)}
+
+
+@lru_cache(maxsize=16)
+def _motif(program: str, parameters: tuple[tuple[str, float], ...]) -> Motif:
+    return motif_of_program(program, program, dict(parameters))
 
 
 @lru_cache(maxsize=8)

@@ -111,16 +111,18 @@ def _long_runs(lift: np.ndarray, longest: int) -> list[tuple[int, int, int, int]
     for axis, lines in ((0, np.ascontiguousarray(lift.T)), (1, lift)):
         count = lines.shape[1]
         begins = np.flatnonzero(lines != np.roll(lines, 1, axis=1))
-        rows, starts = np.divmod(begins, count)
-        found += [(axis, int(row), 0, count) for row in np.setdiff1d(np.arange(len(lines)), rows)]
+        many = np.bincount(begins // count, minlength=len(lines))
+        found += [(axis, int(row), 0, count) for row in np.flatnonzero(many == 0)]
+        if not begins.size:
+            continue
         # A float ends where the next begins, the last of a line where its first does, a lap further.
-        last = np.append(rows[1:] != rows[:-1], True)[: rows.size]
-        first = starts[np.searchsorted(rows, rows)]
-        lengths = np.where(last, first + count, np.roll(starts, -1)) - starts
+        last = np.cumsum(many[many > 0]) - 1
+        lengths = np.diff(begins, append=0)
+        lengths[last] = begins[np.append(0, last[:-1] + 1)] + count - begins[last]
         long = np.flatnonzero(lengths > longest)
-        found += [
-            (axis, *one) for one in zip(*(v[long].tolist() for v in (rows, starts, lengths)), strict=True)
-        ]
+        rows, starts = np.divmod(begins[long], count)
+        told = rows.tolist(), starts.tolist(), lengths[long].tolist()
+        found += [(axis, *one) for one in zip(*told, strict=True)]
     return found
 
 

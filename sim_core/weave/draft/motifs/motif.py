@@ -79,10 +79,21 @@ def _painted(found: np.ndarray, rings: list[np.ndarray], number: int) -> None:
         right - left <= ends and high - low <= picks
     ):  # then it meets itself nowhere, and only its own box is looked at
         inside = _covered([ring - (left, low) for ring in rings], high - low, right - left)
-        place = np.ix_(np.arange(low, high) % picks, np.arange(left, right) % ends)
-        found[place] = np.where(inside, number, found[place])
+        for rows, own_rows in _round(low, high, picks):
+            for columns, own_columns in _round(left, right, ends):
+                found[rows, columns][inside[own_rows, own_columns]] = number
     else:
         found[_covered(rings, picks, ends)] = number
+
+
+def _round(begin: int, end: int, count: int) -> list[tuple[slice, slice]]:
+    """A stretch that may leave the repeat, as one or two pieces: where they lie in it, and where in the stretch."""
+    here = begin % count
+    first = min(end - begin, count - here)
+    pieces = [(slice(here, here + first), slice(0, first))]
+    if first < end - begin:
+        pieces.append((slice(0, end - begin - first), slice(first, end - begin)))
+    return pieces
 
 
 def _rings(area: Any, scale: np.ndarray) -> Iterable[np.ndarray]:
@@ -102,13 +113,13 @@ def _covered(rings: Iterable[np.ndarray], picks: int, ends: int) -> np.ndarray:
 
     The plane is rolled up: what of a ring lies beyond the repeat counts on its other side, upon what lies there.
     """
-    entered, begin = np.zeros((picks, ends), np.int32), np.zeros(picks, np.int64)
+    entered, begin = np.zeros((picks, ends), np.int16), np.zeros(picks, np.int16)
     for ring in rings:
         rows, places, enters = _crossed(ring[:-1], ring[1:])
         first = np.ceil(places - 0.5).astype(np.int64)  # the first crossing whose middle lies beyond
         np.add.at(entered, (rows % picks, first % ends), enters)
-        np.add.at(begin, rows % picks, -enters * (first // ends))
-    return np.cumsum(entered, axis=1) + begin[:, None] > 0
+        np.add.at(begin, rows % picks, (-enters * (first // ends)).astype(np.int16))
+    return np.cumsum(entered, axis=1, dtype=np.int16) + begin[:, None] > 0
 
 
 def _crossed(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -120,5 +131,5 @@ def _crossed(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     which = np.repeat(np.arange(len(a)), many)
     rows = np.arange(len(which)) - np.repeat(np.cumsum(many) - many, many) + begin[which]
     along = (rows + 0.5 - a[which, 1]) / (b[which, 1] - a[which, 1])
-    enters = np.where(b[which, 1] < a[which, 1], 1, -1)
+    enters = np.where(b[which, 1] < a[which, 1], 1, -1).astype(np.int16)
     return rows, a[which, 0] + along * (b[which, 0] - a[which, 0]), enters

@@ -16,16 +16,17 @@ STEPS = 48  # of a stroke that bends
 
 def brush(points: ArrayLike, widths: np.ndarray | float) -> Any:
     """A stroke along points (N, 2), as wide at each as `widths` (N,) says, round at both ends."""
-    from shapely import MultiPoint, Point, unary_union
+    import shapely
 
     places = np.asarray(points, float)
     radii = 0.5 * np.broadcast_to(np.asarray(widths, float), len(places))
-    discs = [Point(*p).buffer(r, quad_segs=ROUND) for p, r in zip(places, radii, strict=True)]
-    between = [
-        MultiPoint([*one.exterior.coords, *other.exterior.coords]).convex_hull
-        for one, other in zip(discs, discs[1:], strict=False)
-    ]
-    return unary_union(between or discs)
+    angle = 2.0 * pi * np.arange(4 * ROUND) / (4 * ROUND)
+    discs = places[:, None] + radii[:, None, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    pairs = np.concatenate([discs[:-1], discs[1:]], axis=1) if len(discs) > 1 else discs
+    hulls = shapely.convex_hull(
+        shapely.multipoints(pairs.reshape(-1, 2), indices=np.repeat(np.arange(len(pairs)), pairs.shape[1]))
+    )
+    return shapely.union_all(hulls)
 
 
 def band(points: ArrayLike, width: float) -> Any:
