@@ -19,6 +19,7 @@ from time import perf_counter
 import numpy as np
 import weave_particles
 import weave_sheet
+import weave_silk
 from peers import add_peers
 from scipy.optimize import nnls
 
@@ -112,11 +113,15 @@ def main() -> int:
     parser.add_argument(
         "--sheet", type=Path, help="draw the contact sheet of all weaves (PNG) and nothing else"
     )
+    parser.add_argument("--silk", action="store_true", help="how the shipped silks look, and nothing else")
     parser.add_argument("--large", action="store_true", help="also 400 x 400 by stage B, minutes")
     add_peers(parser, "also TexGen")
     args = parser.parse_args()
     if args.sheet:
         weave_sheet.draw(args.sheet)
+        return 0
+    if args.silk:
+        weave_silk.show(weave_silk.measure())
         return 0
     particles = weave_particles.measure(quick=args.quick, large=args.large, peers=args.peers)
     drafts = [twill(2, 2), twill(3, 1), satin(5, 2), satin(8, 3)] + ([] if args.quick else [satin(16, 7)])
@@ -133,10 +138,12 @@ def main() -> int:
             f"{row['residual']:>11.1e}{row['complementarity']:>10.1e}"
         )
     weave_particles.show(particles)
+    silk = weave_silk.measure()
+    weave_silk.show(silk)
     if args.plot:
         weave_sheet.plot(particles, args.plot)
     if args.json:
-        rows = {"closed": closed, "dense": dense_results, **particles}
+        rows = {"closed": closed, "dense": dense_results, **particles, **silk}
         args.json.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
     sound = all(row["error"] < 1e-5 for row in closed)
     return 0 if sound else 1

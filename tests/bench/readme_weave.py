@@ -62,6 +62,24 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     value = f"{fuzz['files']:,}: {fuzz['refused']:,} refused, {fuzz['not_one_line']} not in one line, "
     value += f"slowest {fuzz['slowest_s']:.2f} s"
     made.append(("WIF files damaged at random", "each ≤ 1 s", value))
+    aims = {"satin": "≥ 4", "twill": "≥ 2.5"}
+    for row in found.get("gleam", ()):
+        what = f"highlight of {row['weave']}, lamp tilted by 40° across / along its floats"
+        made.append((what, aims.get(row["weave"], ""), f"{row['ratio']:.1f}"))
+    for row in found.get("damask", ()):
+        value = f"{row['across']:.2f}, {row['shade']:.2f}, {row['along']:.2f}"
+        what = f"figure / ground of {row['weave']}: lamp across the warp, upper left, along the warp"
+        made.append((what, "≥ 1.5 one way, ≤ 1.1 the other", value))
+    closed = [row for row in found.get("open", ()) if row["open"] <= 0.05]
+    if closed:
+        most = max(closed, key=lambda row: row["open"])
+        made.append(
+            (f"open, of {len(closed)} opaque weaves", "≤ .5 %", f"most {most['open']:.1%} ({most['weave']})")
+        )
+    for row in found.get("figured", ()):
+        value = f"draft {row['draft']:.1f} s, cells {row['cells']:.1f} s, maps {row['maps']:.1f} s"
+        what = f"repeat of {row['ends']:,} × {row['picks']:,} crossings, maps of 1,024², 2,048², 4,096²"
+        made.append((what, "draft ≤ 2 s, cells and maps ≤ 60 s", value))
     for row in found["density"]:
         value = f"{row['g_m2']:.1f} against {row['catalogue']:g} g/m² ({row['error']:+.1%})"
         made.append((f"areal density, {row['cloth']}", "± 5 %", value))
