@@ -114,8 +114,8 @@ def test_debug_shows_the_traceback(tmp_path):
 
 
 KEYS = {
-    "repeat", "face", "floats", "interlacings", "integral", "crimp", "thickness", "areal_density", "openness", "residual",
-    "penetration", "penetration_of", "seconds", "parameters",
+    "repeat", "face", "floats", "interlacings", "integral", "crimp", "thickness", "areal_density", "openness",
+    "residual", "penetration", "penetration_of", "seconds", "parameters",
 }  # fmt: skip
 
 
