@@ -25,7 +25,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 SUITE = (sys.executable, "-m", "pytest", "-q", "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder")
 OTHER = (sys.executable, "tests/machines.py", "--only")
-RECKONING = ("tests/sim_core", "tests/hall_app", "tests/survey", "-k", "sim_core or bake or light or analys or figure")
+RECKONING = (
+    "tests/sim_core",
+    "tests/hall_app",
+    "tests/survey",
+    "-k",
+    "sim_core or bake or light or analys or figure",
+)
 DAY = ("--", "-m", "not nightly and not browser", *RECKONING)
 # Name -> command. Browsers draw alike on every processor, so those take part on this one only.
 PARTS: dict[str, tuple[str, ...]] = {
