@@ -238,26 +238,24 @@ def _lacquer() -> dict[str, Any]:
 def _gleam(
     glb: GlbFile, material: dict[str, Any], maps: MapsLike, textures: dict[str, Any], step: int
 ) -> None:
-    """Makes the highlight narrow along the yarns, wide across; step: a figured cloth keeps every so-manieth pixel.
+    """Makes the highlight narrow along the yarns, wide across; step: a figured cloth keeps every such pixel of its map.
 
     glTF's direction is the one in which the highlight is wide.
     """
-    look = far_look(maps)
-    share = (look.across - look.along) / max(1.0 - look.along, 1e-6)
-    gleam: dict[str, Any] = {
-        "anisotropyStrength": sqrt(max(share, 0.0)),
-        "anisotropyRotation": look.angle + pi / 2,
-    }
     if isinstance(maps, FiguredMaps):
         across = maps.direction[::step, ::step].astype(float)
         run, strength = across[..., :2] / 127.5 - 1, across[..., 2:]
         turned = np.dstack([127.5 - 127.5 * run[..., 1:], 127.5 + 127.5 * run[..., :1], strength])
         tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         texture = _once(textures, "gleam", lambda: glb.texture(np.rint(turned).astype(np.uint8), tile))
-        gleam = {"anisotropyStrength": 1.0, "anisotropyTexture": texture}
-        material["pbrMetallicRoughness"]["roughnessFactor"] = float(np.mean(maps.roughness)) / 255
+        gleam: dict[str, Any] = {"anisotropyStrength": 1.0, "anisotropyTexture": texture}
+        roughness = float(np.mean(maps.roughness)) / 255
     else:
-        material["pbrMetallicRoughness"]["roughnessFactor"] = sqrt(look.along)
+        look = far_look(maps)
+        share = max((look.across - look.along) / max(1.0 - look.along, 1e-6), 0.0)
+        gleam = {"anisotropyStrength": sqrt(share), "anisotropyRotation": look.angle + pi / 2}
+        roughness = sqrt(look.along)
+    material["pbrMetallicRoughness"]["roughnessFactor"] = roughness
     material["extensions"]["KHR_materials_anisotropy"] = gleam
 
 

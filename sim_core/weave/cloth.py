@@ -275,8 +275,8 @@ def _of_cells(weave: Weave, geometry: FiguredGeometry) -> ClothParameters:
     note["thickness"] = f"{cells[0].provenance['thickness']}; of the thickest of {len(cells)} cells"
     bounds = {
         key: (
-            min(values[key], *(least for cell in cells for least in (cell.bounds[key][0],))),
-            max(values[key], *(most for cell in cells for most in (cell.bounds[key][1],))),
+            min(values[key], *(cell.bounds[key][0] for cell in cells)),
+            max(values[key], *(cell.bounds[key][1] for cell in cells)),
         )
         for key in cells[0].bounds
     }

@@ -1,21 +1,16 @@
 """Silk in a running hall: its gleam is drawn the cheap way, and a double click comes to the yarns of a figured one."""
 
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
 import pytest
 from bench.browser import enter, soon
+from bench.look_silk import dressed_hall
 from PIL import Image
-from plain_hall import write_plain_hall
 from running_hall import running_hall
-
-from sim_core.garment import Clothed, Garment, write_glb
-from sim_core.weave import Loom, Weave
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-ASSETS = Path(__file__).parents[2] / "assets"
 VIEW = {"width": 900, "height": 600}
 MATERIALS = """
 () => {
@@ -38,17 +33,7 @@ SHOWN = (150, 200, 330, 420)  # [px] of the cloth, free of panel and bars
 @pytest.fixture(scope="module")
 def hall(tmp_path_factory):
     work = tmp_path_factory.mktemp("silk")
-    content = write_plain_hall(work / "content")
-    home, loom = content / "exhibits" / "box", Loom()
-    garment = Garment.load(ASSETS / "exhibits" / "beizi" / "baked" / "garment.npz")
-    maps = loom.maps(Weave.load(ASSETS / "weaves" / "lian-duan.toml"), 512)
-    for precision in ("close", "hall"):
-        write_glb(home / f"{precision}.glb", [Clothed(garment, maps)], precision=precision)
-    toml = (home / "exhibit.toml").read_text("utf-8")
-    toml = toml.replace('hall = "box.glb"', 'hall = "hall.glb", close = "close.glb"').replace(
-        ', "turn_slowly"', ""
-    )
-    (home / "exhibit.toml").write_text(toml, "utf-8")
+    content = dressed_hall(work / "content", "silk")
     with running_hall(content, work) as hall:
         yield hall
 
@@ -103,6 +88,8 @@ def test_a_double_click_comes_to_the_yarns_bit_by_bit_and_back(page):
     page.keyboard.press("z")
     soon(page, lambda: page.evaluate("() => 'closeupNear' in document.documentElement.dataset"))
     page.keyboard.press("0")
+    soon(page, lambda: page.evaluate(DISTANCE) == pytest.approx(whole, rel=0.01))
+    page.wait_for_timeout(2000)  # until the whole is drawn: a click meets what is seen
     page.mouse.dblclick(30, 560)  # nothing of the exhibit is there
     page.wait_for_timeout(300)
     assert not page.evaluate("() => 'closeupNear' in document.documentElement.dataset")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench.weave_silk import ACROSS, ALONG, mirrored
 
 from sim_core.errors import WeaveError
 from sim_core.weave import Weave, Yarn, solve, surface_maps
@@ -12,8 +13,6 @@ from sim_core.weave.maps import highlight
 from sim_core.weave.yarns import strands
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-TILT = np.radians(40)
-ACROSS, ALONG = np.array([np.sin(TILT), 0, np.cos(TILT)]), np.array([0, np.sin(TILT), np.cos(TILT)])
 
 
 @pytest.fixture(scope="module")
@@ -67,17 +66,6 @@ def test_twist_holds_filaments_together_and_turns_them(relaxed):
     assert lean[1] > lean[0] + 10
     with pytest.raises(WeaveError, match="turns a metre"):
         Yarn(1e-4, 5e-6, twist=1e6)
-
-
-def mirrored(maps, lamp: np.ndarray, alpha: float = 0.15) -> float:
-    """Mean highlight of the normal map alone: GGX of one width, the eye above, no shadows."""
-    normal = maps.normal / 127.5 - 1
-    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-    half = lamp + [0, 0, 1]
-    half /= np.linalg.norm(half)
-    up = np.clip(normal @ half, 0, 1)
-    shine = alpha**2 / (np.pi * (up**2 * (alpha**2 - 1) + 1) ** 2)
-    return float((shine * np.clip(normal @ lamp, 0, 1)).mean())
 
 
 @pytest.mark.parametrize(("name", "least"), [("satin", 4.0), ("satin-8", 4.0), ("twill", 2.5)])

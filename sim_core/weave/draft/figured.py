@@ -101,10 +101,10 @@ class Figure:
         """The whole repeat as the loom weaves it; numbers: of `numbers`. Raises WeaveError as its structure does."""
         if self.kind == "damask":
             drafts = [draft_of_words(words) for words in self.words]
-            lift = woven(drafts[0], numbers.shape).copy()
+            lift = woven(drafts[0].lift, numbers.shape)
             for number in range(1, int(numbers.max()) + 1):
                 there = numbers == number
-                lift[there] = woven(drafts[min(number, len(drafts) - 1)], numbers.shape)[there]
+                lift[there] = woven(drafts[min(number, len(drafts) - 1)].lift, numbers.shape)[there]
             return Draft(name, limit_floats(lift, self.longest, name=name) if self.longest else lift)
         if self.kind == "leno":
             return _figured_leno(numbers, name)
@@ -120,17 +120,12 @@ class Figure:
 
     def cells(self, count: int) -> tuple[Draft, ...]:
         """A small draft that closes by itself for each number from 0 to `count` - 1."""
-        made = []
-        for number in range(count):
-            (picks, ends), (rows, columns) = self._units()
-            if self.kind in ("damask", "leno", "brocade"):
-                repeat = rows, columns
-            else:
-                repeat = 2 * picks, 2 * ends
-            if self.kind == "leno":
-                repeat = 4, 4
-            made.append(self.draft(np.full(repeat, number, np.int8), f"{self.kind} {number}").repeat())
-        return tuple(made)
+        (picks, ends), (rows, columns) = self._units()
+        repeat = (rows, columns) if self.kind == "brocade" else (rows * picks, columns * ends)
+        return tuple(
+            self.draft(np.full(repeat, number, np.int8), f"{self.kind} {number}").repeat()
+            for number in range(count)
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold and `Figure(**it)` reads back."""
@@ -155,17 +150,13 @@ def _numbers(figure: Figure, ends_per_m: float, picks_per_m: float) -> np.ndarra
 
 def _figured_leno(numbers: np.ndarray, name: str) -> Draft:
     """四经绞罗 where the motif is 0, simple gauze elsewhere: 杯文罗 has its figure in pairs on a net of four."""
-    ground, figure = four_end_gauze(), gauze(2)
-    shape = numbers.shape
-    there = numbers > 0
-    ends = np.arange(shape[1])
+    there, ends = numbers > 0, np.arange(numbers.shape[1])
 
     def spread(draft: Draft) -> tuple[np.ndarray, np.ndarray]:
-        picks, columns = np.arange(shape[0]) % draft.picks, ends % draft.ends
         assert draft.channels.order is not None
         moved = draft.channels.order - np.arange(draft.ends)
-        return draft.lift[np.ix_(picks, columns)], moved[np.ix_(picks, columns)]
+        return woven(draft.lift, numbers.shape), woven(moved, numbers.shape)
 
-    (lift, moved), (own_lift, own_moved) = spread(ground), spread(figure)
+    (lift, moved), (own_lift, own_moved) = spread(four_end_gauze()), spread(gauze(2))
     order = np.where(there, own_moved, moved) + ends
     return Draft(name, np.where(there, own_lift, lift), Channels(end_series=ends % 2, order=order))

@@ -75,14 +75,14 @@ def damask(
     check_size(name, *mask.shape)
     ground = ground or satin(5, 2)
     figure = figure or weft_faced(ground)
-    lift = np.where(mask.astype(bool), woven(figure, mask.shape), woven(ground, mask.shape))
+    lift = np.where(mask.astype(bool), woven(figure.lift, mask.shape), woven(ground.lift, mask.shape))
     return Draft(name, limit_floats(lift, longest, name=name) if longest else lift)
 
 
-def woven(draft: Draft, shape: tuple[int, int]) -> np.ndarray:
-    """The lift of a draft woven on over (picks, ends), cut off where that is no whole number of repeats."""
-    picks, ends = (np.arange(count) % own for count, own in zip(shape, draft.lift.shape, strict=True))
-    return draft.lift[np.ix_(picks, ends)]
+def woven(repeat: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """What a repeat (picks, ends) says at each crossing, woven on over `shape`, cut off where it must be."""
+    picks, ends = (np.arange(count) % own for count, own in zip(shape, repeat.shape, strict=True))
+    return repeat[np.ix_(picks, ends)]
 
 
 def limit_floats(lift: np.ndarray, longest: int, *, name: str = "draft") -> np.ndarray:

@@ -42,27 +42,21 @@ class MapsLike(Protocol):
 
 @dataclass(frozen=True)
 class FarLook:
-    """A cloth so far away that no yarn is seen. colour: (3,) linear, of what covers; cover: 0..1; along, across: alpha
-    of the highlight along the way in which it is narrow and across it; angle: [rad] of that way, from weft to warp."""
+    """The highlight of a cloth so far away that no yarn is seen. along, across: alpha along the way in which it is
+    narrow and across it; angle: [rad] of that way, from weft to warp."""
 
-    colour: tuple[float, float, float]
-    cover: float
     along: float
     across: float
     angle: float
 
 
 def far_look(maps: MapsLike) -> FarLook:
-    """How a whole tile looks from afar."""
+    """How a whole tile gleams from afar."""
     mean = averageable(maps).mean(axis=(0, 1), keepdims=True)
-    _, _, _, roughness, direction, cover = (one[0, 0] for one in composed(mean, 1.0))
+    roughness, direction = (one[0, 0] for one in composed(mean, 1.0)[3:5])
     narrow = (float(roughness) / 255) ** 2
     cosine, sine, strength = (float(v) / 255 for v in direction)
-    red, green, blue = (mean[0, 0, COLOUR] / max(float(mean[0, 0, COVER]), 1e-3)).tolist()
-    return FarLook(
-        (red, green, blue), float(cover) / 255, narrow, narrow + (1 - narrow) * strength**2,
-        atan2(2 * sine - 1, 2 * cosine - 1) % pi,
-    )  # fmt: skip
+    return FarLook(narrow, narrow + (1 - narrow) * strength**2, atan2(2 * sine - 1, 2 * cosine - 1) % pi)
 
 
 def averageable(maps: MapsLike) -> np.ndarray:

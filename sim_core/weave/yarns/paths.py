@@ -11,7 +11,7 @@ from sim_core.weave.yarns.geometry import Strands, YarnGeometry
 from sim_core.weave.yarns.leno_brocade import brocade_heights, leno_paths
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.sections import relaxed_sections
-from sim_core.weave.yarns.splines import resampled
+from sim_core.weave.yarns.splines import eased, resampled
 
 __all__ = ["main_picks", "strands"]
 
@@ -103,17 +103,8 @@ def _layered(weave: Weave, paths: tuple[np.ndarray, ...]) -> tuple[np.ndarray, .
     assert layer is not None
     wu, wz, fu, fz = paths
     if series is not None:
-        return wu, wz - BENEATH * weave.warp.height * _eased(layer.T, wz.shape[1]), fu, fz
-    return wu, wz, fu, fz - BENEATH * weave.weft.height * _eased(layer, fz.shape[1])
-
-
-def _eased(values: np.ndarray, n: int) -> np.ndarray:
-    """(lines, n) values at the crossings, eased from one to the next."""
-    t = np.arange(n // values.shape[1]) / (n // values.shape[1])
-    ease = t * t * (3 - 2 * t)
-    return (values[..., None] * (1 - ease) + np.roll(values, -1, axis=1)[..., None] * ease).reshape(
-        len(values), -1
-    )
+        return wu, wz - BENEATH * weave.warp.height * eased(layer.T, wz.shape[1]), fu, fz
+    return wu, wz, fu, fz - BENEATH * weave.weft.height * eased(layer, fz.shape[1])
 
 
 def main_picks(weave: Weave) -> np.ndarray:

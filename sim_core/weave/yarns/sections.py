@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sim_core.weave.yarns.geometry import Strands
+from sim_core.weave.yarns.splines import eased
 
 __all__ = ["relaxed_sections"]
 
@@ -44,7 +45,7 @@ def relaxed_sections(system: Strands, above: np.ndarray, neighbours: int = 2) ->
     back = np.argsort(order)
     wide = (0.5 * (left + right))[back]
     heights = half * tall / wide
-    side = _eased_signs(above, system.side.shape[1])
+    side = eased(np.where(above, 1.0, -1.0), system.side.shape[1])  # 1 on top of what it crosses, -1 beneath
     return replace(
         system,
         side=system.side + (0.5 * (right - left))[back],
@@ -113,14 +114,6 @@ def _depth_of_floats(above: np.ndarray, n: int) -> np.ndarray:
         after = np.searchsorted(lap, place, side="right")
         found[row] = np.minimum(place - lap[after - 1], lap[after] - place)
     return found
-
-
-def _eased_signs(above: np.ndarray, n: int) -> np.ndarray:
-    """(yarns, n) 1 where a yarn lies on what it crosses, -1 where beneath, eased from one crossing to the next."""
-    sign = np.where(above, 1.0, -1.0)
-    t = np.arange(n // above.shape[1]) / (n // above.shape[1])
-    ease = t * t * (3 - 2 * t)
-    return (sign[..., None] * (1 - ease) + np.roll(sign, -1, axis=1)[..., None] * ease).reshape(len(above), n)
 
 
 def _blended(values: np.ndarray, reach: float) -> np.ndarray:

@@ -1,8 +1,8 @@
-"""Yarn centre lines: the periodic cubic splines through the relaxed heights."""
+"""Yarn centre lines: the periodic cubic splines through the relaxed heights, and easing between two crossings."""
 
 import numpy as np
 
-__all__ = ["resampled", "spline_slopes"]
+__all__ = ["eased", "resampled", "spline_slopes"]
 
 
 def spline_slopes(height: np.ndarray) -> np.ndarray:
@@ -22,3 +22,12 @@ def resampled(height: np.ndarray, per: int) -> np.ndarray:
         + slope[..., None] * t * (1 - t) ** 2 - slope_after[..., None] * t * t * (1 - t)
     )  # fmt: skip
     return np.ascontiguousarray(z.reshape(len(height), -1))
+
+
+def eased(values: np.ndarray, n: int) -> np.ndarray:
+    """(lines, n) values at the crossings, eased from one to the next round the repeat."""
+    t = np.arange(n // values.shape[1]) / (n // values.shape[1])
+    ease = t * t * (3 - 2 * t)
+    return (values[..., None] * (1 - ease) + np.roll(values, -1, axis=1)[..., None] * ease).reshape(
+        len(values), -1
+    )
