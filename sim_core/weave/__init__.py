@@ -8,10 +8,9 @@ drafts of other programs, `chart` draws drafts for weavers, `summary` and `comma
 from sim_core.errors import WeaveError
 from sim_core.weave.cloth import (
     ClothParameters,
-    cloth_parameters,
+    examined,
     measured,
     parameters_of,
-    tensile_compliance,
 )
 from sim_core.weave.draft import Channels, Draft, plain, satin, twill
 from sim_core.weave.loom import Loom
@@ -32,7 +31,7 @@ __all__ = [
     "WeaveError",
     "Yarn",
     "YarnGeometry",
-    "cloth_parameters",
+    "examined",
     "draft_to_dict",
     "facts_of",
     "lit_cloth",
@@ -45,6 +44,5 @@ __all__ = [
     "solve",
     "summary_of",
     "surface_maps",
-    "tensile_compliance",
     "twill",
 ]

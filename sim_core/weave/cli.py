@@ -21,7 +21,7 @@ from sim_core.weave.maps.figured_maps import FiguredMaps, drawn_maps
 from sim_core.weave.maps.surface import SurfaceMaps, lit_cloth
 from sim_core.weave.maps.tubes import write_yarns
 from sim_core.weave.model import Weave
-from sim_core.weave.summary import facts_of, summary_of, summary_text
+from sim_core.weave.summary import beside_published, facts_of, summary_of, summary_text
 from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import (
     MOST_STEPS,
@@ -67,6 +67,10 @@ Leno and compound weaves stay at stage A, and so do figures of more than 250,000
 in minutes, which a note in the summary says. Large drafts are relaxed only for --relax, --maps or --yarns; where that
 cannot be done, the summary is printed all the same, one line says why, and the exit status is 1.
 A bare draft is woven of an assumed silk, which the summary says.
+
+The cloth is then tested as the instruments of Kawabata's evaluation system (KES) do it, in SI units and theirs: pressed
+between plates (T0, TM), bent (B, 2HB), sheared (G, 2HG), pulled (EMT, LT, WT, RT), and what a weave file says that
+others published of such a cloth is told beside; beyond 4,096 crossings without.
 
 Written on demand:
   --maps DIR    albedo normal height roughness direction opacity yarn lit .png, tileable, and parameters.json; of a
@@ -125,6 +129,8 @@ def run(args: argparse.Namespace) -> int:
     cloth, failed = _cloth(args, source)
     if cloth is not None:
         summary |= cloth.summary
+        if source.made is not None and source.wif is None:
+            summary |= beside_published(cloth.summary, source.published)
     elif failed:
         summary["note"] = f"not relaxed: {failed}"
     if args.wif:

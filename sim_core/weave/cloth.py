@@ -4,13 +4,14 @@ Each parameter carries its formula; what the model cannot settle is a band.
 """
 
 from dataclasses import asdict, dataclass, field, replace
-from math import radians, sqrt
+from math import sqrt
+from typing import Any
 
 import numpy as np
 
 from sim_core.weave.draft.draft import plain
+from sim_core.weave.instruments import Laboratory, Reading, mean_reading
 from sim_core.weave.model import Weave
-from sim_core.weave.yarn import Yarn
 from sim_core.weave.yarns.beams import relax
 from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
@@ -18,32 +19,26 @@ from sim_core.weave.yarns.paths import strands
 from sim_core.weave.yarns.shifts import MANY
 from sim_core.weave.yarns.solver import ground_of
 
-__all__ = [
-    "ClothParameters",
-    "areal_density",
-    "cloth_parameters",
-    "measured",
-    "parameters_of",
-    "tensile_compliance",
-]
+__all__ = ["ClothParameters", "KesReadings", "examined", "measured", "parameters_of"]
 
-SHEAR_ANGLE = radians(8)  # the angle to which the cell is sheared for the secant modulus
-YARN_FRICTION = 0.25  # between crossing silk yarns, assumption
-PROBE = 1e-3  # tension of the probe: strains stay near this
-PROBE_MANY = 2e-3  # where heights are known to 1e-6 only
+KesReadings = dict[str, dict[str, Any]]  # test -> reading by name, or side -> reading by name
+MOST_TESTED = 4_096  # crossings of a repeat that is pulled to 500 gf/cm: seconds
+BANDS = "; band: what is assumed of finish and fibre, varied one at a time"
 PROVENANCE = {
     "density": "sum over warp and weft of yarns per metre x linear density x (1 + crimp of the relaxed yarn)",
-    "thickness": "highest minus lowest point of the flattened yarns in the relaxed repeat",
-    "stretch_warp": "uniaxial: 1 / (crimp straightened per tension, by finite difference on the relaxed repeat, "
-    "+ 1 / (EA x ends per metre)); EA = fibre modulus x linear density / fibre density; bounds: yarns of "
-    "free fibres, of fibres stuck to one rod",
+    "thickness": "between plates at .5 gf/cm2 (KES-FB3): highest minus lowest point of the relaxed yarns, less what "
+    "the plates take off beams that kept .9 of their crimp" + BANDS,
+    "stretch_warp": "uniaxial, slope at rest: crimp that straightens, and EA x ends per metre in series"
+    + BANDS,
     "stretch_weft": "as stretch_warp, for the picks",
     "poisson": "crimp interchange: -S12 / sqrt(S11 S22) of the symmetric compliance of the relaxed repeat, "
     "not below 0 (long floats can turn its sign)",
-    "shear": "secant at 8 degrees: friction torque of the crossings (mean crossing force x 0.25 (assumed) x a third "
-    "of the yarn width) per cell, at most the stuck frame 12 / (p1 p2 (p2/EI1 + p1/EI2))",
+    "shear": "secant at 8 degrees as KES-FB1 shears, without what its pull adds: friction of the crossings (mean "
+    "crossing force of set yarns x 0.25 (assumed) x mean arm of the patch) per cell, at most the frame of "
+    "yarns that bend between held crossings" + BANDS,
     "bend": "geometric mean of bend_warp and bend_weft",
-    "bend_warp": "EI of the yarn x ends per metre / (1 + crimp); bounds: free fibres, fibres stuck to one rod",
+    "bend_warp": "B of KES-FB2: slope of the loop from .5 to 1.5 /cm, filaments free between crossings and held "
+    "where pressed until they slide, x ends per metre / (1 + crimp)" + BANDS,
     "bend_weft": "as bend_warp, for the picks",
     "friction": "stated in the weave file (an assumption there unless it names a source)",
 }
@@ -76,125 +71,6 @@ class ClothParameters:
         return asdict(self)
 
 
-def cloth_parameters(weave: Weave, geometry: YarnGeometry) -> ClothParameters:
-    """Homogenised parameters of a cloth for a solver; `provenance` tells the formula of each.
-
-    Yarn level values, so the tensile stiffness is that of yarns whose crimp straightens: a cloth solver may have to
-    soften it for its time step, and should say so.
-    """
-    compliance = tensile_compliance(weave, geometry)
-    shear, shear_bounds = _shear(weave, geometry)
-    warp_bounds, weft_bounds = _bending_bounds(weave, geometry)
-    bend_warp = weave.warp.stiffness * weave.ends_per_m / (1 + float(geometry.warp_crimp.mean()))
-    bend_weft = weave.weft.stiffness * weave.picks_per_m / (1 + float(geometry.weft_crimp.mean()))
-    return ClothParameters(
-        density=areal_density(weave, geometry),
-        thickness=_thickness(weave, geometry),
-        stretch_warp=1 / compliance[0, 0],
-        stretch_weft=1 / compliance[1, 1],
-        shear=shear,
-        poisson=float(np.clip(-compliance[0, 1] / sqrt(compliance[0, 0] * compliance[1, 1]), 0.0, 1.0)),
-        bend=sqrt(bend_warp * bend_weft),
-        friction=weave.friction,
-        bend_warp=bend_warp,
-        bend_weft=bend_weft,
-        bounds={
-            "shear": shear_bounds,
-            "bend_warp": warp_bounds,
-            "bend_weft": weft_bounds,
-            "stretch_warp": _stretch_bounds(weave, compliance[0, 0], weave.warp, weave.ends_per_m),
-            "stretch_weft": _stretch_bounds(weave, compliance[1, 1], weave.weft, weave.picks_per_m),
-        },
-        provenance=PROVENANCE,
-    )
-
-
-def areal_density(weave: Weave, geometry: YarnGeometry) -> float:
-    """Weight [kg/m2]: yarns per metre times their linear density times (1 + crimp), warp and weft together."""
-    warp = weave.ends_per_m * weave.warp.tex * (1 + float(geometry.warp_crimp.mean()))
-    weft = weave.picks_per_m * weave.weft.tex * (1 + float(geometry.weft_crimp.mean()))
-    return warp + weft
-
-
-def _thickness(weave: Weave, geometry: YarnGeometry) -> float:
-    top = max(
-        geometry.warp_height.max() + weave.warp.height / 2, geometry.weft_height.max() + weave.weft.height / 2
-    )
-    bottom = min(
-        geometry.warp_height.min() - weave.warp.height / 2, geometry.weft_height.min() - weave.weft.height / 2
-    )
-    return float(top - bottom)
-
-
-def tensile_compliance(weave: Weave, rest: YarnGeometry | None = None) -> np.ndarray:
-    """Strains per tension [m/N], (2, 2) symmetric, [0, 0] warp, [1, 1] weft, [0, 1] crimp interchange (negative).
-
-    A small tension is put on one yarn system, the heights are relaxed again, and the change of crimp is the strain
-    (the yarn keeps its length); the axial stretch of the straight yarn is added. Above 10,000 crossings the tension
-    is only pulled, not pushed (the long waves of a large repeat would buckle), from stage A at rest, `rest`.
-    """
-    # tension per yarn at which straightening yields strains of about PROBE
-    many = weave.draft.lift.size > MANY
-    size = PROBE_MANY if many else PROBE
-    warp_probe = size * weave.warp.stiffness / weave.pick_spacing**2
-    weft_probe = size * weave.weft.stiffness / weave.end_spacing**2
-    probes = (warp_probe, 0.0), (0.0, weft_probe)
-    yarns = weave.ends_per_m, weave.picks_per_m
-    axial = weave.warp.axial, weave.weft.axial
-    columns = []
-    if many and rest is None:
-        rest = relax(weave)
-    for k in range(2):
-        if many and rest is not None:
-            pulled = _crimps(relax(weave, tension=probes[k], start=rest))
-            slack, span = _crimps(rest), probes[k][k]
-        else:
-            pulled = _crimps(relax(weave, tension=probes[k], tolerance=1e-11))
-            slack = _crimps(relax(weave, tension=(-probes[k][0], -probes[k][1]), tolerance=1e-11))
-            span = 2 * probes[k][k]
-        strain = -(pulled - slack) / (span * yarns[k])
-        strain[k] += 1 / (axial[k] * yarns[k])
-        columns.append(strain)
-    matrix = np.column_stack(columns)
-    return (matrix + matrix.T) / 2
-
-
-def _crimps(geometry: YarnGeometry) -> np.ndarray:
-    return np.array([geometry.warp_crimp.mean(), geometry.weft_crimp.mean()])
-
-
-def _shear(weave: Weave, geometry: YarnGeometry) -> tuple[float, tuple[float, float]]:
-    """Secant shear modulus [N/m] at 8 degrees between slipping and stuck crossings, and those two bounds."""
-    p1, p2 = weave.end_spacing, weave.pick_spacing
-    stuck = 12 / (p1 * p2 * (p2 / weave.warp.stiffness + p1 / weave.weft.stiffness))
-    radius = sqrt(weave.warp.width * weave.weft.width) / 3  # mean lever of a round contact patch
-    torque = YARN_FRICTION * float(geometry.force.mean()) * radius
-    slipping = torque / (p1 * p2 * SHEAR_ANGLE)
-    return min(stuck, slipping), (min(stuck, slipping), stuck)
-
-
-def _stretch_bounds(weave: Weave, compliance: float, yarn: Yarn, count: float) -> tuple[float, float]:
-    """Tensile stiffness [N/m] with free and with stuck fibres in both yarns: the crimp's compliance goes as 1 / EI."""
-    own = weave.warp.stiffness * weave.weft.stiffness
-    free = sqrt(weave.warp.stiffness_free * weave.weft.stiffness_free / own)
-    stuck = sqrt(weave.warp.stiffness_stuck * weave.weft.stiffness_stuck / own)
-    axial = 1 / (yarn.axial * count)
-    crimp = max(compliance - axial, 0.0)
-    return float(1 / (axial + crimp / min(free, 1.0))), float(1 / (axial + crimp / max(stuck, 1.0)))
-
-
-def _bending_bounds(weave: Weave, geometry: YarnGeometry) -> list[tuple[float, float]]:
-    """Bending stiffness [N m] with free and with stuck fibres, for warp and weft."""
-    bounds = []
-    for yarn, count, crimp in (
-        (weave.warp, weave.ends_per_m, geometry.warp_crimp),
-        (weave.weft, weave.picks_per_m, geometry.weft_crimp),
-    ):
-        share = count / (1 + float(crimp.mean()))
-        bounds.append((yarn.stiffness_free * share, yarn.stiffness_stuck * share))
-    return bounds
-
-
 def measured(weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry) -> dict[str, float]:
     """Crimp, thickness [m] and areal density [kg/m2] of the relaxed repeat, all yarns and only where they are.
 
@@ -224,62 +100,171 @@ def measured(weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeomet
 
 
 def parameters_of(weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry) -> ClothParameters:
-    """Parameters of a relaxed cloth for `cloth.Material.of`: density and thickness of the cell that is given, stiffness
-    from stage A of the ground.
+    """Parameters of a relaxed cloth for `cloth.Material.of`: density of the cell that is given, thickness of it between
+    plates, stiffness as the instruments find it on stage A of the ground.
 
-    What the model cannot settle is a band in `bounds`: bending between free and stuck fibres, shear between slipping
-    and stuck crossings. The ends of a leno or compound weave are counted as if each had its own place. A figured cloth
-    has the means of its cells by their area, in bands that hold those of all cells.
+    What the model cannot settle is a band in `bounds`. Yarn level values, so the tensile stiffness is that of yarns
+    whose crimp straightens: a cloth solver may have to soften it for its time step, and should say so. The ends of a
+    leno or compound weave are counted as if each had its own place. A figured cloth has the means of its cells by
+    their area, and of the ends of their bands; beyond 10,000 crossings nothing is varied and nothing pressed.
+    """
+    return examined(weave, geometry, tests=False)[0]
+
+
+def examined(
+    weave: Weave, geometry: YarnGeometry | ParticleCell | FiguredGeometry, *, tests: bool = True
+) -> tuple[ClothParameters, KesReadings]:
+    """`parameters_of`, and what the instruments of Kawabata's evaluation system read on the cloth.
+
+    `compression` T0, TM [m]; `bending` of warp and weft, B [N m] and 2HB [N]; `shear` G [N/m per rad], 2HG and 2HG5
+    [N/m]; `tensile` of warp and weft, EMT, LT, WT [J/m2], RT. Of a figured cloth means of its cells by area, the
+    thickness that of the thickest. No readings without `tests` or beyond 4,096 crossings, whose pull takes minutes.
     """
     if isinstance(geometry, FiguredGeometry):
-        return _of_cells(weave, geometry)
-    channels = weave.draft.channels
-    ground = replace(ground_of(weave), extra=None)
-    if channels.order is not None or channels.layer is not None:
-        ground = _stand_in(weave)
-    if ground.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and ground.draft is weave.draft:
-        base = geometry
-    else:
-        base = relax(ground, share=64 if channels.layer is not None else 1)
-    made = cloth_parameters(ground, base)
-    size = measured(weave, geometry)
-    note = dict(made.provenance)
-    if channels.order is not None or channels.layer is not None:
+        cells = [
+            examined(cell, rest, tests=tests) for cell, rest in zip(weave.cells, geometry.cells, strict=True)
+        ]
+        readings = [read for _, read in cells]
+        together = _mean_readings(readings, geometry.shares) if all(readings) else {}
+        return _of_cells([parameters for parameters, _ in cells], geometry.shares), together
+    ground, base = _ground(weave, geometry)
+    laboratory, height = Laboratory(ground, base, vary=base.force.size <= MANY), measured(weave, geometry)
+    parameters = _parameters(weave, geometry, laboratory, height)
+    if not tests or base.force.size > MOST_TESTED:
+        return parameters, {}
+    return parameters, {
+        "compression": _pressed(laboratory, height["thickness"]),
+        "bending": laboratory.bending,
+        "shear": {name: laboratory.shear[name] for name in ("G", "2HG", "2HG5")},
+        "tensile": laboratory.tensile,
+    }
+
+
+def _parameters(
+    weave: Weave, geometry: YarnGeometry | ParticleCell, laboratory: Laboratory, size: dict[str, float]
+) -> ClothParameters:
+    """size: of `measured`."""
+    compliance, compliances = laboratory.compliance
+    shear, warp, weft = (
+        laboratory.shear["secant"],
+        *(laboratory.bending[side]["B"] for side in ("warp", "weft")),
+    )
+    note = dict(PROVENANCE)
+    if _held_apart(weave):
         for key in ("stretch_warp", "stretch_weft", "shear", "poisson", "bend_warp", "bend_weft", "bend"):
             note[key] += (
                 "; of a plain weave with the same yarns and sett in place of the leno or compound weave"
             )
     stage = "the relaxed particles" if isinstance(geometry, ParticleCell) else "the relaxed beams"
     note["density"] += f"; yarn paths of {stage}"
-    return replace(made, density=size["areal_density"], thickness=size["thickness"], provenance=note)
+    if laboratory.own.rest.force.size > MANY:
+        note["thickness"] = "highest minus lowest point of the relaxed yarns"
+        thickness = Reading("T0", size["thickness"], (size["thickness"], size["thickness"]))
+    else:
+        thickness = _pressed(laboratory, size["thickness"])["T0"]
+    return ClothParameters(
+        density=size["areal_density"],
+        thickness=thickness.value,
+        stretch_warp=1 / compliance[0, 0],
+        stretch_weft=1 / compliance[1, 1],
+        shear=shear.value,
+        poisson=float(np.clip(-compliance[0, 1] / sqrt(compliance[0, 0] * compliance[1, 1]), 0.0, 1.0)),
+        bend=sqrt(warp.value * weft.value),
+        friction=weave.friction,
+        bend_warp=warp.value,
+        bend_weft=weft.value,
+        bounds={
+            "thickness": thickness.band,
+            "shear": shear.band,
+            "bend_warp": warp.band,
+            "bend_weft": weft.band,
+            "stretch_warp": _stiffest([compliance, *compliances], 0),
+            "stretch_weft": _stiffest([compliance, *compliances], 1),
+        },
+        provenance=note,
+    )
 
 
-def _of_cells(weave: Weave, geometry: FiguredGeometry) -> ClothParameters:
-    """Cells side by side: stiffness and weight as much of each as its share of the area."""
-    cells = [parameters_of(cell, rest) for cell, rest in zip(weave.cells, geometry.cells, strict=True)]
+def _ground(weave: Weave, geometry: YarnGeometry | ParticleCell) -> tuple[Weave, YarnGeometry]:
+    """The simple cloth whose stiffness is taken for the weave's, and its stage A."""
+    ground = replace(ground_of(weave), extra=None)
+    if _held_apart(weave):
+        ground = _stand_in(weave)
+    if ground.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and ground.draft is weave.draft:
+        return ground, geometry
+    return ground, relax(ground, share=64 if weave.draft.channels.layer is not None else 1)
+
+
+def _held_apart(weave: Weave) -> bool:
+    """Whether ends change places or several yarns share one."""
+    channels = weave.draft.channels
+    return channels.order is not None or channels.layer is not None
+
+
+def _pressed(laboratory: Laboratory, thickness: float) -> dict[str, Reading]:
+    """T0 and TM of a cloth that is `thickness` [m] from its highest to its lowest point: less by what the plates take
+    off the ground's beams, or where these are not its own, by the same share."""
+    read = laboratory.thickness
+    scale = thickness / read["free"].value
+    return {
+        name: Reading(
+            name, scale * read[name].value, (scale * read[name].band[0], scale * read[name].band[1])
+        )
+        for name in ("T0", "TM")
+    }
+
+
+def _stiffest(compliances: list[np.ndarray], side: int) -> tuple[float, float]:
+    found = [1 / float(one[side, side]) for one in compliances]
+    return min(found), max(found)
+
+
+def _mean_readings(cells: list[KesReadings], shares: tuple[float, ...]) -> KesReadings:
+    """Cells side by side; plates rest on the thickest."""
+
+    def together(parts: list[dict]) -> dict:
+        return {
+            name: together([part[name] for part in parts])
+            if isinstance(value, dict)
+            else mean_reading([part[name] for part in parts], list(shares))
+            for name, value in parts[0].items()
+        }
+
+    made = together([dict(cell) for cell in cells])
+    for name in made["compression"]:
+        made["compression"][name] = max(
+            (cell["compression"][name] for cell in cells), key=lambda one: one.value
+        )
+    return made
+
+
+def _of_cells(cells: list[ClothParameters], shares: tuple[float, ...]) -> ClothParameters:
+    """Cells side by side: of stiffness and weight the means by area, and so of the ends of the bands."""
     told = [cell.to_dict() for cell in cells]
-    shares = ", ".join(f"{share:.0%}" for share in geometry.shares)
+    percent = ", ".join(f"{share:.0%}" for share in shares)
     values = {
-        key: float(np.dot(geometry.shares, [one[key] for one in told]))
+        key: float(np.dot(shares, [one[key] for one in told]))
         for key, value in told[0].items()
         if isinstance(value, float)
     }
+    thickest = max(cells, key=lambda cell: cell.thickness)
     values |= {
-        "thickness": max(cell.thickness for cell in cells),
+        "thickness": thickest.thickness,
         "bend": sqrt(values["bend_warp"] * values["bend_weft"]),
     }
     note = {
-        key: f"{text}; mean of {len(cells)} cells by area ({shares})"
+        key: f"{text}; mean of {len(cells)} cells by area ({percent})"
         for key, text in cells[0].provenance.items()
     }
     note["thickness"] = f"{cells[0].provenance['thickness']}; of the thickest of {len(cells)} cells"
     bounds = {
         key: (
-            min(values[key], *(cell.bounds[key][0] for cell in cells)),
-            max(values[key], *(cell.bounds[key][1] for cell in cells)),
+            float(np.dot(shares, [cell.bounds[key][0] for cell in cells])),
+            float(np.dot(shares, [cell.bounds[key][1] for cell in cells])),
         )
         for key in cells[0].bounds
     }
+    bounds["thickness"] = thickest.bounds["thickness"]
     return ClothParameters(**values, bounds=bounds, provenance=note)
 
 

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim_core.weave.cloth import ClothParameters, measured, parameters_of
+from sim_core.weave.cloth import ClothParameters, KesReadings, examined, measured
 from sim_core.weave.draft.factors import Factors
 from sim_core.weave.files.sources import Source
 from sim_core.weave.files.wif.sections import listed
+from sim_core.weave.instruments import Reading
 from sim_core.weave.maps.figured_maps import drawn_maps
 from sim_core.weave.model import Weave
+from sim_core.weave.weave_file import Published
 from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.solver import solve
 
-__all__ = ["facts_of", "summary_of", "summary_text"]
+__all__ = ["beside_published", "facts_of", "summary_of", "summary_text"]
 
 OPENNESS_PIXELS = 256  # of the map that tells how much of a cloth is open
+NO_SOURCE = "no source"
+KES_KEYS = {"bending": "B", "shear": "G", "tensile": "EMT"}
 MOST_SHOWN = 65_536  # crossings of a drawdown told in full
 UNITS = {
     "density": "kg/m2",
@@ -95,9 +99,11 @@ def summary_of(
 
     seconds: that the relaxation took.  origin: of yarns and sett.  Of a figured cloth also `cells`: the share of the
     area, the weave and the summary of each; what is told of the whole is their mean, or the worst of them.
+    `thickness` is that between plates at .5 gf/cm2, `height` from the highest to the lowest point without them;
+    `compression`, `bending`, `shear`, `tensile` are readings of the instruments, missing beyond 4,096 crossings.
     """
     size = measured(weave, geometry)
-    parameters = parameters_of(weave, geometry)
+    parameters, tests = examined(weave, geometry)
     if isinstance(geometry, FiguredGeometry):
         cells = [
             {
@@ -124,14 +130,48 @@ def summary_of(
         take_up, covered, cells = _take_up(weave, geometry), _covered(weave, geometry), []
     return {
         "crimp": {"warp": size["crimp_warp"], "weft": size["crimp_weft"]},
-        "thickness": size["thickness"],
+        "thickness": parameters.thickness,
+        "height": size["thickness"],
         "areal_density": size["areal_density"],
         "openness": 1.0 - float(drawn_maps(weave, geometry, pixels=OPENNESS_PIXELS).opacity.mean()) / 255,
         **whole,
         "penetration_of": covered,
         "seconds": seconds,
+        **told(tests),
         "parameters": {**_entries(parameters), **take_up, "yarns_from": origin},
         **({"cells": cells} if cells else {}),
+    }
+
+
+def beside_published(summary: dict, published: Published | None) -> dict:
+    """`published`: of each value what a source tells, with ours and how far it lies from the nearest that is told, as a
+    share of that; or "no source"."""
+    given = published.values() if published else dict.fromkeys(Published.model_fields.keys() - {"source"})
+    found: dict = {"source": published.source} if published else {}
+    for name in ("areal_density", "openness", "thickness", "bending", "shear", "tensile"):
+        value, ours = given[name], _ours(summary, name)
+        if value is None or ours is None:
+            found[name] = NO_SOURCE
+            continue
+        least, most = value if isinstance(value, list) else (value, value)
+        nearest = min(max(ours, least), most)
+        found[name] = {"value": value, "ours": ours, "off": ours / nearest - 1}
+    return {"published": found}
+
+
+def _ours(summary: dict, name: str) -> float | None:
+    """The value that a source's is held against; of bending and tensile the mean of warp and weft."""
+    value = summary.get(name)
+    if not isinstance(value, dict):
+        return value
+    readings = [side[KES_KEYS[name]] for side in dict(_sides(value)).values()]
+    return sum(one["value"] for one in readings) / len(readings)
+
+
+def told(tests: KesReadings) -> dict:
+    """Readings as JSON holds them, in SI units and in those of KES."""
+    return {
+        name: value.to_dict() if isinstance(value, Reading) else told(value) for name, value in tests.items()
     }
 
 
@@ -200,6 +240,7 @@ def summary_text(name: str, summary: dict) -> str:
             band = entry.get("band")
             between = f"   between {band[0]:.3g} and {band[1]:.3g}" if band else ""
             lines.append(f"  {key:<13}{entry['value']:10.3g} {entry['unit']}{between}")
+    lines += _test_lines(summary) + _published_lines(summary.get("published"))
     for number, cell in enumerate(summary.get("cells", ())):
         repeat, crimp = cell["repeat"], cell["crimp"]
         lines.append(
@@ -213,6 +254,43 @@ def summary_text(name: str, summary: dict) -> str:
         drawn = summary["drawn"]
         lines.append(f"  drawn: {listed(drawn) if len(drawn) < 5 else f'{drawn[0]} to {drawn[-1]}'}")
     return "\n".join(lines)
+
+
+def _test_lines(summary: dict) -> list[str]:
+    """What the instruments read, in KES units, a line a test."""
+
+    def row(readings: dict) -> str:
+        return ", ".join(
+            f"{name} {one['kes']:.3g}" + (f" {one['kes_unit']}" if one["kes_unit"] != "1" else "")
+            for name, one in readings.items()
+        )
+
+    lines = []
+    for test in ("compression", "bending", "shear", "tensile"):
+        for side, readings in _sides(summary.get(test)):
+            lines.append(f"  KES {test:<12}{side:<5}{row(readings)}")
+    return lines
+
+
+def _published_lines(published: dict | None) -> list[str]:
+    """What is published of such a cloth beside ours, and of what nothing was found."""
+    if published is None:
+        return []
+    lines = [f"  published: {published['source']}"] if "source" in published else []
+    for name, found in published.items():
+        if isinstance(found, dict):
+            value = found["value"]
+            between = " to ".join(f"{one:.3g}" for one in (value if isinstance(value, list) else [value]))
+            here = f"{found['ours']:.3g} here ({found['off']:+.0%})"
+            lines.append(f"  {name.replace('_', ' '):<15}{between} published, {here}")
+    lacking = [name.replace("_", " ") for name, found in published.items() if found == NO_SOURCE]
+    return [*lines, f"  no source of {listed(lacking, len(lacking))}"] if lacking else lines
+
+
+def _sides(test: dict | None) -> list[tuple[str, dict]]:
+    if not test:
+        return []
+    return list(test.items()) if "warp" in test else [("", test)]
 
 
 def _draft_lines(summary: dict) -> list[str]:

@@ -14,7 +14,7 @@ from sim_core.weave.draft.figured import Figure, FigureKind
 from sim_core.weave.draft.motifs import program_of
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 
-__all__ = ["read_weave_file"]
+__all__ = ["Published", "read_published", "read_weave_file"]
 
 
 Colour = Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")]
@@ -211,6 +211,29 @@ class _Title(_Part):
     en: str
 
 
+_Above0 = Annotated[float, Field(gt=0)]
+_Told = _Above0 | Annotated[list[_Above0], Field(min_length=2, max_length=2)] | None
+
+
+class Published(_Part):
+    """What a source tells of a cloth of this kind: a number or the least and the most; None: nothing.
+
+    areal_density [kg/m2], openness, thickness [m], bending: B [N m], shear: G [N/m per rad], tensile: EMT.
+    """
+
+    source: str
+    areal_density: _Told = None
+    openness: _Told = None
+    thickness: _Told = None
+    bending: _Told = None
+    shear: _Told = None
+    tensile: _Told = None
+
+    def values(self) -> dict[str, float | list[float] | None]:
+        """All but the source."""
+        return self.model_dump(exclude={"source"})
+
+
 class _WeaveFile(_Part):
     name: str
     title: _Title | None = None
@@ -218,6 +241,7 @@ class _WeaveFile(_Part):
     picks_per_m: float
     friction: float = 0.3
     source: str | None = None
+    published: Published | None = None
     sheer: bool | None = None  # False: an opaque cloth, whose yarns have to touch
     draft: Annotated[
         _Plain | _Twill | _Satin | _Damask | _Leno | _Compound | _Tapestry | _Brocade | _Lift,
@@ -235,13 +259,27 @@ def read_weave_file(path: Path) -> dict[str, Any]:
 
     Raises FileProblem (cannot be read) or WeaveError (file: key: what – remedy).
     """
-    values = read_toml(path, "a weave file (TOML), such as those in assets/weaves")
+    file = _checked(path)
     try:
-        return _values(_WeaveFile.model_validate(values), path.parent)
-    except ValidationError as error:
-        raise WeaveError(f"{path}: {_first(error)}") from error
+        return _values(file, path.parent)
     except SimCoreError as error:
         raise WeaveError(f"{path}: {error}") from error
+
+
+def read_published(path: Path) -> Published | None:
+    """What a weave file says that others measured on such a cloth; None where it says nothing.
+
+    Raises as `read_weave_file` does.
+    """
+    return _checked(path).published
+
+
+def _checked(path: Path) -> _WeaveFile:
+    values = read_toml(path, "a weave file (TOML), such as those in assets/weaves")
+    try:
+        return _WeaveFile.model_validate(values)
+    except ValidationError as error:
+        raise WeaveError(f"{path}: {_first(error)}") from error
 
 
 def _values(file: _WeaveFile, folder: Path) -> dict[str, Any]:

@@ -114,8 +114,9 @@ def test_debug_shows_the_traceback(tmp_path):
 
 
 KEYS = {
-    "repeat", "face", "floats", "interlacings", "integral", "crimp", "thickness", "areal_density", "openness",
-    "residual", "penetration", "penetration_of", "seconds", "parameters",
+    "repeat", "face", "floats", "interlacings", "integral", "crimp", "thickness", "height", "areal_density",
+    "openness", "residual", "penetration", "penetration_of", "seconds", "parameters",
+    "compression", "bending", "shear", "tensile", "published",
 }  # fmt: skip
 
 
@@ -151,10 +152,29 @@ def test_weave_writes_maps_yarns_wif_and_summary(tmp_path, capsys, relax):
     for name in ("albedo", "normal", "height", "roughness", "direction", "opacity", "yarn", "lit"):
         assert np.asarray(Image.open(maps / f"{name}.png")).shape[:2] == (64, 64)
     scene = trimesh.load(yarns)
-    assert scene.extents[2] == pytest.approx(summary["thickness"], rel=0.02)
+    assert scene.extents[2] == pytest.approx(summary["height"], rel=0.02)
     assert cli.main(["weave", str(wif), "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["floats"] == summary["floats"]
+
+
+def test_weave_tells_what_is_published_beside_what_it_reckons(tmp_path, capsys):
+    """Inside the range that a source tells nothing is off; what it does not tell has no source."""
+    text = (REPO / "assets/weaves/gauze.toml").read_text("utf-8")
+    table = '[published]\nsource = "a bolt"\nareal_density = [0.010, 0.0154]\nopenness = 0.9\n\n[draft]'
+    (tmp_path / "gauze.toml").write_text(text.replace("[draft]", table), "utf-8")
+    assert cli.main(["weave", str(tmp_path / "gauze.toml"), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    told = summary["published"]
+    assert told["source"] == "a bolt"
+    assert told["areal_density"] == {"value": [0.01, 0.0154], "ours": summary["areal_density"], "off": 0.0}
+    assert told["openness"]["off"] == pytest.approx(summary["openness"] / 0.9 - 1)
+    assert {told[name] for name in ("thickness", "bending", "shear", "tensile")} == {"no source"}
+    assert cli.main(["weave", str(tmp_path / "gauze.toml")]) == 0
+    out = capsys.readouterr().out
+    assert "0.01 to 0.0154 published" in out
+    assert "no source of thickness, bending, shear, tensile" in out
+    assert "gf/(cm deg)" in out
 
 
 def test_weave_takes_a_picture_of_a_motif_and_our_json(tmp_path, capsys):

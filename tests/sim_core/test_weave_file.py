@@ -53,6 +53,8 @@ MISTAKES = {
     "satin 8: step 2": GAUZE.replace('kind = "plain"', 'kind = "satin"\nends = 8\nstep = 2'),
     "warp: yarn: diameter": GAUZE.replace("diameter = 45e-6", "diameter = 4.5e-6", 1),
     "flattening": GAUZE.replace("flattening = 1.25 ", "flattening = 0.5 ", 1),
+    "published.source: missing": GAUZE.replace("[draft]", "[published]\nareal_density = 0.0154\n\n[draft]"),
+    "published.openness": GAUZE.replace("[draft]", '[published]\nsource = "x"\nopenness = [0.5]\n\n[draft]'),
     "rows differ": GAUZE.replace('kind = "plain"', 'kind = "lift"\nlift = ["10", "010"]'),
 }
 

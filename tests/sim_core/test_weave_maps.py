@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import ClothParameters, Weave, cloth_parameters, relax, surface_maps
+from sim_core.weave import ClothParameters, Weave, parameters_of, relax, surface_maps
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 # leno, compound and brocade: test_weave_surface.py; figured ones: test_weave_figured.py
@@ -83,7 +83,7 @@ def test_geometry_of_another_draft_is_refused():
 
 
 def test_parameters_are_positive_bounded_and_explained(cloth):
-    parameters = cloth_parameters(*cloth)
+    parameters = parameters_of(*cloth)
     values = parameters.to_dict()
     numbers = [f.name for f in fields(ClothParameters) if f.name not in ("bounds", "provenance")]
     assert all(np.isfinite(values[name]) and values[name] > 0 for name in numbers)
@@ -95,15 +95,17 @@ def test_parameters_are_positive_bounded_and_explained(cloth):
 
 def test_orders_of_magnitude_of_gauze():
     """Plain silk gauze weighs 12 to 18 g/m2 (49 g for a robe of some 2.6 m2 and its bands)."""
-    parameters = cloth_parameters(load("gauze"), relax(load("gauze")))
+    parameters = parameters_of(load("gauze"), relax(load("gauze")))
     assert 0.012 <= parameters.density <= 0.018
     assert 3e-7 <= parameters.bend <= 1e-5
     assert 60e-6 <= parameters.thickness <= 150e-6
-    assert 1 <= parameters.shear <= 200
+    assert (
+        0.1 <= parameters.shear <= 20
+    )  # silk is said to shear at .2 to .4 gf/(cm deg), of which the test's pull is .17
     assert 1e3 <= parameters.stretch_warp <= 1e5
 
 
 def test_weight_of_the_catalogue_taffeta():
     """Taffeta 15209 of the trade: 43 g/m2 from its sett and yarns less 23 % sericin; within 5 %."""
-    parameters = cloth_parameters(load("juan"), relax(load("juan")))
+    parameters = parameters_of(load("juan"), relax(load("juan")))
     assert parameters.density == pytest.approx(0.043, rel=0.05)

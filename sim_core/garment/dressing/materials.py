@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,9 @@ from sim_core.weave import ClothParameters, parameters_of
 __all__ = ["Materials", "materials_of", "simplified"]
 
 DOUBLED = "doubled"
+SHEARED = math.radians(
+    5
+)  # by which the cloth's own weight shears it at most: woven cloth locks, the solver's does not
 STEADY = 0.013  # [m] mesh steps below which stiffness is damped less: the same on a finer mesh would shorten time steps
 
 
@@ -67,22 +71,24 @@ def simplified(
 
     hanging: longest free length [m]; edge: mesh step [m]. Silk hardly stretches, and a solver that resolved its true
     stiffness would spend its time on strains of 1e-5: stiffness is lowered until the cloth's own weight strains it by
-    program.sag. Bending takes the weave's lower bound, fibres free to slide (degummed silk), but no less than the mesh
-    resolves: (B / rho g)^(1/3) >= program.fold edges, below which folds look like crumpled paper.
+    program.sag. Shear is what the instrument reads, but no less than bears the cloth's weight at 5 degrees; bending
+    what it reads, but no less than the mesh resolves: (B / rho g)^(1/3) >= program.fold edges, below which folds look
+    like crumpled paper.
     """
     density = float(parameters.density)
     enough = density * GRAVITY * hanging / program.sag
     stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
-    free = [float(parameters.bounds[name][0]) for name in ("bend_warp", "bend_weft")]
+    locked = density * GRAVITY * hanging / SHEARED
+    warp, weft = float(parameters.bend_warp), float(parameters.bend_weft)
     resolved = density * GRAVITY * (program.fold * edge) ** 3
     material = Material(
         density=density,
         stretch=stretch[0],
         stretch_warp=stretch[1],
-        shear=min(float(parameters.shear), min(stretch) / 2.6),
+        shear=min(max(float(parameters.shear), locked), min(stretch) / 2.6),
         poisson=min(float(parameters.poisson), 0.3),
-        bend=max(free[1], resolved),
-        bend_warp=max(free[0], resolved),
+        bend=max(weft, resolved),
+        bend_warp=max(warp, resolved),
         friction=float(parameters.friction),
         mass_damping=2.0,
         stiffness_damping=2e-5 * min(1.0, edge / STEADY) ** 2,
@@ -90,8 +96,9 @@ def simplified(
     choices = {
         "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: "
         f"{program.sag:.2%} strain by its weight",
-        "bend": f"lower bounds, warp {free[0]:.2e} and weft {free[1]:.2e} N m (fibres free), at least {resolved:.2e} "
-        f"for a {edge * 1e3:.0f} mm mesh",
+        "shear": f"{material.shear:.1f} N/m instead of {parameters.shear:.1f}: no less than {locked:.1f}, at which its "
+        "weight shears it by 5 degrees",
+        "bend": f"warp {warp:.2e} and weft {weft:.2e} N m, at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
         "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",
     }
     return material, choices
@@ -100,7 +107,6 @@ def simplified(
 def _doubled(single: Material, layer: Layer, parameters: ClothParameters) -> Material:
     """Of cloth folded along its length: two layers that slide a little."""
     resolved = float(parameters.density) * GRAVITY * (layer.program.fold * layer.edge) ** 3
-    free = float(parameters.bounds["bend_warp"][0])
     assert single.stretch_warp is not None
     return replace(
         single,
@@ -109,5 +115,5 @@ def _doubled(single: Material, layer: Layer, parameters: ClothParameters) -> Mat
         stretch_warp=2 * single.stretch_warp,
         shear=2 * (single.shear or 0.0),
         bend=6 * single.bend,
-        bend_warp=6 * max(free, resolved),
+        bend_warp=6 * max(float(parameters.bend_warp), resolved),
     )

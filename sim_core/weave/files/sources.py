@@ -21,6 +21,7 @@ from sim_core.weave.draft.notation import PICTURES, draft_of_words, motif_of
 from sim_core.weave.files.wif.model import Wif, thread_colours
 from sim_core.weave.files.wif.sections import listed
 from sim_core.weave.model import Weave, draft_from_dict
+from sim_core.weave.weave_file import Published, read_published
 from sim_core.weave.yarn import Yarn
 
 __all__ = ["Source", "blocked_source", "dressed", "source_of", "source_of_wif", "weave_of"]
@@ -39,7 +40,8 @@ class Source:
 
     factors: its lift.  palette: (n, 3) uint8 sRGB.  warp_colours (ends,), weft_colours (picks,): rows of the palette.
     wif: the file of another program, None for drafts of ours.  made: the cloth and where its yarns and sett come from,
-    None where it is woven on demand.  remarks: what the reader replaced.
+    None where it is woven on demand.  remarks: what the reader replaced.  published: what the weave file says that
+    others measured.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Source:
     made: tuple[Weave, str] | None = None
     path: str = ""
     remarks: tuple[str, ...] = ()
+    published: Published | None = None
 
     @property
     def plan(self) -> bool:
@@ -90,7 +93,7 @@ def source_of(words: str) -> Source:
     if kind in (".wif", ".dtx"):
         return _from_draft(path)
     if kind == ".toml":
-        return _ours(Weave.load(path), path.name)
+        return replace(_ours(Weave.load(path), path.name), published=read_published(path))
     if kind == ".json":
         return _ours(*_from_json(path))
     if kind in PICTURES:

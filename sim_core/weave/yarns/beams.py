@@ -20,7 +20,7 @@ from sim_core.weave.yarns.geometry import YarnGeometry
 from sim_core.weave.yarns.jam import check_jam
 from sim_core.weave.yarns.shifts import MANY, draft_shift, shifted_forces
 
-__all__ = ["beam_stiffness", "relax"]
+__all__ = ["beam_stiffness", "crimp_of", "relax"]
 
 TOLERANCE = 1e-9
 TOLERANCE_MANY = 1e-6
@@ -142,8 +142,8 @@ def _geometry(weave, problem, force, wanted, distance, unit, iterations) -> Yarn
         warp_height=warp * distance,
         weft_height=weft * distance,
         force=pressure * unit * distance,
-        warp_crimp=_crimp(warp * distance, weave.pick_spacing, 0),
-        weft_crimp=_crimp(weft * distance, weave.end_spacing, 1),
+        warp_crimp=crimp_of(warp * distance, weave.pick_spacing, 0),
+        weft_crimp=crimp_of(weft * distance, weave.end_spacing, 1),
         residual=net,
         penetration=float(max(0.0, -gap.min())) * distance,
         complementarity=float(np.abs(pressure * gap).max()) / peak,
@@ -177,7 +177,7 @@ def _means(gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return gap.mean(axis=0, keepdims=True) - half, half - gap.mean(axis=1, keepdims=True)
 
 
-def _crimp(height: np.ndarray, spacing: float, axis: int) -> np.ndarray:
+def crimp_of(height: np.ndarray, spacing: float, axis: int) -> np.ndarray:
     """Excess length of each yarn, 1/2 mean of the squared slope of its periodic cubic spline."""
     count = height.shape[axis]
     theta = 2 * np.pi * np.arange(count) / count
