@@ -40,6 +40,7 @@ PER = 8  # particles a crossing and yarn
 MOST_PARTICLES = 4_000_000  # of a repeat: about 1 GB
 MOST_WORK = 3_000_000_000  # particles x steps of a large repeat: about five minutes
 
+EASY_STATIC = 0.2  # by how much static friction exceeds sliding friction in any cloth that rests
 MOST_UNASKED = (
     4_096  # crossings of another program's draft that are relaxed without being asked for: a second or two
 )
@@ -228,11 +229,25 @@ def _relaxed(weave, particles: bool):
             return solve(weave), {"note": f"stage A, at the crossings: {reason}"}
         try:
             most = min(MOST_STEPS, max(1, MOST_WORK // count)) if large else MOST_STEPS
-            return solve(weave, particles=particles, per=PER, watch=watch, most=most), {}
+            geometry = solve(weave, particles=particles, per=PER, watch=watch, most=most)
+            return geometry, _held_note(geometry)
         except NotAtRest as error:
             if not large:
                 raise
             return solve(weave), {"note": f"stage A, at the crossings: {error}"}
+
+
+def _held_note(geometry) -> dict[str, str]:
+    """What has to be said of floats that slid until they were held."""
+    static = max(
+        (getattr(cell, "static", 0.0) for cell in getattr(geometry, "cells", (geometry,))), default=0.0
+    )
+    if static <= EASY_STATIC:
+        return {}
+    return {
+        "note": "its floats slide together in this sett: they came to rest by a static friction of "
+        f"{1 + static:.2f} times sliding friction – closer yarns or shorter floats would lie still"
+    }
 
 
 def _write_yarns(cloth: _Cloth, path: Path) -> None:

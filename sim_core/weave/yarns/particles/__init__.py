@@ -8,12 +8,11 @@ by way of `common_waves`. `cell` is the call, and the relaxed repeat that it ret
 from sim_core.weave.yarns.particles.cell import NotAtRest, ParticleCell, is_figure, relax_particles
 from sim_core.weave.yarns.particles.closest_pairs import curve_gaps, curve_overlap, pin_forces
 from sim_core.weave.yarns.particles.common_waves import CommonWaves, gathered
-from sim_core.weave.yarns.particles.forces import STATIC, contact_forces, side_forces, yarn_forces
+from sim_core.weave.yarns.particles.forces import contact_forces, side_forces, yarn_forces
 from sim_core.weave.yarns.particles.preconditioner import advance, factored
 from sim_core.weave.yarns.particles.scale import System, Units
 
 __all__ = [
-    "STATIC",
     "CommonWaves",
     "NotAtRest",
     "ParticleCell",

@@ -35,7 +35,7 @@ SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
 FIGURE = 500  # crossings from which it is a figure, unless it is a satin or a twill
 BEGIN = 100  # steps after which a figure that is not at rest is relaxed another way
-FIGURE_STEPS = 5000  # and after which pins have the rest of the steps, from the start
+FIGURE_STEPS = 8000  # and after which pins have the rest of the steps, from the start
 YARN_FRICTION = 0.3
 STIFFER = 1.3  # x stiffness, after a round that leaves the yarns overlapping
 
@@ -54,6 +54,7 @@ class ParticleCell:
     crossing force.  penetration: deepest overlap of two yarns that cross, anywhere on their curves, or of particles
     of neighbours, or widest gap across which a contact presses (of figures: a crossing), in units of D, the mean height
     of warp and weft.
+    static: by how much static friction exceeds sliding friction where yarns stick, of figures that slid, as a share.
     skew: (warp, weft) largest sideways shift of a crossing against the yarns' mean [m].
     """
 
@@ -70,6 +71,7 @@ class ParticleCell:
     energy: float
     friction: float
     steps: int
+    static: float = 0.0
 
     @property
     def skew(self) -> tuple[float, float]:
@@ -149,7 +151,7 @@ def relax_particles(
     wu, wz, fu, fz = sides
     return ParticleCell(
         per, wu, wz, fu, fz, force, crimp1, crimp2, float(done.residual), float(done.overlap),
-        float(energy) * scale.force * scale.length, friction, int(done.steps),
+        float(energy) * scale.force * scale.length, friction, int(done.steps), done.static,
     )  # fmt: skip
 
 

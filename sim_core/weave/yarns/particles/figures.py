@@ -19,57 +19,59 @@ from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
 __all__ = ["rest_of_figure"]
 
 SOFT = 20.0  # stiffness of the contact, x largest crossing force
-TURN, ROUND = 10, 3  # steps between two moves of the waves, and moves between two looks at the curves
-LAST = 50  # steps without waves in which it must come to rest
+TURN = 30  # steps between two looks at the curves
 FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
 SLIDE = 0.5  # of D, that yarns slide sideways and their contacts must follow
-TURNED = 2e-3  # of D: a gap that turns to overlap and back by more is followed by half, down to LEAST
-LEAST = 0.05
-FREE, STICK = 20, 15  # moves until yarns that slid may stick, and between two such times
+WAVED, WIDE = (
+    20,
+    100,
+)  # turns after which common waves are moved, and crossings from which a repeat is so wide as to need it
+STICK = 6  # turns between two times when yarns that have come to creep stick
 SLID = 0.03  # of D, away from where they stuck
+STATIC = 0.2  # by how much static friction exceeds sliding friction
+CREEP, HARDER = (
+    60,
+    1.2,
+)  # turns after which what still creeps is held harder, and how much so each time that it may stick
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 
 def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: float, most: int) -> Outcome:
     """Bring yarns that the plain way did not bring to rest to it, or to `most` steps; begun: how that way ended.
 
-    overlap: of curves [D] that is allowed, and of the gap of two that press.
+    overlap: of curves [D] that is allowed, and of the gap of two that press. Long floats of a loose sett would slide on
+    for ever and draw together into ropes: what still creeps after 1,800 steps is held by static friction that grows.
     """
     picks, ends = yarns.lift.shape
     stiff = SOFT * yarns.hardest
     yarns = _reaching(yarns)
     for array in yarns.offsets:  # presses as before
         array *= begun.stiff / stiff
+    yarns.offsets[0][:] = (
+        0.0  # curves are kept apart here, not particles: both would answer one overlap twice
+    )
     apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
     waves = CommonWaves.of((picks, ends), yarns.per, yarns.units, stiff)
-    calm, stuck = np.ones_like(gaps), None
-    steps, turn, done = begun.steps, 0, begun
+    steps, turn, done, deepest = begun.steps, 0, begun, begun.overlap
+    stuck, static = None, 0.0
     while steps < most:
-        look = turn % ROUND == 0
-        if turn >= FREE and turn % STICK == 0:
-            stuck = _stuck(yarns, stuck)
-        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, stuck=stuck, renew=look and turn > 0)
+        if turn and turn % STICK == 0:
+            static = STATIC * HARDER ** max(0, (turn - CREEP) // STICK)
+            stuck = _stuck(yarns, stuck, static)
+        done = yarns.settle(stiff, min(TURN, most - steps), apart=apart, stuck=stuck)
         steps += done.steps
-        if look:
-            before = gaps.copy()
-            _measure(gaps, yarns)
-            turned = (before * gaps < 0) & (np.abs(before - gaps) > TURNED)
-            calm = np.clip(np.where(turned, 0.5, 1.1) * calm, LEAST, 1.0)
-            apart = np.clip(apart - calm * gaps, 0.0, FARTHEST)
-        if steps < most and done.residual <= tolerance and -gaps.min() <= overlap:
-            done = yarns.settle(stiff, min(LAST, most - steps), apart=apart, stuck=stuck, tolerance=tolerance)
-            steps += done.steps
-            _measure(gaps, yarns)
-            deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
-            if done.residual <= tolerance and deepest <= overlap:
-                return Outcome(done.residual, deepest, done.energy, steps, stiff)
+        _measure(gaps, yarns)
+        deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
+        if done.residual <= tolerance and deepest <= overlap:
+            return Outcome(done.residual, deepest, done.energy, steps, stiff, static)
         if steps < most:  # else what is told of the yarns must be of where they end
-            wu, wz, fu, fz = yarns.places
-            waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
+            apart = np.clip(apart - gaps, 0.0, FARTHEST)
+            _of_neighbours(yarns, renew=True)
+            if turn < WAVED and max(picks, ends) > WIDE:
+                wu, wz, fu, fz = yarns.places
+                waves.move(wz, fz, yarns.forces[1], yarns.forces[3])
         turn += 1
-    _measure(gaps, yarns)
-    deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
-    return Outcome(done.residual, deepest, done.energy, steps, stiff)
+    return Outcome(done.residual, deepest, done.energy, steps, stiff, static)
 
 
 def _reaching(yarns: Yarns) -> Yarns:
@@ -88,14 +90,15 @@ def _reaching(yarns: Yarns) -> Yarns:
     return yarns._replace(units=units, offsets=(held, *yarns.offsets[1:]))
 
 
-def _stuck(yarns: Yarns, before: np.ndarray | None) -> np.ndarray:
-    """(picks, ends, 2) places of both yarns at each crossing: where it stuck before, unless it slid away from there."""
+def _stuck(yarns: Yarns, before: np.ndarray | None, static: float) -> np.ndarray:
+    """(picks, ends, 3) places of both yarns at each crossing: where it stuck before, unless it slid away from there;
+    and by how much static friction exceeds sliding friction."""
     wu, _, fu, _ = yarns.places
-    here = np.dstack([wu[:, :: yarns.per].T, fu[:, :: yarns.per]])
-    if before is None:
-        return here
-    away = np.hypot(*np.moveaxis(here - before, 2, 0)) > SLID
-    return np.where(away[..., None], here, before)
+    here = np.dstack([wu[:, :: yarns.per].T, fu[:, :: yarns.per], np.full(yarns.lift.shape, static)])
+    if before is not None:
+        stayed = np.hypot(*np.moveaxis((here - before)[..., :2], 2, 0)) <= SLID
+        here[stayed, :2] = before[stayed, :2]
+    return here
 
 
 def _measure(gaps: np.ndarray, yarns: Yarns) -> None:
@@ -113,15 +116,15 @@ def _deepest(gaps: np.ndarray, pressing: np.ndarray) -> float:
     return float(max(-nearest.min(), nearest[pressed].max(initial=0.0)))
 
 
-def _of_neighbours(yarns: Yarns) -> float:
-    """Deepest overlap of neighbours of one system, or widest gap across which they press [D]."""
+def _of_neighbours(yarns: Yarns, *, renew: bool = False) -> float:
+    """Deepest overlap of neighbours of one system, or widest gap across which they press [D]; renew: set them out."""
     found = 0.0
     wu, wz, fu, fz = yarns.places
     _, ends, picks = yarns.offsets
     for u, z, system, held in ((wu, wz, yarns.units.warp, ends), (fu, fz, yarns.units.weft, picks)):
         if system.side > 0:
             spare = np.zeros_like(u)
-            deep = side_forces(u, z, system.spacing, system.side, system.high, 1.0, spare, spare, held, False, False,
+            deep = side_forces(u, z, system.spacing, system.side, system.high, 1.0, spare, spare, held, renew, False,
                                spare, spare, 0)  # fmt: skip
             found = max(found, deep[1])
     return found

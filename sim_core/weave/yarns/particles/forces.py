@@ -17,7 +17,6 @@ NEWTON = 4  # steps to the nearest point; with fewer the force is no slope of th
 # share of the focal distance on it is held to the place below it; the curve's own particles touch on both flanks.
 BOWL = 0.6
 FARTHEST = 0.05  # a contact is set out
-STATIC = 0.2  # by how much static friction exceeds sliding friction
 SKIN = 1.08  # norm below which a particle may come to touch before the crossing is looked at as a whole again
 
 
@@ -200,7 +199,8 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
     place as woven.  turns: empty, or of one pick and one end that stand for all (see Turns in shifts.py).
     apart: empty, or (picks, ends, 2) [D] by how much points keep farther from the warp and from the weft, so that the
     curves keep apart between the particles too (see curve_gaps).
-    stuck: empty, or (picks, ends, 2) [D] places of end and pick at which a crossing came to stick: static friction.
+    stuck: empty, or (picks, ends, 3) places [D] of end and pick at which a crossing came to stick, and by how much
+    static friction exceeds sliding friction there, as a share of it.
     """
     picks, ends = lift.shape
     n1, n2 = wu.shape[1], fu.shape[1]
@@ -261,7 +261,7 @@ def contact_forces(wu, wz, fu, fz, gwu, gwz, gfu, gfz, lift, pressing, near, hel
                 hold = friction * pressing[i, j] / sqrt(x * x + y * y + slip * slip)
                 if len(stuck):
                     dx, dy = x - stuck[i, j, 0], y - stuck[i, j, 1]
-                    more = STATIC * friction * pressing[i, j] / sqrt(dx * dx + dy * dy + slip * slip)
+                    more = stuck[i, j, 2] * friction * pressing[i, j] / sqrt(dx * dx + dy * dy + slip * slip)
                     gwu[e, c1] -= more * dx
                     gfu[i, c2] -= more * dy
                     if weigh:

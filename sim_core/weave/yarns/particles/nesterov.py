@@ -25,13 +25,15 @@ SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossi
 
 @dataclass(frozen=True)
 class Outcome:
-    """How yarns ended: largest net force / largest crossing force, overlap [D], energy, steps, contact's stiffness."""
+    """How yarns ended: largest net force / largest crossing force, overlap [D], energy, steps, contact's stiffness, and
+    by how much static friction exceeded sliding friction in the end."""
 
     residual: float
     overlap: float
     energy: float
     steps: int
     stiff: float
+    static: float = 0.0
 
 
 class Yarns(NamedTuple):
@@ -69,11 +71,12 @@ class Yarns(NamedTuple):
     ) -> Outcome:
         """At most `most` steps with contact of this stiffness, fewer if it comes to rest within tolerance and overlap.
 
-        pins: (n, 6) as of curve_overlap.  apart, stuck: (picks, ends, 2) as of contact_forces.
+        pins: (n, 6) as of curve_overlap.  apart, stuck: (picks, ends, 2 and 3) as of contact_forces.
         renew: set contacts out first.
         """
         pins = np.zeros((0, 6)) if pins is None else pins
-        apart, stuck = (np.zeros((0, 0, 2)) if places is None else places for places in (apart, stuck))
+        apart = np.zeros((0, 0, 2)) if apart is None else apart
+        stuck = np.zeros((0, 0, 3)) if stuck is None else stuck
         return Outcome(*_settle(self, pins, apart, stuck, stiff, tolerance, overlap, most, renew))
 
 
