@@ -120,7 +120,7 @@ def overshot(ends: int, picks: int) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["32 shafts", "overshot"])
 def test_ordinary_drafts_rest_the_figures_way(kind):
     """A 62 x 62 twill of 32 shafts and a 92 x 60 overshot, which pins and contacts set out twice left swinging."""
