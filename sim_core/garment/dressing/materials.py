@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,9 +14,6 @@ from sim_core.weave import ClothParameters, parameters_of
 __all__ = ["Materials", "materials_of", "simplified"]
 
 DOUBLED = "doubled"
-SHEARED = math.radians(
-    5
-)  # by which the cloth's own weight shears it at most: woven cloth locks, the solver's does not
 STEADY = 0.013  # [m] mesh steps below which stiffness is damped less: the same on a finer mesh would shorten time steps
 
 
@@ -71,21 +67,20 @@ def simplified(
 
     hanging: longest free length [m]; edge: mesh step [m]. Silk hardly stretches, and a solver that resolved its true
     stiffness would spend its time on strains of 1e-5: stiffness is lowered until the cloth's own weight strains it by
-    program.sag. Shear is what the instrument reads, but no less than bears the cloth's weight at 5 degrees; bending
-    what it reads, but no less than the mesh resolves: (B / rho g)^(1/3) >= program.fold edges, below which folds look
-    like crumpled paper.
+    program.sag. Shear is that of an isotropic sheet of this stretch: as soft as the instrument reads, without the
+    locking of woven cloth, coarse meshes fold by chance. Bending is what it reads, but no less than the mesh resolves:
+    (B / rho g)^(1/3) >= program.fold edges, below which folds look like crumpled paper.
     """
     density = float(parameters.density)
     enough = density * GRAVITY * hanging / program.sag
     stretch = [min(float(k), enough) for k in (parameters.stretch_weft, parameters.stretch_warp)]
-    locked = density * GRAVITY * hanging / SHEARED
     warp, weft = float(parameters.bend_warp), float(parameters.bend_weft)
     resolved = density * GRAVITY * (program.fold * edge) ** 3
     material = Material(
         density=density,
         stretch=stretch[0],
         stretch_warp=stretch[1],
-        shear=min(max(float(parameters.shear), locked), min(stretch) / 2.6),
+        shear=min(stretch) / 2.6,
         poisson=min(float(parameters.poisson), 0.3),
         bend=max(weft, resolved),
         bend_warp=max(warp, resolved),
@@ -96,8 +91,8 @@ def simplified(
     choices = {
         "stretch": f"{stretch[0]:.0f} N/m instead of {parameters.stretch_weft:.0f}: "
         f"{program.sag:.2%} strain by its weight",
-        "shear": f"{material.shear:.1f} N/m instead of {parameters.shear:.1f}: no less than {locked:.1f}, at which its "
-        "weight shears it by 5 degrees",
+        "shear": f"{material.shear:.0f} N/m instead of {parameters.shear:.1f}: as an isotropic sheet, since it "
+        "does not lock",
         "bend": f"warp {warp:.2e} and weft {weft:.2e} N m, at least {resolved:.2e} for a {edge * 1e3:.0f} mm mesh",
         "poisson": f"{material.poisson:.2f} instead of {parameters.poisson:.2f}: crimp interchange needs tension",
     }
