@@ -30,6 +30,7 @@ from sim_core.weave.yarns.particles.cell import (
     is_figure,
     relax_particles,
 )
+from sim_core.weave.yarns.particles.figures import STATIC
 from sim_core.weave.yarns.paths import strands
 from sim_core.weave.yarns.progress import progress_report
 from sim_core.weave.yarns.solver import solve
@@ -40,7 +41,6 @@ PER = 8  # particles a crossing and yarn
 MOST_PARTICLES = 4_000_000  # of a repeat: about 1 GB
 MOST_WORK = 3_000_000_000  # particles x steps of a large repeat: about five minutes
 
-EASY_STATIC = 0.2  # by how much static friction exceeds sliding friction in any cloth that rests
 MOST_UNASKED = (
     4_096  # crossings of another program's draft that are relaxed without being asked for: a second or two
 )
@@ -242,7 +242,7 @@ def _held_note(geometry) -> dict[str, str]:
     static = max(
         (getattr(cell, "static", 0.0) for cell in getattr(geometry, "cells", (geometry,))), default=0.0
     )
-    if static <= EASY_STATIC:
+    if static <= STATIC:
         return {}
     return {
         "note": "its floats slide together in this sett: they came to rest by a static friction of "

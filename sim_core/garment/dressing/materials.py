@@ -50,7 +50,7 @@ def materials_of(layer: Layer, cloth: Cloth, hanging: float) -> Materials:
         if kind not in kinds:
             kinds[kind] = len(materials)
             single, said = simplified(solved[cloth_kind], layer.program, hanging, layer.edge)
-            materials.append(_doubled(single, layer, solved[cloth_kind]) if doubled else single)
+            materials.append(_doubled(single) if doubled else single)
             names.append(f"{weave.name} {DOUBLED}" if doubled else weave.name)
             choices |= {key if first else f"{key} of {weave.name}": text for key, text in said.items()}
             if doubled:
@@ -99,16 +99,17 @@ def simplified(
     return material, choices
 
 
-def _doubled(single: Material, layer: Layer, parameters: ClothParameters) -> Material:
+def _doubled(single: Material) -> Material:
     """Of cloth folded along its length: two layers that slide a little."""
-    resolved = float(parameters.density) * GRAVITY * (layer.program.fold * layer.edge) ** 3
     assert single.stretch_warp is not None
+    assert single.shear is not None
+    assert single.bend_warp is not None
     return replace(
         single,
         density=2 * single.density,
         stretch=2 * single.stretch,
         stretch_warp=2 * single.stretch_warp,
-        shear=2 * (single.shear or 0.0),
+        shear=2 * single.shear,
         bend=6 * single.bend,
-        bend_warp=6 * max(float(parameters.bend_warp), resolved),
+        bend_warp=6 * single.bend_warp,
     )

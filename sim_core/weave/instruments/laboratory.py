@@ -20,7 +20,7 @@ from sim_core.weave.instruments.specimen import Specimen
 from sim_core.weave.model import Weave
 from sim_core.weave.yarns.geometry import YarnGeometry
 
-__all__ = ["FINISHES", "VARIED", "Laboratory"]
+__all__ = ["Laboratory"]
 
 MOST_PULLED = 1_024  # crossings of a repeat that is pulled under every assumption
 FINISHES = Assumed(kept=0.86), Assumed(kept=0.94)

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import radians
 
 __all__ = ["GF_CM", "GF_CM2", "Reading", "banded", "mean_reading"]
 
 GF = 9.80665e-3  # [N]
 GF_CM = GF / 1e-2  # [N/m] of 1 gf/cm
 GF_CM2 = GF / 1e-4  # [Pa] of 1 gf/cm2
-DEGREE = 0.017453292519943295
 # SI value of 1 unit of KES
 UNITS = {
     "B": ("N m", "gf cm2/cm", GF * 1e-2),
     "2HB": ("N", "gf cm/cm", GF),
-    "G": ("N/m per rad", "gf/(cm deg)", GF_CM / DEGREE),
+    "G": ("N/m per rad", "gf/(cm deg)", GF_CM / radians(1)),
     "2HG": ("N/m", "gf/cm", GF_CM),
     "2HG5": ("N/m", "gf/cm", GF_CM),
     "EMT": ("1", "%", 0.01),

@@ -32,7 +32,7 @@ from sim_core.weave.yarns.geometry import YarnGeometry
 from sim_core.weave.yarns.paths import strands
 from sim_core.weave.yarns.shifts import MANY
 
-__all__ = ["SHEAR_TURN", "Specimen"]
+__all__ = ["Specimen"]
 
 MOST_PULL = 500 * GF_CM  # [N/m]
 PULLS = (0.03, 0.1, 0.3, 0.6, 1.0)  # of it, where the curve is read
@@ -69,7 +69,10 @@ class Specimen:
     @cached_property
     def beams(self) -> SetBeams:
         """The cell that is loaded."""
-        return SetBeams(self.stiff, self.rest, self.assumed.kept, _reach(self.weave, self.rest))
+        reach = (
+            self.like.beams.reach if self.like else _reach(self.weave, self.rest)
+        )  # the same whatever is assumed
+        return SetBeams(self.stiff, self.rest, self.assumed.kept, reach)
 
     @cached_property
     def slack(self) -> Settled:
@@ -153,8 +156,8 @@ class Specimen:
         """
         weave = self.weave
         force = float(self.forces(SHEAR_PULL / weave.ends_per_m).mean())
-        sides = (pressed_length(yarn, self.assumed.wide) for yarn in (weave.warp, weave.weft))
-        arm = 2 / 3 * sqrt(next(sides) * next(sides) / pi)
+        wide = self.assumed.wide
+        arm = 2 / 3 * sqrt(pressed_length(weave.warp, wide) * pressed_length(weave.weft, wide) / pi)
         torque = FILAMENT_FRICTION * force * arm
         p1, p2 = weave.end_spacing, weave.pick_spacing
         warp, weft = self.yarns

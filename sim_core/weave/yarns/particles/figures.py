@@ -16,23 +16,19 @@ from sim_core.weave.yarns.particles.common_waves import CommonWaves
 from sim_core.weave.yarns.particles.forces import side_forces
 from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
 
-__all__ = ["rest_of_figure"]
+__all__ = ["STATIC", "rest_of_figure"]
 
 SOFT = 20.0  # stiffness of the contact, x largest crossing force
 TURN = 30  # steps between two looks at the curves
 FARTHEST = 0.1  # of D, particles keep from a curve beyond touching it
 SLIDE = 0.5  # of D, that yarns slide sideways and their contacts must follow
-WAVED, WIDE = (
-    20,
-    100,
-)  # turns after which common waves are moved, and crossings from which a repeat is so wide as to need it
+WAVED = 20  # turns after which common waves are moved no more
+WIDE = 100  # crossings, beyond which a repeat needs them at all
 STICK = 6  # turns between two times when yarns that have come to creep stick
 SLID = 0.03  # of D, away from where they stuck
 STATIC = 0.2  # by how much static friction exceeds sliding friction
-CREEP, HARDER = (
-    60,
-    1.2,
-)  # turns after which what still creeps is held harder, and how much so each time that it may stick
+CREEP = 60  # turns after which what still creeps is held harder
+HARDER = 1.2  # times as hard each time that it may stick
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 
@@ -45,11 +41,11 @@ def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: f
     picks, ends = yarns.lift.shape
     stiff = SOFT * yarns.hardest
     yarns = _reaching(yarns)
-    for array in yarns.offsets:  # presses as before
-        array *= begun.stiff / stiff
     yarns.offsets[0][:] = (
         0.0  # curves are kept apart here, not particles: both would answer one overlap twice
     )
+    for array in yarns.offsets[1:]:  # neighbours press as before
+        array *= begun.stiff / stiff
     apart, gaps = np.zeros((picks, ends, 2)), np.zeros((picks, ends, 2))
     waves = CommonWaves.of((picks, ends), yarns.per, yarns.units, stiff)
     steps, turn, done, deepest = begun.steps, 0, begun, begun.overlap
