@@ -140,7 +140,8 @@ class Wardrobe:
             woven = own.get(name, maps)
             cover = _cover(woven)
             alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
-            looks.append((_colour(dyes.get(name) or layer.pattern.dye, woven), alpha))
+            dye = None if layer.weave_of(name).several else dyes.get(name) or layer.pattern.dye
+            looks.append((_colour(dye, woven), alpha))
         return tuple(
             Part(faces[np.isin(panel, [k for k, own in enumerate(looks) if own == look])], *look, sheen=0.5)
             for look in dict.fromkeys(looks)

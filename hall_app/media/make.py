@@ -75,7 +75,8 @@ def _weaves(folder: Path) -> None:
     for home, outfit in _dressed(folder):
         for path in _named(home, (WEAVE,)):
             layer = load_outfit(folder / outfit, folder).layers[-1]
-            picture = weave_drawing(interlacing(layer.weave, layer.pattern.dye))
+            ground = layer.weave.cells[0]  # of a figured one
+            picture = weave_drawing(interlacing(ground, layer.pattern.dye))
             picture.save(_place(path), quality=QUALITY)
 
 

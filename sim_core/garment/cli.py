@@ -40,7 +40,10 @@ An outfit file:
   pattern = "patterns/beizi.toml"
   weave = "weaves/ling.toml"
   weaves = { band = "weaves/juan.toml" }        # of single panels
-  dye = "#c39c50"                     # dyes = { band = "#2c4464" } of single panels
+  dye = "#c39c50"                     # dyes = { band = "#2c4464" } of single panels; a cloth woven of several
+                                      # colours keeps them
+  origin = [0, 960]                   # where a corner of the weave's repeat lies in the pattern's axes, in mm, so that
+                                      # bands and badges fall where they should; origins = { panel = [x, y] }
   measures = { length = 1180 }        # of the pattern, in millimetres
   edge = 0.013                        # mesh step in metres; below 0.009 it is sewn and posed at 0.015 first
   start = "t"                         # pose the wearer begins in (wrapped, along_path), which a pose step leaves

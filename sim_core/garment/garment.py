@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
+from sim_core.garment.pattern import unsided
 from sim_core.garment.settled import Settled
 from sim_core.validation.files import read_npz, shown, written_whole
 
@@ -34,6 +35,7 @@ class Garment:
     weld (P,) int32: the draped vertex of each pattern vertex, one for all twins of a seam; positions (V, 3) [m], y up;
     panel (F,) int32 into panels (names); dyes: sRGB per panel, None: `dye`, the garment's; cut: the pattern it was
     meshed from (`Pattern.to_dict`); weave, weaves (of panels that have their own) and material as plain dictionaries;
+    origins: per panel, where a corner of the weave's repeat lies in its pattern axes [m] (empty: all at 0, 0);
     provenance: inputs, seed, versions, seconds per stage, measured errors; settled: what it came to rest in,
     for whoever carries it on.
     """
@@ -53,6 +55,7 @@ class Garment:
     provenance: dict[str, Any] = field(default_factory=dict)
     dye: Colour | None = None
     settled: Settled | None = None
+    origins: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         for name, (kind, width) in _ARRAYS.items():
@@ -74,6 +77,10 @@ class Garment:
             )
         if len(self.panels) != len(self.dyes):
             raise SimCoreError(f"garment: {len(self.panels)} panels, {len(self.dyes)} dyes – must agree")
+        if self.origins and len(self.panels) != len(self.origins):
+            raise SimCoreError(
+                f"garment: {len(self.panels)} panels, {len(self.origins)} origins – must agree"
+            )
         for name, count in (
             ("pattern_faces", len(self.pattern)),
             ("weld", len(self.positions)),
@@ -101,8 +108,21 @@ class Garment:
         return self.pattern[self.pattern_faces]
 
     def dye_of(self, panel: int) -> Colour | None:
-        """The dye of a panel: its own, else the garment's."""
+        """The dye of a panel: its own, else the garment's; None of cloth woven of several colours, which keeps them."""
+        weave = self.weaves.get(unsided(self.panels[panel]), self.weave)
+        if any(len(weave.get(f"{side}_colours", ())) > 1 for side in ("warp", "weft")):
+            return None
         return self.dyes[panel] or self.dye
+
+    def cloth_places(self) -> np.ndarray:
+        """Where every pattern vertex lies in the cloth (P, 2) [m], from the corner of a repeat: x weft, y down."""
+        if not self.origins:
+            return self.pattern
+        places, origins = self.pattern.copy(), np.array(self.origins)
+        for number in range(len(self.panels)):
+            own = np.unique(self.pattern_faces[self.panel == number])
+            places[own] = self.pattern[own] - origins[number]
+        return places
 
     def save(self, path: Path) -> None:
         """Writes one .npz: the arrays and a JSON header (text) under `header`; raises FileProblem where it cannot."""
@@ -112,6 +132,7 @@ class Garment:
             "dye": self.dye,
             "panels": self.panels,
             "dyes": self.dyes,
+            "origins": self.origins,
             "cut": self.cut,
             "weave": self.weave,
             "weaves": self.weaves,
@@ -156,6 +177,7 @@ class Garment:
                 provenance=_facts(header, "provenance"),
                 dye=_colour(header.get("dye")),
                 settled=Settled.of(told, data) if told else None,
+                origins=tuple((float(x), float(y)) for x, y in header.get("origins", ())),
                 **{name: np.ascontiguousarray(data[name]) for name in _ARRAYS},
             )
         except (SimCoreError, KeyError, TypeError, ValueError, OverflowError) as error:

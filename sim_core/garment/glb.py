@@ -28,8 +28,8 @@ LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
 PORE = 0.35  # of the mean colour
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
-FIGURE_PIXELS = 256  # of a figured cloth's repeat in the hall
-CELL_QUALITY = 88  # JPEG
+FIGURE_PIXEL = 0.0006  # [m] of a figured cloth's repeat in the hall, at most
+CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def write_glb(
     Panels of one look are one node: the garment's name, then its name and a number. Twins on a seam share place and
     normal, so that no seam shows but for its change of colour. A figure and what it wears stand on its base.
 
-    Maps: tileable, uint8, size [m] of the tile. TEXCOORD_0 is in pattern millimetres, v not flipped;
+    Maps: tileable, uint8, size [m] of the tile. TEXCOORD_0 is pattern millimetres from the weave's origin, v downwards;
     KHR_texture_transform brings it to tiles. close: the weave itself; hall: its mean colour and coverage and a coarser
     relief, since single yarns vanish beyond a hand's breadth. A figured cloth shows its repeat in both. Highlights are
     narrow along the yarns and wide across (KHR_materials_anisotropy), of a figured cloth by a texture of directions.
@@ -122,6 +122,7 @@ def _write_panels(
     """One mesh per look (dye and weave), in the order of the panels; textures: those stored already, by weave."""
     garment = layer.garment
     shading, worn = normals(garment.positions, garment.faces)[garment.weld], garment.worn()
+    places = garment.cloth_places() * 1000.0
     looks: dict[Any, list[int]] = {}
     for number in range(len(garment.panels)):
         looks.setdefault((garment.dye_of(number), id(layer.of(number))), []).append(number)
@@ -135,7 +136,7 @@ def _write_panels(
             worn[used],
             index.reshape(-1, 3).astype(np.int32),
             make(glb, dye, layer.of(own[0]), textures.setdefault(weave if precision == "close" else 0, {})),
-            garment.pattern[used] * 1000.0,
+            places[used],
             shading=shading[used],
         )
 
@@ -235,17 +236,34 @@ def _lacquer() -> dict[str, Any]:
     }
 
 
+def _coarser(picture: np.ndarray, size: tuple[float, float]) -> np.ndarray:
+    """Means of a repeat's picture over so many pixels that one is FIGURE_PIXEL wide at most, each way by itself."""
+    for axis, side in ((0, size[1]), (1, size[0])):
+        count = picture.shape[axis]
+        wanted = max(1, int(FIGURE_PIXEL * count / side))
+        times = max(k for k in range(1, wanted + 1) if count % k == 0)
+        shape = list(picture.shape)
+        shape[axis : axis + 1] = [count // times, times]
+        picture = picture.reshape(shape).mean(axis=axis + 1)
+    return picture
+
+
 def _gleam(
-    glb: GlbFile, material: dict[str, Any], maps: MapsLike, textures: dict[str, Any], step: int
+    glb: GlbFile, material: dict[str, Any], maps: MapsLike, textures: dict[str, Any], *, far: bool
 ) -> None:
-    """Makes the highlight narrow along the yarns, wide across; step: a figured cloth keeps every such pixel of its map.
+    """Makes the highlight narrow along the yarns, wide across; far: of a figured cloth as coarse as the hall shows it.
 
     glTF's direction is the one in which the highlight is wide.
     """
     if isinstance(maps, FiguredMaps):
-        across = maps.direction[::step, ::step].astype(float)
-        run, strength = across[..., :2] / 127.5 - 1, across[..., 2:]
-        turned = np.dstack([127.5 - 127.5 * run[..., 1:], 127.5 + 127.5 * run[..., :1], strength])
+        across = maps.direction.astype(float)
+        run, strength = across[..., :2] / 127.5 - 1, across[..., 2]
+        # Twice the angle: which way a yarn runs along its line is no matter, also of a mean.
+        twice = (run[..., 0] + 1j * run[..., 1]) ** 2 * strength
+        if far:
+            twice = _coarser(twice, maps.size)
+        angle, strength = 0.5 * np.angle(twice), np.minimum(np.abs(twice), 255.0)
+        turned = np.dstack([127.5 - 127.5 * np.sin(angle), 127.5 + 127.5 * np.cos(angle), strength])
         tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         texture = _once(textures, "gleam", lambda: glb.texture(np.rint(turned).astype(np.uint8), tile))
         gleam: dict[str, Any] = {"anisotropyStrength": 1.0, "anisotropyTexture": texture}
@@ -305,7 +323,7 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
     )
     normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile))
     material["normalTexture"] = {**normal, "scale": 1.0}
-    _gleam(glb, material, maps, textures, 1)
+    _gleam(glb, material, maps, textures, far=False)
     if isinstance(maps, FiguredMaps):
         _cells(glb, material, maps, textures)
     if sheer:
@@ -325,16 +343,15 @@ def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict
     material["normalTexture"] = {**normal, "scale": 0.5}
     own = textures.setdefault(f"of {id(maps)}", {})
     if isinstance(maps, FiguredMaps):
-        step = max(1, maps.albedo.shape[0] // FIGURE_PIXELS)
         picture, factor = _coloured(maps, mean, dye, cover >= SHEER)
-        picture, repeat = picture[::step, ::step], [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
+        mean_light = _coarser(_linear(picture / 255.0), maps.size)
+        picture = np.rint(255 * _srgb(mean_light)).astype(np.uint8)
+        repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
-            own, _look_of(picture), lambda: glb.texture(picture, repeat)
+            own, _look_of(picture), lambda: glb.texture(picture, repeat, quality=FIGURE_QUALITY)
         )
         material["pbrMetallicRoughness"]["baseColorFactor"][:3] = [float(c) for c in np.clip(factor, 0, 1)]
-        _gleam(glb, material, maps, own, step)
-    else:
-        _gleam(glb, material, maps, own, 1)
+    _gleam(glb, material, maps, own, far=True)
     if cover < SHEER:
         material["alphaMode"] = "BLEND"
     return glb.material(material)

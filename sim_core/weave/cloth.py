@@ -192,7 +192,7 @@ def _ground(weave: Weave, geometry: YarnGeometry | ParticleCell) -> tuple[Weave,
         ground = _stand_in(weave)
     if ground.draft.lift.size > MANY and isinstance(geometry, YarnGeometry) and ground.draft is weave.draft:
         return ground, geometry
-    return ground, relax(ground, share=64 if weave.draft.channels.layer is not None else 1)
+    return ground, relax(ground, crowded=weave.draft.channels.layer is not None)
 
 
 def _held_apart(weave: Weave) -> bool:

@@ -84,6 +84,11 @@ class Weave:
         return (1 - warp) * (1 - weft)
 
     @property
+    def several(self) -> bool:
+        """Whether it is woven of yarns of several colours."""
+        return max(len(self.warp_colours), len(self.weft_colours)) > 1
+
+    @property
     def closeness(self) -> tuple[float, float]:
         """Width of a warp and of a weft yarn where it is widest, in its spacing: cloths are closed where one is 1.
 

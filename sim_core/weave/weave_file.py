@@ -11,7 +11,8 @@ from sim_core.validation.files import read_toml, shown
 from sim_core.weave.draft.draft import MOST_MOTIF as MOST
 from sim_core.weave.draft.draft import Draft, plain, satin, twill
 from sim_core.weave.draft.figured import Figure, FigureKind
-from sim_core.weave.draft.motifs import program_of
+from sim_core.weave.draft.generators import striped
+from sim_core.weave.draft.motifs import recipe_of
 from sim_core.weave.yarn import SILK_DENSITY, SILK_FILAMENT, SILK_MODULUS, Yarn
 
 __all__ = ["Published", "read_published", "read_weave_file"]
@@ -48,8 +49,8 @@ class _Motif(_Part):
     def figure(self, folder: Path, kind: FigureKind, **rest: Any) -> Figure | None:
         """The figure of a motif file; None where rows are written out."""
         if isinstance(self.motif, str):
-            program, parameters = program_of(folder / self.motif, self.parameters)
-            return Figure(kind, program, tuple(sorted(parameters.items())), **rest)
+            told = recipe_of(folder / self.motif, self.parameters)
+            return Figure(kind, told.program, told.parameters, parts=told.parts, **rest)
         if self.parameters:
             raise WeaveError("draft.parameters: of a motif file – the rows of draft.motif have none")
         return None
@@ -60,24 +61,40 @@ class _Motif(_Part):
         return _motif(self.motif)
 
 
-class _Plain(_Part):
+# How many ends or picks, and their colour: a place in warp_colours or weft_colours.
+Stripe = Annotated[list[Annotated[int, Field(ge=0, le=MOST)]], Field(min_length=2, max_length=2)]
+Stripes = Annotated[list[Stripe], Field(max_length=256)]
+
+
+class _Striped(_Part):
+    """A weave whose ends and picks may change their colour."""
+
+    warp_stripes: Stripes = []
+    weft_stripes: Stripes = []
+
+    def striped(self, draft: Draft) -> Draft:
+        """The draft with its yarns in their colours."""
+        return striped(draft, self.warp_stripes, self.weft_stripes)
+
+
+class _Plain(_Striped):
     kind: Literal["plain"]
 
     def draft(self, folder: Path) -> Draft | Figure:
-        return plain()
+        return self.striped(plain())
 
 
-class _Twill(_Part):
+class _Twill(_Striped):
     kind: Literal["twill"]
     up: int = Field(ge=1, le=MOST)
     down: int = Field(ge=1, le=MOST)
     step: int = Field(1, ge=-MOST, le=MOST)
 
     def draft(self, folder: Path) -> Draft | Figure:
-        return twill(self.up, self.down, self.step)
+        return self.striped(twill(self.up, self.down, self.step))
 
 
-class _Satin(_Part):
+class _Satin(_Striped):
     kind: Literal["satin"]
     ends: int = Field(ge=1, le=MOST)
     step: int = Field(ge=-MOST, le=MOST)
@@ -85,7 +102,7 @@ class _Satin(_Part):
 
     def draft(self, folder: Path) -> Draft | Figure:
         made = satin(self.ends, self.step)
-        return made if self.face == "warp" else Draft(f"{made.name} (weft face)", ~made.lift.T)
+        return self.striped(made if self.face == "warp" else Draft(f"{made.name} (weft face)", ~made.lift.T))
 
 
 class _Damask(_Motif):
@@ -122,8 +139,8 @@ class _Leno(_Part):
         if (self.form == "figured") != (self.motif is not None):
             raise WeaveError('draft.form: "figured" has a motif, and no other form – give both, or none')
         if self.motif:
-            program, parameters = program_of(folder / self.motif, self.parameters)
-            return Figure("leno", program, tuple(sorted(parameters.items())))
+            told = recipe_of(folder / self.motif, self.parameters)
+            return Figure("leno", told.program, told.parameters, parts=told.parts)
         from sim_core.weave.draft.structures import four_end_gauze, gauze
 
         return gauze() if self.form == "pair" else four_end_gauze()
@@ -169,7 +186,7 @@ class _Brocade(_Motif):
         return brocade(self.rows() - 1, ground=draft_of_words(self.ground), every=self.every)
 
 
-class _Lift(_Part):
+class _Lift(_Striped):
     """A draft written out: one string of 0 and 1 a pick, 1 = warp on top."""
 
     kind: Literal["lift"]
@@ -180,7 +197,7 @@ class _Lift(_Part):
     def draft(self, folder: Path) -> Draft | Figure:
         if len({len(row) for row in self.lift}) != 1:
             raise WeaveError("draft.lift: rows differ in length – give every pick the same number of ends")
-        return Draft("lift", np.array([[c == "1" for c in row] for row in self.lift]))
+        return self.striped(Draft("lift", np.array([[c == "1" for c in row] for row in self.lift])))
 
 
 class _Yarn(_Part):
@@ -283,6 +300,7 @@ def _checked(path: Path) -> _WeaveFile:
 
 
 def _values(file: _WeaveFile, folder: Path) -> dict[str, Any]:
+    _check_stripes(file)
     yarns, made = {}, file.draft.draft(folder)
     figure, draft = (made, None) if isinstance(made, Figure) else (None, made)
     if figure is not None:
@@ -305,6 +323,19 @@ def _values(file: _WeaveFile, folder: Path) -> dict[str, Any]:
         weft_colours=tuple(_rgb(c) for c in file.weft_colours),
         **yarns,
     )
+
+
+def _check_stripes(file: _WeaveFile) -> None:
+    for side in ("warp", "weft"):
+        stripes, colours = getattr(file.draft, f"{side}_stripes", []), getattr(file, f"{side}_colours")
+        if any(count < 1 for count, _ in stripes):
+            raise WeaveError(
+                f"draft.{side}_stripes: a stripe of no yarns – give [how many, colour], at least one"
+            )
+        if any(colour >= len(colours) for _, colour in stripes):
+            raise WeaveError(
+                f"draft.{side}_stripes: a colour that is not there – {side}_colours has {len(colours)}, counted from 0"
+            )
 
 
 def _first(error: ValidationError) -> str:

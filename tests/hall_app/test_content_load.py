@@ -226,6 +226,15 @@ def test_a_bake_depends_on_the_outfit_all_it_names_and_how_it_is_shown(house: Pa
         path = house / name
         path.write_text(path.read_text("utf-8") + "\n# changed\n", "utf-8")
         keys.append(key())
+    motifs = house / "motifs"
+    motifs.mkdir()
+    (house / "weaves/juan.toml").write_text('[draft]\nmotif = "../motifs/bands.toml"\n', "utf-8")
+    (motifs / "bands.toml").write_text('[[part]]\nmotif = "vine.toml"\n', "utf-8")
+    keys.append(key())
+    for name in ("vine.toml", "vine.toml", "bands.toml"):
+        with (motifs / name).open("a", encoding="utf-8") as file:
+            file.write("# changed\n")
+        keys.append(key())
     edit(toml, "[body]", "[show]\nnearest = 3.0\n[body]")
     keys.append(key())
     assert len(set(keys)) == len(keys)

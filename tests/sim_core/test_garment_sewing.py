@@ -118,7 +118,7 @@ def test_materials_bear_their_weight_and_fold_as_the_mesh_can(way: str) -> None:
     assert single.density == pytest.approx(parameters.density)
     assert (single.bend / (single.density * 9.81)) ** (1 / 3) >= program.fold * EDGE * (1 - 1e-9)
     assert single.shear is not None
-    assert single.shear == pytest.approx(softest / 2.6)
+    assert parameters.shear < single.shear <= softest / 2.6  # an isotropic sheet's
     assert set(choices) == {"stretch", "shear", "bend", "poisson"}
 
 

@@ -104,6 +104,9 @@ def test_garment_file_round_trip(tmp_path: Path) -> None:
         garment.provenance,
         garment.dye,
     )
+    assert back.origins == ()
+    replace(garment, origins=((0.1, -0.25),)).save(tmp_path / "g.npz")
+    assert Garment.load(tmp_path / "g.npz").origins == ((0.1, -0.25),)
     moved = Garment(**{**garment.__dict__, "positions": garment.positions + 1e-15})
     assert moved.digest() != garment.digest()
 
@@ -247,6 +250,10 @@ def test_glb_holds_what_it_says(tmp_path: Path, precision) -> None:
         assert np.linalg.norm(normal, axis=1) == pytest.approx(np.ones(len(normal)), abs=1e-5)
     uv = accessor(document, blob, document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"])
     assert uv == pytest.approx(garment.pattern * 1000, abs=1e-3)
+    write_glb(tmp_path / "laid.glb", [Clothed(replace(garment, origins=((0.1, 1.0),)), plain_maps(120))])
+    laid, data = chunks(tmp_path / "laid.glb")
+    uv = accessor(laid, data, laid["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"])
+    assert uv == pytest.approx((garment.pattern - [0.1, 1.0]) * 1000, abs=1e-3)
     cloth, lacquer = document["materials"]
     assert cloth["doubleSided"] is True
     assert cloth["alphaMode"] == "BLEND"

@@ -3,13 +3,15 @@
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sim_core.errors import FileProblem, SimCoreError, WeaveError
 from sim_core.weave import Weave, Yarn
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
-GAUZE = (FOLDER / "gauze.toml").read_text("utf-8")
+WHOLE = (FOLDER / "gauze.toml").read_text("utf-8")
+GAUZE = WHOLE[: WHOLE.index("[published]")] + WHOLE[WHOLE.index("[draft]") :]
 
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.toml")), ids=lambda path: path.stem)
@@ -111,3 +113,40 @@ def test_places_that_cannot_be_written_are_named_before_the_work(option, name, t
     assert printed.out == ""
     assert f"{tmp_path / name}: a f" in printed.err
     assert "Errno" not in printed.err
+
+
+STRIPED = GAUZE.replace("[draft]", 'warp_colours = ["#102030", "#ffffff"]\n[draft]')
+
+
+def test_stripes_colour_the_ends_and_leave_the_weave_as_it_is(tmp_path):
+    path = tmp_path / "striped.toml"
+    path.write_text(
+        STRIPED.replace('"plain"', '"twill"\nup = 2\ndown = 1\nwarp_stripes = [[4, 0], [1, 1]]'), "utf-8"
+    )
+    weave = Weave.load(path)
+    assert weave.draft.lift.shape == (3, 15)  # where a repeat of 3 and stripes of 5 close together
+    series = weave.draft.channels.end_series
+    assert series.tolist() == [0, 0, 0, 0, 1] * 3
+    assert np.array_equal(weave.draft.lift[:, :3], weave.draft.lift[:, 3:6])
+    assert Weave.from_dict(weave.to_dict()) == weave
+
+
+@pytest.mark.parametrize(
+    ("stripes", "words"),
+    [
+        ("[[4, 2]]", r"draft.warp_stripes: a colour that is not there – warp_colours has 2"),
+        ("[[0, 1]]", r"draft.warp_stripes: a stripe of no yarns"),
+        ("[[4]]", r"warp_stripes.0"),
+        (
+            "[[997, 0], [1021, 1], [1013, 0], [1009, 1], [1019, 0], [1024, 1]] ",
+            r"crossings – give at most|yarns – give",
+        ),
+    ],
+)
+def test_stripes_that_cannot_be_woven_are_named(tmp_path, stripes, words):
+    path = tmp_path / "striped.toml"
+    path.write_text(
+        STRIPED.replace('"plain"', f'"satin"\nends = 17\nstep = 5\nwarp_stripes = {stripes}'), "utf-8"
+    )
+    with pytest.raises(WeaveError, match=f"striped.toml: .*{words}"):
+        Weave.load(path)

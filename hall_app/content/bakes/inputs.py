@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator
+from os.path import normpath
 from pathlib import Path
 from typing import Any
 
-from hall_app.content.files import file_problem
+from hall_app.content.files import file_problem, is_there, leaves
 from hall_app.content.problems import Problem
 from hall_app.content.schema.complaints import toml_problem
 
-__all__ = ["outfit_files", "outfit_problems"]
+__all__ = ["motif_files", "outfit_files", "outfit_problems"]
 
 OUTFIT = ("wearer", "motion", "study")  # keys of an outfit that name a file
+MOST_MOTIFS = 200  # files looked at for one weave
 LAYER = ("pattern", "weave")  # keys of a layer that name a file; `weaves` holds those of single panels
 
 
@@ -39,6 +41,37 @@ def _named(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         weaves = layer.get("weaves")
         for panel, path in (weaves if isinstance(weaves, dict) else {}).items():
             yield f"layer.{number}.weaves.{panel}", path
+
+
+def motif_files(folder: Path, weave: str) -> tuple[str, ...]:
+    """The motif files that a weave file names, and those that they name, relative to the content folder.
+
+    What cannot be read names none: the engine, which reads it, says what is wrong.
+    """
+    found: list[str] = []
+    waiting = [name for name in _motifs(folder, weave) if name]
+    while waiting and len(found) < MOST_MOTIFS:
+        path = waiting.pop(0)
+        if path not in found:
+            found.append(path)
+            waiting += _motifs(folder, path)
+    return tuple(found)
+
+
+def _motifs(folder: Path, path: str) -> list[str]:
+    """What a weave's draft or a motif's parts name, as paths from the content folder."""
+    if not path.endswith(".toml"):
+        return []
+    try:
+        table = tomllib.loads((folder / path).read_bytes().decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return []
+    draft, parts = table.get("draft"), table.get("part")
+    tables = [draft, *(parts if isinstance(parts, list) else [])]
+    named = [one.get("motif") for one in tables if isinstance(one, dict)]
+    beside = [normpath(Path(path).parent / name) for name in named if isinstance(name, str) and name]
+    names = [Path(name).as_posix() for name in beside]
+    return [name for name in names if is_there(folder / name) and not leaves(folder / name, folder)]
 
 
 def outfit_problems(folder: Path, outfit: str) -> list[Problem]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 
-from hall_app.content.bakes.inputs import outfit_files
+from hall_app.content.bakes.inputs import motif_files, outfit_files
 from hall_app.content.bakes.steps import chosen_steps
 from hall_app.content.folder import Content, Exhibit
 
@@ -39,7 +39,9 @@ def _hash(content: Content, exhibit: Exhibit, begin: str) -> str:
     if outfit is None:
         raise ValueError(f"exhibit {exhibit.id} has no outfit to bake")
     digest = hashlib.sha256(begin.encode())
-    for path in dict.fromkeys([outfit, *(path for _, path in outfit_files(content.folder, outfit))]):
+    named = [outfit, *(path for _, path in outfit_files(content.folder, outfit))]
+    motifs = [motif for path in named for motif in motif_files(content.folder, path)]
+    for path in dict.fromkeys([*named, *motifs]):
         digest.update(f"\0{path}\0".encode())
         digest.update((content.folder / path).read_bytes())
     return digest.hexdigest()[:KEY_DIGITS]

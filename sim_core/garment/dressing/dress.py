@@ -301,6 +301,7 @@ class _Dressing:
             },
             dye=pattern.dye,
             settled=self._settled(runs, ran),
+            origins=tuple(layer.origin_of(name) for name in names) * twice if layer.placed else (),
         )
 
     def _settled(self, runs: Runs, ran: Ran) -> Settled:

@@ -129,8 +129,9 @@ class _Reader:
         weaves = {
             name: Weave.load(self._file(f"{key}.weaves.{name}", file)) for name, file in table.weaves.items()
         }
-        for name in weaves:
-            self._of(f"{key}.weaves", lambda name=name: pattern.panel(name))
+        for of, panels in (("weaves", weaves), ("origins", table.origins)):
+            for name in panels:
+                self._of(f"{key}.{of}", lambda name=name: pattern.panel(name))
         way = table.place.way if table.place else ("over_bar" if on_stand else "flat")
         if on_stand != (way in ("over_bar", "folded")):
             ways = "over_bar or folded on a stand" if on_stand else "flat, wrapped or along_path on a wearer"
@@ -153,10 +154,12 @@ class _Reader:
         _check_order(self, key, program.steps, pattern)
         edge = pattern.edge if table.edge is None else table.edge
         name = table.name or pattern.name
-        return self._of(
+        layer = self._of(
             f"{key}.name",
             lambda: Layer(name, pattern, weave, place, program, edge, weaves, table.seed, self._loom),
         )
+        origins = {panel: _metres(at) for panel, at in table.origins.items()}
+        return replace(layer, origin=_metres(table.origin), origins=origins)
 
     def _begun(self, key: str, start: PoseTable, way: str, program: Program) -> Program:
         """The program from another pose on than is usual for its way of placing."""
@@ -247,6 +250,10 @@ class _Reader:
             return make()
         except SimCoreError as error:
             raise FileProblem(f"{self._path}: {key}: {error}") from error
+
+
+def _metres(place: tuple[float, float]) -> tuple[float, float]:
+    return place[0] / 1000.0, place[1] / 1000.0
 
 
 def _check_order(reader: _Reader, key: str, steps: Sequence[Step], pattern: Pattern) -> None:

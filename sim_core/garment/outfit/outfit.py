@@ -50,6 +50,7 @@ class Program:
 class Layer:
     """One garment of an outfit. weaves: the cloth's first, then those of panels by name; edge [m]: its mesh step;
     seed: of the folds' irregularity; loom: remembers what its weaves are like, one for all layers of an outfit;
+    origin, origins [m]: where a corner of the weave's repeat lies in the axes of its panels, and of single ones;
     coarse [m]: the mesh step it is sewn and posed at (None: COARSE for cloth finer than FINE that is not tied, else its
     own)."""
 
@@ -63,6 +64,8 @@ class Layer:
     seed: int = 0
     loom: Loom = field(default_factory=Loom, repr=False, compare=False)
     coarse: float | None = None
+    origin: tuple[float, float] = (0.0, 0.0)
+    origins: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not FILE_NAME.fullmatch(self.name):
@@ -73,6 +76,15 @@ class Layer:
     def weave_of(self, panel: str) -> Weave:
         """What a panel is cut from."""
         return self.weaves.get(panel, self.weave)
+
+    def origin_of(self, panel: str) -> tuple[float, float]:
+        """Where a corner of the weave's repeat lies in a panel's axes [m]."""
+        return self.origins.get(panel, self.origin)
+
+    @property
+    def placed(self) -> bool:
+        """Whether its cloth was laid with care: a repeat's corner elsewhere than at the axes' zero."""
+        return self.origin != (0.0, 0.0) or bool(self.origins)
 
     @cached_property
     def first(self) -> Layer:
@@ -166,6 +178,7 @@ class Outfit:
                     "weaves": {name: weave.to_dict() for name, weave in layer.weaves.items()},
                     "edge": layer.edge,
                     **({} if layer.coarse is None else {"coarse": layer.coarse}),
+                    **({"origin": layer.origin, "origins": dict(layer.origins)} if layer.placed else {}),
                     "seed": layer.seed,
                     "place": repr(layer.place),
                     "program": repr(layer.program),

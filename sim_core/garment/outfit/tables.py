@@ -24,6 +24,10 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[float, Field(strict=True, gt=0, le=20, allow_inf_nan=False)]
 Share = Annotated[float, Field(strict=True, gt=0, le=1, allow_inf_nan=False)]
 Way = Annotated[float, Field(strict=True, ge=-20, le=20, allow_inf_nan=False)]  # [m]
+Corner = tuple[
+    Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)],
+    Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)],
+]  # [mm]
 Vector = tuple[Way, Way, Way]
 Words = dict[Literal["zh", "en"], str]
 Colour = Annotated[str, Field(pattern=r"^#[0-9a-fA-F]{6}$")]
@@ -166,8 +170,12 @@ class LayerTable(Table):
     pattern: str = Field(min_length=1, description="pattern file, e.g. patterns/robe.toml")
     weave: str = Field(min_length=1, description="weave file, e.g. weaves/juan.toml")
     weaves: dict[str, str] = Field({}, description="weave files of single panels")
-    dye: Colour | None = Field(None, description="colour, else the pattern's")
+    dye: Colour | None = Field(None, description="colour, else the pattern's; a weave of several keeps them")
     dyes: dict[str, Colour] = Field({}, description="colours of single panels")
+    origin: Corner = Field(
+        (0.0, 0.0), description="where a corner of the weave's repeat lies in the pattern's axes [mm]"
+    )
+    origins: dict[str, Corner] = Field({}, description="the same of single panels")
     measures: dict[str, Measure] = Field({}, description="measures of the pattern to be changed [mm]")
     edge: Number | None = Field(None, ge=0.002, le=0.2, description="mesh step [m], else the pattern's")
     seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")

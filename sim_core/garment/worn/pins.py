@@ -43,11 +43,16 @@ class Pins:
         marks, body = wearer.landmarks(pose), wearer.posed(pose)
         middles = [0.5 * (marks["neck"] + marks[f"shoulder_{side}"]) for side in "lr"]
         skin, cloth = KDTree(body), KDTree(garment.positions)
+        corners = garment.positions[garment.faces]
+        # Cloth of large triangles lies on a shoulder with their middles, too.
+        lying = KDTree(
+            np.concatenate([corners.mean(1), *(0.5 * (corners + np.roll(corners, 1, 1))).swapaxes(0, 1)])
+        )
         spots: list[_Spot] = []
         for middle in middles:
             top = body[skin.query(middle)[1]]
             away, nearest = cloth.query(top)
-            if away > LIES:
+            if min(away, lying.query(top)[0]) > LIES:
                 continue
             held = np.array(sorted(cloth.query_ball_point(garment.positions[nearest], ROUND)), np.int64)
             held = np.setdiff1d(held, _held(spots))

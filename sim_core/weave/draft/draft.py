@@ -14,7 +14,8 @@ from sim_core.errors import WeaveError
 
 __all__ = ["Channels", "Draft", "check_size", "plain", "satin", "twill"]
 
-MOST = 4096  # ends or picks of one draft; beyond, it is counted by its factors
+MOST = 16_384  # ends or picks of one draft; beyond, it is counted by its factors
+MOST_CROSSINGS = 40_000_000
 MOST_MOTIF = 1024  # of what a weave file or a picture makes
 KINDS = ("main", "inner", "extra")
 
@@ -194,9 +195,12 @@ def _period(draft: Draft, axis: int) -> int:
 
 
 def check_size(name: str, *counts: int) -> None:
-    """Raises WeaveError where a draft would have more than MOST ends or picks."""
+    """Raises WeaveError where a draft would have more ends or picks (one count: as many of both) than can be held."""
     if max(counts) > MOST:
         raise WeaveError(f"draft {name}: {max(counts):,} yarns – give at most {MOST:,} ends and picks")
+    crossings = counts[0] * counts[-1]
+    if crossings > MOST_CROSSINGS:
+        raise WeaveError(f"draft {name}: {crossings:,} crossings – give at most {MOST_CROSSINGS:,}")
 
 
 def plain() -> Draft:

@@ -17,7 +17,7 @@ import numpy as np
 from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Channels, Draft
 from sim_core.weave.draft.generators import limit_floats, woven
-from sim_core.weave.draft.motifs import Motif, cut, motif_of_program
+from sim_core.weave.draft.motifs import Motif, Part, Recipe, cut
 from sim_core.weave.draft.notation import draft_of_words
 from sim_core.weave.draft.structures import (
     brocade,
@@ -40,7 +40,7 @@ class Figure:
 
     words: the weaves of a damask by number (0 the ground; the last one for all numbers above), the ground of a brocade.
     longest: floats of a damask that get a binding point; 0 leaves them.  series: yarns of a compound unit.
-    every: of how many ends one binds the extra wefts of a brocade.
+    every: of how many ends one binds the extra wefts of a brocade.  parts: of a layout, see `Part`.
     Raises WeaveError where the motif cannot be drawn, or has more numbers than a compound has series.
     """
 
@@ -51,12 +51,15 @@ class Figure:
     longest: int = 0
     series: int = 2
     every: int = 4
+    parts: tuple[Part, ...] = ()
 
     def __post_init__(self) -> None:
         if self.kind not in get_args(FigureKind):
             raise WeaveError(f"figure: kind {self.kind!r} – one of {', '.join(get_args(FigureKind))}")
         object.__setattr__(self, "parameters", tuple((str(k), float(v)) for k, v in self.parameters))
         object.__setattr__(self, "words", tuple(self.words))
+        parts = (part if isinstance(part, Part) else Part(**part) for part in self.parts)
+        object.__setattr__(self, "parts", tuple(parts))
         if self.kind == "damask" and len(self.words) < 2:
             raise WeaveError("figure: a damask needs two weaves – name its ground and its figure")
         colours = self.motif.colours
@@ -68,7 +71,7 @@ class Figure:
     @property
     def motif(self) -> Motif:
         """The motif as it is drawn."""
-        return _motif(self.program, self.parameters)
+        return Recipe(self.program, self.parameters, self.parts).motif(self.program)
 
     def numbers(self, ends_per_m: float, picks_per_m: float) -> np.ndarray:
         """The number at each place (picks, ends) int8 of the whole draft, the first pick lowest.
@@ -129,13 +132,12 @@ class Figure:
 
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold and `Figure(**it)` reads back."""
-        values = asdict(self)
-        return values | {"parameters": [list(pair) for pair in self.parameters], "words": list(self.words)}
-
-
-@lru_cache(maxsize=16)
-def _motif(program: str, parameters: tuple[tuple[str, float], ...]) -> Motif:
-    return motif_of_program(program, program, dict(parameters))
+        values: dict[str, Any] = asdict(self) | {"words": list(self.words)}
+        for told in (values, *values["parts"]):
+            told["parameters"] = [list(pair) for pair in told["parameters"]]
+        if not self.parts:
+            del values["parts"]
+        return values
 
 
 @lru_cache(maxsize=8)

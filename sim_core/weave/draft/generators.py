@@ -1,9 +1,12 @@
 """Generators beyond plain, twill and satin: ribs, derivatives of twill, irregular satin, damask from a motif."""
 
+from collections.abc import Sequence
+from math import lcm
+
 import numpy as np
 
 from sim_core.errors import WeaveError
-from sim_core.weave.draft.draft import Draft, check_size, plain, satin, twill
+from sim_core.weave.draft.draft import Channels, Draft, check_size, plain, satin, twill
 
 __all__ = [
     "basket",
@@ -12,6 +15,7 @@ __all__ = [
     "herringbone",
     "limit_floats",
     "satin_of_six",
+    "striped",
     "weft_faced",
     "woven",
 ]
@@ -45,6 +49,30 @@ def diamond(up: int, down: int, width: int) -> Draft:
     pointed = herringbone(up, down, width)
     picks = np.concatenate([np.arange(width), width - np.arange(width)]) % pointed.picks
     return Draft(f"diamond {up}/{down} {width}", pointed.lift[picks])
+
+
+def striped(draft: Draft, warp: Sequence[Sequence[int]], weft: Sequence[Sequence[int]]) -> Draft:
+    """The same weave with its ends and picks in stripes: how many yarns, which colour, in turn; empty: one colour.
+
+    The draft grows until stripes and weave close together. Raises WeaveError where that is larger than any draft.
+    """
+    if not warp and not weft:
+        return draft
+    series = [
+        np.repeat([colour for _, colour in stripes], [count for count, _ in stripes]) if stripes else None
+        for stripes in (warp, weft)
+    ]
+    own = (draft.ends, draft.picks)
+    ends, picks = (
+        lcm(count, 1 if found is None else len(found)) for count, found in zip(own, series, strict=True)
+    )
+    check_size(f"striped {draft.name}", picks, ends)
+    end_series, pick_series = (
+        None if found is None else np.resize(found, count)
+        for found, count in zip(series, (ends, picks), strict=True)
+    )
+    lift = woven(draft.lift, (picks, ends))
+    return Draft(f"striped {draft.name}", lift, Channels(end_series=end_series, pick_series=pick_series))
 
 
 def satin_of_six() -> Draft:

@@ -1,9 +1,9 @@
 """Yarns of a weave brought to rest: as beams at the crossings (stage A), as particles between them (stage B).
 
 `geometry` holds what comes out. `jam` refuses what cannot be woven; `beams` relaxes heights in force balance, satins
-and twills by one pick (`shifts`); `particles` goes on in three dimensions; `leno_brocade` lays what no grid of
-crossings holds. `paths` gives the axes of all yarns, whatever the weave, and `solver` is the one call that chooses
-among these.
+and twills by one pick (`shifts`), `compound` those of yarns that share a place; `particles` goes on in three
+dimensions; `leno_brocade` lays what no grid of crossings holds. `paths` gives the axes of all yarns, whatever the
+weave, and `solver` is the one call that chooses among these.
 """
 
 from sim_core.weave.yarns.beams import beam_stiffness, relax

@@ -52,18 +52,19 @@ def relax(
     *,
     tension: tuple[float, float] = (0.0, 0.0),
     tolerance: float | None = None,
-    share: int = 1,
+    crowded: bool = False,
     start: YarnGeometry | None = None,
 ) -> YarnGeometry:
     """Yarn geometry of one repeat in force balance (stage A), periodic and free of penetration.
 
     tension: (T of each warp end, T of each pick) [N], added to that of the yarns.  tolerance: on gap and force,
     relative to D and to the largest crossing force, 1e-9 unless there are more than 10,000 crossings, then 1e-6.
-    share: yarns of a compound weave that share one place.  start: of a weave that differs little, to begin from.
+    crowded: whether yarns that find no room beside each other are taken all the same.  start: of a weave that differs
+    little, to begin from.
     Slopes are taken as small: expect crimp up to a few per cent to be exact, near jam it is not.
     Raises WeaveError for a jammed sett, or where the iteration does not reach the tolerance.
     """
-    if share == 1:
+    if not crowded:
         check_jam(weave)
     picks, ends = weave.draft.lift.shape
     if tolerance is None:

@@ -11,13 +11,9 @@ from sim_core.weave.yarns.geometry import Strands, YarnGeometry
 from sim_core.weave.yarns.leno_brocade import brocade_heights, leno_paths
 from sim_core.weave.yarns.particles.cell import ParticleCell
 from sim_core.weave.yarns.sections import relaxed_sections
-from sim_core.weave.yarns.splines import eased, resampled
+from sim_core.weave.yarns.splines import resampled
 
 __all__ = ["main_picks", "strands"]
-
-BENEATH = (
-    0.9  # of a yarn's height: how much lower the hidden yarns of a compound unit lie than the one that shows
-)
 
 
 def strands(weave: Weave, geometry: YarnGeometry | ParticleCell, *, per: int = 8) -> tuple[Strands, ...]:
@@ -49,8 +45,6 @@ def _axes(weave: Weave, geometry: YarnGeometry | ParticleCell, main: np.ndarray,
     else:
         wz, fz = resampled(geometry.warp_height.T, per), resampled(geometry.weft_height, per)
         paths = np.zeros_like(wz), wz, np.zeros_like(fz), fz
-    if channels.layer is not None:
-        paths = _layered(weave, paths)
     palettes = _palette(weave.warp_colours, weave.warp), _palette(weave.weft_colours, weave.weft)
     pick_step = height / len(main)
     picks_at = np.arange(len(main)) * pick_step
@@ -95,16 +89,6 @@ def _series(weave: Weave) -> int:
     if channels.layer is None:
         return 1
     return max(1 + int(s.max()) for s in (channels.end_series, channels.pick_series) if s is not None)
-
-
-def _layered(weave: Weave, paths: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
-    """Yarns of a compound unit that do not show lie lower by part of their height, beneath the one that shows."""
-    layer, series = weave.draft.channels.layer, weave.draft.channels.end_series
-    assert layer is not None
-    wu, wz, fu, fz = paths
-    if series is not None:
-        return wu, wz - BENEATH * weave.warp.height * eased(layer.T, wz.shape[1]), fu, fz
-    return wu, wz, fu, fz - BENEATH * weave.weft.height * eased(layer, fz.shape[1])
 
 
 def main_picks(weave: Weave) -> np.ndarray:

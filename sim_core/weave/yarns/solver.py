@@ -11,6 +11,7 @@ from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Draft
 from sim_core.weave.model import Weave
 from sim_core.weave.yarns.beams import relax
+from sim_core.weave.yarns.compound import relax_compound
 from sim_core.weave.yarns.geometry import FiguredGeometry, YarnGeometry
 from sim_core.weave.yarns.particles.cell import MOST_STEPS, ParticleCell, relax_particles
 from sim_core.weave.yarns.paths import main_picks
@@ -71,9 +72,8 @@ def solve(
     simple = channels.order is None and channels.layer is None
     if channels.order is not None and channels.layer is None:
         return _woven_leno(weave)
-    if ground is weave and not simple:  # ends of a compound unit share their room
-        series = max(int(s.max()) + 1 for s in (channels.end_series, channels.pick_series) if s is not None)
-        return relax(weave, share=series, tolerance=1e-8)
+    if channels.layer is not None:
+        return relax_compound(weave)
     if particles and simple:
         cell = relax_particles(ground, per=per, friction=friction, tolerance=tolerance, watch=watch,
                                most=most or MOST_STEPS)  # fmt: skip

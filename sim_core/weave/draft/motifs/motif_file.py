@@ -1,22 +1,29 @@
-"""Motif files (TOML): a program by name and its parameters in millimetres; mistakes are named by file and key."""
+"""Motif files (TOML): a program by name and its parameters, or a layout of several, all in millimetres.
+
+Mistakes are named by file and key.
+"""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from sim_core.errors import WeaveError
+from sim_core.errors import SimCoreError, WeaveError
 from sim_core.validation.files import read_toml, shown
-from sim_core.weave.draft.motifs.motif import Motif
+from sim_core.weave.draft.motifs.layout import Part, laid_out
+from sim_core.weave.draft.motifs.motif import MOST_COLOURS, Motif
 from sim_core.weave.draft.motifs.programs import PROGRAMS
 
-__all__ = ["motif_of_program", "program_of", "read_motif"]
+__all__ = ["Recipe", "motif_of_program", "read_motif", "recipe_of"]
 
 MM = 1e-3  # [m]
+LAYOUT = "layout"  # the program of motif files with [[part]] tables
 Number = Annotated[float, Field(gt=0, le=4000)]
 
 
@@ -26,13 +33,46 @@ class _Title(BaseModel):
     en: str
 
 
+class _PartTable(BaseModel):
+    """A rectangle of a layout: a motif file beside this one, or one number all over."""
+
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+    motif: Annotated[str, Field(pattern=r"\.toml$", max_length=200)] | None = None
+    parameters: dict[str, Number] = {}
+    fill: Annotated[int, Field(ge=0, lt=MOST_COLOURS)] | None = None
+    within: tuple[float, float, float, float] | None = None
+    at: tuple[float, float] | None = None
+    numbers: list[Annotated[int, Field(ge=0, lt=MOST_COLOURS)]] = []
+
+
 class _MotifFile(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
     name: str
     title: _Title | None = None
     source: str | None = None
-    program: str
+    program: str | None = None
     parameters: dict[str, Number] = {}
+    repeat: tuple[Number, Number] | None = None
+    part: Annotated[list[_PartTable], Field(max_length=64)] = []
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a motif file says: a program with its parameters [mm], or the program `layout` (width, height) and its
+    parts."""
+
+    program: str
+    parameters: tuple[tuple[str, float], ...]
+    parts: tuple[Part, ...] = ()
+
+    def motif(self, name: str) -> Motif:
+        """What it draws; raises WeaveError."""
+        return replace(_drawn(self), name=name)
+
+
+@lru_cache(maxsize=32)
+def _drawn(recipe: Recipe) -> Motif:
+    return motif_of_program(recipe.program, recipe.program, dict(recipe.parameters), recipe.parts)
 
 
 def read_motif(path: Path, changes: Mapping[str, float] | None = None) -> Motif:
@@ -40,35 +80,83 @@ def read_motif(path: Path, changes: Mapping[str, float] | None = None) -> Motif:
 
     Raises FileProblem where the file cannot be read, WeaveError (file: key: what – remedy) for what it cannot mean.
     """
-    return _drawn(path, changes)[2]
+    return _read(path, changes)[1]
 
 
-def program_of(path: Path, changes: Mapping[str, float] | None = None) -> tuple[str, dict[str, float]]:
-    """Program and parameters of a motif file, those that `changes` names changed; raises as `read_motif` does."""
-    program, parameters, _ = _drawn(path, changes)
-    return program, parameters
+def recipe_of(path: Path, changes: Mapping[str, float] | None = None) -> Recipe:
+    """The recipe of a motif file, those parameters that `changes` names changed; raises as `read_motif` does."""
+    return _read(path, changes)[0]
 
 
-def _drawn(path: Path, changes: Mapping[str, float] | None) -> tuple[str, dict[str, float], Motif]:
+def _read(path: Path, changes: Mapping[str, float] | None) -> tuple[Recipe, Motif]:
     values = read_toml(path, "a motif file (TOML), such as those in assets/motifs")
     try:
         file = _MotifFile.model_validate(values)
-        parameters = file.parameters | dict(changes or {})
-        return file.program, parameters, motif_of_program(file.name, file.program, parameters)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
         key = ".".join(str(part) for part in first["loc"]) or "file"
         raise WeaveError(f"{path}: {key}: {shown(first.get('input'))}: {first['msg']}") from error
+    try:
+        recipe = _recipe(file, path.parent, dict(changes or {}))
+        return recipe, recipe.motif(file.name)
     except WeaveError as error:
         raise WeaveError(f"{path}: {error}") from error
 
 
-def motif_of_program(name: str, program: str, parameters: Mapping[str, float] | None = None) -> Motif:
+def _recipe(file: _MotifFile, folder: Path, changes: dict[str, float]) -> Recipe:
+    if (file.program is None) == (not file.part):
+        raise WeaveError("program: give a program, or [[part]] tables and their repeat – one of both")
+    if file.program is not None:
+        if file.repeat:
+            raise WeaveError("repeat: of [[part]] tables – a program has its own; leave it out")
+        return Recipe(file.program, tuple(sorted((file.parameters | changes).items())))
+    if file.repeat is None:
+        raise WeaveError("repeat: missing – give [width, height] in millimetres, along the weft and the warp")
+    if file.parameters or changes:
+        raise WeaveError(
+            "parameters: a layout has none of its own – change those of its parts, in the motif file"
+        )
+    size = {"height": file.repeat[1], "width": file.repeat[0]}
+    parts = tuple(_part(k, table, folder, file.repeat) for k, table in enumerate(file.part, 1))
+    return Recipe(LAYOUT, tuple(size.items()), parts)
+
+
+def _part(number: int, table: _PartTable, folder: Path, repeat: tuple[float, float]) -> Part:
+    within = table.within or (0.0, 0.0, *repeat)
+    key = f"part.{number}"
+    if (table.motif is None) == (table.fill is None):
+        raise WeaveError(f"{key}: give it a motif file or fill, one of both")
+    if table.motif is None:
+        if table.parameters or table.at or table.numbers:
+            raise WeaveError(f"{key}: parameters, at and numbers are a motif's – leave them out")
+        return Part(within, numbers=(int(table.fill or 0),))
+    try:
+        inner = recipe_of(folder / table.motif, table.parameters)
+    except SimCoreError as error:
+        raise WeaveError(f"{key}.motif: {error}") from error
+    if inner.parts:
+        raise WeaveError(f"{key}.motif: {table.motif} is a layout, too – name a motif with a program")
+    return Part(within, inner.program, inner.parameters, table.at, tuple(table.numbers))
+
+
+def motif_of_program(
+    name: str,
+    program: str,
+    parameters: Mapping[str, float] | None = None,
+    parts: Sequence[Part] = (),
+) -> Motif:
     """What a program draws. parameters: millimetres and counts by name, those that are not given as the program has
-    them. Raises WeaveError for an unknown program or parameter, and for numbers it cannot draw with."""
+    them; parts: of the program `layout`. Raises WeaveError for an unknown program or parameter, and for numbers it
+    cannot draw with."""
     from shapely.affinity import scale
     from shapely.errors import ShapelyError
 
+    if program == LAYOUT:
+        size = parameters or {}
+        inner = [
+            motif_of_program(p.program, p.program, dict(p.parameters)) if p.program else None for p in parts
+        ]
+        return laid_out(name, (size["width"], size["height"]), list(zip(parts, inner, strict=True)))
     if program not in PROGRAMS:
         raise WeaveError(f"program: {shown(program)} – there are {', '.join(PROGRAMS)}")
     draw = PROGRAMS[program]
