@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import floor, log10
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -13,17 +14,11 @@ OVER = 3  # drawn so many times larger, then reduced: smooth lines
 
 
 @dataclass(frozen=True)
-class Interlacing:
-    """What a weave's picture needs.
+class View:
+    """A square piece of cloth as it looks. picture: as large as one likes; across: [m] it is wide."""
 
-    lift: (picks, ends) bool, True where the warp passes over; spacing: of ends and picks [m]; width: of warp
-    and weft yarn as seen from above [m]; colours: of warp and weft, "#rrggbb".
-    """
-
-    lift: np.ndarray
-    spacing: tuple[float, float]
-    width: tuple[float, float]
-    colours: tuple[str, str]
+    picture: Image.Image
+    across: float
 
 
 class Sheet:
@@ -62,64 +57,37 @@ class Sheet:
         return self.image.resize(self.size, Image.Resampling.LANCZOS)
 
 
-def weave_drawing(weave: Interlacing, *, repeats: int = 8) -> Image.Image:
-    """Left the draft (filled: warp over), right the cloth enlarged in true proportion with a scale bar."""
+def weave_drawing(lift: np.ndarray, views: Sequence[View], *, repeats: int = 8) -> Image.Image:
+    """Left the draft, lift (picks, ends) bool (filled: warp over), then pieces of the cloth, each with a scale bar."""
     sheet = Sheet((1200, 640))
-    picks, ends = weave.lift.shape
-    cell, left, top = 480 / repeats, 70, 70
+    count = 1 + len(views)
+    gap = 36
+    side = min(480, (1200 - 2 * 50 - (count - 1) * gap) // count)
+    left, top = (1200 - count * side - (count - 1) * gap) // 2, (620 - side) // 2
+    cell = side / repeats
+    picks, ends = lift.shape
     for row in range(repeats):
         for column in range(repeats):
-            filled = bool(weave.lift[row % picks, column % ends])
+            filled = bool(lift[row % picks, column % ends])
             x, y = left + column * cell, top + (repeats - 1 - row) * cell
             sheet.box((x, y, x + cell, y + cell), INK if filled else None, FAINT)
-    sheet.box((left, top, left + 480, top + 480), None, INK)
-    _cloth(sheet, weave, (640, top, 1130, top + 480))
+    sheet.box((left, top, left + side, top + side), None, INK)
+    for number, view in enumerate(views, 1):
+        x = left + number * (side + gap)
+        piece = view.picture.resize((side * OVER, side * OVER), Image.Resampling.LANCZOS)
+        sheet.image.paste(piece, (x * OVER, top * OVER))
+        length = _round_length(view.across / 3)
+        bar = side * length / view.across
+        sheet.line([(x, top + side + 26), (x + bar, top + side + 26)], INK, 3)
+        told = f"{length * 1e3:g} mm" if length < 0.01 else f"{length * 1e2:g} cm"
+        sheet.words(x + bar + 12, top + side + 26, told, anchor="lm")
     return sheet.finished()
 
 
-def _cloth(sheet: Sheet, weave: Interlacing, frame: tuple[float, float, float, float]) -> None:
-    x0, y0, x1, y1 = frame
-    scale = (x1 - x0) / (8 * max(weave.spacing))  # [pixels/m]
-    step = [spacing * scale for spacing in weave.spacing]
-    width = [min(yarn * scale, 0.96 * gap) for yarn, gap in zip(weave.width, step, strict=True)]
-    columns, rows = int((x1 - x0) / step[0] + 1e-6), int((y1 - y0) / step[1] + 1e-6)
-    right, low = x0 + columns * step[0], y0 + rows * step[1]
-    sheet.box((x0, y0, right, low), "#3d4a52")
-    for over in (False, True):  # the whole weft first, then the warp where it lies on top
-        for row in range(rows):
-            y = y0 + (row + 0.5) * step[1]
-            if not over:
-                _yarn(sheet, (x0, y - width[1] / 2, right, y + width[1] / 2), weave.colours[1], flat=True)
-        for column in range(columns):
-            x = x0 + (column + 0.5) * step[0]
-            for row in range(rows):
-                pick = rows - 1 - row  # as in the draft: the first pick lies lowest
-                lifted = bool(weave.lift[pick % weave.lift.shape[0], column % weave.lift.shape[1]])
-                top, bottom = y0 + row * step[1], y0 + (row + 1) * step[1]
-                if over and lifted:
-                    _yarn(
-                        sheet, (x - width[0] / 2, top, x + width[0] / 2, bottom), weave.colours[0], flat=False
-                    )
-                elif not over and not lifted:
-                    gap = (step[1] - width[1]) / 2
-                    for a, b in ((top, top + gap), (bottom - gap, bottom)):
-                        _yarn(sheet, (x - width[0] / 2, a, x + width[0] / 2, b), weave.colours[0], flat=False)
-    bar = 0.5e-3 * scale
-    sheet.line([(x0, low + 26), (x0 + bar, low + 26)], INK, 3)
-    sheet.words(x0 + bar + 12, low + 26, "0.5 mm", anchor="lm")
-
-
-def _yarn(sheet: Sheet, box: tuple[float, float, float, float], colour: str, *, flat: bool) -> None:
-    """A piece of yarn, darker to both its edges."""
-    x0, y0, x1, y1 = box
-    base = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
-    bands = 9
-    for band in range(bands):
-        light = 1 - 0.42 * (2 * (band + 0.5) / bands - 1) ** 2
-        tone = "#" + "".join(f"{int(value * light):02x}" for value in base)
-        a, b = band / bands, (band + 1) / bands
-        piece = (x0, y0 + a * (y1 - y0), x1, y0 + b * (y1 - y0))
-        sheet.box(piece if flat else (x0 + a * (x1 - x0), y0, x0 + b * (x1 - x0), y1), tone)
+def _round_length(length: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is no longer."""
+    power = 10.0 ** floor(log10(length))
+    return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
 
 
 def mirror_drawing() -> Image.Image:

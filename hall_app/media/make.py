@@ -14,12 +14,15 @@ from hall_app.content.problems import ContentError
 from hall_app.content.schema.exhibit import ExhibitFile
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
+
     from hall_app.media.cutting_plan import Plan
-    from hall_app.media.drawings import Interlacing
+    from hall_app.media.drawings import View
     from sim_core.weave import Weave
 
 Progress = Callable[[float, str], None]
 QUALITY = 88  # of JPEG
+NEAR = 0.0024  # [m] of a cloth whose yarns are seen
 # What is made for each exhibit with an outfit that names it, inside its folder.
 LISTENING = ("media/listening.webm", "media/listening.mp3")
 WEAVE, PATTERN = "media/weave.jpg", "media/pattern.jpg"
@@ -75,23 +78,61 @@ def _weaves(folder: Path) -> None:
     for home, outfit in _dressed(folder):
         for path in _named(home, (WEAVE,)):
             layer = load_outfit(folder / outfit, folder).layers[-1]
-            ground = layer.weave.cells[0]  # of a figured one
-            picture = weave_drawing(interlacing(ground, layer.pattern.dye))
+            picture = weave_drawing(*weave_views(layer.weave, layer.pattern.dye))
             picture.save(_place(path), quality=QUALITY)
 
 
-def interlacing(weave: Weave, dye: tuple[float, float, float] | None = None) -> Interlacing:
-    """What the drawing needs of a weave; `dye`: sRGB 0..1 of the dyed cloth, else the yarns' own colours."""
-    from hall_app.media.drawings import Interlacing
+def weave_views(
+    weave: Weave, dye: tuple[float, float, float] | None = None
+) -> tuple[np.ndarray, tuple[View, ...]]:
+    """Lift of a weave, of a figured one its ground's, and how it looks: its yarns, and the whole of a figure.
 
-    tones = [dye or yarn.colour for yarn in (weave.warp, weave.weft)]
-    colours = ["#" + "".join(f"{round(255 * part):02x}" for part in tone) for tone in tones]
-    return Interlacing(
-        np.asarray(weave.draft.lift, bool),
-        (weave.end_spacing, weave.pick_spacing),
-        (weave.warp.width, weave.weft.width),
-        (colours[0], colours[1]),
+    dye: sRGB 0..1 of the dyed cloth, else the yarns' own colours, which a cloth woven of several keeps.
+    """
+    from PIL import Image
+
+    from hall_app.media.drawings import View
+    from sim_core.weave import lit_cloth, solve
+    from sim_core.weave.maps import FiguredMaps, drawn_maps, surface_maps
+
+    if dye is not None and not weave.several:
+        weave = dyed(weave, dye)
+    geometry = solve(weave)
+    maps = drawn_maps(weave, geometry, pixels=1024)
+    figured = isinstance(maps, FiguredMaps)
+    near = maps.cells[0] if figured else surface_maps(weave, geometry, pixels=1024)
+    views = [View(_piece(Image.fromarray(lit_cloth(near)), near.size, NEAR), NEAR)]
+    if figured:
+        across = max(maps.size)
+        views.append(View(_piece(Image.fromarray(lit_cloth(maps)), maps.size, across), across))
+    return np.asarray(weave.cells[0].draft.lift, bool), tuple(views)
+
+
+def dyed(weave: Weave, dye: tuple[float, float, float]) -> Weave:
+    """The weave in a colour of which its yarns are lighter and darker as they were."""
+    from dataclasses import replace
+
+    own = np.array([weave.warp.colour, weave.weft.colour])
+    shades = np.clip(np.asarray(dye) * own / own.mean(axis=0), 0, 1).tolist()
+    warp, weft = (
+        replace(yarn, colour=tuple(shade))
+        for yarn, shade in zip((weave.warp, weave.weft), shades, strict=True)
     )
+    return replace(weave, warp=warp, weft=weft, warp_colours=(), weft_colours=())
+
+
+def _piece(tile: Image, size: tuple[float, float], across: float) -> Image:
+    """A square so wide of a cloth whose tile has a size [m], in true proportion, the first pick lowest."""
+    from PIL import Image as Pillow
+
+    pixels = 1440
+    wide, high = (max(1, round(pixels * side / across)) for side in size)
+    small = tile.resize((wide, high), Pillow.Resampling.LANCZOS)
+    made = Pillow.new("RGB", (pixels, pixels))
+    for x in range(0, pixels, wide):
+        for y in range(pixels - high, -high, -high):
+            made.paste(small, (x, y))
+    return made
 
 
 def _patterns(folder: Path) -> None:

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from hall_app.content.models import read_glb
 from hall_app.media import (
@@ -16,8 +17,8 @@ from hall_app.media import (
     HALL_PIECE,
     RADIUS,
     RATE,
-    Interlacing,
     Touch,
+    View,
     back_height,
     bar_notes,
     cutting_plan,
@@ -111,13 +112,16 @@ def test_back_of_the_mirror_has_sixteen_equal_arcs():
 
 def test_weave_drawing_shows_the_draft():
     lift = np.array([[True, False], [False, True]])
-    picture = weave_drawing(Interlacing(lift, (1.6e-4, 2.2e-4), (5e-5, 5e-5), ("#c4624f", "#c4624f")))
-    pixels = np.asarray(picture.convert("L"))
+    cloth = View(Image.new("RGB", (64, 64), "#c4624f"), 2.4e-3)
+    pixels = np.asarray(weave_drawing(lift, [cloth]))
     squares = [
-        [pixels[70 + 480 - 30 - 60 * row, 70 + 30 + 60 * column] < 128 for column in range(8)]
+        [pixels[70 + 480 - 30 - 60 * row, 102 + 30 + 60 * column].max() < 128 for column in range(8)]
         for row in range(8)
     ]
     assert np.array_equal(squares, np.tile(lift, (4, 4)))
+    assert np.abs(pixels[80:540, 640:1080].astype(int) - (0xC4, 0x62, 0x4F)).max() <= 1
+    bar = (pixels[576, 600:724].max(axis=1) < 60).sum()
+    assert bar == pytest.approx(480 * 0.5 / 2.4, abs=3)  # half a millimetre
 
 
 def strip(length: float) -> Pattern:
