@@ -5,6 +5,7 @@ python tests/bench/bench_weave.py --sheet docs/pictures/weaves.jpg
 
 import tomllib
 from pathlib import Path
+from unicodedata import normalize
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -39,13 +40,14 @@ def draw(path: Path) -> None:
     for k, file in enumerate(files):
         weave = Weave.load(file)
         title = tomllib.loads(file.read_text("utf-8"))["title"]["en"]
+        title = normalize("NFKD", title).encode("ascii", "ignore").decode()  # the font has no accents
         geometry = solve(weave, particles=True)
         stage = (
             "particles" if isinstance(getattr(geometry, "cells", [geometry])[0], ParticleCell) else "beams"
         )
         maps = drawn_maps(weave, geometry, pixels=1024)
         far = weave.figure is not None or max(weave.draft.lift.shape) > 16
-        shown = 1e3 * min(weave.size) if far else FAR
+        shown = 1e3 * (min(weave.size) if weave.figure else max(weave.size)) if far else FAR
         cell = maps.cells[-1] if isinstance(maps, FiguredMaps) else surface_maps(weave, geometry, pixels=1024)
         x, y = k % COLUMNS * wide + GAP, k // COLUMNS * high + GAP
         for column, lamp in enumerate(LIGHTS):
