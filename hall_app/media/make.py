@@ -94,6 +94,7 @@ def weave_views(
     from hall_app.media.drawings import View
     from sim_core.weave import lit_cloth, solve
     from sim_core.weave.maps import FiguredMaps, drawn_maps, surface_maps
+    from sim_core.weave.yarns import ground_of
 
     if dye is not None and not weave.several:
         weave = dyed(weave, dye)
@@ -105,7 +106,7 @@ def weave_views(
     if figured:
         across = max(maps.size)
         views.append(View(_piece(Image.fromarray(lit_cloth(maps)), maps.size, across), across))
-    return np.asarray(weave.cells[0].draft.lift, bool), tuple(views)
+    return np.asarray(ground_of(weave.cells[0]).draft.lift, bool), tuple(views)
 
 
 def dyed(weave: Weave, dye: tuple[float, float, float]) -> Weave:
@@ -113,7 +114,7 @@ def dyed(weave: Weave, dye: tuple[float, float, float]) -> Weave:
     from dataclasses import replace
 
     own = np.array([weave.warp.colour, weave.weft.colour])
-    shades = np.clip(np.asarray(dye) * own / own.mean(axis=0), 0, 1).tolist()
+    shades = np.clip(np.asarray(dye) * own / np.maximum(own.mean(axis=0), 1e-3), 0, 1).tolist()
     warp, weft = (
         replace(yarn, colour=tuple(shade))
         for yarn, shade in zip((weave.warp, weave.weft), shades, strict=True)
@@ -126,6 +127,9 @@ def _piece(tile: Image, size: tuple[float, float], across: float) -> Image:
     from PIL import Image as Pillow
 
     pixels = 1440
+    kept = [min(1.0, across / side) for side in size]  # the lower left corner
+    tile = tile.crop((0, round(tile.height * (1 - kept[1])), round(tile.width * kept[0]), tile.height))
+    size = (size[0] * kept[0], size[1] * kept[1])
     wide, high = (max(1, round(pixels * side / across)) for side in size)
     small = tile.resize((wide, high), Pillow.Resampling.LANCZOS)
     made = Pillow.new("RGB", (pixels, pixels))

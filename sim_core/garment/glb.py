@@ -28,7 +28,9 @@ LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
 PORE = 0.35  # of the mean colour
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
+STRIPED = 0.1  # of a linear colour, from end to end of a cloth: seen in the hall
 FIGURE_PIXEL = 0.0006  # [m] of a figured cloth's repeat in the hall, at most
+MOST_PIXELS = 4096  # of a texture on any device
 CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
 
 
@@ -263,6 +265,9 @@ def _gleam(
         if far:
             twice = _coarser(twice, maps.size)
         angle, strength = 0.5 * np.angle(twice), np.minimum(np.abs(twice), 255.0)
+        angle = np.where(
+            angle < -pi / 4, angle + pi, angle
+        )  # no two neighbours that run along the warp are opposite
         turned = np.dstack([127.5 - 127.5 * np.sin(angle), 127.5 + 127.5 * np.cos(angle), strength])
         tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         texture = _once(textures, "gleam", lambda: glb.texture(np.rint(turned).astype(np.uint8), tile))
@@ -282,9 +287,10 @@ def _cells(glb: GlbFile, material: dict[str, Any], maps: FiguredMaps, textures: 
 
     glTF has no place for them. They go where lacquer and iridescence have their textures, whose factors of 0 keep them
     from being seen; our page reads them by `extras.silk`. A cell's picture holds its normal (red, green) and its
-    brightness over its mean (blue, 128 = 1). Beyond four cells nothing is added: the repeat's picture has to do.
+    brightness over its mean (blue, 128 = 1). Beyond four cells, or of a repeat of more crossings than a telephone's
+    textures have pixels, nothing is added: the repeat's picture has to do.
     """
-    if len(maps.cells) > 4:
+    if len(maps.cells) > 4 or max(maps.crossings.shape) > MOST_PIXELS:
         return
     repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
 
@@ -342,9 +348,9 @@ def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict
     normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
     own = textures.setdefault(f"of {id(maps)}", {})
-    if isinstance(maps, FiguredMaps):
-        picture, factor = _coloured(maps, mean, dye, cover >= SHEER)
-        mean_light = _coarser(_linear(picture / 255.0), maps.size)
+    picture, factor = _coloured(maps, mean, dye, cover >= SHEER)
+    mean_light = _coarser(_linear(picture / 255.0), maps.size)
+    if isinstance(maps, FiguredMaps) or np.ptp(mean_light, axis=(0, 1)).max() > STRIPED:
         picture = np.rint(255 * _srgb(mean_light)).astype(np.uint8)
         repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         material["pbrMetallicRoughness"]["baseColorTexture"] = _once(

@@ -184,7 +184,7 @@ def _covered(weave: Weave, geometry: YarnGeometry | ParticleCell) -> str:
     if weave.extra is not None:
         text += "; not extra wefts, which are laid on the relaxed ground"
     if weave.draft.channels.layer is not None:
-        text += "; not yarns of a compound weave that do not show, which are placed beneath"
+        text += ", and yarns that do not show beneath those that do; not hidden ones beside each other"
     if weave.draft.channels.order is not None and weave.draft.channels.layer is None:
         text += "; not ends where they cross one another"
     return text

@@ -26,8 +26,7 @@ from bench.browser import enter, open_browser  # noqa: E402
 from bench.pictures import DESK, new_page, open_exhibit  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
-from sim_core.garment import Garment, dress, load_outfit, write_glb  # noqa: E402
-from sim_core.garment.glb import Clothed  # noqa: E402
+from sim_core.garment import Clothed, Garment, dress, load_outfit, write_glb  # noqa: E402
 from sim_core.garment.levels import shown_figure  # noqa: E402
 from sim_core.weave import Weave  # noqa: E402
 

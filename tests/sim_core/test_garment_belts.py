@@ -144,8 +144,12 @@ def test_a_belt_shorter_than_the_wearer_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_hem_that_is_longer_than_its_wearer_trails_on_the_floor(tmp_path: Path) -> None:
-    it = of(tmp_path, measures="measures = { length = 1700 }")
+    it = of(tmp_path, measures="measures = { length = 1740 }\norigin = [10, 20]")
     (robe,) = dress(it)
+    half = len(robe.panels) // 2
+    assert (
+        robe.origins == ((0.01, 0.02),) * half + ((-0.01, 0.02),) * half
+    )  # as far from the middle on both sides
     assert clear(robe)
     assert robe.settled is not None
     assert robe.settled.beneath.floor

@@ -8,7 +8,7 @@ from os.path import normpath
 from pathlib import Path
 from typing import Any
 
-from hall_app.content.files import file_problem, is_there, leaves
+from hall_app.content.files import file_problem, is_there
 from hall_app.content.problems import Problem
 from hall_app.content.schema.complaints import toml_problem
 
@@ -71,7 +71,7 @@ def _motifs(folder: Path, path: str) -> list[str]:
     named = [one.get("motif") for one in tables if isinstance(one, dict)]
     beside = [normpath(Path(path).parent / name) for name in named if isinstance(name, str) and name]
     names = [Path(name).as_posix() for name in beside]
-    return [name for name in names if is_there(folder / name) and not leaves(folder / name, folder)]
+    return [name for name in names if is_there(folder / name)]
 
 
 def outfit_problems(folder: Path, outfit: str) -> list[Problem]:

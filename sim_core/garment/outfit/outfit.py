@@ -50,7 +50,8 @@ class Program:
 class Layer:
     """One garment of an outfit. weaves: the cloth's first, then those of panels by name; edge [m]: its mesh step;
     seed: of the folds' irregularity; loom: remembers what its weaves are like, one for all layers of an outfit;
-    origin, origins [m]: where a corner of the weave's repeat lies in the axes of its panels, and of single ones;
+    origin, origins [m]: where a corner of the weave's repeat lies in the axes of its panels, and of single ones (of a
+    mirrored pattern's other half as far to the other side);
     coarse [m]: the mesh step it is sewn and posed at (None: COARSE for cloth finer than FINE that is not tied, else its
     own)."""
 

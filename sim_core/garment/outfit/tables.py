@@ -25,8 +25,8 @@ Length = Annotated[float, Field(strict=True, gt=0, le=20, allow_inf_nan=False)]
 Share = Annotated[float, Field(strict=True, gt=0, le=1, allow_inf_nan=False)]
 Way = Annotated[float, Field(strict=True, ge=-20, le=20, allow_inf_nan=False)]  # [m]
 Corner = tuple[
-    Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)],
-    Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)],
+    Annotated[float, Field(strict=True, ge=-20_000, le=20_000, allow_inf_nan=False)],
+    Annotated[float, Field(strict=True, ge=-20_000, le=20_000, allow_inf_nan=False)],
 ]  # [mm]
 Vector = tuple[Way, Way, Way]
 Words = dict[Literal["zh", "en"], str]

@@ -28,6 +28,7 @@ __all__ = ["relax_compound"]
 
 TOLERANCE = 1e-8
 ITERATIONS = 20_000
+MOST_WORK = 400_000_000  # gaps times iterations, a minute or so
 LEAST = 1e-9  # stiffness of the mode in which all yarns rise together, of the largest
 
 
@@ -57,6 +58,11 @@ class _Stack:
         series = channels.end_series if by_warp else channels.pick_series
         assert series is not None
         count = 1 + int(series.max())
+        if len(series) % count or (series != np.tile(np.arange(count), len(series) // count)).any():
+            raise WeaveError(
+                f"weave {weave.name}: series {series[: 2 * count].tolist()} … – yarns of a unit are numbered 0 to "
+                f"{count - 1}, unit by unit"
+            )
         stacked, crossing = (weave.warp, weave.weft) if by_warp else (weave.weft, weave.warp)
         steps = (weave.end_spacing, weave.pick_spacing)
         step, between = steps if by_warp else steps[::-1]
@@ -107,7 +113,7 @@ def relax_compound(weave: Weave, *, tolerance: float = TOLERANCE) -> YarnGeometr
     dual = np.zeros_like(gap)
     solver, error, iteration = _solver(stiffness, differences, rho), np.inf, 0
     heights = np.zeros((series + 1, *gap.shape[1:]))
-    for iteration in range(1, ITERATIONS + 1):
+    for iteration in range(1, max(200, min(ITERATIONS, MOST_WORK // gap.size)) + 1):
         heights = _applied(solver, rho * np.tensordot(differences.T, gap - dual, 1))
         found = np.tensordot(differences, heights, 1)
         before, wanted = gap, found + dual

@@ -54,6 +54,13 @@ def test_numbers_become_others_and_the_ground_is_seen_or_not(tmp_path: Path) -> 
     assert np.array_equal(seen[20:60, 20:60] == 1, hidden[20:60, 20:60] == 4)
 
 
+def test_a_strip_turned_runs_along_the_weft(tmp_path: Path) -> None:
+    vine = f'[[part]]\nmotif = "{MOTIFS / "vine-strips.toml"}"\nparameters = {{ width = 40, height = 50 }}\n'
+    upright = laid(tmp_path, vine + "within = [0, 0, 40, 100]\n")[:100, :40]
+    along = laid(tmp_path, vine + "within = [0, 0, 100, 40]\nturned = true\nat = [100, 0]\n")[:40, :100]
+    assert (along != np.rot90(upright, -1)).mean() < 0.02  # rows count upwards
+
+
 def test_a_place_puts_a_motif_where_it_is_wanted(tmp_path: Path) -> None:
     flower = (
         f'[[part]]\nmotif = "{MOTIFS / "rank-flowers.toml"}"\nparameters = {{ diameter = 30, spacing = 4 }}\n'
@@ -70,12 +77,16 @@ def test_a_place_puts_a_motif_where_it_is_wanted(tmp_path: Path) -> None:
         ("", "program: give a program, or [[part]] tables"),
         ("[[part]]\nfill = 1\nwithin = [0, 20, 101, 30]\n", "part.1.within: [0.0, 20.0, 101.0, 30.0] – left"),
         (LINE + "[[part]]\n", "part.2: give it a motif file or fill"),
-        ("[[part]]\nfill = 1\nat = [2, 3]\n", "part.1: parameters, at and numbers are a motif's"),
+        ("[[part]]\nfill = 1\nat = [2, 3]\n", "part.1: parameters, at, turned and numbers are a motif's"),
         (LINE + FRETS + "numbers = [1]\n", "part.2.numbers: 1 for a motif of 2"),
         (FRETS + "parameters = { width = 3 }\n", "part.1.motif: "),
         (FRETS + "parameters = { unit = 0.1, line = 0.04 }\n", "repeats of it – make it larger"),
         (f'[[part]]\nmotif = "{BANDS}"\n', "is a layout, too"),
         ('[[part]]\nmotif = "none.toml"\n', "part.1.motif: "),
+        ('[[part]]\nmotif = "it.toml"\n', "part.1.motif: it.toml is a layout, too"),
+        ("[[part]]\nfill = -1\n", "part.1.fill: -1"),
+        (FRETS + "at = [1e308, 0]\n", "part.1.at.1"),
+        (FRETS + "parameters = { unit = 0.05, line = 0.02 }\n", "repeats of it – make it larger"),
         ("parameters = { width = 3 }\n" + LINE, "parameters: a layout has none"),
     ],
 )
@@ -83,6 +94,16 @@ def test_mistakes_are_named_by_file_and_part(tmp_path: Path, text: str, words: s
     with pytest.raises(WeaveError, match=r"it\.toml: ") as told:
         laid(tmp_path, text)
     assert words in str(told.value)
+
+
+def test_what_only_layouts_may_be_called_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text('name = "x"\nprogram = "layout"\nparameters = { width = 3 }\n', "utf-8")
+    with pytest.raises(WeaveError, match=r"mine\.toml: program: 'layout' – there are"):
+        read_motif(path)
+    path.write_text('name = "x"\nrepeat = [0.05, 3]\n' + LINE, "utf-8")
+    with pytest.raises(WeaveError, match=r"mine\.toml: repeat\.1: 0\.05"):
+        read_motif(path)
 
 
 def test_a_skirt_length_has_its_bands_at_their_heights_and_is_stored_as_its_recipe() -> None:
@@ -93,8 +114,8 @@ def test_a_skirt_length_has_its_bands_at_their_heights_and_is_stored_as_its_reci
     height = (np.arange(len(numbers)) + 0.5) * weave.size[1] / len(numbers) * 1000
     bare = (height > 100) & (height < 378) | (height > 530)
     assert not numbers[bare].any()
-    for low, high in ((12, 92), (388, 520)):
+    for low, high in ((13, 91), (390, 518)):
         share = (numbers[(height > low) & (height < high)] > 0).mean()
-        assert 0.2 < share < 0.6
+        assert 0.1 < share < 0.5
     assert len(str(weave.to_dict()["figure"])) < 2000
     assert np.array_equal(Weave.from_dict(weave.to_dict()).draft.lift, weave.draft.lift)

@@ -28,7 +28,8 @@ class Part:
     within: left, low, right, high, from the repeat's lower left corner; program, parameters: of the motif that fills it
     (see `motif_of_program`), "" for one number all over; at: where a corner of the motif's own repeat lies (None: in
     the rectangle's lower left one); numbers: what the motif's numbers become, its ground first (empty: as they are, and
-    what lies below is seen in the ground).
+    what lies below is seen in the ground); turned: whether the motif is turned to the left by a right angle, so that
+    what runs along the warp runs along the weft.
     """
 
     within: Box
@@ -36,6 +37,7 @@ class Part:
     parameters: tuple[tuple[str, float], ...] = ()
     at: tuple[float, float] | None = None
     numbers: tuple[int, ...] = ()
+    turned: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "within", tuple(float(side) for side in self.within))
@@ -92,18 +94,21 @@ def _repeated(part: Part, motif: Motif, size: tuple[float, float]) -> Iterator[t
     import shapely
 
     low, high = np.reshape(part.within, (2, 2))
-    own, reach = 1e3 * np.array(motif.size), high - low
+    own, reach = 1e3 * np.array(motif.size[::-1] if part.turned else motif.size), high - low
     # What reaches from border to border has to close there.
     closed = reach / np.maximum(1, np.round(reach / own)) / own
     stretch = np.where(reach == size, closed, 1.0)
     step, at = own * stretch, np.array(part.at or low)
     # An area may stand out of its repeat by as much again.
     first, last = np.floor((low - at) / step) - 1, np.ceil((high - at) / step) + 1
+    count = float(np.prod(last - first + 1))
+    if count * len(motif.areas) > MOST_COPIES:
+        raise WeaveError(f"motif: {count:,.0f} repeats of it – make it larger, or a weave of its own")
     columns, rows = np.meshgrid(*(np.arange(a, b + 1) for a, b in zip(first, last, strict=True)))
     places = at + step * np.column_stack([columns.ravel(), rows.ravel()])
-    if len(places) * len(motif.areas) > MOST_COPIES:
-        raise WeaveError(f"motif: {len(places):,} repeats of it – make it larger, or a weave of its own")
     for number, area in motif.areas:
+        if part.turned:
+            area = shapely.transform(area, lambda points: points[:, ::-1] * (-1.0, 1.0))
         box = 1e3 * stretch * np.reshape(shapely.bounds(area), (2, 2))
         near = ((places + box[0] < high) & (places + box[1] > low)).all(axis=1)
         for place in places[near]:

@@ -25,6 +25,8 @@ __all__ = ["Recipe", "motif_of_program", "read_motif", "recipe_of"]
 MM = 1e-3  # [m]
 LAYOUT = "layout"  # the program of motif files with [[part]] tables
 Number = Annotated[float, Field(gt=0, le=4000)]
+Side = Annotated[float, Field(ge=0.1, le=4000)]
+Place = Annotated[float, Field(ge=-4000, le=4000)]
 
 
 class _Title(BaseModel):
@@ -41,7 +43,8 @@ class _PartTable(BaseModel):
     parameters: dict[str, Number] = {}
     fill: Annotated[int, Field(ge=0, lt=MOST_COLOURS)] | None = None
     within: tuple[float, float, float, float] | None = None
-    at: tuple[float, float] | None = None
+    at: tuple[Place, Place] | None = None
+    turned: bool = False
     numbers: list[Annotated[int, Field(ge=0, lt=MOST_COLOURS)]] = []
 
 
@@ -52,7 +55,7 @@ class _MotifFile(BaseModel):
     source: str | None = None
     program: str | None = None
     parameters: dict[str, Number] = {}
-    repeat: tuple[Number, Number] | None = None
+    repeat: tuple[Side, Side] | None = None
     part: Annotated[list[_PartTable], Field(max_length=64)] = []
 
 
@@ -89,18 +92,23 @@ def recipe_of(path: Path, changes: Mapping[str, float] | None = None) -> Recipe:
 
 
 def _read(path: Path, changes: Mapping[str, float] | None) -> tuple[Recipe, Motif]:
-    values = read_toml(path, "a motif file (TOML), such as those in assets/motifs")
-    try:
-        file = _MotifFile.model_validate(values)
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        key = ".".join(str(part) for part in first["loc"]) or "file"
-        raise WeaveError(f"{path}: {key}: {shown(first.get('input'))}: {first['msg']}") from error
+    file = _checked(path)
     try:
         recipe = _recipe(file, path.parent, dict(changes or {}))
         return recipe, recipe.motif(file.name)
     except WeaveError as error:
         raise WeaveError(f"{path}: {error}") from error
+
+
+def _checked(path: Path) -> _MotifFile:
+    values = read_toml(path, "a motif file (TOML), such as those in assets/motifs")
+    try:
+        return _MotifFile.model_validate(values)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        place = (str(part + 1) if isinstance(part, int) else str(part) for part in first["loc"])
+        key = ".".join(place) or "file"
+        raise WeaveError(f"{path}: {key}: {shown(first.get('input'))}: {first['msg']}") from error
 
 
 def _recipe(file: _MotifFile, folder: Path, changes: dict[str, float]) -> Recipe:
@@ -127,16 +135,18 @@ def _part(number: int, table: _PartTable, folder: Path, repeat: tuple[float, flo
     if (table.motif is None) == (table.fill is None):
         raise WeaveError(f"{key}: give it a motif file or fill, one of both")
     if table.motif is None:
-        if table.parameters or table.at or table.numbers:
-            raise WeaveError(f"{key}: parameters, at and numbers are a motif's – leave them out")
+        if table.parameters or table.at or table.numbers or table.turned:
+            raise WeaveError(f"{key}: parameters, at, turned and numbers are a motif's – leave them out")
         return Part(within, numbers=(int(table.fill or 0),))
     try:
-        inner = recipe_of(folder / table.motif, table.parameters)
+        file = _checked(folder / table.motif)
+        if file.part:
+            raise WeaveError(f"{table.motif} is a layout, too – name a motif with a program")
+        inner = _recipe(file, folder, table.parameters)
+        inner.motif(file.name)
     except SimCoreError as error:
         raise WeaveError(f"{key}.motif: {error}") from error
-    if inner.parts:
-        raise WeaveError(f"{key}.motif: {table.motif} is a layout, too – name a motif with a program")
-    return Part(within, inner.program, inner.parameters, table.at, tuple(table.numbers))
+    return Part(within, inner.program, inner.parameters, table.at, tuple(table.numbers), table.turned)
 
 
 def motif_of_program(
@@ -151,7 +161,7 @@ def motif_of_program(
     from shapely.affinity import scale
     from shapely.errors import ShapelyError
 
-    if program == LAYOUT:
+    if program == LAYOUT and parts:
         size = parameters or {}
         inner = [
             motif_of_program(p.program, p.program, dict(p.parameters)) if p.program else None for p in parts

@@ -16,6 +16,7 @@ from sim_core.weave.draft.motifs.strokes import band, brush, flower, lozenge, pe
 
 __all__ = ["PROGRAMS", "Areas"]
 
+STRIP = 1.55  # a vine of a strip is drawn as of a repeat so many times as wide, which two of them share
 Areas = tuple[tuple[float, float], list[tuple[int, Any]]]
 
 
@@ -149,6 +150,21 @@ def vines(
     width: float = 190.0, height: float = 250.0, line: float = 5.0, petals: int = 9, colours: int = 1
 ) -> Areas:
     """缠枝: a stem that winds along the warp and holds a flower in every bend, with leaves and tendrils."""
+    return _half_drop((width, height), _vine(width, height, line, petals, colours), mirrored=True)
+
+
+def vine_strips(
+    width: float = 60.0, height: float = 120.0, line: float = 2.0, petals: int = 9, colours: int = 1
+) -> Areas:
+    """缠枝边: one such stem in a strip, for an edge or a band."""
+    from shapely.affinity import translate
+
+    drawn = _vine(STRIP * width, height, line, petals, colours)
+    return (width, height), [(number, translate(area, width / 2, 0.0)) for number, area in drawn]
+
+
+def _vine(width: float, height: float, line: float, petals: int, colours: int) -> list[tuple[int, Any]]:
+    """A stem along x = 0 with two flowers; width: of a repeat that holds two such stems."""
     y = np.linspace(0.0, height, 97)
     stem = np.column_stack([0.17 * width * np.sin(2 * pi * y / height), y])
     drawn: list[tuple[int, Any]] = [(1, brush(stem, line))]
@@ -168,7 +184,7 @@ def vines(
         place, way = _on(stem, share + 0.07)
         tendril = volute(place, way + side * 0.9, 0.42 * width, turns=-side * 1.0, bend=side * 0.5)
         drawn.append((1, brush(tendril, np.linspace(0.7 * line, 0.35 * line, len(tendril)))))
-    return _half_drop((width, height), drawn, mirrored=True)
+    return drawn
 
 
 def rank_flowers(diameter: float = 48.0, spacing: float = 2.1, petals: int = 6, colours: int = 1) -> Areas:
@@ -190,6 +206,7 @@ PROGRAMS: dict[str, Callable[..., Areas]] = {
     "clouds": clouds,
     "roundels": roundels,
     "vines": vines,
+    "vine-strips": vine_strips,
     "rank-flowers": rank_flowers,
 }
 
