@@ -20,7 +20,7 @@ from sim_core.gltf import GlbFile
 from sim_core.picture import normals
 from sim_core.validation.files import written_whole
 from sim_core.weave import Loom, Weave
-from sim_core.weave.maps import FiguredMaps, MapsLike, far_look
+from sim_core.weave.maps import FiguredMaps, MapsLike, far_look, line_angle
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
@@ -250,6 +250,16 @@ def _coarser(picture: np.ndarray, size: tuple[float, float]) -> np.ndarray:
     return picture
 
 
+def _coarser_direction(maps: FiguredMaps) -> np.ndarray:
+    """`_coarser` of the directions, which way a yarn runs along its line being no matter: means of twice the angle."""
+    told = maps.direction.astype(float)
+    run = told[..., :2] / 127.5 - 1
+    twice = _coarser((run[..., 0] + 1j * run[..., 1]) ** 2 * told[..., 2], maps.size)
+    angle = line_angle(0.5 * np.angle(twice))
+    way = 127.5 + 127.5 * np.dstack([np.cos(angle), np.sin(angle)])
+    return np.dstack([way, np.minimum(np.abs(twice), 255.0)])
+
+
 def _gleam(
     glb: GlbFile, material: dict[str, Any], maps: MapsLike, textures: dict[str, Any], *, far: bool
 ) -> None:
@@ -258,17 +268,9 @@ def _gleam(
     glTF's direction is the one in which the highlight is wide.
     """
     if isinstance(maps, FiguredMaps):
-        across = maps.direction.astype(float)
-        run, strength = across[..., :2] / 127.5 - 1, across[..., 2]
-        # Twice the angle: which way a yarn runs along its line is no matter, also of a mean.
-        twice = (run[..., 0] + 1j * run[..., 1]) ** 2 * strength
-        if far:
-            twice = _coarser(twice, maps.size)
-        angle, strength = 0.5 * np.angle(twice), np.minimum(np.abs(twice), 255.0)
-        angle = np.where(
-            angle < -pi / 4, angle + pi, angle
-        )  # no two neighbours that run along the warp are opposite
-        turned = np.dstack([127.5 - 127.5 * np.sin(angle), 127.5 + 127.5 * np.cos(angle), strength])
+        across = (_coarser_direction(maps) if far else maps.direction).astype(float)
+        run, strength = across[..., :2] / 127.5 - 1, across[..., 2:]
+        turned = np.dstack([127.5 - 127.5 * run[..., 1:], 127.5 + 127.5 * run[..., :1], strength])
         tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         texture = _once(textures, "gleam", lambda: glb.texture(np.rint(turned).astype(np.uint8), tile))
         gleam: dict[str, Any] = {"anisotropyStrength": 1.0, "anisotropyTexture": texture}

@@ -2,7 +2,7 @@
 
 python tests/bench/robe_silks.py [--out docs/pictures/robe-silks.jpg] [--garment robe.npz] [--weave NAME …]
 
-The robe of assets/outfits/robe.toml is dressed once and cut from each cloth in turn: its drape is that of its own silk.
+The robe of assets/outfits/robe.toml is dressed once, in its own silk, and shown in each cloth: the drape is the same.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from PIL import Image, ImageDraw, ImageFont
 
@@ -60,7 +61,15 @@ def robe(file: Path | None) -> Garment:
     return Garment.load(file) if file else dress(load_outfit(OUTFIT))[0]
 
 
-def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
+def wearer_of(garment: Garment) -> Any:
+    """The figure as far as the robe lets it be seen."""
+    outfit = load_outfit(OUTFIT)
+    assert outfit.wearer is not None
+    body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
+    return shown_figure(*body, garment.positions, garment.faces)
+
+
+def hang(folder: Path, number: int, name: str, garment: Garment, figure: Any) -> None:
     """An exhibit of the robe cut from a silk, in the silk's own colours."""
     home = folder / "exhibits" / f"silk-{number}"
     (home / "media").mkdir(parents=True)
@@ -73,11 +82,6 @@ def hang(folder: Path, number: int, name: str, garment: Garment) -> None:
         garment, weave=weave.to_dict(), weaves={}, dye=None, dyes=tuple(None for _ in garment.panels)
     )
     clothed = Clothed.woven(cut, 1024)
-    outfit = load_outfit(OUTFIT)
-    assert outfit.wearer is not None
-    figure = shown_figure(
-        outfit.wearer.posed(outfit.pose), outfit.wearer.faces, garment.positions, garment.faces
-    )
     for precision in ("hall", "close"):
         write_glb(home / "media" / f"{precision}.glb", [clothed], precision=precision, figure=figure)
 
@@ -123,12 +127,13 @@ def main() -> int:
     parser.add_argument("--weave", nargs="+", default=SILKS, metavar="NAME", help="of assets/weaves")
     arguments = parser.parse_args()
     garment = robe(arguments.garment)
+    figure = wearer_of(garment)
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         content = work / "content"
         shutil.copytree(ASSETS, content, ignore=shutil.ignore_patterns("exhibits"))
         for number, name in enumerate(arguments.weave):
-            hang(content, number, name, garment)
+            hang(content, number, name, garment, figure)
         made = sheet(shoot(content, len(arguments.weave), work), arguments.weave)
     made.save(arguments.out, quality=86)
     print(arguments.out)

@@ -6,7 +6,7 @@ from afar, `figured_maps` puts those of a figured cloth together, `tubes` writes
 paper's Fig. 1 as code.
 """
 
-from sim_core.weave.maps.averages import FarLook, MapsLike, far_look
+from sim_core.weave.maps.averages import FarLook, MapsLike, far_look, line_angle
 from sim_core.weave.maps.figure1 import figure_one, figure_one_picture
 from sim_core.weave.maps.figured_maps import FiguredMaps, drawn_maps, figured_maps
 from sim_core.weave.maps.surface import SurfaceMaps, highlight, lit_cloth, surface_maps
@@ -24,6 +24,7 @@ __all__ = [
     "figure_one_picture",
     "figured_maps",
     "highlight",
+    "line_angle",
     "lit_cloth",
     "surface_maps",
     "tube_mesh",

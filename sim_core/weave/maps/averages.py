@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-__all__ = ["CHANNELS", "FarLook", "MapsLike", "averageable", "composed", "far_look"]
+__all__ = ["CHANNELS", "FarLook", "MapsLike", "averageable", "composed", "far_look", "line_angle"]
 
 CHANNELS = 10
 COLOUR, COVER, LEVEL, SLOPE, SQUARES = slice(0, 3), 3, 4, slice(5, 7), slice(7, 10)
@@ -94,12 +94,17 @@ def composed(mixed: np.ndarray, relief: float) -> tuple[np.ndarray, ...]:
     narrow = np.clip(np.sqrt(np.maximum(middle - apart, 1e-4)), 0, 0.98)
     wide = np.sqrt(middle + apart)
     half = 0.5 * np.arctan2(-xy, (yy - xx) / 2)  # of the narrow way, along which the yarns run
-    half = np.where(half < -np.pi / 4, half + np.pi, half)
+    half = line_angle(half)
     strength = np.sqrt(np.clip((wide - narrow) / (1 - narrow), 0, 1))
     direction = np.dstack([np.cos(half) / 2 + 0.5, np.sin(half) / 2 + 0.5, strength])
     level = mixed[..., LEVEL] / relief + 0.5
     maps = (albedo, normal / 2 + 0.5, level, np.sqrt(narrow), direction, cover)
     return tuple(np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in maps)
+
+
+def line_angle(angle: np.ndarray) -> np.ndarray:
+    """Angles of lines, -90 to 90 degrees in, as `SurfaceMaps.direction` has them: -45 to 135."""
+    return np.where(angle < -np.pi / 4, angle + np.pi, angle)
 
 
 def _light(srgb: np.ndarray) -> np.ndarray:

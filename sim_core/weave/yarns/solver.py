@@ -69,12 +69,11 @@ def solve(
         )
     ground = ground_of(weave)
     channels = weave.draft.channels
-    simple = channels.order is None and channels.layer is None
-    if channels.order is not None and channels.layer is None:
-        return _woven_leno(weave)
     if channels.layer is not None:
         return relax_compound(weave)
-    if particles and simple:
+    if channels.order is not None:
+        return _woven_leno(weave)
+    if particles:
         cell = relax_particles(ground, per=per, friction=friction, tolerance=tolerance, watch=watch,
                                most=most or MOST_STEPS)  # fmt: skip
         return _tiled_cell(cell, weave) if ground is not weave else cell

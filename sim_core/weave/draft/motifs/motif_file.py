@@ -163,9 +163,7 @@ def motif_of_program(
 
     if program == LAYOUT and parts:
         size = parameters or {}
-        inner = [
-            motif_of_program(p.program, p.program, dict(p.parameters)) if p.program else None for p in parts
-        ]
+        inner = [Recipe(p.program, p.parameters).motif(p.program) if p.program else None for p in parts]
         return laid_out(name, (size["width"], size["height"]), list(zip(parts, inner, strict=True)))
     if program not in PROGRAMS:
         raise WeaveError(f"program: {shown(program)} – there are {', '.join(PROGRAMS)}")
