@@ -1,4 +1,4 @@
-"""`hall`: open the hall, build its garments, check its content, measure it."""
+"""`hall`: open the hall, build its garments, check its content, see to its people, measure it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ _COMMANDS = {
     "serve": "hall_app.web.command",
     "build": "hall_app.build.command",
     "check": "hall_app.check.command",
+    "admin": "hall_app.house.people.command",
 }
 _BENCHES = ("walking", "page", "look", "crowd")
 
@@ -26,6 +27,7 @@ examples:
   hall serve --content my-hall        with a content folder of your own
   hall check my-hall                  say what is wrong in it, one line a problem
   hall build                          dress the outfits that changed, or what they name
+  hall admin create anna@example.org  make the first administrator of the house, who signs in at /office
 
 The content folder is --content, else ./assets, else the copy that came with the program.
 Exit status: 0 done, 1 the work failed or content is invalid, 2 wrong arguments."""

@@ -1,6 +1,10 @@
 """Fixtures of every room: running halls, a browser where there is one."""
 
+import contextlib
+import itertools
 import os
+import subprocess
+import warnings
 from pathlib import Path
 
 import pytest
@@ -8,6 +12,7 @@ from plain_hall import write_plain_hall
 from running_hall import running_hall
 
 ROOT = Path(__file__).parent.parent
+_NUMBERS = itertools.count()
 
 
 @pytest.fixture(scope="session")
@@ -37,3 +42,57 @@ def chromium():
         if os.environ.get("HALL_BROWSER") == "required":
             pytest.fail(f"browser tests are required: {error}")
         pytest.skip(str(error))
+
+
+def started(pgserver, folder: Path):
+    """pgserver waits ten seconds for its server and no longer; asked again it takes the one that starts meanwhile."""
+    for _ in range(30):
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return pgserver.get_server(folder, cleanup_mode="delete")
+    raise AssertionError("PostgreSQL did not start in five minutes")
+
+
+# Elsewhere PostgreSQL is of the night.
+POSTGRES_BY_DAY = {
+    "test_survey_store.py",
+    "test_survey_privacy.py",
+    "test_people.py",
+}
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    for item in items:
+        asked = getattr(item, "callspec", None)
+        if asked and asked.params.get("database") == "postgresql" and item.path.name not in POSTGRES_BY_DAY:
+            item.add_marker(pytest.mark.nightly)
+
+
+@pytest.fixture(scope="session")
+def postgres(tmp_path_factory):
+    """A PostgreSQL server of our own; a function that makes an empty database and returns its URL."""
+    pytest.importorskip("psycopg", reason="PostgreSQL's driver is not installed (extra 'test')")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # platformdirs remarks on XDG_RUNTIME_DIR while it is imported
+        pgserver = pytest.importorskip("pgserver", reason="no PostgreSQL server for this platform")
+    from sqlalchemy import create_engine, make_url, text
+
+    server = started(pgserver, tmp_path_factory.mktemp("postgres"))
+    url = make_url(server.get_uri()).set(drivername="postgresql+psycopg")
+    engine = create_engine(url, isolation_level="AUTOCOMMIT")
+
+    def fresh() -> str:
+        name = f"store_{next(_NUMBERS)}"
+        with engine.connect() as connection:
+            connection.execute(text(f"CREATE DATABASE {name}"))
+        return url.set(database=name).render_as_string(hide_password=False)
+
+    yield fresh
+    engine.dispose()
+    server.cleanup()
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
+def database(request, tmp_path):
+    """Where a store keeps its answers: a data folder, or the URL of an empty PostgreSQL database."""
+    return tmp_path / "data" if request.param == "sqlite" else request.getfixturevalue("postgres")()

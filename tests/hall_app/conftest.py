@@ -1,5 +1,6 @@
-"""Coarse bakes, made once for all tests of a run that only look at them."""
+"""Coarse bakes, made once for all tests of a run that only look at them; passwords hashed quickly."""
 
+import argon2
 import pytest
 from coarse_bake import LAYERED, build, coarse, last_line
 
@@ -20,3 +21,16 @@ def coarse_scarf(coarse_folder):
 def coarse_layers(coarse_folder):
     """The same with the scarf over a robe baked."""
     return coarse_folder, last_line(build(coarse_folder, exhibit=LAYERED))
+
+
+class Quick(argon2.PasswordHasher):
+    def __init__(self, **_: int) -> None:
+        super().__init__(time_cost=1, memory_cost=8, parallelism=1)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def quick_hashes():
+    """Hashes of passwords cost next to nothing in this process; `hall admin` and `hall serve` are others."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(argon2, "PasswordHasher", Quick)
+        yield

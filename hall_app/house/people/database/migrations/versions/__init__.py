@@ -1,0 +1,1 @@
+"""Steps from one schema of the people's tables to the next."""

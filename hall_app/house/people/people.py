@@ -1,0 +1,41 @@
+"""All that the house knows of people, in one place to open and close."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hall_app.house.people.database import PEOPLE_FILE, Ledger
+from hall_app.house.people.records import Accounts, Journal, Person, Roles, Sessions, own_copy
+from survey.errors import SurveyError
+from survey.store.database import tables as survey_tables
+
+__all__ = ["People", "existing_people"]
+
+
+class People:
+    """where: the data folder (Path), in which the file people.sqlite lies, or a database URL. Raises StoreError."""
+
+    def __init__(self, where: Path | str) -> None:
+        self._ledger = Ledger(where)
+        self.accounts = Accounts(self._ledger)
+        self.sessions = Sessions(self._ledger)
+        self.roles = Roles(self._ledger)
+        self.journal = Journal(self._ledger)
+        self.refuse = self._ledger.refuse
+
+    def copy_of(self, person: Person) -> bytes:
+        """All that is kept of a person, as a ZIP; that it was taken is written down."""
+        with self._ledger.change(person.id, "take copy", person.id):
+            pass
+        return own_copy(person, self.sessions.of(person.id), self.journal.about(person.id))
+
+    def close(self) -> None:
+        self._ledger.close()
+
+
+def existing_people(where: Path | str) -> People:
+    """Raises SurveyError where none was made yet: a mistyped folder would look like a house without people."""
+    file = where / PEOPLE_FILE if isinstance(where, Path) else survey_tables.sqlite_file(where)
+    if file is not None and not file.is_file():
+        raise SurveyError(f"{file}: no accounts there – give --data (or --accounts) as `hall serve` has it")
+    return People(where)

@@ -1,0 +1,24 @@
+"""What is kept of people and how it changes: accounts, sessions, roles, the journal, a person's own copy."""
+
+from hall_app.house.people.records.accounts import CODE_DAYS, RECOVERY_CODES, Accounts
+from hall_app.house.people.records.copy import own_copy
+from hall_app.house.people.records.journal import Entry, Journal
+from hall_app.house.people.records.person import Person, checked_address
+from hall_app.house.people.records.roles import Roles
+from hall_app.house.people.records.sessions import OFFICE_HOURS, VISITOR_DAYS, Session, Sessions
+
+__all__ = [
+    "CODE_DAYS",
+    "OFFICE_HOURS",
+    "RECOVERY_CODES",
+    "VISITOR_DAYS",
+    "Accounts",
+    "Entry",
+    "Journal",
+    "Person",
+    "Roles",
+    "Session",
+    "Sessions",
+    "checked_address",
+    "own_copy",
+]

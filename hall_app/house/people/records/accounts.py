@@ -1,0 +1,227 @@
+"""Accounts: made, opened by a code, changed, handed out and deleted. What is deleted is gone from every table."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+from sqlalchemy import Connection, delete, select, update
+from sqlalchemy.exc import IntegrityError
+
+from hall_app.house.people.credentials import (
+    checked_password,
+    code_step,
+    digest,
+    matches,
+    new_code,
+    new_id,
+    new_token,
+    password_hash,
+    typed_code,
+)
+from hall_app.house.people.database import NOBODY, Ledger, tables
+from hall_app.house.people.errors import PeopleError
+from hall_app.house.people.records.person import (
+    Person,
+    checked_address,
+    checked_name,
+    everybody,
+    found_by,
+    see_that_one_is_left,
+)
+from hall_app.house.people.records.sessions import end_all
+from survey.store.database import now
+
+__all__ = ["CODE_DAYS", "RECOVERY_CODES", "Accounts"]
+
+CODE_DAYS = 3  # a one-time code or link is good for so long
+RECOVERY_CODES = 10
+
+
+class Accounts:
+    """Everybody who has an account, visitors and staff alike: staff are people with roles."""
+
+    def __init__(self, ledger: Ledger) -> None:
+        self._ledger = ledger
+
+    def find(self, *, address: str) -> Person:
+        """The person of that address. Raises PeopleError."""
+        with self._ledger.read() as connection:
+            person = found_by(connection, address=checked_address(address))
+        if person is None:
+            raise PeopleError("no-account")
+        return person
+
+    def of(self, person: str) -> Person:
+        """The person of that id. Raises PeopleError."""
+        with self._ledger.read() as connection:
+            found = found_by(connection, id=person)
+        if found is None:
+            raise PeopleError("no-account")
+        return found
+
+    def all(self, wanted: str = "", most: int = 200) -> tuple[Person, ...]:
+        """People whose address or name holds `wanted`, staff first; `most` at most."""
+        with self._ledger.read() as connection:
+            return everybody(connection, wanted, most)
+
+    def sign_up(self, address: str, password: str, *, name: str = "", language: str = "zh") -> Person:
+        """A visitor's account, not verified yet. Raises PeopleError."""
+        told = checked_address(address)
+        hashed = password_hash(checked_password(password, told))
+        return self.make(new_id(), told, name=name, language=language, hashed=hashed)
+
+    def make(
+        self, who: str, address: str, *, name: str = "", language: str = "zh", hashed: str | None = None
+    ) -> Person:
+        """An account; without a password a code opens it. who: the new id itself where one signs up.
+
+        Raises PeopleError.
+        """
+        own = hashed is not None
+        person, told = who if own else new_id(), checked_address(address)
+        row = {"address": told, "name": checked_name(name), "language": language, "password": hashed}
+        try:
+            with self._ledger.change(who, "sign up" if own else "people", person) as connection:
+                connection.execute(tables.user.insert().values(id=person, made=now(), **row))
+                found = found_by(connection, id=person)
+        except IntegrityError:
+            raise PeopleError("address-taken") from None
+        assert found is not None
+        return found
+
+    def set_profile(self, person: str, *, name: str, language: str) -> None:
+        """Raises PeopleError."""
+        values = {"name": checked_name(name), "language": "en" if language == "en" else "zh"}
+        with self._ledger.change(person, "profile", person) as connection:
+            _set(connection, person, **values)
+
+    def set_password(self, person: Person, old: str, new: str, *, keep: int | None = None) -> None:
+        """Change one's own password; all sessions but `keep` end. Raises PeopleError."""
+        self._prove(person.id, "password", old)
+        hashed = password_hash(checked_password(new, person.address))
+        with self._ledger.change(person.id, "password", person.id) as connection:
+            _set(connection, person.id, password=hashed)
+            end_all(connection, person.id, but=keep)
+
+    def code_for(self, who: str, person: str, *, long: bool = False) -> str:
+        """A one-time code that opens the account, or one for a link (`long`); earlier ones are good no more."""
+        secret, table = new_token() if long else new_code(), tables.code
+        kept = digest(secret if long else typed_code(secret))
+        row = {"digest": kept, "user": person, "purpose": "open"}
+        with self._ledger.change(who, "people", f"{person} code") as connection:
+            connection.execute(delete(table).where(table.c.user == person, table.c.purpose == "open"))
+            connection.execute(table.insert().values(expires=now() + timedelta(days=CODE_DAYS), **row))
+        return secret
+
+    def holder(self, secret: str) -> Person:
+        """Whose code or link that is, unused. Raises PeopleError."""
+        with self._ledger.read() as connection:
+            row = _open_code(connection, secret)
+            person = None if row is None else found_by(connection, id=row.user)
+        if person is None or person.closed is not None:
+            raise PeopleError("code")
+        return person
+
+    def use_code(self, secret: str, password: str) -> Person:
+        """Verify the account and set its password; all its sessions end. Raises PeopleError, and the code is kept."""
+        person = self.holder(secret)
+        hashed = password_hash(checked_password(password, person.address))
+        with self._ledger.change(person.id, "use code", person.id) as connection:
+            row = _open_code(connection, secret)
+            if (
+                row is None
+                or not connection.execute(delete(tables.code).where(tables.code.c.id == row.id)).rowcount
+            ):
+                raise PeopleError("code")
+            _set(connection, person.id, password=hashed, verified=now())
+            end_all(connection, person.id)
+        return person
+
+    def verify(self, person: Person, secret: str) -> None:
+        """Confirm one's own account by the code that was handed out for it. Raises PeopleError."""
+        with self._ledger.change(person.id, "use code", person.id) as connection:
+            row = _open_code(connection, secret)
+            if row is None or row.user != person.id:
+                raise PeopleError("code")
+            connection.execute(delete(tables.code).where(tables.code.c.id == row.id))
+            _set(connection, person.id, verified=now())
+
+    def begin_second_factor(self, person: Person, password: str, secret: str, code: str) -> tuple[str, ...]:
+        """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError."""
+        self._prove(person.id, "second factor", password)
+        step = code_step(secret, code)
+        if step is None:
+            raise PeopleError("authenticator")
+        codes = tuple(new_code() for _ in range(RECOVERY_CODES))
+        with self._ledger.change(person.id, "second factor", person.id) as connection:
+            _drop_recovery(connection, person.id)
+            _set(connection, person.id, authenticator=secret, step=step)
+            rows = [
+                {"digest": digest(typed_code(code)), "user": person.id, "purpose": "recovery"}
+                for code in codes
+            ]
+            connection.execute(tables.code.insert(), rows)
+        return codes
+
+    def end_second_factor(self, person: Person, password: str) -> None:
+        """Raises PeopleError."""
+        self._prove(person.id, "second factor", password)
+        with self._ledger.change(person.id, "second factor", f"{person.id} off") as connection:
+            _drop_recovery(connection, person.id)
+            _set(connection, person.id, authenticator=None, step=None)
+
+    def drop_second_factor(self, who: str, person: str) -> None:
+        """An administrator's way for who lost his phone and the recovery codes."""
+        with self._ledger.change(who, "people", f"{person} second factor off") as connection:
+            _drop_recovery(connection, person)
+            _set(connection, person, authenticator=None, step=None)
+
+    def close(self, who: str, person: str, *, closed: bool) -> None:
+        """Shut an account, which ends its sessions, or open it again. Raises PeopleError."""
+        with self._ledger.change(who, "people", f"{person} {'closed' if closed else 'opened'}") as connection:
+            _set(connection, person, closed=now() if closed else None)
+            if closed:
+                end_all(connection, person)
+                see_that_one_is_left(connection)
+
+    def delete(self, person: Person, password: str) -> None:
+        """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
+        self._prove(person.id, "delete account", password)
+        with self._ledger.change(person.id, "delete account", person.id) as connection:
+            for table in (tables.code, tables.session, tables.role):
+                connection.execute(delete(table).where(table.c.user == person.id))
+            connection.execute(delete(tables.user).where(tables.user.c.id == person.id))
+            if person.roles:
+                see_that_one_is_left(connection)
+        self._ledger.scrub()
+
+    def _prove(self, person: str, act: str, password: str) -> None:
+        table = tables.user
+        with self._ledger.read() as connection:
+            kept = connection.execute(
+                select(table.c.password).where(table.c.id == person)
+            ).scalar_one_or_none()
+        if not matches(password, kept):
+            self._ledger.refuse(NOBODY, act, person)
+            raise PeopleError("password-wrong")
+
+
+def _set(connection: Connection, person: str, **values: object) -> None:
+    """Raises PeopleError where the account is gone."""
+    if not connection.execute(
+        update(tables.user).where(tables.user.c.id == person).values(**values)
+    ).rowcount:
+        raise PeopleError("no-account")
+
+
+def _drop_recovery(connection: Connection, person: str) -> None:
+    table = tables.code
+    connection.execute(delete(table).where(table.c.user == person, table.c.purpose == "recovery"))
+
+
+def _open_code(connection: Connection, secret: str):
+    """The row of an unused code or link, typed in any way; None for another."""
+    table = tables.code
+    known = {digest(secret.strip()[:100]), digest(typed_code(secret))}
+    good = (table.c.digest.in_(known), table.c.purpose == "open", table.c.expires > now())
+    return connection.execute(select(table).where(*good)).one_or_none()

@@ -1,0 +1,113 @@
+"""Who somebody is, as the store knows it; addresses and names as they are kept."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Connection, func, select
+
+from hall_app.house.people.acts import Role, may
+from hall_app.house.people.database import tables
+from hall_app.house.people.errors import PeopleError
+from survey.store.database import in_utc
+
+__all__ = ["Person", "checked_address", "checked_name", "everybody", "found_by", "see_that_one_is_left"]
+
+_ADDRESS = re.compile(r"[^@\s]{1,64}@[^@\s.]+(\.[^@\s.]+)+")
+_LONGEST = 254  # of an address: RFC 5321
+_NAME = 80
+
+
+@dataclass(frozen=True)
+class Person:
+    """id: random, names the person in the journal. Times are in UTC."""
+
+    id: str
+    address: str
+    name: str
+    language: str
+    made: datetime
+    verified: datetime | None
+    closed: datetime | None
+    second_factor: bool
+    has_password: bool
+    roles: frozenset[Role]
+
+    def may(self, act: str) -> bool:
+        return may(self.roles, act)
+
+
+def checked_address(text: str) -> str:
+    """The address as it is compared and kept. Raises PeopleError."""
+    told = unicodedata.normalize("NFKC", text).strip().casefold()
+    if len(told) > _LONGEST or not _ADDRESS.fullmatch(told) or not told.isprintable():
+        raise PeopleError("address")
+    return told
+
+
+def checked_name(text: str) -> str:
+    """Raises PeopleError."""
+    told = unicodedata.normalize("NFC", text).strip()
+    if len(told) > _NAME or not all(letter.isprintable() for letter in told):
+        raise PeopleError("name", most=_NAME)
+    return told
+
+
+def found_by(connection: Connection, **key: str) -> Person | None:
+    """The person of that id or address."""
+    table, ((column, value),) = tables.user, key.items()
+    row = connection.execute(select(table).where(table.c[column] == value)).one_or_none()
+    if row is None:
+        return None
+    roles = connection.execute(select(tables.role.c.role).where(tables.role.c.user == row.id)).scalars()
+    return _person(row, frozenset(Role(role) for role in roles))
+
+
+def everybody(connection: Connection, wanted: str, most: int) -> tuple[Person, ...]:
+    """People whose address or name holds `wanted`, those with roles first, then by address; `most` at most."""
+    user, role = tables.user, tables.role
+    ranks = select(role.c.user, func.count().label("count")).group_by(role.c.user).subquery()
+    query = select(user).outerjoin(ranks, ranks.c.user == user.c.id)
+    if wanted:
+        part = wanted.casefold()
+        query = query.where(
+            user.c.address.contains(part, autoescape=True)
+            | func.lower(user.c.name).contains(part, autoescape=True)
+        )
+    order = (func.coalesce(ranks.c.count, 0) == 0, user.c.address)
+    rows = connection.execute(query.order_by(*order).limit(most)).all()
+    given: dict[str, set[Role]] = {}
+    ids = [row.id for row in rows]
+    for whose, name in connection.execute(select(role.c.user, role.c.role).where(role.c.user.in_(ids))):
+        given.setdefault(whose, set()).add(Role(name))
+    return tuple(_person(row, frozenset(given.get(row.id, ()))) for row in rows)
+
+
+def see_that_one_is_left(connection: Connection) -> None:
+    """Raises PeopleError where no open account would be an administrator any more; the change is undone then."""
+    user, role = tables.user, tables.role
+    query = (
+        select(func.count())
+        .select_from(role.join(user, user.c.id == role.c.user))
+        .where(role.c.role == Role.ADMINISTRATOR, user.c.closed.is_(None))
+    )
+    if not connection.execute(query).scalar_one():
+        raise PeopleError("last-administrator")
+
+
+def _person(row, roles: frozenset[Role]) -> Person:
+    return Person(
+        id=row.id,
+        address=row.address,
+        name=row.name,
+        language=row.language,
+        made=in_utc(row.made),
+        verified=None if row.verified is None else in_utc(row.verified),
+        closed=None if row.closed is None else in_utc(row.closed),
+        second_factor=row.authenticator is not None,
+        has_password=row.password is not None,
+        roles=roles,
+    )
