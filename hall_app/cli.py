@@ -27,7 +27,7 @@ examples:
   hall serve --content my-hall        with a content folder of your own
   hall check my-hall                  say what is wrong in it, one line a problem
   hall build                          dress the outfits that changed, or what they name
-  hall admin create anna@example.org  make the first administrator of the house, who signs in at /office
+  hall admin create anna@example.org  make the first administrator of the house
 
 The content folder is --content, else ./assets, else the copy that came with the program.
 Exit status: 0 done, 1 the work failed or content is invalid, 2 wrong arguments."""

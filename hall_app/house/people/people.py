@@ -37,5 +37,5 @@ def existing_people(where: Path | str) -> People:
     """Raises SurveyError where none was made yet: a mistyped folder would look like a house without people."""
     file = where / PEOPLE_FILE if isinstance(where, Path) else survey_tables.sqlite_file(where)
     if file is not None and not file.is_file():
-        raise SurveyError(f"{file}: no accounts there – give --data (or --accounts) as `hall serve` has it")
+        raise SurveyError(f"{file}: no accounts there – give --data (or --accounts) of the house")
     return People(where)
