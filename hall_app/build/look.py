@@ -26,6 +26,7 @@ MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to 
 TREAD = 0.06  # [m] above the ground that feet are looked at
 ROUND = 0.04  # [m] of its base round the feet of who walks
 PIXELS = 512  # of the weaves' maps
+FILM_PIXEL = 0.002  # [m] of a repeat in films and stills, whose pixels see about as much
 
 
 @dataclass(frozen=True)
@@ -56,16 +57,21 @@ class Wardrobe:
             weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
             _, first, index = np.unique(weld, return_index=True, return_inverse=True)
             faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
-            parts = self._parts(number, faces, cloth.panel, cloth.names)
+            places = _places(layer, cloth)[cloth.faces]
+            parts = self._parts(number, faces, places, (cloth.panel, cloth.names))
             pieces.append(Piece(np.zeros((len(cloth.vertices), 3)), parts))
         return self._look(pieces)
 
     def still(self, garments: Sequence[Garment]) -> Look:
         """What the stills show: the garments at rest."""
-        pieces = [
-            Piece(garment.positions, self._parts(number, garment.faces, garment.panel, garment.panels))
-            for number, garment in enumerate(garments)
-        ]
+        from sim_core.picture import split_along
+
+        pieces = []
+        for number, garment in enumerate(garments):
+            faces, welded = split_along(garment.faces, garment.creases())
+            places = garment.cloth_places()[garment.pattern_faces]
+            parts = self._parts(number, faces, places, (garment.panel, garment.panels))
+            pieces.append(Piece(garment.positions[welded], parts))
         return self._look(pieces)
 
     def write_models(
@@ -128,24 +134,33 @@ class Wardrobe:
         return replace(shown, base=(max(radius, reach + ROUND), height))
 
     def _parts(
-        self, number: int, faces: np.ndarray, panel: np.ndarray, names: Sequence[str]
+        self,
+        number: int,
+        faces: np.ndarray,
+        places: np.ndarray,
+        panels: tuple[np.ndarray, Sequence[str]],
     ) -> tuple[Part, ...]:
-        """The looks of a layer's cloth: one for each colour and cover."""
+        """The looks of a layer's cloth: one for each colour, cover and repeat.
+
+        faces (F, 3); places (F, 3, 2) [m] where they lie in their cloth; panels: numbers (F,) and names of theirs.
+        """
         from sim_core.garment.pattern import unsided
 
-        layer, (maps, own) = self.outfit.layers[number], self.maps[number]
+        layer, (maps, own), (panel, names) = self.outfit.layers[number], self.maps[number], panels
         dyes = {cut.name: cut.dye for cut in layer.pattern.panels}
-        looks = []
-        for name in map(unsided, names):
-            woven = own.get(name, maps)
-            cover = _cover(woven)
-            alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
+        looks: dict[Any, list[int]] = {}
+        for k, name in enumerate(map(unsided, names)):
             dye = None if layer.weave_of(name).several else dyes.get(name) or layer.pattern.dye
-            looks.append((_colour(dye, woven), alpha))
-        return tuple(
-            Part(faces[np.isin(panel, [k for k, own in enumerate(looks) if own == look])], *look, sheen=0.5)
-            for look in dict.fromkeys(looks)
-        )
+            looks.setdefault((dye, name if name in own else ""), []).append(k)
+        parts = []
+        for (dye, name), which in looks.items():
+            woven, mine = own.get(name, maps), np.isin(panel, which)
+            cover = _cover(woven)
+            colour, fabric = _far(woven, dye)
+            alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
+            woven_in = {} if fabric is None else {"fabric": fabric, "corners": places[mine]}
+            parts.append(Part(faces[mine], colour, alpha, sheen=0.5, **woven_in))
+        return tuple(parts)
 
     def _look(self, cloth: Sequence[Piece]) -> Look:
         """Cloth, given from the skin outwards, and what bears it."""
@@ -203,12 +218,27 @@ def _cover(maps: MapsLike) -> float:
 
 
 def _sheer(cover: float) -> bool:
-    from sim_core.garment.glb import SHEER
+    from sim_core.garment.cloth_colour import SHEER
 
     return cover < SHEER
 
 
-def _colour(dye: tuple[float, float, float] | None, maps: MapsLike) -> tuple[float, float, float]:
-    """The colour [sRGB] of cloth seen from afar: its dye, else the mean of its yarns."""
-    red, green, blue = dye if dye is not None else maps.albedo.reshape(-1, 3).mean(axis=0) / 255
-    return (float(red), float(green), float(blue))
+def _places(layer: Layer, cloth: Any) -> np.ndarray:
+    """Where the pattern vertices (P, 2) [m] lie in their cloth, from the corner of a repeat."""
+    from sim_core.garment.pattern import unsided
+
+    names = map(unsided, cloth.names)
+    origins = [layer.origin_of(name) for name in names]
+    turned = [(-x, y) if k >= len(layer.pattern.panels) > 0 else (x, y) for k, (x, y) in enumerate(origins)]
+    return cloth.vertices - np.array(turned)[cloth.panel_of]
+
+
+def _far(maps: MapsLike, dye: tuple[float, float, float] | None) -> tuple[tuple[float, float, float], Any]:
+    """The colour [sRGB] of cloth seen from afar, and the repeat that is seen then; None where there is none."""
+    from sim_core.garment.cloth_colour import seen_afar, srgb
+    from sim_core.picture import Fabric
+
+    picture, factor = seen_afar(maps, dye, FILM_PIXEL)
+    red, green, blue = srgb(factor)
+    fabric = None if picture is None else Fabric(picture, maps.size)
+    return (float(red), float(green), float(blue)), fabric

@@ -10,10 +10,13 @@ from scipy.spatial import ConvexHull
 from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement.ground import Ground
+from sim_core.garment.placement.tent import Folds, Tent
 
 __all__ = ["Wrapped", "girth"]
 
 FINE = 0.002  # [m] between the points of the line
+SLAB = 0.01  # [m] of the wearer that a line about it is drawn round at least
+LEVELS = 33  # heights at which pleats are laid about a wearer that is wider below
 
 
 @dataclass(frozen=True)
@@ -39,22 +42,29 @@ class Wrapped:
         """Positions (P, 3) [m] of the pattern vertices. Raises SimCoreError where the cloth does not go round."""
         low, high = cloth.vertices.min(0), cloth.vertices.max(0)
         top = float(ground.mark(self.mark)[1]) + self.rise
-        hull = _section(ground, top - float(high[1] - low[1]), top)
-        width, room = float(high[0] - low[0]), ground.clearance + 0.002
-        begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
         lowest = top - float(high[1] - low[1])
         if lowest < 0.0:
             raise SimCoreError(
                 f"pattern {pattern.name}: {high[1] - low[1]:.2f} m long, {-lowest:.2f} m more than there is from "
                 f"{self.mark!r} to the floor – cut it shorter or raise it"
             )
+        begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
         closed = len(np.intersect1d(begin, end)) > 0  # sewn to itself: a tube
+        room = ground.clearance + 0.002
+        if any(panel.pleats for panel in pattern.panels):
+            depths = np.linspace(0.0, float(high[1] - low[1]), LEVELS)
+            hulls = [_section(ground, top - max(float(depth), SLAB), top) for depth in depths]
+            folds = Folds.of(pattern, cloth)
+            need = girth(hulls[0]) + 2 * np.pi * room
+            _check_width(pattern, folds.width, need, self.mark)
+            if closed or folds.width < 1.02 * need:
+                room += (folds.width - need) / (2 * np.pi)
+            tent = Tent.over(hulls, depths, np.radians(self.begin), room)
+            return tent.hung(folds, cloth.vertices[:, 1] - low[1], self.gap) + [0.0, top, 0.0]
+        hull = _section(ground, lowest, top)
+        width = float(high[0] - low[0])
         need = girth(hull) + 2 * np.pi * room
-        if width < need:
-            raise SimCoreError(
-                f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {self.mark!r} it needs "
-                f"{need:.3f} m; make it wider or place it elsewhere"
-            )
+        _check_width(pattern, width, need, self.mark)
         if closed or width < 1.02 * need:
             line = _around(hull, np.radians(self.begin), (width - girth(hull)) / (2 * np.pi), 0.0, width)
         else:
@@ -63,6 +73,15 @@ class Wrapped:
         along = (cloth.vertices[:, 0] - low[0]) * (arc[-1] / width)
         x, z = (np.interp(along, arc, line[:, c]) for c in range(2))
         return np.stack([x, top - (cloth.vertices[:, 1] - low[1]), z], axis=1)
+
+
+def _check_width(pattern: Pattern, width: float, need: float, mark: str) -> None:
+    """Raises SimCoreError unless cloth goes round once."""
+    if width < need:
+        raise SimCoreError(
+            f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {mark!r} it needs "
+            f"{need:.3f} m; make it wider or place it elsewhere"
+        )
 
 
 def girth(hull: np.ndarray) -> float:
