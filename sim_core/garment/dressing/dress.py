@@ -155,7 +155,7 @@ class _Dressing:
             rollbacks=sum(run.rollbacks for run in done),
             seconds=clock.laps,
             errors=errors,
-            **({"stand": asdict(self.outfit.stand)} if self.outfit.stand else {}),
+            **({"stand": self.outfit.stand.to_dict()} if self.outfit.stand else {}),
         )
         trail = self._trail(garment)
         if beneath:

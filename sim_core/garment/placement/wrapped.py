@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Pattern
@@ -92,8 +92,8 @@ def girth(hull: np.ndarray) -> float:
 def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     """Corners (n, 2) [m] in x and z of the convex hull of trunk, legs and garments between two heights, one way round
     from the front to the wearer's left."""
-    parts = [ground.vertices[ground.trunk], *(vertices for vertices, _ in ground.worn)]
-    points = np.concatenate(parts)
+    worn = [vertices[_on_trunk(ground, vertices)] for vertices, _ in ground.worn]
+    points = np.concatenate([ground.vertices[ground.trunk], *worn])
     points = points[(points[:, 1] >= low) & (points[:, 1] <= high + 0.01)]
     if len(points) < 3:
         raise SimCoreError(
@@ -104,6 +104,12 @@ def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     ahead = np.arctan2(hull[:, 0], hull[:, 1])
     hull = hull[np.argsort(ahead - ahead.min())]
     return hull
+
+
+def _on_trunk(ground: Ground, points: np.ndarray) -> np.ndarray:
+    """Which (N,) of the points (N, 3) [m] of a garment lie nearer to the wearer's trunk and legs than to the arms."""
+    nearest = KDTree(ground.vertices).query(points)[1]
+    return np.isin(nearest, ground.trunk)
 
 
 def _around(hull: np.ndarray, begin: float, away: float, gap: float, length: float) -> np.ndarray:
