@@ -115,7 +115,7 @@ class Garment:
     def dye_of(self, panel: int) -> Colour | None:
         """The dye of a panel: its own, else the garment's; None of cloth woven of several colours, which keeps them."""
         weave = self.weaves.get(unsided(self.panels[panel]), self.weave)
-        if any(len(set(weave.get(f"{side}_colours", ()))) > 1 for side in ("warp", "weft")):
+        if any(len({str(c) for c in weave.get(f"{side}_colours", ())}) > 1 for side in ("warp", "weft")):
             return None
         return self.dyes[panel] or self.dye
 

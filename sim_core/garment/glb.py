@@ -34,6 +34,7 @@ from sim_core.weave.maps import FiguredMaps, MapsLike, far_look
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
+SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 4096  # of a texture on any device
 CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
@@ -41,12 +42,14 @@ CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
 
 @dataclass(frozen=True)
 class Shown:
-    """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m]."""
+    """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m];
+    shod (F,): the faces of its shoes, none where it is left out."""
 
     vertices: np.ndarray
     faces: np.ndarray
     normals: np.ndarray
     base: tuple[float, float]
+    shod: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -110,9 +113,13 @@ def write_glb(
         vertices, faces = outermost.settled.beneath.stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
     if figure is not None:
-        glb.mesh(
-            "figure", figure.vertices + lift, figure.faces, glb.material(_linen()), shading=figure.normals
-        )
+        shod = np.zeros(len(figure.faces), bool) if figure.shod is None else figure.shod
+        for name, own, look in (("figure", ~shod, _linen), ("shoes", shod, _shoe)):
+            if own.any():
+                used, index = np.unique(figure.faces[own], return_inverse=True)
+                faces = index.reshape(-1, 3).astype(np.int32)
+                shading = figure.normals[used]
+                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(look()), shading=shading)
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
@@ -185,27 +192,30 @@ def _look_of(picture: np.ndarray) -> str:
     return sha256(picture.tobytes()).hexdigest()
 
 
-def _linen() -> dict[str, Any]:
-    """The figure's cover: matt, light, without colour of its own."""
+def _plain(name: str, colour: Colour, roughness: float) -> dict[str, Any]:
+    """Matter of one colour [sRGB]."""
     return {
-        "name": "linen",
+        "name": name,
         "pbrMetallicRoughness": {
-            "baseColorFactor": [*(float(c) for c in linear(np.asarray(LINEN))), 1.0],
+            "baseColorFactor": [*(float(c) for c in linear(np.asarray(colour))), 1.0],
             "metallicFactor": 0.0,
-            "roughnessFactor": 0.9,
+            "roughnessFactor": roughness,
         },
     }
+
+
+def _linen() -> dict[str, Any]:
+    """The figure's cover: matt, light, without colour of its own."""
+    return _plain("linen", LINEN, 0.9)
+
+
+def _shoe() -> dict[str, Any]:
+    """Low shoes of dark silk."""
+    return _plain("shoe", SHOE, 0.6)
 
 
 def _lacquer() -> dict[str, Any]:
-    return {
-        "name": "lacquer",
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [*(float(c) for c in linear(np.asarray(LACQUER))), 1.0],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 0.38,
-        },
-    }
+    return _plain("lacquer", LACQUER, 0.38)
 
 
 def _gleam(

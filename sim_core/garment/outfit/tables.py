@@ -189,7 +189,9 @@ class LayerTable(Table):
 
 
 class StandTable(Table):
-    kind: Literal["rack", "t_bar"] = Field("rack", description="two posts with a bar, or a bar through sleeves")
+    kind: Literal["rack", "t_bar"] = Field(
+        "rack", description="two posts with a bar, or a bar through sleeves"
+    )
     height: Number = Field(1.5, gt=0, le=5, description="of the bar [m]")
     span: Number | None = Field(
         None, gt=0, le=10, description="between the posts, or of a T-bar from end to end [m]"
