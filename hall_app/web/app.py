@@ -22,10 +22,11 @@ from hall_app.house.house import House
 from hall_app.show.pieces import Pieces
 from hall_app.web.answers.packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
+from hall_app.web.collection.routes import OPEN, add_collection, collection_now
 from hall_app.web.limits.addresses import Addresses
 from hall_app.web.limits.doorkeeper import Doorkeeper
 from hall_app.web.limits.portions import Portions
-from hall_app.web.pages.catalogue import Small, catalogue_html, shown_language
+from hall_app.web.pages.catalogue import Small, catalogue_html, schema_records, shown_language
 from hall_app.web.pages.client import viser_client
 from hall_app.web.pages.door import content_security_policy, door_page
 from hall_app.web.pages.static import page_files
@@ -76,6 +77,7 @@ def create_app(
     _add_files(app, house.scene.pieces)
     _add_api(app, house, answers)
     _add_media(app, house)
+    add_collection(app, house)
     views = Views(house.places)
     add_relay(app, house.scene.port, views, addresses, house.scene.pieces)
     add_walk_socket(app, house, views, addresses)
@@ -156,9 +158,13 @@ def _add_page(app: FastAPI, house: House, answers: Answers) -> None:
     async def catalogue(request: Request, lang: str | None = None) -> Response:
         content, shown, bakes = house.content, house.shown(), house.bakes()
         spoken, small = shown_language(content, lang), _small_pictures(house)
+        collection = collection_now(
+            house, ""
+        )  # addresses from / on: the page is one for all names of the machine
 
         def made() -> Packed:
-            return Packed(catalogue_html(content, shown, bakes, spoken, small).encode(), _HTML)
+            records = schema_records(collection())
+            return Packed(catalogue_html(content, shown, bakes, spoken, small, records).encode(), _HTML)
 
         return await (await answers.of(house.state, ("catalogue", spoken), made)).answer(request)
 
@@ -270,7 +276,9 @@ def _add_media(app: FastAPI, house: House) -> None:
             raise HTTPException(404, "no such file in the hall")
         # FileResponse answers Range requests.
         kind = media_type(found.name)
-        return FileResponse(found, media_type=kind, headers={"Cache-Control": FOR_GOOD} | _policy(kind))
+        return FileResponse(
+            found, media_type=kind, headers={"Cache-Control": FOR_GOOD, **OPEN} | _policy(kind)
+        )
 
     @app.get("/thumbnails/{owner}/{path:path}", include_in_schema=False)
     async def thumbnail(owner: str, path: str) -> FileResponse:

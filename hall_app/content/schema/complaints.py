@@ -25,6 +25,8 @@ REMEDIES = {
     "body_shape": 'write shape = "round" with radius, or shape = "box" with size = [width, depth]',
     "zero_length": "give the wall two different ends",
     "eye_order": "write min ≤ default ≤ max, in metres",
+    "web_address": "write it whole, e.g. https://hall.example.org, without ? and #",
+    "email": "write it whole, e.g. collection@example.org",
     "behaviour": "remove it or correct its spelling",
     "too_short": "add the missing entries",
     "too_long": "remove the surplus entries",

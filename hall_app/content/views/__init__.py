@@ -3,7 +3,7 @@
 markdown: curators' texts as HTML; measurements: what a bake measured, in words; scene: the dictionaries of the API.
 """
 
-from hall_app.content.views.markdown import html_of, link_allowed, pictures_in, raw_html_in
+from hall_app.content.views.markdown import html_of, link_allowed, pictures_in, plain_text, raw_html_in
 from hall_app.content.views.scene import (
     TYPES,
     exhibit_json,
@@ -26,6 +26,7 @@ __all__ = [
     "own_file",
     "own_picture",
     "pictures_in",
+    "plain_text",
     "raw_html_in",
     "scene_json",
     "thumbnail",

@@ -103,3 +103,27 @@ def raw_html_in(markdown: str) -> str | None:
             ):
                 return found.group()
     return None
+
+
+def plain_text(markdown: str) -> str:
+    """The text without its marks: a line for each paragraph, heading, list entry and table row; pictures left out."""
+    lines: list[str] = []
+    cells: list[str] | None = None  # of the table row that is being read
+    for token in _parser().parse(markdown):
+        if token.type == "tr_open":
+            cells = []
+        elif token.type == "tr_close" and cells is not None:
+            lines, cells = [*lines, " · ".join(cells)], None
+        elif token.type == "inline":
+            words = "".join(_words(child) for child in token.children or ()).strip()
+            (lines if cells is None else cells).append(words)
+        elif token.type in ("fence", "code_block"):
+            lines.append(token.content.rstrip())
+    return "\n".join(line for line in lines if line)
+
+
+def _words(token: Token) -> str:
+    """What is read of an inline part."""
+    if token.type in ("softbreak", "hardbreak"):
+        return " "
+    return "" if token.type == "image" else token.content
