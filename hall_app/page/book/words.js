@@ -5,7 +5,7 @@
   tip.id = "tip";
   tip.hidden = true;
   tip.setAttribute("role", "tooltip");
-  document.body.append(tip);
+  document.querySelector("main").append(tip);
   let open = null; // the word that is explained
   let leaving = 0;
 
@@ -17,7 +17,7 @@
     if (!meaning || open === word) return;
     open = word;
     const name = document.createElement("b");
-    name.textContent = meaning.previousElementSibling.textContent;
+    name.textContent = [...meaning.previousElementSibling.childNodes].map((one) => one.textContent).join(" ");
     tip.replaceChildren(name, meaning.textContent);
     tip.hidden = false;
     place(word);
