@@ -13,6 +13,7 @@ from hall_app.check.files.media import media_problems
 from hall_app.check.files.models import scale_problems
 from hall_app.check.files.unused import unused_problems
 from hall_app.check.files.words import word_problems
+from hall_app.check.files.writing import writing_problems
 from hall_app.check.hall.backdrops import backdrop_problems
 from hall_app.check.hall.fittings import fitting_problems
 from hall_app.check.hall.questionnaires import questionnaire_problems, unstated
@@ -27,6 +28,7 @@ __all__ = ["CHECKS", "QUICK", "check", "hints"]
 # What is looked at beyond loading: each function takes the content and returns problems.
 CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     word_problems,
+    writing_problems,
     media_problems,
     scale_problems,
     budget_problems,

@@ -13,7 +13,7 @@ from hall_app.content.schema.values import Bilingual, ContentPath, Table
 
 def _web_address(text: str) -> str:
     if not re.fullmatch(r"https?://[^\s/?#@]+(/[^\s?#]*)?", text):
-        raise PydanticCustomError("web_address", "this is no address on the web")
+        raise PydanticCustomError("own_address", "this is no address on the web")
     return text.rstrip("/")
 
 

@@ -17,7 +17,7 @@ from hall_app.content.views.markdown import html_of
 from hall_app.content.views.scene import exhibit_json, own_picture, thumbnail
 from hall_app.web.collection.record import Collection
 from hall_app.web.collection.schema_org import artwork, hall_graph, in_page
-from hall_app.web.pages.door import ICON
+from hall_app.web.pages.frame import Frame
 
 __all__ = ["Records", "Small", "catalogue_html", "schema_records", "shown_language"]
 
@@ -152,23 +152,18 @@ class _Page:
         hall, words, other = self.content.hall, self.words, self.other
         title, subtitle = escape(getattr(hall.title, self.lang)), escape(getattr(hall.subtitle, self.lang))
         about = f'<p class="about">{escape(getattr(hall.about, self.lang))}</p>' if hall.about else ""
-        return f"""<!doctype html>
-<html lang="{self.lang}"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="{ICON}">
-<title>{title} · {words["title"]}</title><link rel="stylesheet" href="/static/catalogue.css">
-{self.records.hall}</head>
-<body><a class="skip" href="#exhibits">{words["skip"]}</a>
-<header class="cover"><span class="seal" aria-hidden="true">{escape(hall.title.zh[:1])}</span>
-<h1>{title}</h1>
+        frame = Frame(hall, self.lang, "catalogue", "/catalogue")
+        body = f"""<a class="skip" href="#exhibits">{words["skip"]}</a>{frame.head()}
+<section class="cover" aria-labelledby="cover-title">
+<span class="seal" aria-hidden="true">{escape(hall.title.zh[:1])}</span>
+<h1 id="cover-title">{title}</h1>
 <p class="subtitle">{subtitle}</p><p class="kind">{words["title"]}</p>{about}
 <nav class="doors" aria-label="{words["pages"]}"><a class="door" href="/?lang={self.lang}">{words["hall"]}</a>
-<a href="/catalogue?lang={other}" lang="{other}" hreflang="{other}">{words["switch"]}</a></nav></header>
+<a href="/catalogue?lang={other}" lang="{other}" hreflang="{other}">{words["switch"]}</a></nav></section>
 <nav class="contents" id="contents" aria-labelledby="contents-title"><h2 id="contents-title">{words["contents"]}</h2>
 <ol>{listed}</ol></nav>
-<main id="exhibits">{entries}</main>
-<footer><p>{title} · {subtitle}</p><p>{words["licence"]}: {escape(hall.licence)}</p>
-{self._formats("all_formats", _ALL_FORMATS)}</footer></body></html>"""
+<main id="exhibits" tabindex="-1">{entries}{self._formats("all_formats", _ALL_FORMATS)}</main>{frame.foot()}"""
+        return frame.whole(words["title"], body, styles=("catalogue",), records=self.records.hall)
 
     def _formats(self, title: str, addresses: Mapping[str, str], key: str = "") -> str:
         """The ways to the same records for programs."""
