@@ -8,9 +8,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from sim_core.errors import SimCoreError
-from sim_core.metrics import components
 from sim_core.picture.fragments import ALPHA, FLOOR, TONES, Scene, Seen, Shadow, developed
 from sim_core.picture.raster import (
     LAYERS,
@@ -154,7 +155,8 @@ def split_along(faces: np.ndarray, creases: np.ndarray) -> tuple[np.ndarray, np.
     order = np.argsort(key, kind="stable")
     same = (key[order][1:] == key[order][:-1]) & ~np.isin(key[order][1:], low * count + high)
     one, other = own[order][:-1][same], own[order][1:][same]
-    part = components(faces.size, one.ravel(), other.ravel()).reshape(faces.shape)
+    graph = coo_array((np.ones(one.size), (one.ravel(), other.ravel())), shape=(faces.size, faces.size))
+    part = connected_components(graph, directed=False)[1].reshape(faces.shape)
     _, first, index = np.unique(
         np.where(on[faces], part + count, faces).ravel(), return_index=True, return_inverse=True
     )

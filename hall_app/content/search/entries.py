@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from hall_app.content.folder import Content, Exhibit
-from hall_app.content.views.markdown import plain_text
+from hall_app.content.views.markdown import words_in
 from hall_app.content.views.writing import page_of
 
 KINDS = ("exhibit", "article", "word", "weave")  # in the order in which equals are listed
@@ -34,7 +34,7 @@ def entries_of(content: Content, shown: Iterable[Exhibit] | None = None) -> Iter
             yield _exhibit(exhibit, lang)
         for article in content.writing.articles:
             file = article.file
-            text = f"{getattr(file.summary, lang)} {plain_text(article.text(lang))}"
+            text = f"{getattr(file.summary, lang)} {words_in(article.text(lang))}"
             yield _entry("article", article.id, lang, getattr(file.title, lang), "", text)
         for word in content.writing.words:
             called = f"{word.zh} {word.en} {word.pinyin} {_toneless(word.pinyin)}"
@@ -50,7 +50,7 @@ def entries_of(content: Content, shown: Iterable[Exhibit] | None = None) -> Iter
 def _exhibit(exhibit: Exhibit, lang: str) -> Entry:
     file = exhibit.file
     told = [getattr(file.caption, lang)] if file.caption else []
-    told.append(plain_text(exhibit.text_zh if lang == "zh" else exhibit.text_en))
+    told.append(words_in(exhibit.text_zh if lang == "zh" else exhibit.text_en))
     told += [
         getattr(line, lang)
         for line in (file.record.material, file.record.technique, file.record.date)

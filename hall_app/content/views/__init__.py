@@ -12,6 +12,7 @@ from hall_app.content.views.markdown import (
     raw_html_in,
     references_in,
     undescribed_in,
+    words_in,
 )
 from hall_app.content.views.scene import (
     TYPES,
@@ -46,7 +47,7 @@ __all__ = [
     "image_html",
     "is_written",
     "page_of",
-    "plain_text",
+    "words_in",
     "plot_picture",
     "references_in",
     "spoken_of",

@@ -129,7 +129,7 @@ def references_in(markdown: str) -> Iterator[tuple[str, str]]:
                 yield found[1], found[2]
 
 
-def plain_text(markdown: str) -> str:
+def words_in(markdown: str) -> str:
     """The words of a text alone, a space between its blocks; captions and alternative texts among them."""
     return " ".join(
         "".join(_plain_words(token) for token in block.children or ())
