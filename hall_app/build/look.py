@@ -222,7 +222,7 @@ def _cover(maps: MapsLike) -> float:
 
 
 def _sheer(cover: float) -> bool:
-    from sim_core.garment.cloth_colour import SHEER
+    from sim_core.weave.maps import SHEER
 
     return cover < SHEER
 
@@ -239,8 +239,8 @@ def _places(layer: Layer, cloth: Any) -> np.ndarray:
 
 def _far(maps: MapsLike, dye: tuple[float, float, float] | None) -> tuple[tuple[float, float, float], Any]:
     """The colour [sRGB] of cloth seen from afar, and the repeat that is seen then; None where there is none."""
-    from sim_core.garment.cloth_colour import seen_afar, srgb
     from sim_core.picture import Fabric
+    from sim_core.weave.maps import seen_afar, srgb
 
     picture, factor = seen_afar(maps, dye, FILM_PIXEL)
     red, green, blue = srgb(factor)

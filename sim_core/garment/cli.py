@@ -283,9 +283,9 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     """Everything from the front, from the side and from behind."""
     import numpy as np
 
-    from sim_core.garment.cloth_colour import SHEER, coverage, seen_afar, srgb
     from sim_core.garment.glb import LACQUER, LINEN, SHOE, Clothed
     from sim_core.picture import Camera, Fabric, Surface, render, save_png, split_along
+    from sim_core.weave.maps import SHEER, coverage, seen_afar, srgb
 
     surfaces = []
     if outfit.wearer is not None:

@@ -14,22 +14,24 @@ import numpy as np
 from sim_core.cloth import Cylinder
 from sim_core.cloth.contact.solid_meshes import solid_mesh
 from sim_core.errors import SimCoreError
-from sim_core.garment.cloth_colour import (
-    SHEER,
-    coarser_direction,
-    coloured,
-    coverage,
-    linear,
-    mean_colour,
-    seen_afar,
-)
 from sim_core.garment.garment import Colour, Garment
 from sim_core.garment.pattern import unsided
 from sim_core.gltf import GlbFile
 from sim_core.picture import normals, split_along
 from sim_core.validation.files import written_whole
 from sim_core.weave import Loom, Weave
-from sim_core.weave.maps import FiguredMaps, MapsLike, far_look
+from sim_core.weave.maps import (
+    SHEER,
+    FiguredMaps,
+    MapsLike,
+    coarser_direction,
+    coloured,
+    coverage,
+    far_look,
+    linear,
+    mean_colour,
+    seen_afar,
+)
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25

@@ -11,9 +11,8 @@ from sim_core import metrics
 from sim_core.body import Figure, Mannequin, pose_named
 from sim_core.cloth import Material, Sheet
 from sim_core.errors import FileProblem
-from sim_core.garment import Garment, dress, load_outfit
+from sim_core.garment import Garment, dress, garment_sheet, load_outfit
 from sim_core.garment.dressing import overlap
-from sim_core.garment.garment_sheet import garment_sheet
 from sim_core.garment.pattern import Pattern, Pleat, Plies, latches
 from sim_core.garment.placement import Ground, Wrapped
 from sim_core.mesh import panel_mesh

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim_core.garment.garment import Colour
-from sim_core.weave.maps import FiguredMaps, MapsLike, line_angle
+from sim_core.weave.maps.averages import MapsLike, line_angle
+from sim_core.weave.maps.figured_maps import FiguredMaps
 
 __all__ = ["SHEER", "coarser_direction", "coloured", "coverage", "linear", "mean_colour", "seen_afar", "srgb"]
+
+Colour = tuple[float, float, float]  # sRGB 0..1
 
 SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
 PORE = 0.35  # of the mean colour
