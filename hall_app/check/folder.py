@@ -47,10 +47,10 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
 QUICK = (word_problems, media_problems, questionnaire_problems, unused_problems)
 
 
-def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] = CHECKS) -> list[Problem]:
+def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] | None = None) -> list[Problem]:
     """All problems of the content folder, in the order of its files; an empty list for a good one.
 
-    looks: what is looked at beyond loading.
+    looks: what is looked at beyond loading, all of CHECKS where it is left out.
     """
     try:
         content = load(folder)
@@ -58,7 +58,7 @@ def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] = CH
         # Without a floor nothing can be placed on it, but the exhibits' own files can be looked at.
         return [*error.problems, *load_exhibit_problems(folder)]
     found = list(content.problems)
-    for look in looks:
+    for look in CHECKS if looks is None else looks:
         found += _looked(look, content)
     return list(dict.fromkeys(found))
 

@@ -20,7 +20,7 @@ from sim_core.mesh import panel_mesh
 ASSETS = Path(__file__).parents[2] / "assets"
 SKIRT = """\
 name = "skirt"
-edge = 0.024
+edge = 0.016
 [measures]
 length = 300
 door = 240
