@@ -109,7 +109,10 @@ class Garment:
 
     def creases(self) -> np.ndarray:
         """Edges (C, 2) of draped vertices along the folds of pleats."""
-        cut = [Panel.from_dict(panel) for panel in self.cut.get("panels") or ()]
+        told = self.cut.get("panels") or ()
+        if not any(panel.get("pleats") for panel in told):
+            return np.zeros((0, 2), np.int32)
+        cut = [Panel.from_dict(panel) for panel in told]
         return self.weld[creases_of(cut, self.pattern, self.pattern_faces, self.panel)]
 
     def dye_of(self, panel: int) -> Colour | None:
