@@ -57,7 +57,7 @@ class Wardrobe:
             weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
             _, first, index = np.unique(weld, return_index=True, return_inverse=True)
             faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
-            places = _places(layer, cloth)[cloth.faces]
+            places = (cloth.vertices - np.array(layer.panel_origins())[cloth.panel_of])[cloth.faces]
             parts = self._parts(number, faces, places, (cloth.panel, cloth.names))
             pieces.append(Piece(np.zeros((len(cloth.vertices), 3)), parts))
         return self._look(pieces)
@@ -113,6 +113,7 @@ class Wardrobe:
     def _figure(self, layers: Sequence[Clothed], precision: str, played: Played | None) -> Any:
         """The wearer as far as no dense cloth hides it, as they stand and as they move."""
         from sim_core.garment.levels import shown_figure
+        from sim_core.weave.maps import SHEER, coverage
 
         wearer = self.outfit.wearer
         if wearer is None:
@@ -120,7 +121,7 @@ class Wardrobe:
         points, faces, count = [], [], 0
         for layer in layers:
             garment = layer.garment
-            dense = [k for k in range(len(garment.panels)) if not _sheer(_cover(layer.of(k)))]
+            dense = [k for k in range(len(garment.panels)) if coverage(layer.of(k)) >= SHEER]
             points.append(garment.positions)
             faces.append(garment.faces[np.isin(garment.panel, dense)] + count)
             count += len(garment.positions)
@@ -146,6 +147,7 @@ class Wardrobe:
         faces (F, 3); places (F, 3, 2) [m] where they lie in their cloth; panels: numbers (F,) and names of theirs.
         """
         from sim_core.garment.pattern import unsided
+        from sim_core.weave.maps import SHEER, coverage
 
         layer, (maps, own), (panel, names) = self.outfit.layers[number], self.maps[number], panels
         dyes = {cut.name: cut.dye for cut in layer.pattern.panels}
@@ -156,9 +158,9 @@ class Wardrobe:
         parts = []
         for (dye, name), which in looks.items():
             woven, mine = own.get(name, maps), np.isin(panel, which)
-            cover = _cover(woven)
+            cover = coverage(woven)
             colour, fabric = _far(woven, dye)
-            alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
+            alpha = max(cover, THINNEST) if cover < SHEER else 1.0
             woven_in = {} if fabric is None else {"fabric": fabric, "corners": places[mine]}
             parts.append(Part(faces[mine], colour, alpha, sheen=0.5, **woven_in))
         return tuple(parts)
@@ -214,27 +216,6 @@ def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:
         vertices, faces = capped(level.positions, level.faces)
         surfaces.append(replace(surface, vertices=vertices, faces=faces))
     return replace(lain, surfaces=(body, *surfaces)).solid()
-
-
-def _cover(maps: MapsLike) -> float:
-    """Share of the light that the cloth stops."""
-    return float(maps.opacity.mean() / 255)
-
-
-def _sheer(cover: float) -> bool:
-    from sim_core.weave.maps import SHEER
-
-    return cover < SHEER
-
-
-def _places(layer: Layer, cloth: Any) -> np.ndarray:
-    """Where the pattern vertices (P, 2) [m] lie in their cloth, from the corner of a repeat."""
-    from sim_core.garment.pattern import unsided
-
-    names = map(unsided, cloth.names)
-    origins = [layer.origin_of(name) for name in names]
-    turned = [(-x, y) if k >= len(layer.pattern.panels) > 0 else (x, y) for k, (x, y) in enumerate(origins)]
-    return cloth.vertices - np.array(turned)[cloth.panel_of]
 
 
 def _far(maps: MapsLike, dye: tuple[float, float, float] | None) -> tuple[tuple[float, float, float], Any]:

@@ -27,6 +27,7 @@ from sim_core.weave.maps import (
     coarser_direction,
     coloured,
     coverage,
+    dyed,
     far_look,
     linear,
     mean_colour,
@@ -157,10 +158,6 @@ def _write_panels(
             places[used[:, 0]],
             shading=shading[used[:, 1]],
         )
-
-
-def _dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
-    return mean if dye is None else linear(np.asarray(dye))
 
 
 def _silk(colour: np.ndarray, alpha: float, name: str) -> dict[str, Any]:
@@ -296,7 +293,7 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
         _cells(glb, material, maps, textures)
     if sheer:
         material["alphaMode"] = "BLEND"
-    tint = _dyed(dye, mean)
+    tint = dyed(dye, mean)
     material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = [
         float(c) for c in 0.55 * (0.5 * tint + 0.5)
     ]
@@ -305,7 +302,7 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
 
 def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
     cover, mean = coverage(maps), mean_colour(maps)
-    material = _silk(_dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
+    material = _silk(dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
     normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}

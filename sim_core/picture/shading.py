@@ -35,6 +35,7 @@ __all__ = [
     "normals",
     "render",
     "save_png",
+    "split_along",
 ]
 
 _SKY_DIRECTIONS = 40

@@ -5,6 +5,7 @@ import urllib.parse
 import pytest
 from bench.axe import violations
 from full_matrix import by_day
+from read_pages import read_whole
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -18,7 +19,6 @@ PAGES = (
     "/search?q=nothing-of-the-kind",
     "/culture/not-there",
 )
-SHOWN = "() => document.querySelectorAll('img').forEach((one) => { one.loading = 'eager'; })"
 # Targets that stand by themselves; links within sentences are as high as their line (WCAG 2.5.8).
 SMALL = """
 () => [...document.querySelectorAll(".site a, .site input, .site button, footer a, .cards a, .beside a, summary")]
@@ -37,14 +37,7 @@ def address(hall, path: str, lang: str) -> str:
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_is_clean_and_fits(shipped_hall, chromium, path, lang, width):
     page = chromium.new_page(viewport={"width": width, "height": 800})
-    page.goto(address(shipped_hall, path, lang))
-    page.evaluate(SHOWN)
-    page.wait_for_load_state("networkidle")
-    assert violations(page) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    assert page.evaluate(SMALL) == []
-    page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
+    read_whole(page, address(shipped_hall, path, lang), width, SMALL)
     assert page.evaluate("document.activeElement.id") == "main"
     page.close()
 

@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 from sim_core.cloth.contact import DistanceField
 from sim_core.garment.garment import Garment
-from sim_core.garment.pattern import Pattern, Plies
+from sim_core.garment.pattern import Pattern, Plies, both_halves
 from sim_core.garment.placement import Flat, Placement, Wrapped
 
 __all__ = ["layer_order", "overlap"]
@@ -66,9 +66,11 @@ def _pleats(garment: Garment) -> list[tuple[np.ndarray, np.ndarray]]:
     if not any(panel.pleats for panel in cut):
         return []
     found, before = list[tuple[np.ndarray, np.ndarray]](), np.zeros(0, np.int64)
-    for number, panel in enumerate(panel for _ in range(len(garment.panels) // len(cut)) for panel in cut):
+    for number, panel, sign in both_halves(cut):
+        if number == len(garment.panels):  # it is one half
+            break
         own = np.unique(garment.pattern_faces[garment.panel == number])
-        x = garment.pattern[own, 0] * (1.0 if number < len(cut) else -1.0)
+        x = sign * garment.pattern[own, 0]
         plies = Plies.of(float(x.min()), float(x.max()), panel.pleats)
         of = plies.numbers(x)
         found += [

@@ -11,7 +11,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
-from sim_core.garment.pattern import SIDES, Cloth, Spot, latches
+from sim_core.garment.pattern import SIDES, Cloth, Spot, both_halves, latches
 from sim_core.garment.pattern.sections import hull_girth
 from sim_core.metrics import components
 
@@ -58,14 +58,11 @@ class Places:
     def _latched(self, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pairs that are sewn, and those that keep pleats from opening, with their distances [m]."""
         found, ends = [pairs], [np.zeros(len(pairs))]
-        for number, panel in enumerate(self.layer.pattern.panels):
-            for half, sign in ((0, 1.0), (1, -1.0)):
-                own = np.flatnonzero(self.cloth.panel_of == number + half * len(self.layer.pattern.panels))
-                if not panel.pleats or not len(own):
-                    continue
-                near, apart = latches(
-                    self.cloth.vertices[own] * [sign, 1.0], panel.pleats, LATCH * self.layer.edge
-                )
+        for number, panel, sign in both_halves(self.layer.pattern.panels):
+            own = np.flatnonzero(self.cloth.panel_of == number)
+            if panel.pleats and len(own):
+                points = self.cloth.vertices[own] * [sign, 1.0]
+                near, apart = latches(points, panel.pleats, LATCH * self.layer.edge)
                 found.append(self.sheet.number[own[near]])
                 ends.append(apart)
         return np.concatenate(found), np.concatenate(ends)

@@ -1,6 +1,6 @@
 """A garment as it is cut: panels, seams, pattern files and GarmentCode, and the cloth they are meshed to."""
 
-from sim_core.garment.pattern.cloth import SIDES, Cloth, creases_of, cut_cloth, unsided
+from sim_core.garment.pattern.cloth import SIDES, Cloth, both_halves, creases_of, cut_cloth, unsided
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie
 from sim_core.garment.pattern.pattern import Pattern
@@ -19,6 +19,7 @@ __all__ = [
     "Spot",
     "Tie",
     "Transfer",
+    "both_halves",
     "creases_of",
     "cut_cloth",
     "latches",

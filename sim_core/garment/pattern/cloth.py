@@ -15,7 +15,7 @@ from sim_core.mesh import Seam as SewnSeam
 from sim_core.mesh.outline import check_edge, signed_area
 from sim_core.metrics import components
 
-__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "creases_of", "cut_cloth", "unsided"]
+__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "both_halves", "creases_of", "cut_cloth", "unsided"]
 
 SIDES = (" left", " right")  # of the wearer: a panel of a whole cloth is called so behind its name
 
@@ -142,17 +142,23 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
     return replace(cloth, middle=numbers, fits=tuple(fits), creases=creases)
 
 
+def both_halves(panels: Sequence[Panel]) -> Iterator[tuple[int, Panel, float]]:
+    """Number, panel and sign of x of each panel of a whole cloth, which may be no more than one half: the second half's
+    panels follow the first's."""
+    for half, sign in enumerate((1.0, -1.0)):
+        for number, panel in enumerate(panels):
+            yield number + half * len(panels), panel, sign
+
+
 def creases_of(
     panels: Sequence[Panel], vertices: np.ndarray, faces: np.ndarray, panel: np.ndarray
 ) -> np.ndarray:
     """Edges (C, 2) int32 along the folds of pleats, of pattern vertices (P, 2) [m] and faces (F, 3), of which `panel`
     (F,) tells whose they are; of a mirrored cloth the second half's panels follow the first's."""
     found = [np.zeros((0, 2), np.int32)]
-    for number, own in enumerate(panels):
-        if not own.pleats:
-            continue
-        for half, sign in ((0, 1.0), (1, -1.0)):
-            mine = faces[panel == number + half * len(panels)]
+    for number, own, sign in both_halves(panels):
+        if own.pleats:
+            mine = faces[panel == number]
             edges = np.unique(np.sort(mine[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
             found.append(creased(sign * vertices[:, 0], edges, own.pleats))
     return np.concatenate(found).astype(np.int32)

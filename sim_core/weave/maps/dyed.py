@@ -7,7 +7,17 @@ import numpy as np
 from sim_core.weave.maps.averages import MapsLike, line_angle
 from sim_core.weave.maps.figured_maps import FiguredMaps
 
-__all__ = ["SHEER", "coarser_direction", "coloured", "coverage", "linear", "mean_colour", "seen_afar", "srgb"]
+__all__ = [
+    "SHEER",
+    "coarser_direction",
+    "coloured",
+    "coverage",
+    "dyed",
+    "linear",
+    "mean_colour",
+    "seen_afar",
+    "srgb",
+]
 
 Colour = tuple[float, float, float]  # sRGB 0..1
 
@@ -25,6 +35,11 @@ def mean_colour(maps: MapsLike) -> np.ndarray:
     """Mean linear colour of the yarns, weighted by what they cover."""
     weight = maps.opacity.astype(float) + 1e-6
     return (linear(maps.albedo / 255.0) * weight[..., None]).sum((0, 1)) / weight.sum()
+
+
+def dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
+    """The linear colour (3,) of a whole cloth: its dye, else its yarns' mean."""
+    return mean if dye is None else linear(np.asarray(dye))
 
 
 def coverage(maps: MapsLike) -> float:
@@ -49,7 +64,7 @@ def coloured(
     if dye is None:
         return np.round(255 * srgb(light)).astype(np.uint8), np.ones(3)
     # As bright as the dye leaves room for: a factor of glTF is 1 at most.
-    wanted, share = linear(np.asarray(dye)), light / np.maximum(mean, 1e-3)
+    wanted, share = dyed(dye, mean), light / np.maximum(mean, 1e-3)
     peak = min(float(np.quantile(share, 0.98)), 1.0 / max(float(wanted.max()), 1e-3))
     return np.round(255 * srgb(np.clip(share / peak, 0, 1))).astype(np.uint8), wanted * peak
 
@@ -85,5 +100,5 @@ def seen_afar(
     picture, factor = coloured(maps, mean, dye, coverage(maps) >= SHEER)
     light = coarser(linear(picture / 255.0), maps.size, pixel)
     if not isinstance(maps, FiguredMaps) and np.ptp(light, axis=(0, 1)).max() <= STRIPED:
-        return None, mean if dye is None else linear(np.asarray(dye))
+        return None, dyed(dye, mean)
     return np.rint(255 * srgb(light)).astype(np.uint8), np.clip(factor, 0, 1)
