@@ -1,4 +1,4 @@
-"""`hall`: open the hall, build its garments, check its content, see to its people, measure it."""
+"""`hall`: open the hall, build its garments, check its content, hand on its catalogue, see to its people, measure it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ _COMMANDS = {
     "serve": "hall_app.web.command",
     "build": "hall_app.build.command",
     "check": "hall_app.check.command",
+    "collection": "hall_app.web.collection.table.command",
     "admin": "hall_app.house.people.command",
 }
 _BENCHES = ("walking", "page", "look", "crowd")
@@ -26,6 +27,7 @@ examples:
   hall serve                          open the hall at http://127.0.0.1:8000
   hall serve --content my-hall        with a content folder of your own
   hall check my-hall                  say what is wrong in it, one line a problem
+  hall collection export all.csv      the catalogue as a table; import takes its changes back
   hall build                          dress the outfits that changed, or what they name
   hall admin create anna@example.org  make the first administrator of the house
 
