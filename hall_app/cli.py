@@ -1,4 +1,4 @@
-"""`hall`: open the hall, build its garments, check its content, hand on its catalogue, see to its people, measure it."""
+"""`hall`: open the hall, build its garments, check its content, hand on its catalogue, its people, measure it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ examples:
   hall check my-hall                  say what is wrong in it, one line a problem
   hall collection export all.csv      the catalogue as a table; import takes its changes back
   hall build                          dress the outfits that changed, or what they name
-  hall admin create anna@example.org  make the first administrator of the house
+  hall admin create anna@example.org  make the first administrator of the house, who signs in at /office
 
 The content folder is --content, else ./assets, else the copy that came with the program.
 Exit status: 0 done, 1 the work failed or content is invalid, 2 wrong arguments."""

@@ -22,6 +22,7 @@ from hall_app.content.models.pictures import PictureError, picture_size
 from hall_app.content.views.scene import exhibit_json, media_file, media_type, scene_json, yaw_of
 from hall_app.content.views.writing import writing_file
 from hall_app.house.house import House
+from hall_app.house.people import People
 from hall_app.show.pieces import Pieces
 from hall_app.web.answers.packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
@@ -35,6 +36,7 @@ from hall_app.web.pages.door import content_security_policy, door_page
 from hall_app.web.pages.static import page_files
 from hall_app.web.pages.still import still_jpeg
 from hall_app.web.pages.thumbnails import Thumbnails
+from hall_app.web.platform import NoteLook, add_platform
 from hall_app.web.reading import Pictures, add_reading
 from hall_app.web.sockets.origin import key_of, with_key
 from hall_app.web.sockets.relay import Views, add_relay
@@ -56,11 +58,13 @@ _THUMBNAILS = "thumbnails"  # in the data folder
 def create_app(
     house: House,
     *,
+    people: People | None = None,
     addresses: Addresses | None = None,
     lifespan: Callable[[FastAPI], Any] | None = None,
 ) -> FastAPI:
     """The hall's web application round a running house. The caller mounts the survey.
 
+    people: who has an account, closed by the caller; None: a hall without accounts and what takes one.
     addresses: what has been asked for from where; of its own when None.
     """
     addresses = addresses or Addresses()
@@ -79,7 +83,8 @@ def create_app(
     answers = Answers()
     _add_page(app, house, answers)
     _add_files(app, house.scene.pieces)
-    _add_api(app, house, answers)
+    note_look = add_platform(app, house, people) if people is not None else _forget_look
+    _add_api(app, house, answers, note_look)
     _add_media(app, house)
     add_collection(app, house)
     add_reading(
@@ -96,6 +101,10 @@ def create_app(
 @asynccontextmanager
 async def _still(app: FastAPI) -> AsyncIterator[None]:
     yield
+
+
+def _forget_look(request: Request, exhibit: str) -> None:
+    pass
 
 
 class _Guard:
@@ -211,7 +220,7 @@ def _packed_json(value: object) -> Packed:
     return Packed(json.dumps(value, ensure_ascii=False, separators=(",", ":")).encode(), "application/json")
 
 
-def _add_api(app: FastAPI, house: House, answers: Answers) -> None:
+def _add_api(app: FastAPI, house: House, answers: Answers, note_look: NoteLook) -> None:
     @lru_cache(maxsize=1)
     def surveys(moment: int, questionnaire: str) -> tuple[bool, int]:
         """Whether it asks anything, and the problems of the survey, which looks at its files and its store."""
@@ -242,6 +251,7 @@ def _add_api(app: FastAPI, house: House, answers: Answers) -> None:
         content, models = house.content, house.models(exhibit)
         if models is None or content.exhibit(exhibit) is None:
             raise HTTPException(404, f"no exhibit {exhibit!r} in the hall")
+        note_look(request, exhibit)
 
         def made() -> Packed:
             return _packed_json(exhibit_json(content, exhibit, baked=models.baked))

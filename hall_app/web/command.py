@@ -17,6 +17,7 @@ from hall_app.content.lookup import content_folder, make_data_folder
 from hall_app.content.problems import ContentError
 from hall_app.house.baking.preparation import Preparation, forsake, wanted_bakes
 from hall_app.house.baking.queue import BakingQueue
+from hall_app.house.people.command import add_accounts
 from hall_app.house.signals import at_once
 from hall_app.visit.places import Places
 from hall_app.web.limits.addresses import Addresses
@@ -38,13 +39,14 @@ _POLL = 1.0  # [s] between two looks at the content folder, and at what is being
 _TICK = 0.25  # [s] between two ticks of the hall's clock
 
 OFFERS = frozenset(
-    {"culture", "research"}
+    {"culture", "research", "user-centre"}
 )  # pages of the platform beside the hall: what needs another is not asked
 
 _TOLD = ProgressLine()  # whatever this command says goes through it, so that no line runs into another
 
 _EPILOG = """\
-The hall needs no network, no database server and no torch. Answers, accounts of baking and caches go to --data.
+The hall needs no network, no database server and no torch. Answers, accounts of visitors and staff, and
+caches go to --data.
 A change in the content folder shows within two seconds; a faulty file keeps its last good version on show. What has
 to be baked for it, a garment or the room's light, is baked beside, one after the other: the last model and the last
 light stay on show until then, and an exhibit that was never baked appears when it is.
@@ -84,6 +86,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_false",
         help="where the room's light has not been computed for this plan, leave it even",
     )
+    add_accounts(parser)
     add_limits(parser)
     parser.set_defaults(run=run)
 
@@ -130,10 +133,12 @@ def _end(number: int, frame: object) -> None:
 
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
     from hall_app.house.house import House
+    from hall_app.house.people import People
     from hall_app.web.app import create_app
     from survey import mount
     from survey.web import Running
 
+    people = People(arguments.accounts or arguments.data)
     _say("Opening the hall …")
 
     def show(fraction: float, label: str) -> None:
@@ -143,8 +148,12 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     house = House(content, arguments.data, walk_mode=arguments.walk, progress=show, places=places)
     house.expect(wanted_bakes(content, arguments.data, light=arguments.light))
 
+    def close() -> None:
+        survey.close()
+        people.close()
+
     app = create_app(
-        house, addresses=addresses, lifespan=lambda _: _living(house, arguments, lambda: survey.close())
+        house, people=people, addresses=addresses, lifespan=lambda _: _living(house, arguments, close)
     )
     survey = mount(
         app,

@@ -498,8 +498,12 @@ def test_the_command_names_the_first_administrator(tmp_path):
     assert "keeps its password" in again.stdout
     assert people.accounts.of(person.id).roles == {Role.ADMINISTRATOR, Role.CURATOR}
     assert f"{ADDRESS}: administrator, curator; verified; 1 session" in admin(tmp_path, "list").stdout
-    code = people.accounts.code_for("console", person.id)
-    assert "1 session ended" in admin(tmp_path, "revoke", ADDRESS).stdout
+    link = admin(tmp_path, "link", ADDRESS, "--url", "https://hall.example.org/").stdout.split()[-1]
+    assert link.startswith("https://hall.example.org/me/open?code=")
+    people.accounts.use_code(link.partition("=")[2], "a new password for lan")
+    code = admin(tmp_path, "code", ADDRESS).stdout.split()[-1]
+    assert people.accounts.holder(code).id == person.id
+    assert "0 sessions ended" in admin(tmp_path, "revoke", ADDRESS).stdout
     with refused("code"):
         people.accounts.holder(code)  # a code that is about would let him in again
     people.close()
@@ -511,7 +515,7 @@ def test_the_command_names_the_first_administrator(tmp_path):
     [
         (("create", ADDRESS), "give --generate"),
         (("create", "nobody"), "write it as name@example.org"),
-        (("list",), "of the house"),
+        (("list",), "as `hall serve` has it"),
     ],
 )
 def test_the_command_says_what_is_wrong_in_one_line(tmp_path, words, said):

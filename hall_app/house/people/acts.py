@@ -69,6 +69,8 @@ OWN_ACTS: Mapping[str, tuple[str, str]] = {  # zh, en
     "password": ("更改密码", "Change the password"),
     "second factor": ("两步验证", "Second factor"),
     "use code": ("使用一次性代码", "Use a one-time code"),
+    "favourites": ("收藏", "Favourites"),
+    "visits": ("参观记录", "Visits"),
     "take copy": ("导出本人资料", "Take a copy of one's data"),
     "delete account": ("删除账户", "Delete the account"),
 }

@@ -14,21 +14,26 @@ if TYPE_CHECKING:
 __all__ = ["add_accounts", "add_parser", "run"]
 
 _DESCRIPTION = """\
-Administer the accounts of a house: name its first administrator, see who is staff, shut somebody out. It works on the
-data folder, beside a hall that is open or not. Everything done here stands in the journal as done by the console.
-The hall has no page to sign in at yet."""
+Administer the accounts of a house: name its first administrator, open an account whose password was lost, see who
+is staff, shut somebody out. It works on the data folder, beside a hall that is open or not, and needs no mail server.
+Everything done here stands in the journal as done by the console."""
 
 _EPILOG = """\
 a new house:
   hall admin create anna@example.org              asks for a password, makes the first administrator
-  hall admin list                                 who is staff
+  hall serve                                      then sign in at http://127.0.0.1:8000/me
+
+somebody lost a password, or a visitor stands at the desk:
+  hall admin code anna@example.org                a code to read out or print; typed in at /me/open
+  hall admin link anna@example.org --url https://hall.example.org
+                                                  a link to hand over; both are good once, for three days
 
 somebody left, or a device was lost:
   hall admin revoke anna@example.org              end all sessions
   hall admin revoke anna@example.org --roles      and take all roles
 
 There is no default password. A password never stands on the command line, where others could read it: it is asked for,
-or made (--generate) and shown once.
+or made (--generate) and shown once. --data and --accounts must be those of `hall serve`.
 Exit status: 0 done, 1 it failed (the message says why), 2 wrong arguments."""
 
 _MADE_UP = "This password is shown once and kept nowhere:"
@@ -38,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare `hall admin`."""
     parser = subparsers.add_parser(
         "admin",
-        help="accounts: the first administrator, who is staff",
+        help="accounts: the first administrator, lost passwords, who is staff",
         description=_DESCRIPTION,
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -54,6 +59,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="role to give, may stand more than once (default administrator)",
     )
     create.add_argument("--generate", action="store_true", help="make a password and print it once")
+    link = _action(
+        actions, "link", "print a link that opens the account once: verifies it, sets a new password"
+    )
+    link.add_argument(
+        "--url",
+        default="http://127.0.0.1:8000",
+        help="address of the hall as the person reaches it (default http://127.0.0.1:8000)",
+    )
+    _action(actions, "code", "print a code that does the same, typed in at /me/open")
     listed = _action(actions, "list", "list staff", address=False)
     listed.add_argument("--visitors", action="store_true", help="visitors' accounts as well")
     revoke = _action(actions, "revoke", "end all sessions of an account")
@@ -118,7 +132,7 @@ def _create(people: People, arguments: argparse.Namespace) -> int:
         person = people.accounts.make(CONSOLE, address, name=arguments.name, language=arguments.language)
         people.accounts.use_code(people.accounts.code_for(CONSOLE, person.id), password)
     people.roles.set(CONSOLE, person.id, person.roles | wanted)
-    print(f"{address}: {', '.join(sorted(person.roles | wanted))}. ")
+    print(f"{address}: {', '.join(sorted(person.roles | wanted))}. Sign in at /me.")
     if made_up:
         print(f"{_MADE_UP}\n  {made_up}")
     return 0
@@ -132,6 +146,27 @@ def _asked() -> str:
     if first != getpass.getpass("The same again: "):
         raise ValueError("the two passwords differ – nothing was changed, start again")
     return first
+
+
+def _link(people: People, arguments: argparse.Namespace) -> int:
+    from hall_app.house.people.database import CONSOLE
+
+    person = people.accounts.find(address=arguments.address)
+    secret = people.accounts.code_for(CONSOLE, person.id, long=True)
+    print(
+        f"Good once, for three days, for whoever has it:\n  {arguments.url.rstrip('/')}/me/open?code={secret}"
+    )
+    return 0
+
+
+def _code(people: People, arguments: argparse.Namespace) -> int:
+    from hall_app.house.people.database import CONSOLE
+
+    person = people.accounts.find(address=arguments.address)
+    print(
+        f"Good once, for three days, typed in at /me/open:\n  {people.accounts.code_for(CONSOLE, person.id)}"
+    )
+    return 0
 
 
 def _list(people: People, arguments: argparse.Namespace) -> int:
@@ -172,4 +207,4 @@ def _revoke(people: People, arguments: argparse.Namespace) -> int:
     return 0
 
 
-_DONE = {"create": _create, "list": _list, "revoke": _revoke}
+_DONE = {"create": _create, "link": _link, "code": _code, "list": _list, "revoke": _revoke}

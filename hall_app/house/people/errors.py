@@ -62,6 +62,19 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "这是最后一位管理员，请先任命另一位。",
         "This is the last administrator: name another one first.",
     ),
+    "no-exhibit": (
+        "没有这件展品，请从展品目录中选择。",
+        "There is no such exhibit: choose one from the catalogue.",
+    ),
+    "favourites-full": (
+        "收藏已满（{most} 件），请先移除一些。",
+        "There are {most} favourites, which is all there is room for: take some out first.",
+    ),
+    "again-differs": ("两次输入的密码不一致，请重新输入。", "The two passwords differ: type both again."),
+    "not-allowed": (
+        "您的角色不能做这件事；此次尝试已记入审计。需要时请联系管理员。",
+        "Your role does not allow this, and the attempt is on record: ask an administrator if you need it.",
+    ),
     "form": (
         "这个表单已过期或来自其他网站，请重新打开本页再试。",
         "This form is out of date or comes from elsewhere: open the page again and repeat.",

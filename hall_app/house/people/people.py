@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hall_app.house.people.database import PEOPLE_FILE, Ledger
-from hall_app.house.people.records import Accounts, Journal, Person, Roles, Sessions, own_copy
+from hall_app.house.people.records import Accounts, Journal, Keepsakes, Person, Roles, Sessions, own_copy
 from survey.errors import SurveyError
 from survey.store.database import tables as survey_tables
 
@@ -20,6 +20,7 @@ class People:
         self.accounts = Accounts(self._ledger)
         self.sessions = Sessions(self._ledger)
         self.roles = Roles(self._ledger)
+        self.keepsakes = Keepsakes(self._ledger)
         self.journal = Journal(self._ledger)
         self.refuse = self._ledger.refuse
 
@@ -27,7 +28,16 @@ class People:
         """All that is kept of a person, as a ZIP; that it was taken is written down."""
         with self._ledger.change(person.id, "take copy", person.id):
             pass
-        return own_copy(person, self.sessions.of(person.id), self.journal.about(person.id))
+        kept = self.keepsakes
+        return own_copy(
+            person,
+            {
+                "sessions": self.sessions.of(person.id),
+                "favourites": kept.favourites(person.id),
+                "visits": kept.looks(person.id),
+                "journal": self.journal.about(person.id),
+            },
+        )
 
     def close(self) -> None:
         self._ledger.close()
@@ -37,5 +47,5 @@ def existing_people(where: Path | str) -> People:
     """Raises SurveyError where none was made yet: a mistyped folder would look like a house without people."""
     file = where / PEOPLE_FILE if isinstance(where, Path) else survey_tables.sqlite_file(where)
     if file is not None and not file.is_file():
-        raise SurveyError(f"{file}: no accounts there – give --data (or --accounts) of the house")
+        raise SurveyError(f"{file}: no accounts there – give --data (or --accounts) as `hall serve` has it")
     return People(where)

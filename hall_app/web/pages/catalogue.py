@@ -35,6 +35,7 @@ _WORDS = {
         "measured": "模拟与实测数据",
         "licence": "许可",
         "visit": "在展厅中观看",
+        "keep": "收藏",
         "back": "回到目录",
         "pages": "网页",
         "formats": "数据格式",
@@ -54,6 +55,7 @@ _WORDS = {
         "measured": "Simulated and measured",
         "licence": "Licence",
         "visit": "See it in the hall",
+        "keep": "Keep as a favourite",
         "back": "Back to the contents",
         "pages": "Pages",
         "formats": "As data",
@@ -191,6 +193,7 @@ class _Page:
 <div class="text">{self._text(exhibit)}</div>{plates}
 <div class="record">{data}<p class="licence">{words["licence"]}: {escape(detail["licence"])}</p>
 <p class="ways"><a href="/?exhibit={key}&amp;lang={self.lang}">{words["visit"]}</a>
+<a href="/me/keep?exhibit={key}&amp;lang={self.lang}">{words["keep"]}</a>
 <a href="#contents">{words["back"]}</a></p>
 {self._formats("formats", _FORMATS, key)}</div>{self.records.exhibits.get(exhibit.id, "")}</article>"""
 

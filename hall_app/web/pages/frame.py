@@ -21,6 +21,7 @@ NAVIGATION: tuple[tuple[str, str, dict[str, str]], ...] = (
     ("weaves", "/culture/weaves", {"zh": "织物", "en": "Weaves"}),
     ("research", "/research", {"zh": "研究", "en": "Research"}),
     ("survey", "/questionnaires", {"zh": "问卷", "en": "Survey"}),
+    ("me", "/me", {"zh": "账户", "en": "Account"}),
 )
 _BELOW = (("privacy", "/privacy", {"zh": "隐私", "en": "Privacy"}),)
 
@@ -81,11 +82,11 @@ class Frame:
 <title>{escape(title)} · {escape(name)}</title>{sheets}{runs}{records}</head>
 <body>{body}</body></html>"""
 
-    def page(self, title: str, main: str, *, script: str = "") -> str:
+    def page(self, title: str, main: str, *, styles: tuple[str, ...] = ("reading",), script: str = "") -> str:
         """A page whose body is one main element. main: its HTML."""
         skip = f'<a class="skip" href="#main">{_WORDS[self.lang]["skip"]}</a>'
         body = f'{skip}{self.head()}<main id="main" tabindex="-1">{main}</main>{self.foot()}'
-        return self.whole(title, body, script=script)
+        return self.whole(title, body, styles=styles, script=script)
 
     def head(self) -> str:
         words, name = _WORDS[self.lang], getattr(self.hall.title, self.lang)
@@ -93,7 +94,7 @@ class Frame:
         return f"""<header class="site">
 <a class="home" href="/?lang={self.lang}">
 <span aria-hidden="true">{escape(self.hall.title.zh[:1])}</span>{escape(name)}</a>
-<nav aria-label="{words["site"]}">{ways}</nav>{self.search_form("site-q")}{self._switch()}</header>"""
+{self.search_form("site-q")}{self._switch()}<nav aria-label="{words["site"]}">{ways}</nav></header>"""
 
     def search_form(self, key: str, asked: str = "", *, large: bool = False) -> str:
         """A form that asks the search page. key: the field's id; asked: what stands in it."""

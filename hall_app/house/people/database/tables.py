@@ -8,6 +8,7 @@ from __future__ import annotations
 from sqlalchemy import (
     CheckConstraint,
     Column,
+    Date,
     DateTime,
     ForeignKey,
     Index,
@@ -17,7 +18,7 @@ from sqlalchemy import (
     Table,
 )
 
-__all__ = ["audit", "code", "metadata", "role", "session", "user"]
+__all__ = ["audit", "code", "favourite", "look", "metadata", "role", "session", "user"]
 
 metadata = MetaData()
 
@@ -35,6 +36,7 @@ user = Table(
     Column("closed", DateTime(timezone=True)),  # by an administrator
     Column("authenticator", String(64)),  # the secret shared with an app; null: no second factor
     Column("step", Integer),  # the last half minute whose code was used: none is good twice
+    Column("keeps_looks", Integer, nullable=False, server_default="0"),  # 1: asked that visits be kept
 )
 
 role = Table(
@@ -69,6 +71,24 @@ code = Table(
     Column("expires", DateTime(timezone=True)),
 )
 Index("code_by_user", code.c.user)
+
+# What a person keeps for himself. `exhibit` is its id in the content folder, which may lose it: so it is no key.
+favourite = Table(
+    "favourite",
+    metadata,
+    Column("user", ForeignKey("user.id"), primary_key=True),
+    Column("exhibit", String(64), primary_key=True),
+    Column("made", DateTime(timezone=True), nullable=False),
+)
+
+# That an exhibit was looked at closely, by the day and no finer; only of who asked for it.
+look = Table(
+    "look",
+    metadata,
+    Column("user", ForeignKey("user.id"), primary_key=True),
+    Column("exhibit", String(64), primary_key=True),
+    Column("day", Date, primary_key=True),
+)
 
 # `who` and `subject` are ids, never addresses: once an account is gone they lead to nobody. So they are no keys.
 audit = Table(

@@ -3,6 +3,7 @@
 from hall_app.house.people.records.accounts import CODE_DAYS, RECOVERY_CODES, Accounts
 from hall_app.house.people.records.copy import own_copy
 from hall_app.house.people.records.journal import Entry, Journal
+from hall_app.house.people.records.keepsakes import Favourite, Keepsakes, Look
 from hall_app.house.people.records.person import Person, checked_address
 from hall_app.house.people.records.roles import Roles
 from hall_app.house.people.records.sessions import OFFICE_HOURS, VISITOR_DAYS, Session, Sessions
@@ -14,7 +15,10 @@ __all__ = [
     "VISITOR_DAYS",
     "Accounts",
     "Entry",
+    "Favourite",
     "Journal",
+    "Keepsakes",
+    "Look",
     "Person",
     "Roles",
     "Session",

@@ -188,7 +188,7 @@ class Accounts:
         """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
         self._prove(person.id, "delete account", password)
         with self._ledger.change(person.id, "delete account", person.id) as connection:
-            for table in (tables.code, tables.session, tables.role):
+            for table in (tables.code, tables.session, tables.role, tables.favourite, tables.look):
                 connection.execute(delete(table).where(table.c.user == person.id))
             connection.execute(delete(tables.user).where(tables.user.c.id == person.id))
             if person.roles:

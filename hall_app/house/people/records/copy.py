@@ -5,61 +5,53 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from datetime import datetime
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from datetime import date
+from typing import Any
 
-from hall_app.house.people.records.journal import Entry
 from hall_app.house.people.records.person import Person
-from hall_app.house.people.records.sessions import Session
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 __all__ = ["own_copy"]
 
 _ABOUT = """\
 本压缩包包含本馆保存的关于您的全部资料（JSON，UTF-8）。密码与登录令牌只以散列值保存，未包含在内。
-account.json 账户；sessions.json 登录会话；journal.json 操作记录。
+{zh}。
 
 This archive holds all that the house keeps about you (JSON, UTF-8). Passwords and session tokens are kept as hashes
-only and left out. account.json: the account; sessions.json: where you are signed in; journal.json: what was done.
+only and left out. {en}.
 """
+_TOLD = {  # file: zh, en
+    "account": ("账户", "the account"),
+    "sessions": ("登录会话", "where you are signed in"),
+    "favourites": ("收藏", "favourites"),
+    "visits": ("参观记录", "visits that you asked to keep"),
+    "journal": ("操作记录", "what was done"),
+}
 
 
-def own_copy(person: Person, sessions: Sequence[Session], entries: Sequence[Entry]) -> bytes:
-    """The archive."""
-    files = {
-        "account.json": {
-            "id": person.id,
-            "address": person.address,
-            "name": person.name,
-            "language": person.language,
-            "made": _time(person.made),
-            "verified": _time(person.verified),
-            "second_factor": person.second_factor,
-            "roles": sorted(person.roles),
-        },
-        "sessions.json": [
-            {"office": one.office, "made": _time(one.made), "expires": _time(one.expires)} for one in sessions
-        ],
-        "journal.json": [
-            {
-                "at": _time(one.at),
-                "by": one.who,
-                "act": one.act,
-                "subject": one.subject,
-                "refused": one.refused,
-            }
-            for one in entries
-        ],
-    }
+def own_copy(person: Person, kept: Mapping[str, Sequence[Any]]) -> bytes:
+    """The archive. kept: for each file of records, dataclasses whose fields are told as they are."""
+    files: dict[str, Any] = {"account": asdict(person)}
+    files |= {name: [asdict(row) for row in rows] for name, rows in kept.items()}
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("README.txt", _ABOUT)
+        archive.writestr("README.txt", _about(files))
         for name, value in files.items():
-            archive.writestr(name, json.dumps(value, ensure_ascii=False, indent=1))
+            archive.writestr(f"{name}.json", json.dumps(value, ensure_ascii=False, indent=1, default=_plain))
     return packed.getvalue()
 
 
-def _time(at: datetime | None) -> str | None:
-    return None if at is None else at.isoformat()
+def _about(files: Mapping[str, object]) -> str:
+    zh = "；".join(f"{name}.json {_TOLD[name][0]}" for name in files)
+    en = "; ".join(f"{name}.json: {_TOLD[name][1]}" for name in files)
+    return _ABOUT.format(zh=zh, en=en)
+
+
+def _plain(value: object) -> object:
+    """Times and sets as JSON has them. Raises TypeError for anything else: nothing slips in unread."""
+    if isinstance(value, date):  # datetime is one
+        return value.isoformat()
+    if isinstance(value, frozenset):
+        return sorted(value)
+    raise TypeError(f"{value!r} has no place in a copy")

@@ -34,6 +34,7 @@ class Person:
     closed: datetime | None
     second_factor: bool
     has_password: bool
+    keeps_looks: bool
     roles: frozenset[Role]
 
     def may(self, act: str) -> bool:
@@ -109,5 +110,6 @@ def _person(row, roles: frozenset[Role]) -> Person:
         closed=None if row.closed is None else in_utc(row.closed),
         second_factor=row.authenticator is not None,
         has_password=row.password is not None,
+        keeps_looks=bool(row.keeps_looks),
         roles=roles,
     )

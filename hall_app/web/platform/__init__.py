@@ -1,0 +1,8 @@
+"""The platform round the hall: what takes an account, or gives one.
+
+counter: what all pages with forms have in common; me: signing in, and the user centre.
+"""
+
+from hall_app.web.platform.routes import NoteLook, add_platform
+
+__all__ = ["NoteLook", "add_platform"]

@@ -1,0 +1,32 @@
+"""The counter: what all pages with forms have in common.
+
+asking: what a page is asked and what it answers; cookies: of sessions; guard: whether a form is one of ours; pace: how
+often one may try; fields: forms as HTML; counter: pages and acts put at their addresses, refusals told.
+"""
+
+from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
+from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
+from hall_app.web.platform.counter.counter import Act, Counter, View
+from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
+from hall_app.web.platform.counter.pace import RATES, Pace
+
+__all__ = [
+    "OFFICE",
+    "RATES",
+    "VISITOR",
+    "Act",
+    "Asking",
+    "Counter",
+    "Download",
+    "Field",
+    "Guest",
+    "Moved",
+    "Pace",
+    "Page",
+    "Shown",
+    "View",
+    "button",
+    "form",
+    "told_day",
+    "told_time",
+]

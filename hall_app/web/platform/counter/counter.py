@@ -1,0 +1,160 @@
+"""Pages and acts put at their addresses: who asks is found, forms checked, refusals told."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from html import escape
+from typing import TYPE_CHECKING
+
+from fastapi import FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
+
+from hall_app.house.house import House
+from hall_app.house.people import People, PeopleError
+from hall_app.web.limits.doorkeeper import address_of
+from hall_app.web.pages.catalogue import shown_language
+from hall_app.web.pages.frame import Frame
+from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
+from hall_app.web.platform.counter.cookies import Kind, give_token, seal_key, with_seal_key
+from hall_app.web.platform.counter.guard import SEAL, check_form, check_origin, form_of, seal_of
+from hall_app.web.platform.counter.pace import Pace
+from survey.errors import StoreError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = ["Act", "Counter", "View"]
+
+Answer = Shown | Moved | Download
+View = Callable[[Asking], Answer]
+Act = Callable[[Asking], Answer]
+
+# Of a page with forms nothing is kept, it runs no script but the hall's, and no other page shows it in a frame.
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "form-action 'self'; frame-ancestors 'none'; base-uri 'none'",
+    "X-Frame-Options": "DENY",
+}
+_STATUS = {"too-often": 429, "form": 403, "not-allowed": 403, "form-size": 413}
+_REFUSED = ("请再试一次", "Please try again")
+_LOST = (
+    ("现在读不到数据", "账户数据暂时读不到，请稍后再试。"),
+    ("Not available now", "Accounts cannot be reached at the moment: try again in a minute."),
+)
+_log = logging.getLogger(__name__)
+
+
+class Counter:
+    """kind: of the sessions that count here; pace: tries, counted together with those of other counters."""
+
+    def __init__(self, app: FastAPI, house: House, people: People, kind: Kind, pace: Pace) -> None:
+        self._app, self.house, self.people, self.kind, self.pace = app, house, people, kind, pace
+
+    def page(self, path: str, view: View) -> None:
+        """Answer GET."""
+
+        async def asked(request: Request) -> Response:
+            return await run_in_threadpool(self._answer, request, None, view, view)
+
+        self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
+
+    def act(self, path: str, act: Act, again: View) -> None:
+        """Answer POST by `act`; what is refused shows the page `again`, with the reason."""
+
+        async def asked(request: Request) -> Response:
+            try:
+                check_origin(request)
+                fields = await form_of(request)
+            except PeopleError as error:
+                fields = error
+            return await run_in_threadpool(self._answer, request, fields, act, again)
+
+        self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
+
+    def guest(self, request: Request) -> Guest | None:
+        """Who is signed in. Raises StoreError."""
+        token = request.cookies.get(self.kind.name, "")
+        found = self.people.sessions.find(token, office=self.kind.office) if token else None
+        return Guest(*found, token) if found else None
+
+    def _answer(
+        self, request: Request, given: Mapping[str, str] | PeopleError | None, act: Act, again: View
+    ) -> Response:
+        key = seal_key(request)
+        try:
+            asking = self._asking(request, given, key)
+            try:
+                if isinstance(given, PeopleError):
+                    raise given
+                if given is not None:
+                    check_form(given.get(SEAL, ""), asking.seal)
+                answer = act(asking)
+            except PeopleError as error:
+                answer = self._refused(replace(asking, refusal=error.text(asking.lang)), error, again)
+        except StoreError as error:
+            _log.warning("%s", error)
+            asking = Asking(request.url.path, self._language(request, "", None), "", "", "")
+            title, words = _LOST[asking.lang == "en"]
+            main = f'<h1>{title}</h1><p class="lead">{words}</p>'
+            answer = Shown(Page(title, main), 503)
+        response = self._response(request, asking, answer)
+        with_seal_key(response, request, key)
+        return response
+
+    def _asking(self, request: Request, given: Mapping[str, str] | PeopleError | None, key: str) -> Asking:
+        guest = self.guest(request)
+        fields = {} if given is None or isinstance(given, PeopleError) else given
+        lang = self._language(request, fields.get("lang", ""), guest)
+        return Asking(
+            path=request.url.path,
+            lang=lang,
+            seal=seal_of(key, guest.token if guest else ""),
+            network=address_of(request.scope),
+            site=f"{request.url.scheme}://{request.url.netloc}",
+            names={name: str(value) for name, value in request.path_params.items()},
+            query={name: value[:500] for name, value in request.query_params.items()},
+            form=fields,
+            guest=guest,
+        )
+
+    def _language(self, request: Request, form: str, guest: Guest | None) -> str:
+        asked = form or request.query_params.get("lang") or (guest.person.language if guest else None)
+        return shown_language(self.house.content, asked)
+
+    def _refused(self, asking: Asking, error: PeopleError, again: View) -> Answer:
+        """The page again, with the reason beside its form; by itself where that page is no longer for who asks."""
+        status = _STATUS.get(error.key, 400)
+        try:
+            answer = again(asking)
+        except PeopleError:
+            answer = None
+        if not isinstance(answer, Shown) or escape(asking.refusal) not in answer.page.main:
+            title = asking.word(*_REFUSED)
+            back = asking.word("返回", "Back")
+            main = f"""<h1>{title}</h1><p class="refused" role="alert">{escape(asking.refusal)}</p>
+<p class="doors"><a href="{escape(asking.address(_home(asking.path)))}">{back}</a></p>"""
+            answer = Shown(Page(title, main), path=_home(asking.path))
+        return replace(answer, status=status)
+
+    def _response(self, request: Request, asking: Asking, answer: Answer) -> Response:
+        if isinstance(answer, Moved):
+            response: Response = RedirectResponse(answer.to, 303, headers=_HEADERS)
+            if answer.token is not None:
+                give_token(response, request, self.kind, answer.token)
+            return response
+        if isinstance(answer, Download):
+            given = {"Content-Disposition": f'attachment; filename="{answer.name}"'}
+            return Response(answer.data, media_type=answer.kind, headers=_HEADERS | given)
+        page = answer.page
+        frame = Frame(self.house.content.hall, asking.lang, page.here, answer.path or asking.path, page.query)
+        text = frame.page(page.title, page.main, styles=("reading", "forms"))
+        return HTMLResponse(text, answer.status, headers=_HEADERS)
+
+
+def _home(path: str) -> str:
+    """The first page of that part of the platform."""
+    return "/" + path.split("/")[1]

@@ -1,0 +1,36 @@
+"""The platform put into the hall's application."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fastapi import FastAPI, Request
+
+from hall_app.house.house import House
+from hall_app.house.people import People
+from hall_app.web.answers.work import SLOW
+from hall_app.web.platform.counter import VISITOR, Counter, Pace
+from hall_app.web.platform.me import add_me
+
+__all__ = ["NoteLook", "add_platform"]
+
+NoteLook = Callable[[Request, str], None]  # an exhibit was looked at
+
+
+def add_platform(app: FastAPI, house: House, people: People) -> NoteLook:
+    """Add /me. The caller closes `people` when the application has ended."""
+    pace = Pace()
+    visitors = Counter(app, house, people, VISITOR, pace)
+    add_me(visitors)
+
+    def note(request: Request, exhibit: str) -> None:
+        """Beside the answer: nobody waits for it, and where it fails a visit is not kept."""
+        if request.cookies.get(VISITOR.name):
+            SLOW.begin(("look", request.cookies[VISITOR.name], exhibit), lambda: _note(request, exhibit))
+
+    def _note(request: Request, exhibit: str) -> None:
+        guest = visitors.guest(request)
+        if guest is not None and guest.person.keeps_looks:
+            people.keepsakes.note_look(guest.person.id, exhibit)
+
+    return note

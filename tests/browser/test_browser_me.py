@@ -1,0 +1,96 @@
+"""The user centre in a browser: clean to axe, whole on a phone, done by key alone."""
+
+import itertools
+
+import pytest
+from bench.axe import violations
+from form_visitor import Visitor
+from full_matrix import by_day
+from read_pages import read_whole
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+PASSWORD = "a robe of blue ramie"
+NUMBERS = itertools.count()
+OUTSIDE = ("/me", "/me/register", "/me/open")
+INSIDE = ("/me", "/me/second-factor", "/me/delete", "/me/keep?exhibit={exhibit}", "/me/keep?exhibit=nothing")
+SMALL = """
+() => [...document.querySelectorAll("main button, main input:not([type=hidden]), main select, .site a, .doors a")]
+  .map((one) => [one.textContent.trim() || one.id, one.getBoundingClientRect()])
+  .filter(([, box]) => box.height && (box.height < 43.9 || box.width < 23.9)).map(([text]) => text)
+"""
+
+
+def member(hall) -> tuple[Visitor, str]:
+    visitor, address = Visitor(hall.url), f"reader{next(NUMBERS)}@example.org"
+    visitor.send("/me/register", "form-register", address=address, password=PASSWORD, again=PASSWORD)
+    return visitor, address
+
+
+def page_of(chromium, visitor: Visitor, width: int):
+    context = chromium.new_context(viewport={"width": width, "height": 800})
+    context.add_cookies(
+        [{"name": name, "value": value, "url": visitor.url} for name, value in visitor.cookies.items()]
+    )
+    return context.new_page()
+
+
+@pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))
+@pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
+@pytest.mark.parametrize("signed_in", [False, True])
+def test_pages_are_clean_and_fit(plain_hall, chromium, lang, width, signed_in):
+    visitor = member(plain_hall)[0] if signed_in else Visitor(plain_hall.url)
+    page = page_of(chromium, visitor, width)
+    found = visitor.get("/catalogue").text.partition("/me/keep?exhibit=")[2].partition("&")[0]
+    if signed_in:
+        visitor.send(f"/me/keep?exhibit={found}", "form-keep")
+        visitor.send("/me", "/me/visits")
+    for path in INSIDE if signed_in else OUTSIDE:
+        mark = "&" if "?" in path else "?"
+        address = f"{plain_hall.url}{path.format(exhibit=found)}{mark}lang={lang}"
+        read_whole(page, address, width, SMALL)
+        assert page.evaluate("document.activeElement.id") == "main", path
+    page.context.close()
+
+
+def test_signing_up_and_out_by_key_alone(plain_hall, chromium):
+    page = page_of(chromium, Visitor(plain_hall.url), 1000)
+    refused = []
+    page.on("console", lambda said: refused.append(said.text) if "Security" in said.text else None)
+    page.goto(f"{plain_hall.url}/me?lang=en")
+    press_to(page, "Make an account")
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/me/register**")
+    page.focus("#register-address")
+    page.keyboard.type(f"keys{next(NUMBERS)}@example.org")
+    page.keyboard.press("Tab")
+    page.keyboard.type("Keys")
+    page.keyboard.press("Tab")
+    page.keyboard.type(PASSWORD)
+    page.keyboard.press("Tab")
+    page.keyboard.type("something else")
+    page.keyboard.press("Enter")
+    page.get_by_role("alert").wait_for()
+    assert violations(page) == []
+    assert page.input_value("#register-name") == "Keys"
+    for field in ("#register-password", "#register-again"):
+        page.focus(field)
+        page.keyboard.type(PASSWORD)
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name="Your account").wait_for()
+    assert violations(page) == []
+    press_to(page, "Sign out")
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name="Sign in").wait_for()
+    assert refused == [], "nothing that a page does is against its own policy"
+    page.context.close()
+
+
+def press_to(page, words: str) -> None:
+    """Tab until the element of these words has the focus."""
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.textContent.trim()") == words:
+            return
+    raise AssertionError(f"no key leads to {words!r}")
