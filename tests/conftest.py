@@ -57,6 +57,7 @@ POSTGRES_BY_DAY = {
     "test_survey_store.py",
     "test_survey_privacy.py",
     "test_people.py",
+    "test_bookings.py",
 }
 
 

@@ -47,6 +47,8 @@ class House:
     places: Places = field(default_factory=Places)
     survey_problems: Callable[[], Iterable[Any]] = tuple
     survey_results: Callable[[], Iterable[dict[str, Any]]] = tuple  # what everybody may see of the answers
+    survey_suggestions: Callable[[], Iterable[dict[str, Any]]] = tuple  # what visitors wrote, for the office
+    survey_tokens: Callable[[], Any] = tuple  # of programs that read answers: survey's Tokens
     survey_asks: Callable[[str], bool] = bool  # whether the questionnaire of that id has anything to ask here
 
     def __post_init__(self) -> None:

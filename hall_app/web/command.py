@@ -39,7 +39,7 @@ _POLL = 1.0  # [s] between two looks at the content folder, and at what is being
 _TICK = 0.25  # [s] between two ticks of the hall's clock
 
 OFFERS = frozenset(
-    {"culture", "research", "user-centre"}
+    {"culture", "research", "activities", "visit", "user-centre", "office"}
 )  # pages of the platform beside the hall: what needs another is not asked
 
 _TOLD = ProgressLine()  # whatever this command says goes through it, so that no line runs into another
@@ -167,6 +167,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     )
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     house.survey_results = survey.results
+    house.survey_suggestions, house.survey_tokens = survey.suggestions, lambda: survey.store.tokens
     for problem in survey.problems:
         _say(f"  left out: {problem}")
     for hint in survey.hints:

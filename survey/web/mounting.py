@@ -100,6 +100,28 @@ class Mounted:
             {"title": one.title.model_dump(), **public_results(one, self.store.public(one))} for one in asked
         ]
 
+    def suggestions(self) -> list[dict[str, Any]]:
+        """What visitors suggested, the newest first: id, questionnaire, its title, the module's, text, received.
+
+        Raises StoreError.
+        """
+        published, found = Published(self.questionnaires, self.store), []
+        for asked in (published.as_asked(one) for one in list(self.questionnaires.values())):
+            modules = {module.id: module.title.model_dump() for module in asked.modules}
+            for row in self.store.rows(asked):
+                found += [
+                    {
+                        "id": f"{row.answer.id}.{module}",
+                        "questionnaire": asked.id,
+                        "title": asked.title.model_dump(),
+                        "module": modules[module],
+                        "text": text,
+                        "received": row.received.isoformat(),
+                    }
+                    for module, text in row.answer.suggestions
+                ]
+        return sorted(found, key=lambda one: one["received"], reverse=True)
+
     def record(self) -> Record:
         """What is processed here, and how, as of now. Raises StoreError."""
         asked = tuple(found for found in self.questionnaires.values() if found.asking(self.offers).items)

@@ -34,3 +34,12 @@ def quick_hashes():
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(argon2, "PasswordHasher", Quick)
         yield
+
+
+@pytest.fixture(scope="session")
+def counter(tmp_path_factory, quick_hashes):
+    """The platform's pages and API alone, open."""
+    from open_counter import open_counter
+
+    with open_counter(tmp_path_factory.mktemp("counter")) as found:
+        yield found

@@ -16,12 +16,12 @@ __all__ = ["add_accounts", "add_parser", "run"]
 _DESCRIPTION = """\
 Administer the accounts of a house: name its first administrator, open an account whose password was lost, see who
 is staff, shut somebody out. It works on the data folder, beside a hall that is open or not, and needs no mail server.
-Everything done here stands in the journal as done by the console."""
+Everything done here stands in the journal (/office/audit) as done by the console."""
 
 _EPILOG = """\
 a new house:
   hall admin create anna@example.org              asks for a password, makes the first administrator
-  hall serve                                      then sign in at http://127.0.0.1:8000/me
+  hall serve                                      then sign in at http://127.0.0.1:8000/office
 
 somebody lost a password, or a visitor stands at the desk:
   hall admin code anna@example.org                a code to read out or print; typed in at /me/open
@@ -132,7 +132,7 @@ def _create(people: People, arguments: argparse.Namespace) -> int:
         person = people.accounts.make(CONSOLE, address, name=arguments.name, language=arguments.language)
         people.accounts.use_code(people.accounts.code_for(CONSOLE, person.id), password)
     people.roles.set(CONSOLE, person.id, person.roles | wanted)
-    print(f"{address}: {', '.join(sorted(person.roles | wanted))}. Sign in at /me.")
+    print(f"{address}: {', '.join(sorted(person.roles | wanted))}. Sign in at /office.")
     if made_up:
         print(f"{_MADE_UP}\n  {made_up}")
     return 0

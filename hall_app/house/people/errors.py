@@ -70,6 +70,62 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "收藏已满（{most} 件），请先移除一些。",
         "There are {most} favourites, which is all there is room for: take some out first.",
     ),
+    "no-occasion": (
+        "没有这个场次，或已开始、已取消，请另选一场。",
+        "There is no such date, or it has begun or been called off: choose another.",
+    ),
+    "booked-already": (
+        "您已预约了这一场；要改人数，请先取消再预约。",
+        "You are down for this date already: to change the number, cancel it first.",
+    ),
+    "party-size": (
+        "人数须为 1 至 {most} 的整数。",
+        "The number of people is a whole number from 1 to {most}.",
+    ),
+    "no-booking": (
+        "没有这项预约，可能已取消。",
+        "There is no such reservation: it may have been cancelled already.",
+    ),
+    "occasion-slots": (
+        "每段至少 5 分钟，一次最多 {most} 段。",
+        "A slot has 5 minutes at least, and {most} slots are planned at once at most.",
+    ),
+    "no-suggestion": (
+        "没有这条意见，可能已被撤回。",
+        "There is no such suggestion: it may have been withdrawn.",
+    ),
+    "followup": (
+        "状态须为 open、answered 或 done，说明最多 400 字。",
+        "The state is open, answered or done, the note has 400 characters at most.",
+    ),
+    "token-label": (
+        "请给令牌一个名称，最多 {most} 字。",
+        "Give the token a label, {most} characters at most.",
+    ),
+    "no-token": (
+        "没有这个令牌，可能已撤销。",
+        "There is no such token: it may have been revoked already.",
+    ),
+    "signed-out": (
+        "请先在 /office 登录。",
+        "Sign in at /office first.",
+    ),
+    "occasion-times": (
+        "请按 2026-12-05T14:00 的形式填写时间，结束须晚于开始。",
+        "Write times as 2026-12-05T14:00, with the end after the beginning.",
+    ),
+    "occasion-places": (
+        "名额须为 {least} 至 1000 的整数，每次预约的人数不超过名额。",
+        "Places are a whole number from {least} to 1000, and one booking is for no more than that.",
+    ),
+    "occasion-title": (
+        "请用中文和英文各写一个标题，最多 120 字。",
+        "Give a title in Chinese and in English, 120 characters each at most.",
+    ),
+    "occasion-text": (
+        "说明最多 4000 字，地点最多 120 字。",
+        "A text has 4000 characters at most, a place 120.",
+    ),
     "again-differs": ("两次输入的密码不一致，请重新输入。", "The two passwords differ: type both again."),
     "not-allowed": (
         "您的角色不能做这件事；此次尝试已记入审计。需要时请联系管理员。",

@@ -5,7 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from hall_app.house.people.database import PEOPLE_FILE, Ledger
-from hall_app.house.people.records import Accounts, Journal, Keepsakes, Person, Roles, Sessions, own_copy
+from hall_app.house.people.records import (
+    Accounts,
+    Bookings,
+    FollowUps,
+    Journal,
+    Keepsakes,
+    Occasions,
+    Person,
+    Roles,
+    Sessions,
+    own_copy,
+)
 from survey.errors import SurveyError
 from survey.store.database import tables as survey_tables
 
@@ -21,8 +32,16 @@ class People:
         self.sessions = Sessions(self._ledger)
         self.roles = Roles(self._ledger)
         self.keepsakes = Keepsakes(self._ledger)
+        self.occasions = Occasions(self._ledger)
+        self.bookings = Bookings(self._ledger)
+        self.followups = FollowUps(self._ledger)
         self.journal = Journal(self._ledger)
         self.refuse = self._ledger.refuse
+
+    def note(self, who: str, act: str, subject: str) -> None:
+        """Write down what is about to be done elsewhere, in the survey's own store."""
+        with self._ledger.change(who, act, subject):
+            pass
 
     def copy_of(self, person: Person) -> bytes:
         """All that is kept of a person, as a ZIP; that it was taken is written down."""
@@ -35,6 +54,7 @@ class People:
                 "sessions": self.sessions.of(person.id),
                 "favourites": kept.favourites(person.id),
                 "visits": kept.looks(person.id),
+                "bookings": self.bookings.of(person.id),
                 "journal": self.journal.about(person.id),
             },
         )

@@ -20,6 +20,8 @@ NAVIGATION: tuple[tuple[str, str, dict[str, str]], ...] = (
     ("glossary", "/culture/glossary", {"zh": "词语", "en": "Glossary"}),
     ("weaves", "/culture/weaves", {"zh": "织物", "en": "Weaves"}),
     ("research", "/research", {"zh": "研究", "en": "Research"}),
+    ("activities", "/activities", {"zh": "活动", "en": "Activities"}),
+    ("visit", "/visit", {"zh": "参观", "en": "Visit"}),
     ("survey", "/questionnaires", {"zh": "问卷", "en": "Survey"}),
     ("me", "/me", {"zh": "账户", "en": "Account"}),
 )

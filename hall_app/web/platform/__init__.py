@@ -1,6 +1,7 @@
 """The platform round the hall: what takes an account, or gives one.
 
-counter: what all pages with forms have in common; me: signing in, and the user centre.
+counter: what all pages with forms have in common; me: signing in, and the user centre;
+programme: activities and visits, booked; office: what the staff have.
 """
 
 from hall_app.web.platform.routes import NoteLook, add_platform

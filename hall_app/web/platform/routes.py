@@ -9,8 +9,10 @@ from fastapi import FastAPI, Request
 from hall_app.house.house import House
 from hall_app.house.people import People
 from hall_app.web.answers.work import SLOW
-from hall_app.web.platform.counter import VISITOR, Counter, Pace
+from hall_app.web.platform.counter import OFFICE, VISITOR, Counter, Pace
 from hall_app.web.platform.me import add_me
+from hall_app.web.platform.office import add_office
+from hall_app.web.platform.programme import add_programme
 
 __all__ = ["NoteLook", "add_platform"]
 
@@ -18,10 +20,12 @@ NoteLook = Callable[[Request, str], None]  # an exhibit was looked at
 
 
 def add_platform(app: FastAPI, house: House, people: People) -> NoteLook:
-    """Add /me. The caller closes `people` when the application has ended."""
+    """Add /me, /activities, /visit, /office. The caller closes `people` when the application has ended."""
     pace = Pace()
     visitors = Counter(app, house, people, VISITOR, pace)
     add_me(visitors)
+    add_programme(visitors)
+    add_office(app, Counter(app, house, people, OFFICE, pace))
 
     def note(request: Request, exhibit: str) -> None:
         """Beside the answer: nobody waits for it, and where it fails a visit is not kept."""

@@ -16,9 +16,23 @@ from sqlalchemy import (
     MetaData,
     String,
     Table,
+    Text,
+    UniqueConstraint,
 )
 
-__all__ = ["audit", "code", "favourite", "look", "metadata", "role", "session", "user"]
+__all__ = [
+    "audit",
+    "booking",
+    "code",
+    "favourite",
+    "followup",
+    "look",
+    "metadata",
+    "occasion",
+    "role",
+    "session",
+    "user",
+]
 
 metadata = MetaData()
 
@@ -88,6 +102,57 @@ look = Table(
     Column("user", ForeignKey("user.id"), primary_key=True),
     Column("exhibit", String(64), primary_key=True),
     Column("day", Date, primary_key=True),
+)
+
+# What has places: an activity, or a slot of a day for visits. `taken` counts the places that are booked; `turns` is the
+# number given last, so that the order of the waiting list is that of the lock on this row and of nothing else.
+occasion = Table(
+    "occasion",
+    metadata,
+    Column("id", String(16), primary_key=True),
+    Column("kind", String(8), nullable=False),
+    Column("title_zh", String(120), nullable=False),
+    Column("title_en", String(120), nullable=False),
+    Column("text_zh", Text, nullable=False),
+    Column("text_en", Text, nullable=False),
+    Column("place_zh", String(120), nullable=False),
+    Column("place_en", String(120), nullable=False),
+    Column("begins", DateTime(timezone=True), nullable=False),
+    Column("ends", DateTime(timezone=True), nullable=False),
+    Column("places", Integer, nullable=False),
+    Column("party", Integer, nullable=False),  # the most that one booking may be for
+    Column("taken", Integer, nullable=False),
+    Column("turns", Integer, nullable=False),
+    Column("cancelled", DateTime(timezone=True)),
+    CheckConstraint("taken >= 0 AND taken <= places", name="occasion_not_overbooked"),
+    CheckConstraint("kind IN ('activity', 'visit')", name="occasion_kind_known"),
+)
+
+booking = Table(
+    "booking",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("occasion", ForeignKey("occasion.id"), nullable=False),
+    Column("user", ForeignKey("user.id"), nullable=False),
+    Column("size", Integer, nullable=False),
+    Column("party", String(80), nullable=False),  # name of a class or group; "" for none
+    Column("waiting", Integer, nullable=False),  # 1: on the waiting list, 0: has its places
+    Column("turn", Integer, nullable=False),
+    Column("key", String(64), nullable=False, unique=True),  # of the form: sent twice it books once
+    Column("made", DateTime(timezone=True), nullable=False),
+    Column("arrived", DateTime(timezone=True)),
+    UniqueConstraint("occasion", "user", name="booking_once"),
+)
+
+# What became of a suggestion of the questionnaires. `id` names the text, not who wrote it; `by` is a person's id.
+followup = Table(
+    "followup",
+    metadata,
+    Column("id", String(110), primary_key=True),
+    Column("state", String(8), nullable=False),
+    Column("note", String(400), nullable=False),
+    Column("by", String(16), nullable=False),
+    Column("at", DateTime(timezone=True), nullable=False),
 )
 
 # `who` and `subject` are ids, never addresses: once an account is gone they lead to nobody. So they are no keys.

@@ -1,25 +1,36 @@
 """What is kept of people and how it changes: accounts, sessions, roles, the journal, a person's own copy."""
 
 from hall_app.house.people.records.accounts import CODE_DAYS, RECOVERY_CODES, Accounts
+from hall_app.house.people.records.bookings import Booking, Bookings
 from hall_app.house.people.records.copy import own_copy
+from hall_app.house.people.records.followups import FOLLOWED, FollowUp, FollowUps
 from hall_app.house.people.records.journal import Entry, Journal
 from hall_app.house.people.records.keepsakes import Favourite, Keepsakes, Look
+from hall_app.house.people.records.occasions import Occasion, Occasions, Plan
 from hall_app.house.people.records.person import Person, checked_address
 from hall_app.house.people.records.roles import Roles
 from hall_app.house.people.records.sessions import OFFICE_HOURS, VISITOR_DAYS, Session, Sessions
 
 __all__ = [
     "CODE_DAYS",
+    "FOLLOWED",
     "OFFICE_HOURS",
     "RECOVERY_CODES",
     "VISITOR_DAYS",
     "Accounts",
+    "Booking",
+    "Bookings",
     "Entry",
     "Favourite",
+    "FollowUp",
+    "FollowUps",
     "Journal",
     "Keepsakes",
     "Look",
+    "Occasion",
+    "Occasions",
     "Person",
+    "Plan",
     "Roles",
     "Session",
     "Sessions",

@@ -20,6 +20,7 @@ from hall_app.house.people.credentials import (
 )
 from hall_app.house.people.database import NOBODY, Ledger, tables
 from hall_app.house.people.errors import PeopleError
+from hall_app.house.people.records.bookings import release
 from hall_app.house.people.records.person import (
     Person,
     checked_address,
@@ -188,6 +189,7 @@ class Accounts:
         """Delete one's own account; the journal keeps an id that leads to nobody. Raises PeopleError."""
         self._prove(person.id, "delete account", password)
         with self._ledger.change(person.id, "delete account", person.id) as connection:
+            release(connection, person.id)
             for table in (tables.code, tables.session, tables.role, tables.favourite, tables.look):
                 connection.execute(delete(table).where(table.c.user == person.id))
             connection.execute(delete(tables.user).where(tables.user.c.id == person.id))

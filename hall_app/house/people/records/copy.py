@@ -26,6 +26,7 @@ _TOLD = {  # file: zh, en
     "sessions": ("登录会话", "where you are signed in"),
     "favourites": ("收藏", "favourites"),
     "visits": ("参观记录", "visits that you asked to keep"),
+    "bookings": ("预约", "reservations"),
     "journal": ("操作记录", "what was done"),
 }
 

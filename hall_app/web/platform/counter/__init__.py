@@ -6,7 +6,7 @@ often one may try; fields: forms as HTML; counter: pages and acts put at their a
 
 from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
 from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
-from hall_app.web.platform.counter.counter import Act, Counter, View
+from hall_app.web.platform.counter.counter import Act, Answer, Counter, View
 from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
 from hall_app.web.platform.counter.pace import RATES, Pace
 
@@ -15,6 +15,7 @@ __all__ = [
     "RATES",
     "VISITOR",
     "Act",
+    "Answer",
     "Asking",
     "Counter",
     "Download",

@@ -26,7 +26,7 @@ from survey.errors import StoreError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["Act", "Counter", "View"]
+__all__ = ["Act", "Answer", "Counter", "View"]
 
 Answer = Shown | Moved | Download
 View = Callable[[Asking], Answer]
@@ -80,6 +80,15 @@ class Counter:
         token = request.cookies.get(self.kind.name, "")
         found = self.people.sessions.find(token, office=self.kind.office) if token else None
         return Guest(*found, token) if found else None
+
+    def asking(self, request: Request, fields: Mapping[str, str]) -> Asking:
+        """What a program asks, without a page. Raises StoreError."""
+        return self._asking(request, fields, seal_key(request))
+
+    def check(self, request: Request, asking: Asking, seal: str) -> None:
+        """Raises PeopleError for what a page of ours did not send."""
+        check_origin(request)
+        check_form(seal, asking.seal)
 
     def _answer(
         self, request: Request, given: Mapping[str, str] | PeopleError | None, act: Act, again: View

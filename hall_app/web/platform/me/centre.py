@@ -9,6 +9,7 @@ from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, S
 from hall_app.web.platform.me.keepsakes import Shelf
 from hall_app.web.platform.me.notices import notice
 from hall_app.web.platform.me.safety import password_form
+from hall_app.web.platform.programme import reservations
 
 __all__ = ["Centre"]
 
@@ -25,6 +26,8 @@ class Centre:
         out = button(asking, "sign-out", "/me/sign-out", word("退出登录", "Sign out"), hidden={})
         parts = (*self._kept(asking), *self._account(asking))
         ways = "".join(f'<a href="#{key}">{name}</a>' for key, name, _ in parts)
+        if person.roles:
+            ways += f'<a href="{asking.address("/office")}">{word("办公室", "Office")}</a>'
         bodies = "".join(part(key, name, inside) for key, name, inside in parts)
         main = f"""<header class="who"><div><h1>{title}</h1>
 <p class="lead">{escape(person.name or person.address)}</p></div>{out}</header>{notice(asking)}
@@ -34,6 +37,7 @@ class Centre:
     def _kept(self, asking: Asking) -> tuple[tuple[str, str, str], ...]:
         word = asking.word
         return (
+            ("reservations", word("预约", "Reservations"), reservations(asking, self._people)),
             ("favourites", word("收藏", "Favourites"), self._shelf.favourites(asking)),
             ("visits", word("参观记录", "Visits"), self._shelf.visits(asking)),
         )

@@ -1,0 +1,195 @@
+"""Places booked, or waited for: never more than there are, in the order of asking, and once however often it is sent.
+
+Whoever changes bookings of an occasion holds its row locked (`_lock`), in SQLite the whole file. What is counted under
+the lock holds until the commit, and the table's own check would refuse an overbooking even so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Connection, delete, func, select, update
+
+from hall_app.house.people.database import Ledger, tables
+from hall_app.house.people.errors import PeopleError
+from survey.store.database import in_utc, now
+
+__all__ = ["Booking", "Bookings", "promote", "release"]
+
+LONGEST_PARTY = 80
+
+
+@dataclass(frozen=True)
+class Booking:
+    """size: people; party: name of a class or group; place: on the waiting list from 1, 0: booked. Times in UTC."""
+
+    id: int
+    occasion: str
+    person: str
+    size: int
+    party: str
+    place: int
+    turn: int
+    made: datetime
+    arrived: datetime | None
+
+
+class _KnownError(Exception):
+    """The form was sent before: what it booked stands, and nothing is changed."""
+
+
+class Bookings:
+    """Who has which places."""
+
+    def __init__(self, ledger: Ledger) -> None:
+        self._ledger = ledger
+
+    def book(self, person: str, occasion: str, size: int, key: str, *, party: str = "") -> Booking:
+        """Places, or a place on the waiting list. key: of the form; with the same one it is the same booking.
+
+        Raises PeopleError.
+        """
+        name = " ".join(party.split())[:LONGEST_PARTY]
+        try:
+            with self._ledger.change(person, "book", occasion) as connection:
+                row = _lock(connection, occasion, turn=True)
+                if row is None or row.cancelled is not None or in_utc(row.begins) <= now():
+                    raise PeopleError("no-occasion")
+                _see_that_it_is_new(connection, person, occasion, key)
+                if not 1 <= size <= row.party:
+                    raise PeopleError("party-size", most=row.party)
+                waits = bool(_waiting(connection, occasion)) or row.taken + size > row.places
+                if not waits:
+                    _take(connection, occasion, size)
+                given = {"occasion": occasion, "user": person, "size": size, "party": name, "key": key}
+                new = {"waiting": int(waits), "turn": row.turns, "made": now()}
+                connection.execute(tables.booking.insert().values(**given, **new))
+        except _KnownError:
+            pass
+        (booking,) = (one for one in self.of(person) if one.occasion == occasion)
+        return booking
+
+    def of(self, person: str) -> tuple[Booking, ...]:
+        """All of one person, the first made first."""
+        return self._found(tables.booking.c.user == person)
+
+    def for_occasion(self, occasion: str) -> tuple[Booking, ...]:
+        """In the order of asking."""
+        return self._found(tables.booking.c.occasion == occasion)
+
+    def cancel(self, who: str, act: str, booking: int, *, person: str | None = None) -> None:
+        """Give places back, to who waits. act: "cancel booking" of one's own (`person`), "reservations" of another's.
+
+        Raises PeopleError.
+        """
+        table = tables.booking
+        with self._ledger.change(who, act, f"booking {booking}") as connection:
+            query = select(table.c.occasion).where(table.c.id == booking)
+            query = query if person is None else query.where(table.c.user == person)
+            occasion = connection.execute(query).scalar_one_or_none()
+            if occasion is None or not _give_back(connection, occasion, booking):
+                raise PeopleError("no-booking")
+
+    def arrive(self, who: str, booking: int, *, here: bool) -> None:
+        """Check somebody in who has places, or take that back. Raises PeopleError."""
+        table = tables.booking
+        mine = (table.c.id == booking, table.c.waiting == 0)
+        with self._ledger.change(
+            who, "check-in", f"booking {booking}{'' if here else ' undone'}"
+        ) as connection:
+            row = update(table).where(*mine).values(arrived=now() if here else None)
+            if not connection.execute(row).rowcount:
+                raise PeopleError("no-booking")
+
+    def _found(self, which) -> tuple[Booking, ...]:
+        table, before = tables.booking, tables.booking.alias()
+        place = (
+            select(func.count())
+            .select_from(before)
+            .where(
+                before.c.occasion == table.c.occasion, before.c.waiting == 1, before.c.turn <= table.c.turn
+            )
+            .scalar_subquery()
+        )
+        query = select(table, place.label("place")).where(which).order_by(table.c.turn, table.c.id)
+        with self._ledger.read() as connection:
+            rows = connection.execute(query).all()
+        return tuple(
+            Booking(
+                row.id,
+                row.occasion,
+                row.user,
+                row.size,
+                row.party,
+                row.place if row.waiting else 0,
+                row.turn,
+                in_utc(row.made),
+                None if row.arrived is None else in_utc(row.arrived),
+            )
+            for row in rows
+        )
+
+
+def promote(connection: Connection, occasion: str) -> None:
+    """Give free places to who waits, strictly in order: a large party at the head is not passed by small ones."""
+    table = tables.booking
+    row = _lock(connection, occasion)
+    if row is None:
+        return
+    free = row.places - row.taken
+    for first in _waiting(connection, occasion):
+        if first.size > free:
+            return
+        free -= first.size
+        connection.execute(update(table).where(table.c.id == first.id).values(waiting=0))
+        _take(connection, occasion, first.size)
+
+
+def release(connection: Connection, person: str) -> None:
+    """All bookings of an account that is deleted, in the order of occasions: no two deletions block each other."""
+    table = tables.booking
+    mine = select(table.c.occasion, table.c.id).where(table.c.user == person).order_by(table.c.occasion)
+    for occasion, booking in connection.execute(mine).all():
+        _give_back(connection, occasion, booking)
+
+
+def _lock(connection: Connection, occasion: str, *, turn: bool = False):
+    """The occasion's row, nobody else's until the commit; None where there is none. turn: give the next number."""
+    table = tables.occasion
+    row = update(table).where(table.c.id == occasion).values(turns=table.c.turns + int(turn))
+    return connection.execute(row.returning(table)).one_or_none()
+
+
+def _waiting(connection: Connection, occasion: str):
+    table = tables.booking
+    mine = (table.c.occasion == occasion, table.c.waiting == 1)
+    return connection.execute(select(table).where(*mine).order_by(table.c.turn)).all()
+
+
+def _take(connection: Connection, occasion: str, size: int) -> None:
+    table = tables.occasion
+    connection.execute(update(table).where(table.c.id == occasion).values(taken=table.c.taken + size))
+
+
+def _give_back(connection: Connection, occasion: str, booking: int) -> bool:
+    """Whether it was still there."""
+    table = tables.booking
+    _lock(connection, occasion)
+    gone = delete(table).where(table.c.id == booking).returning(table.c.size, table.c.waiting)
+    row = connection.execute(gone).one_or_none()
+    if row is None:
+        return False
+    if not row.waiting:
+        _take(connection, occasion, -row.size)
+    promote(connection, occasion)
+    return True
+
+
+def _see_that_it_is_new(connection: Connection, person: str, occasion: str, key: str) -> None:
+    """Raises _KnownError for a form that was sent before, PeopleError for another by the same person."""
+    table = tables.booking
+    mine = (table.c.user == person, table.c.occasion == occasion)
+    known = connection.execute(select(table.c.key).where(*mine)).scalar_one_or_none()
+    if known is not None:
+        raise _KnownError if known == key else PeopleError("booked-already")

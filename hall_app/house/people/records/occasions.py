@@ -1,0 +1,143 @@
+"""What has places: activities, and slots of a day for visits. Planned, changed, called off by the office."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from datetime import datetime
+
+from sqlalchemy import Connection, func, select, update
+
+from hall_app.house.people.credentials import new_id
+from hall_app.house.people.database import Ledger, tables
+from hall_app.house.people.errors import PeopleError
+from hall_app.house.people.records.bookings import promote
+from survey.store.database import in_utc, now
+
+__all__ = ["Occasion", "Occasions", "Plan"]
+
+MOST_PLACES, LONGEST_TITLE, LONGEST_TEXT = 1000, 120, 4000
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What the office writes of an occasion. kind: "activity" or "visit"; party: the most one booking may be for."""
+
+    kind: str
+    title_zh: str
+    title_en: str
+    begins: datetime
+    ends: datetime
+    places: int
+    party: int
+    text_zh: str = ""
+    text_en: str = ""
+    place_zh: str = ""
+    place_en: str = ""
+
+    def checked(self, taken: int = 0) -> Plan:
+        """As it is kept. taken: places that are booked already. Raises PeopleError."""
+        titles, places = (self.title_zh.strip(), self.title_en.strip()), (self.place_zh, self.place_en)
+        if not all(0 < len(title) <= LONGEST_TITLE and title.isprintable() for title in titles):
+            raise PeopleError("occasion-title")
+        if not self.begins < self.ends:
+            raise PeopleError("occasion-times")
+        if not max(1, taken) <= self.places <= MOST_PLACES or not 1 <= self.party <= self.places:
+            raise PeopleError("occasion-places", least=max(1, taken))
+        if (
+            max(map(len, (self.text_zh, self.text_en))) > LONGEST_TEXT
+            or max(map(len, places)) > LONGEST_TITLE
+        ):
+            raise PeopleError("occasion-text")
+        kind = "visit" if self.kind == "visit" else "activity"
+        return replace(self, kind=kind, title_zh=titles[0], title_en=titles[1])
+
+
+@dataclass(frozen=True)
+class Occasion:
+    """id; plan; taken: places booked; waiting: people on the waiting list. Times are in UTC."""
+
+    id: str
+    plan: Plan
+    taken: int
+    waiting: int
+    cancelled: datetime | None
+
+    @property
+    def left(self) -> int:
+        """Places that may be booked at once: none while somebody waits."""
+        return 0 if self.waiting else self.plan.places - self.taken
+
+    def told(self, what: str, lang: str) -> str:
+        """ "title", "text" or "place" in "zh" or "en"; of texts that were not translated the other."""
+        other = "en" if lang == "zh" else "zh"
+        return getattr(self.plan, f"{what}_{lang}") or getattr(self.plan, f"{what}_{other}")
+
+
+class Occasions:
+    """The programme."""
+
+    def __init__(self, ledger: Ledger) -> None:
+        self._ledger = ledger
+
+    def to_come(self, kind: str = "", *, past: bool = False) -> tuple[Occasion, ...]:
+        """Those that are not over, of that kind or all, the next first; past: over or off, the last first."""
+        table, moment = tables.occasion, now()
+        open_now = (table.c.ends > moment) & table.c.cancelled.is_(None)
+        query = select(table).where(~open_now if past else open_now)
+        query = query.where(table.c.kind == kind) if kind else query
+        order = table.c.begins.desc() if past else table.c.begins
+        with self._ledger.read() as connection:
+            rows = connection.execute(query.order_by(order, table.c.id).limit(500)).all()
+            waiting = _waiting(connection)
+        return tuple(_occasion(row, waiting.get(row.id, 0)) for row in rows)
+
+    def of(self, key: str) -> Occasion:
+        """Raises PeopleError."""
+        table = tables.occasion
+        with self._ledger.read() as connection:
+            row = connection.execute(select(table).where(table.c.id == key)).one_or_none()
+            waiting = _waiting(connection)
+        if row is None:
+            raise PeopleError("no-occasion")
+        return _occasion(row, waiting.get(row.id, 0))
+
+    def plan(self, who: str, *plans: Plan) -> tuple[str, ...]:
+        """New occasions, all or none; their ids. Raises PeopleError."""
+        rows = [{"id": new_id(), "taken": 0, "turns": 0, **asdict(plan.checked())} for plan in plans]
+        subject = " ".join(row["id"] for row in rows)
+        with self._ledger.change(who, "events", subject) as connection:
+            connection.execute(tables.occasion.insert(), rows)
+        return tuple(row["id"] for row in rows)
+
+    def change(self, who: str, key: str, plan: Plan) -> None:
+        """Who waits gets places that were added. Raises PeopleError, also for fewer places than are booked."""
+        table = tables.occasion
+        with self._ledger.change(who, "events", key) as connection:
+            lock = update(table).where(table.c.id == key).values(turns=table.c.turns)
+            taken = connection.execute(lock.returning(table.c.taken)).scalar_one_or_none()
+            if taken is None:
+                raise PeopleError("no-occasion")
+            connection.execute(update(table).where(table.c.id == key).values(**asdict(plan.checked(taken))))
+            promote(connection, key)
+
+    def call_off(self, who: str, key: str) -> None:
+        """It does not take place; bookings stay, so that people can be told. Raises PeopleError."""
+        table = tables.occasion
+        with self._ledger.change(who, "events", f"{key} off") as connection:
+            row = update(table).where(table.c.id == key, table.c.cancelled.is_(None)).values(cancelled=now())
+            if not connection.execute(row).rowcount:
+                raise PeopleError("no-occasion")
+
+
+def _waiting(connection: Connection) -> dict[str, int]:
+    table = tables.booking
+    query = select(table.c.occasion, func.sum(table.c.size)).where(table.c.waiting == 1)
+    return {key: int(count) for key, count in connection.execute(query.group_by(table.c.occasion))}
+
+
+def _occasion(row, waiting: int) -> Occasion:
+    names = Plan.__dataclass_fields__
+    written = {name: getattr(row, name) for name in names}
+    written |= {"begins": in_utc(row.begins), "ends": in_utc(row.ends)}
+    off = None if row.cancelled is None else in_utc(row.cancelled)
+    return Occasion(row.id, Plan(**written), row.taken, waiting, off)

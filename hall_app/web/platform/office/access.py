@@ -1,0 +1,132 @@
+"""Both doors of the office, the page and the API, and the one check: signed in there, and of a role that may.
+
+Whoever may not is told so with 403 and stands in the journal. Who is not signed in is shown the door: /office leads to
+the form, the API answers 401.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.concurrency import run_in_threadpool
+from fastapi.responses import JSONResponse, Response
+
+from hall_app.house.people import ACTS, PeopleError
+from hall_app.web.platform.counter import Act, Answer, Asking, Counter, Moved, View
+from hall_app.web.platform.office.deeds import Deed, Reading
+from survey.errors import StoreError
+
+__all__ = ["Access"]
+
+LARGEST = 20_000  # [bytes] of a request to the API
+SEAL = "X-Seal"  # header of the API: what /api/office/me tells
+_STATUS = {"not-allowed": 403, "form": 403, "form-size": 413, "too-often": 429, "signed-out": 401}
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
+}
+
+
+class Access:
+    """Puts readings and deeds at their addresses."""
+
+    def __init__(self, app: FastAPI, counter: Counter) -> None:
+        self._app, self._counter, self._people = app, counter, counter.people
+
+    def reading(self, one: Reading) -> None:
+        self._counter.page(f"/office/{one.path}", self._staff(one.act, one.page))
+        self._program("GET", one.path, one.act, one.of)
+
+    def own(self, path: str, of: Any) -> None:
+        """What everybody of the staff may ask of the API."""
+        self._program("GET", path, "", of)
+
+    def deed(self, one: Deed) -> None:
+        def done(asking: Asking) -> Answer:
+            came = one.do(asking)
+            if one.shows is not None:
+                return one.shows(asking, came)
+            return Moved(
+                asking.address(f"/office/{one.back}".format(**{**came, **asking.names}), done="done")
+            )
+
+        page = self._staff(one.act, one.page)
+        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page)
+        self._program("POST", one.path, one.act, one.do)
+
+    def _staff(self, act: str, view: View) -> Act:
+        def asked(asking: Asking) -> Answer:
+            if asking.guest is None:
+                return Moved(asking.address("/office"))
+            if not asking.refusal:  # else it was checked, and written down, when the form came in
+                self._check(asking, act)
+            elif not asking.person.may(act):
+                raise PeopleError("not-allowed")
+            return view(asking)
+
+        return asked
+
+    def _check(self, asking: Asking, act: str) -> None:
+        """Raises PeopleError, and writes it down, for who may not."""
+        if act not in ACTS:
+            raise ValueError(f"{act!r}: no such act – declare it in hall_app/house/people/acts.py")
+        if not asking.person.may(act):
+            self._people.refuse(asking.person.id, act, asking.path)
+            raise PeopleError("not-allowed")
+
+    def _program(self, method: str, path: str, act: str, of: Any) -> None:
+        async def asked(request: Request) -> Response:
+            body = b""
+            if method == "POST":
+                async for part in request.stream():
+                    body += part
+                    if len(body) > LARGEST:
+                        return _told(PeopleError("form-size"), "en")
+            return await run_in_threadpool(self._answer, request, body, act, of)
+
+        self._app.add_api_route(f"/api/office/{path}", asked, methods=[method], include_in_schema=False)
+
+    def _answer(self, request: Request, body: bytes, act: str, of: Any) -> Response:
+        lang = "zh" if request.query_params.get("lang") == "zh" else "en"
+        try:
+            asking = self._counter.asking(request, {})
+            if asking.guest is None:
+                return _told(PeopleError("signed-out"), lang)
+            if act:
+                self._check(asking, act)
+            if request.method == "POST":
+                self._counter.check(request, asking, request.headers.get(SEAL, ""))
+                asking = self._counter.asking(request, _fields(request, body))
+            return JSONResponse(of(asking), headers=_HEADERS)
+        except PeopleError as error:
+            return _told(error, lang)
+        except StoreError as error:
+            return JSONResponse({"error": "store", "text": str(error)}, 503, headers=_HEADERS)
+
+
+def _fields(request: Request, body: bytes) -> dict[str, str]:
+    """A JSON object of plain values as the fields of a form. Raises PeopleError."""
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    try:
+        given = json.loads(body.decode() or "{}") if kind == "application/json" else None
+    except (ValueError, RecursionError):
+        given = None
+    if not isinstance(given, dict):
+        raise PeopleError("form-size")
+    fields = {}
+    for name, value in given.items():
+        if isinstance(value, list) and all(isinstance(one, str) for one in value):
+            value = " ".join(value)
+        if isinstance(value, bool):
+            value = "on" if value else ""
+        if not isinstance(value, str | int):
+            raise PeopleError("form-size")
+        fields[name] = str(value)
+    return fields
+
+
+def _told(error: PeopleError, lang: str) -> JSONResponse:
+    told = {"error": error.key, "text": error.text(lang)}
+    return JSONResponse(told, _STATUS.get(error.key, 400), headers=_HEADERS)

@@ -1,0 +1,316 @@
+"""Activities and visits planned, their reservations, the day's sheet, checking in: curators' and administrators'."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from datetime import date, datetime, timedelta
+from html import escape
+from typing import Any
+
+from hall_app.house.people import PeopleError
+from hall_app.house.people.records import Booking, Occasion, Plan
+from hall_app.web.platform.counter import Asking, Counter, Field, Shown, button, form, told_day, told_time
+from hall_app.web.platform.office.deeds import Deed, Reading, number_in
+from hall_app.web.platform.office.table import office_page, rows
+
+__all__ = ["programme_deeds", "programme_readings"]
+
+MOST_SLOTS = 60  # planned at once
+
+
+def programme_readings(counter: Counter) -> tuple[Reading, ...]:
+    rooms = _Rooms(counter)
+    return (
+        Reading("events", "events", rooms.all, rooms.all_page),
+        Reading("events/{key}", "reservations", rooms.one, rooms.one_page),
+        Reading("day", "reservations", rooms.day, rooms.day_page),
+    )
+
+
+def programme_deeds(counter: Counter) -> tuple[Deed, ...]:
+    rooms = _Rooms(counter)
+    one, booking = "events/{key}", "events/{key}/bookings/{booking}"
+    return (
+        Deed("events", "events", rooms.plan, "events/{id}", rooms.all_page),
+        Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page),
+        Deed(one, "events", rooms.change, one, rooms.one_page),
+        Deed(f"{one}/off", "events", rooms.call_off, one, rooms.one_page),
+        Deed(f"{booking}/arrive", "check-in", rooms.arrive, one, rooms.one_page),
+        Deed(f"{booking}/leave", "check-in", rooms.leave, one, rooms.one_page),
+        Deed(f"{booking}/cancel", "reservations", rooms.cancel, one, rooms.one_page),
+    )
+
+
+class _Rooms:
+    def __init__(self, counter: Counter) -> None:
+        self._people = counter.people
+
+    def all(self, asking: Asking) -> list[dict[str, Any]]:
+        past = bool(asking.query.get("past"))
+        return [_told(one) for one in self._people.occasions.to_come(past=past)]
+
+    def one(self, asking: Asking) -> dict[str, Any]:
+        one = self._people.occasions.of(asking.names["key"])
+        return _told(one) | {"bookings": [self._booked(made) for made in self._bookings(one)]}
+
+    def day(self, asking: Asking) -> list[dict[str, Any]]:
+        found = self._on(_day(asking))
+        return [
+            _told(one) | {"bookings": [self._booked(made) for made in self._bookings(one)]} for one in found
+        ]
+
+    def plan(self, asking: Asking) -> dict[str, Any]:
+        (key,) = self._people.occasions.plan(asking.person.id, _plan(asking))
+        return {"id": key}
+
+    def plan_visits(self, asking: Asking) -> dict[str, Any]:
+        """Slots of one day, one after the other."""
+        given, first = asking.form, _plan(asking)
+        length = timedelta(minutes=number_in(given.get("minutes", "")))
+        if not timedelta(minutes=5) <= length or not (first.ends - first.begins) // length <= MOST_SLOTS:
+            raise PeopleError("occasion-slots", most=MOST_SLOTS)
+        whole = asdict(first) | {"kind": "visit"}
+        slots = []
+        while first.begins + length * (len(slots) + 1) <= first.ends:
+            begins = first.begins + length * len(slots)
+            slots.append(Plan(**(whole | {"begins": begins, "ends": begins + length})))
+        if not slots:
+            raise PeopleError("occasion-times")
+        return {"ids": list(self._people.occasions.plan(asking.person.id, *slots))}
+
+    def change(self, asking: Asking) -> dict[str, Any]:
+        key = asking.names["key"]
+        self._people.occasions.change(asking.person.id, key, _plan(asking))
+        return {"id": key}
+
+    def call_off(self, asking: Asking) -> dict[str, Any]:
+        key = asking.names["key"]
+        self._people.occasions.call_off(asking.person.id, key)
+        return {"id": key, "cancelled": True}
+
+    def arrive(self, asking: Asking) -> dict[str, Any]:
+        number = number_in(asking.names["booking"])
+        self._people.bookings.arrive(asking.person.id, number, here=True)
+        return {"id": number, "arrived": True}
+
+    def leave(self, asking: Asking) -> dict[str, Any]:
+        number = number_in(asking.names["booking"])
+        self._people.bookings.arrive(asking.person.id, number, here=False)
+        return {"id": number, "arrived": False}
+
+    def cancel(self, asking: Asking) -> dict[str, Any]:
+        number = number_in(asking.names["booking"])
+        self._people.bookings.cancel(asking.person.id, "reservations", number)
+        return {"id": number, "cancelled": True}
+
+    def all_page(self, asking: Asking) -> Shown:
+        word, past = asking.word, bool(asking.query.get("past"))
+        lines = [
+            (
+                f'<a href="{asking.address(f"/office/events/{one.id}")}">{escape(one.told("title", asking.lang))}</a>',
+                _kind(asking, one.plan.kind),
+                told_time(one.plan.begins, asking.lang),
+                f"{one.taken} / {one.plan.places}",
+                str(one.waiting) + (f" · {word('已取消', 'off')}" if one.cancelled else ""),
+            )
+            for one in self._people.occasions.to_come(past=past)
+        ]
+        heads = (
+            word("标题", "Title"),
+            word("类别", "Kind"),
+            word("开始", "Begins"),
+            word("已约 / 名额", "Booked / places"),
+            word("候补", "Waiting"),
+        )
+        title = word("活动与参观", "Activities and visits")
+        other = asking.address("/office/events", past="" if past else "1")
+        others = word("未来的", "To come") if past else word("过去的", "Past")
+        ways = f"""<p class="doors"><a href="{other}">{others}</a>
+<a href="{asking.address("/office/day")}">{word("今日签到单", "Sheet of the day")}</a></p>"""
+        listed = (
+            rows(title, heads, lines) if lines else f"<p>{word('还没有安排。', 'Nothing is planned.')}</p>"
+        )
+        hall = word("展厅", "In the hall")
+        new = form(
+            asking, "event", "/office/events", _fields(asking, None), word("发布活动", "Publish the activity")
+        )
+        slot = _fields(asking, None, title=("讲解参观", "Guided visit"), place=hall)
+        length = Field(
+            "minutes", word("每段分钟数", "Minutes a slot"), "number", value="60", given={"min": "5"}
+        )
+        visits = form(
+            asking, "visits", "/office/visits", (*slot, length), word("发布时段", "Publish the hours")
+        )
+        told = word("从开始到结束，分成等长的时段。", "From beginning to end, in slots of one length.")
+        inside = f"""{ways}{listed}<div class="centre">
+<section aria-labelledby="new"><h2 class="small" id="new">{word("新活动", "A new activity")}</h2>{new}</section>
+<section aria-labelledby="hours"><h2 class="small" id="hours">{word("参观时段", "Hours for visits")}</h2>
+<p class="quiet">{told}</p>{visits}</section></div>"""
+        return office_page(asking, title, inside, path="events")
+
+    def one_page(self, asking: Asking) -> Shown:
+        word, one = asking.word, self._people.occasions.of(asking.names["key"])
+        at = f"/office/events/{one.id}"
+        sheet = self._sheet(asking, one)
+        why = (
+            f'<p class="refused" role="alert">{escape(asking.refusal)}</p>'
+            if asking.refusal and asking.form.get("of") != "event"
+            else ""
+        )
+        changed = ""
+        if asking.person.may("events"):
+            off = (
+                ""
+                if one.cancelled
+                else button(asking, "off", f"{at}/off", word("取消此场", "Call it off"), hidden={})
+            )
+            sent = form(asking, "event", at, _fields(asking, one), word("保存", "Save"))
+            changed = f'<h2 class="small">{word("更改", "Change")}</h2><div class="desk">{sent}{off}</div>'
+        lead = f"{told_time(one.plan.begins, asking.lang)} · {one.taken} / {one.plan.places}"
+        lead += f" · {word('已取消', 'called off')}" if one.cancelled else ""
+        heading = word("预约", "Reservations")
+        inside = f'{why}<h2 class="small">{heading}</h2>{sheet}{changed}'
+        return office_page(asking, one.told("title", asking.lang), inside, path=f"events/{one.id}", lead=lead)
+
+    def day_page(self, asking: Asking) -> Shown:
+        word, day = asking.word, _day(asking)
+        title = word("签到单", "Sheet of the day") + f" · {told_day(day, asking.lang)}"
+        near = [
+            (day - timedelta(days=1), word("前一天", "The day before")),
+            (day + timedelta(days=1), word("后一天", "The day after")),
+        ]
+        ways = "".join(
+            f'<a href="{asking.address("/office/day", day=f"{one:%Y-%m-%d}")}">{name}</a>'
+            for one, name in near
+        )
+        parts = "".join(
+            f'<h2 class="small">{told_time(one.plan.begins, asking.lang)} · {escape(one.told("title", asking.lang))}'
+            f" · {one.taken} / {one.plan.places}</h2>{self._sheet(asking, one)}"
+            for one in self._on(day)
+        )
+        none = f"<p>{word('这一天没有安排。', 'Nothing takes place on this day.')}</p>"
+        inside = f'<p class="doors">{ways}</p>{parts or none}'
+        return office_page(asking, title, inside, path="day", query={"day": f"{day:%Y-%m-%d}"})
+
+    def _sheet(self, asking: Asking, one: Occasion) -> str:
+        word, lines = asking.word, []
+        for made in self._bookings(one):
+            at = f"/office/events/{one.id}/bookings/{made.id}"
+            person = self._people.accounts.of(made.person)
+            name = person.name or person.address
+            here = made.arrived is not None
+            check = (
+                button(asking, "leave", f"{at}/leave", word("撤销签到", "Undo"), about=name, hidden={})
+                if here
+                else button(asking, "arrive", f"{at}/arrive", word("签到", "Check in"), about=name, hidden={})
+            )
+            away = button(asking, "cancel", f"{at}/cancel", word("取消", "Cancel"), about=name, hidden={})
+            waits = word(f"候补第 {made.place} 位", f"waiting, {made.place}")
+            state = waits if made.place else word("已签到", "here") if here else word("已约", "booked")
+            may = asking.person.may("check-in") and not made.place
+            deeds = f'<div class="deeds">{check if may else ""}{away}</div>'
+            lines.append((escape(name), escape(made.party), str(made.size), state, deeds))
+        if not lines:
+            return f"<p>{word('还没有预约。', 'Nobody has booked yet.')}</p>"
+        heads = (
+            word("姓名", "Name"),
+            word("团体", "Group"),
+            word("人数", "People"),
+            word("状态", "State"),
+            "",
+        )
+        heads = (*heads[:4], f'<span class="unseen">{word("操作", "Acts")}</span>')
+        return rows(one.told("title", asking.lang), heads, lines)
+
+    def _bookings(self, one: Occasion) -> tuple[Booking, ...]:
+        return self._people.bookings.for_occasion(one.id)
+
+    def _booked(self, made: Booking) -> dict[str, Any]:
+        arrived = made.arrived.isoformat() if made.arrived else None
+        kept = {"id": made.id, "person": made.person, "size": made.size, "party": made.party}
+        return kept | {"waiting": made.place, "arrived": arrived}
+
+    def _on(self, day: date) -> list[Occasion]:
+        occasions = self._people.occasions
+        found = (*occasions.to_come(), *occasions.to_come(past=True))
+        mine = [one for one in found if one.plan.begins.astimezone().date() == day and not one.cancelled]
+        return sorted(mine, key=lambda one: one.plan.begins)
+
+
+def _kind(asking: Asking, kind: str) -> str:
+    return asking.word("参观", "Visit") if kind == "visit" else asking.word("活动", "Activity")
+
+
+def _day(asking: Asking) -> date:
+    try:
+        return date.fromisoformat(asking.query.get("day", ""))
+    except ValueError:
+        return datetime.now().astimezone().date()
+
+
+def _plan(asking: Asking) -> Plan:
+    """As the form gives it. Raises PeopleError."""
+    given = asking.form
+    try:
+        # What is typed is the house's own clock; a program may name its offset.
+        begins, ends = (
+            datetime.fromisoformat(given.get(name, "")).astimezone() for name in ("begins", "ends")
+        )
+    except (ValueError, OverflowError):
+        raise PeopleError("occasion-times") from None
+    texts = {
+        name: given.get(name, "")
+        for name in ("title_zh", "title_en", "text_zh", "text_en", "place_zh", "place_en")
+    }
+    counts = {name: number_in(given.get(name, "")) for name in ("places", "party")}
+    return Plan(kind=given.get("kind", "activity"), begins=begins, ends=ends, **counts, **texts)
+
+
+def _fields(
+    asking: Asking, one: Occasion | None, *, title: tuple[str, str] = ("", ""), place: str = ""
+) -> tuple[Field, ...]:
+    """The form of a plan. one: as it is now; title, place: what stands in a new one."""
+    word, plan = asking.word, one.plan if one else None
+    times = [f"{at.astimezone():%Y-%m-%dT%H:%M}" for at in (plan.begins, plan.ends)] if plan else ["", ""]
+    chinese, english = word("（中文）", " (Chinese)"), word("（英文）", " (English)")
+    titles = (plan.title_zh, plan.title_en) if plan else title
+    texts = (plan.text_zh, plan.text_en) if plan else ("", "")
+    places = (plan.place_zh, plan.place_en) if plan else ("展厅", "In the hall") if place else ("", "")
+    kind = plan.kind if plan else "visit" if place else "activity"
+    return (
+        Field("title_zh", word("标题", "Title") + chinese, value=titles[0], given={"maxlength": "120"}),
+        Field("title_en", word("标题", "Title") + english, value=titles[1], given={"maxlength": "120"}),
+        Field("begins", word("开始", "Begins"), "datetime-local", value=times[0]),
+        Field("ends", word("结束", "Ends"), "datetime-local", value=times[1]),
+        Field(
+            "places",
+            word("名额", "Places"),
+            "number",
+            value=str(plan.places if plan else 20),
+            given={"min": "1", "max": "1000"},
+        ),
+        Field(
+            "party",
+            word("每次预约最多人数", "The most one booking may be for"),
+            "number",
+            value=str(plan.party if plan else 20 if place else 4),
+            given={"min": "1", "max": "1000"},
+        ),
+        Field("place_zh", word("地点", "Where") + chinese, value=places[0], needed=False),
+        Field("place_en", word("地点", "Where") + english, value=places[1], needed=False),
+        Field("text_zh", word("说明", "Text") + chinese, "textarea", value=texts[0], needed=False),
+        Field("text_en", word("说明", "Text") + english, "textarea", value=texts[1], needed=False),
+        Field(
+            "kind",
+            word("类别", "Kind"),
+            "select",
+            value=kind,
+            choices={"activity": _kind(asking, "activity"), "visit": _kind(asking, "visit")},
+        ),
+    )
+
+
+def _told(one: Occasion) -> dict[str, Any]:
+    plan = asdict(one.plan) | {"begins": one.plan.begins.isoformat(), "ends": one.plan.ends.isoformat()}
+    counts = {"taken": one.taken, "waiting": one.waiting, "cancelled": one.cancelled is not None}
+    return {"id": one.id} | plan | counts

@@ -1,0 +1,89 @@
+"""What there is: activities one below the other, visits by day with their slots."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+
+from hall_app.house.people.records import Occasion
+from hall_app.web.platform.counter import Asking, Page, Shown, told_day, told_time
+
+__all__ = ["activities_page", "address_of", "left_of", "visit_page"]
+
+
+def address_of(occasion: Occasion) -> str:
+    part = "visit" if occasion.plan.kind == "visit" else "activities"
+    return f"/{part}/{occasion.id}"
+
+
+def left_of(asking: Asking, occasion: Occasion) -> str:
+    """What is left, in words."""
+    word, plan = asking.word, occasion.plan
+    if occasion.cancelled:
+        return word("已取消", "Called off")
+    if occasion.left:
+        return word(
+            f"余 {occasion.left} 位（共 {plan.places} 位）", f"{occasion.left} of {plan.places} places left"
+        )
+    waiting = word(f"候补 {occasion.waiting} 人", f"{occasion.waiting} waiting") if occasion.waiting else ""
+    return word("已满", "Full") + (word("，", ", ") + waiting if waiting else "")
+
+
+def activities_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
+    word = asking.word
+    title = word("活动", "Activities")
+    lead = word(
+        "讲座、工作坊与导览。名额满后可以候补：有人取消，就按报名先后递补。",
+        "Talks, workshops and tours. Where all places are taken there is a waiting list: what is given back goes to "
+        "who asked first.",
+    )
+    cards = "".join(_card(asking, one) for one in found)
+    calendar = f'<a href="{asking.address("/activities.ics")}">{word("日历文件（.ics）", "Calendar file (.ics)")}</a>'
+    visit = f'<a href="{asking.address("/visit")}">{word("预约参观", "Book a visit")}</a>'
+    none = word(
+        "目前没有活动安排，请过些时候再来看看。", "Nothing is planned at present: look in again later."
+    )
+    listed = f'<ol class="programme">{cards}</ol>' if cards else f"<p>{none}</p>"
+    ways = f'<p class="doors">{calendar if cards else ""}{visit}</p>'
+    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{ways}{listed}'
+    return Shown(Page(title, main, "activities"), path="/activities")
+
+
+def _card(asking: Asking, one: Occasion) -> str:
+    place = escape(one.told("place", asking.lang))
+    where = f" · {place}" if place else ""
+    text = escape(one.told("text", asking.lang).partition("\n")[0])
+    way = escape(asking.address(address_of(one)))
+    return f"""<li><p class="kicker">{told_time(one.plan.begins, asking.lang)}{where}</p>
+<h2><a href="{way}">{escape(one.told("title", asking.lang))}</a></h2><p>{text}</p>
+<p class="quiet">{left_of(asking, one)}</p></li>"""
+
+
+def visit_page(asking: Asking, found: Iterable[Occasion]) -> Shown:
+    word = asking.word
+    title = word("预约参观", "Book a visit")
+    lead = word(
+        "线上展厅随时开放，无需预约。这里预约的是有讲解员陪同的时段；学校班级与团体请填写名称与人数。",
+        "The hall on this site is always open. What is booked here are hours with a guide; schools and groups give "
+        "their name and number.",
+    )
+    days: dict[str, list[Occasion]] = {}
+    for one in found:
+        days.setdefault(told_day(one.plan.begins.astimezone(), asking.lang), []).append(one)
+    listed = "".join(
+        f'<section aria-labelledby="day-{at}"><h2 class="small" id="day-{at}">{day}</h2>'
+        f'<ol class="slots">{"".join(_slot(asking, one) for one in slots)}</ol></section>'
+        for at, (day, slots) in enumerate(days.items())
+    )
+    none = word(
+        "目前没有可预约的时段，请过些时候再来看看。", "No hours are offered at present: look in again later."
+    )
+    main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header>{listed or f"<p>{none}</p>"}'
+    return Shown(Page(title, main, "visit"), path="/visit")
+
+
+def _slot(asking: Asking, one: Occasion) -> str:
+    begins, ends = one.plan.begins.astimezone(), one.plan.ends.astimezone()
+    way, left = escape(asking.address(address_of(one))), left_of(asking, one)
+    return f"""<li><a href="{way}"><b>{begins:%H:%M}–{ends:%H:%M}</b>
+<span>{escape(one.told("title", asking.lang))}</span> <span class="quiet">{left}</span></a></li>"""

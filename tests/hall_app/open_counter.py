@@ -1,0 +1,61 @@
+"""What takes an account, on a port of its own without the hall round it: quickly opened, passwords quickly hashed."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import uvicorn
+from content_house import make_house
+from fastapi import FastAPI
+from running_hall import free_port
+
+from hall_app.content import load
+from hall_app.house.people import People
+from hall_app.web.platform import add_platform
+from survey.store import Store
+
+OPENING = 120  # [s]
+
+
+@dataclass(frozen=True)
+class OpenCounter:
+    """Its address and data folder; suggestions: what the questionnaires' visitors wrote."""
+
+    url: str
+    data: Path
+    people: People
+    suggestions: list[dict[str, Any]] = field(default_factory=list)
+
+
+@contextlib.contextmanager
+def open_counter(work: Path) -> Iterator[OpenCounter]:
+    port, app, data = free_port(), FastAPI(), work / "data"
+    people, store = People(data), Store(data)
+    counter = OpenCounter(f"http://127.0.0.1:{port}", data, people)
+    house: Any = SimpleNamespace(
+        content=load(make_house(work / "content")),
+        bakes=dict,
+        survey_suggestions=lambda: counter.suggestions,
+        survey_tokens=lambda: store.tokens,
+    )
+    add_platform(app, house, people)
+    server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    end = time.monotonic() + OPENING
+    while not server.started and time.monotonic() < end:
+        time.sleep(0.01)
+    try:
+        yield counter
+    finally:
+        server.should_exit = True
+        thread.join()
+        store.close()
+        people.close()

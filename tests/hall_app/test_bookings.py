@@ -1,0 +1,244 @@
+"""Places: never more than there are, in the order of asking, once however often it is sent, whole when it is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from full_matrix import by_day
+
+from hall_app.house.people import People, PeopleError
+from hall_app.house.people.records import Plan
+
+PASSWORD = "a robe of blue ramie"
+ASKED, PLACES = 200, 20
+SOON = datetime.now(UTC) + timedelta(days=3)
+
+
+@pytest.fixture
+def people(database) -> Iterator[People]:
+    found = People(database)
+    yield found
+    found.close()
+
+
+def plan(**changed) -> Plan:
+    whole = {
+        "kind": "activity",
+        "title_zh": "缂丝工作坊",
+        "title_en": "Tapestry weaving",
+        "begins": SOON,
+        "ends": SOON + timedelta(hours=2),
+        "places": PLACES,
+        "party": 6,
+    }
+    return Plan(**(whole | changed))
+
+
+def planned(people: People, **changed) -> str:
+    return people.occasions.plan("console", plan(**changed))[0]
+
+
+def visitors(people: People, count: int) -> list[str]:
+    """Accounts without passwords: nobody signs in here."""
+    return [people.accounts.make("console", f"visitor{n}@example.org").id for n in range(count)]
+
+
+def refused(key: str):
+    return pytest.raises(PeopleError, check=lambda error: error.key == key)
+
+
+def in_order(people: People, occasion: str) -> bool:
+    """Whether what is taken is what was booked, and who waits came after who has places."""
+    found, whole = people.bookings.for_occasion(occasion), people.occasions.of(occasion)
+    booked = [one for one in found if not one.place]
+    waiting = [one for one in found if one.place]
+    assert whole.taken == sum(one.size for one in booked) <= whole.plan.places
+    assert [one.place for one in waiting] == list(range(1, len(waiting) + 1))
+    return not booked or not waiting or max(one.turn for one in booked) < min(one.turn for one in waiting)
+
+
+def test_two_hundred_ask_for_twenty_places_at_once(people, database):
+    """Over eight houses that share the database, as eight processes would: each has locks of its own."""
+    houses = [people, *(People(database) for _ in range(7))]
+    occasion, asking = planned(people), visitors(people, ASKED)
+    start = threading.Barrier(40)
+
+    def ask(number: int) -> int:
+        if number < 40:
+            start.wait()
+        return houses[number % 8].bookings.book(asking[number], occasion, 1, f"key {number}").turn
+
+    with ThreadPoolExecutor(40) as pool:
+        turns = list(pool.map(ask, range(ASKED)))
+    assert len(set(turns)) == ASKED
+    found = people.bookings.for_occasion(occasion)
+    assert len([one for one in found if not one.place]) == PLACES
+    assert [one.place for one in found if one.place] == list(range(1, ASKED - PLACES + 1))
+    assert in_order(people, occasion)
+    with ThreadPoolExecutor(20) as pool:
+        again = list(
+            pool.map(
+                lambda n: houses[n % 8].bookings.book(asking[n], occasion, 1, f"key {n}").turn, range(20)
+            )
+        )
+    assert again == turns[:20]
+    assert people.bookings.for_occasion(occasion) == found
+    for house in houses[1:]:
+        house.close()
+
+
+def test_one_form_sent_twenty_times_at_once_books_once(people):
+    occasion, (person,) = planned(people), visitors(people, 1)
+    with ThreadPoolExecutor(20) as pool:
+        ids = set(pool.map(lambda _: people.bookings.book(person, occasion, 2, "same").id, range(20)))
+    assert len(ids) == 1
+    assert people.occasions.of(occasion).taken == 2
+    assert [entry.act for entry in people.journal.about(person)].count("book") == 1
+    with refused("booked-already"):
+        people.bookings.book(person, occasion, 2, "another form")
+
+
+def test_places_given_back_go_to_who_waits_in_order(people):
+    occasion, asking = planned(people, places=4, party=3), visitors(people, 5)
+    sizes = (3, 1, 2, 1, 1)
+    made = [
+        people.bookings.book(person, occasion, size, person)
+        for person, size in zip(asking, sizes, strict=True)
+    ]
+    assert [one.place for one in made] == [0, 0, 1, 2, 3]
+    people.bookings.cancel(asking[1], "cancel booking", made[1].id, person=asking[1])
+    assert [one.place for one in people.bookings.for_occasion(occasion)] == [0, 1, 2, 3], (
+        "two do not fit in one"
+    )
+    people.bookings.cancel("console", "reservations", made[0].id)
+    assert [one.place for one in people.bookings.for_occasion(occasion)] == [0, 0, 0]
+    assert people.occasions.of(occasion).taken == 4
+    with refused("no-booking"):
+        people.bookings.cancel("console", "reservations", made[0].id)
+    assert in_order(people, occasion)
+
+
+def test_places_that_are_added_go_to_who_waits_and_booked_ones_stay(people):
+    occasion, asking = planned(people, places=2, party=1), visitors(people, 4)
+    for person in asking:
+        people.bookings.book(person, occasion, 1, person)
+    people.occasions.change("console", occasion, plan(places=3, party=1))
+    assert [one.place for one in people.bookings.for_occasion(occasion)] == [0, 0, 0, 1]
+    with refused("occasion-places"):
+        people.occasions.change("console", occasion, plan(places=2, party=1))
+
+
+def test_nobody_cancels_anothers_booking(people):
+    occasion, (one, other) = planned(people), visitors(people, 2)
+    booking = people.bookings.book(one, occasion, 1, "key")
+    with refused("no-booking"):
+        people.bookings.cancel(other, "cancel booking", booking.id, person=other)
+    assert people.bookings.of(one) == (booking,)
+
+
+@pytest.mark.parametrize("size", [0, -1, 7, 10**6])
+def test_a_party_has_a_size(people, size):
+    occasion, (person,) = planned(people), visitors(people, 1)
+    with refused("party-size"):
+        people.bookings.book(person, occasion, size, "key")
+    assert people.occasions.of(occasion).taken == 0
+
+
+def test_what_is_over_or_off_is_not_booked(people):
+    (person,) = visitors(people, 1)
+    past = planned(people, begins=SOON - timedelta(days=9), ends=SOON)
+    off = planned(people)
+    people.occasions.call_off("console", off)
+    for occasion in (past, off, "no-such-thing"):
+        with refused("no-occasion"):
+            people.bookings.book(person, occasion, 1, occasion)
+    assert off not in [one.id for one in people.occasions.to_come()]
+    assert off in [one.id for one in people.occasions.to_come(past=True)]
+
+
+@pytest.mark.parametrize(
+    ("changed", "key"),
+    [
+        ({"title_en": " "}, "occasion-title"),
+        ({"title_zh": "长" * 121}, "occasion-title"),
+        ({"ends": SOON}, "occasion-times"),
+        ({"places": 0}, "occasion-places"),
+        ({"places": 1001}, "occasion-places"),
+        ({"places": 3, "party": 4}, "occasion-places"),
+        ({"text_zh": "长" * 4001}, "occasion-text"),
+    ],
+)
+def test_a_plan_is_checked_and_nothing_of_it_kept(people, changed, key):
+    with refused(key):
+        people.occasions.plan("console", plan(), plan(**changed))
+    assert people.occasions.to_come() == ()
+
+
+def test_a_deleted_account_leaves_its_places_to_who_waits(people):
+    occasion = planned(people, places=1, party=1)
+    leaving = people.accounts.sign_up("leaving@example.org", PASSWORD)
+    (waiting,) = visitors(people, 1)
+    people.bookings.book(leaving.id, occasion, 1, "first")
+    assert people.bookings.book(waiting, occasion, 1, "second").place == 1
+    people.accounts.delete(leaving, PASSWORD)
+    (left,) = people.bookings.for_occasion(occasion)
+    assert (left.person, left.place) == (waiting, 0)
+
+
+def test_only_who_has_places_is_checked_in(people):
+    occasion, asking = planned(people, places=1, party=1), visitors(people, 2)
+    first, second = (people.bookings.book(person, occasion, 1, person) for person in asking)
+    people.bookings.arrive("console", first.id, here=True)
+    assert people.bookings.of(asking[0])[0].arrived is not None
+    people.bookings.arrive("console", first.id, here=False)
+    assert people.bookings.of(asking[0])[0].arrived is None
+    with refused("no-booking"):
+        people.bookings.arrive("console", second.id, here=True)
+
+
+_BOOKS = """
+import sys
+from hall_app.house.people import People
+from pathlib import Path
+where, occasion, *asking = sys.argv[1:]
+people = People(where if "://" in where else Path(where))
+print("ready", flush=True)
+for person in asking:
+    people.bookings.book(person, occasion, 1, person)
+    print(person, flush=True)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kills", by_day([4], [4, 50]))
+def test_killed_in_mid_booking_nothing_is_lost_or_doubled(people, database, kills):
+    """What was confirmed stands; what was not is whole or not there. Asked again, everybody is booked once."""
+    asking = visitors(people, 40)
+    for kill in range(kills):
+        occasion = planned(people)
+        command = [sys.executable, "-c", _BOOKS, str(database), occasion, *asking]
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[2]
+        ) as process:
+            assert process.stdout is not None
+            told = [process.stdout.readline() for _ in range(2 + kill % 17)][1:]
+            os.kill(process.pid, signal.SIGKILL)
+            told += process.stdout.readlines()
+        confirmed = {line.strip() for line in told if line.endswith("\n")}
+        kept = [one.person for one in people.bookings.for_occasion(occasion)]
+        assert confirmed <= set(kept)
+        assert len(kept) == len(set(kept)) <= len(confirmed) + 1
+        assert in_order(people, occasion)
+        for person in asking:
+            people.bookings.book(person, occasion, 1, person)
+        assert len(people.bookings.for_occasion(occasion)) == len(asking)
+        assert people.occasions.of(occasion).taken == PLACES

@@ -1,0 +1,266 @@
+"""The office: the table of roles holds at both doors, refusals stand in the journal, strangers see none of it."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from form_visitor import Answer, Visitor
+
+from hall_app.house.people import People, Role
+
+PASSWORD = "a robe of blue ramie"
+NUMBERS = itertools.count()
+SOON = (datetime.now(UTC) + timedelta(days=5)).replace(microsecond=0)
+EVENT = {
+    "title_zh": "讲座",
+    "title_en": "A talk",
+    "begins": SOON.isoformat(),
+    "ends": (SOON + timedelta(hours=1)).isoformat(),
+    "places": 3,
+    "party": 2,
+}
+
+# Every address of the office below its two doors, by the act that it takes. GET: to read, POST: to do.
+READ = {
+    "people": ["people", "people/{key}"],
+    "audit": ["audit"],
+    "events": ["events"],
+    "reservations": ["events/{key}", "day"],
+    "answers": ["suggestions"],
+    "tokens": ["tokens"],
+}
+DONE = {
+    "people": [
+        "people",
+        "people/{key}/code",
+        "people/{key}/close",
+        "people/{key}/open",
+        "people/{key}/sign-out",
+        "people/{key}/second-factor",
+    ],
+    "roles": ["people/{key}/roles"],
+    "events": ["events", "visits", "events/{key}", "events/{key}/off"],
+    "check-in": ["events/{key}/bookings/1/arrive", "events/{key}/bookings/1/leave"],
+    "reservations": ["events/{key}/bookings/1/cancel"],
+    "answers": ["suggestions/{key}"],
+    "tokens": ["tokens", "tokens/1/revoke"],
+}
+MAY = {
+    Role.EDITOR: set(),
+    Role.CURATOR: {"events", "reservations", "check-in"},
+    Role.RESEARCHER: {"answers"},
+}
+
+
+@pytest.fixture
+def people(counter) -> People:
+    return counter.people
+
+
+@dataclass
+class Clerk(Visitor):
+    """Somebody at work in the office, by pages and by program."""
+
+    person: str = ""
+    seal: str = field(default="", repr=False)
+
+    def api(self, path: str, given: object = None) -> Answer:
+        """GET, or POST of `given`."""
+        if given is None:
+            return self.ask("GET", f"/api/office/{path}")
+        told = {"Content-Type": "application/json", "Origin": self.url, "X-Seal": self.seal}
+        return self.ask("POST", f"/api/office/{path}", json.dumps(given).encode(), told)
+
+    def told(self, path: str, given: object = None):
+        answer = self.api(path, given)
+        assert answer.status == 200, answer.text
+        return json.loads(answer.body)
+
+
+def clerk(hall, people: People, role: Role) -> Clerk:
+    address = f"{role}{next(NUMBERS)}@example.org"
+    person = people.accounts.sign_up(address, PASSWORD)
+    people.roles.set("console", person.id, frozenset({role}))
+    one = Clerk(hall.url, person=person.id)
+    entered = one.send("/office?lang=en", "form-sign-in", address=address, password=PASSWORD)
+    assert "Sign out" in entered.text
+    one.seal = one.told("me")["seal"]
+    return one
+
+
+def forbidden(role: Role) -> list[tuple[str, str, str]]:
+    """(method, address, act) of all that a role may not."""
+    found = []
+    for method, table in (("GET", READ), ("POST", DONE)):
+        for act in table.keys() - MAY[role]:
+            for path in table[act]:
+                whole = path.replace("{key}", "0123456789abcdef")
+                found += [(method, f"/{door}/{whole}", act) for door in ("office", "api/office")]
+    return sorted(found)
+
+
+@pytest.mark.parametrize("role", MAY)
+def test_what_a_role_may_not_is_refused_and_written_down(counter, people, role):
+    one = clerk(counter, people, role)
+    page_seal = one.get("/office").form("/office/sign-out")["seal"]
+    tried = forbidden(role)
+    assert len(tried) >= 25
+    for method, path, act in tried:
+        before = people.journal.entries(most=1)[0].id
+        if method == "GET":
+            answer = one.ask("GET", path)
+        elif path.startswith("/api"):
+            answer = one.api(path.removeprefix("/api/office/"), {})
+        else:
+            answer = one.post(path, {"seal": page_seal})
+        assert answer.status == 403, (method, path)
+        (entry,) = [entry for entry in people.journal.entries(most=5) if entry.id > before]
+        assert (entry.who, entry.act, entry.subject, entry.refused) == (one.person, act, path, True)
+    for part in set(READ) - MAY[role]:
+        assert f'href="/office/{part}' not in one.get("/office").text, "nobody is shown what he may not"
+
+
+def test_strangers_see_none_of_it(counter):
+    stranger = Visitor(counter.url)
+    seal = stranger.get("/office").form("form-sign-in")["seal"]
+    told = {"Content-Type": "application/json", "Origin": counter.url, "X-Seal": seal}
+    for paths in READ.values():
+        for path in paths:
+            assert stranger.ask("GET", f"/office/{path}").headers["Location"].startswith("/office?")
+            assert stranger.ask("GET", f"/api/office/{path}").status == 401
+    for paths in DONE.values():
+        for path in paths:
+            assert stranger.post(f"/office/{path}", {"seal": seal}).headers["Location"].startswith("/office?")
+            assert stranger.ask("POST", f"/api/office/{path}", b"{}", told).status == 401
+
+
+def test_a_visitor_s_session_opens_no_office(counter, people):
+    person = people.accounts.sign_up(f"visitor{next(NUMBERS)}@example.net", PASSWORD)
+    people.roles.set("console", person.id, frozenset({Role.CURATOR}))
+    visitor = Visitor(counter.url)
+    visitor.send("/me", "form-sign-in", address=person.address, password=PASSWORD)
+    assert visitor.ask("GET", "/api/office/events").status == 401
+    people.roles.set("console", person.id, frozenset())
+    refused = visitor.send("/office?lang=en", "form-sign-in", address=person.address, password=PASSWORD)
+    assert "has no role in the house" in refused.text
+
+
+def test_no_other_site_acts_for_the_office(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    body, kind = json.dumps(EVENT).encode(), {"Content-Type": "application/json"}
+    good = kind | {"Origin": counter.url, "X-Seal": one.seal}
+    for wrong in (
+        good | {"Origin": "https://elsewhere.example.org"},
+        kind | {"X-Seal": one.seal},
+        kind | {"Origin": counter.url},
+        good | {"X-Seal": "0" * 40},
+    ):
+        assert one.ask("POST", "/api/office/events", body, wrong).status == 403
+    assert one.ask("POST", "/api/office/events", body, good | {"Content-Type": "text/plain"}).status == 413
+    for odd in (b"[]", b"{", b'{"places": null}', b'{"title_zh": {}}', b"\xff", b"[" * 9000):
+        assert one.ask("POST", "/api/office/events", odd, good).status in (400, 413)
+    assert one.ask("POST", "/api/office/events", body, good).status == 200
+
+
+def test_an_event_from_plan_to_check_in(counter, people):
+    one = clerk(counter, people, Role.CURATOR)
+    key = one.told("events", EVENT)["id"]
+    asking = [people.accounts.make("console", f"guest{next(NUMBERS)}@example.org").id for _ in range(3)]
+    made = [people.bookings.book(person, key, 2, person) for person in asking]
+    assert [booking.place for booking in made] == [0, 1, 2]
+    page = one.get(f"/office/events/{key}?lang=en")
+    at = f"/office/events/{key}/bookings/{made[0].id}"
+    assert one.send(page, f"{at}/arrive").text.count(f"{at}/leave") == 1
+    told = one.told(f"events/{key}")
+    assert [booking["waiting"] for booking in told["bookings"]] == [0, 1, 2]
+    assert told["bookings"][0]["arrived"] is not None
+    one.told(f"events/{key}", EVENT | {"places": 5, "title_en": "A longer talk"})
+    told = one.told(f"events/{key}")
+    assert (told["title_en"], told["taken"], told["waiting"]) == ("A longer talk", 4, 2)
+    one.told(f"events/{key}/bookings/{made[0].id}/cancel", {})
+    assert [booking["waiting"] for booking in one.told(f"events/{key}")["bookings"]] == [0, 0]
+    day = SOON.astimezone().date()
+    assert key in [sheet["id"] for sheet in one.told(f"day?day={day}")]
+    assert "A longer talk" in one.get(f"/office/day?day={day}&lang=en").text
+    one.told(f"events/{key}/off", {})
+    assert f"/activities/{key}" not in Visitor(counter.url).get("/activities").text
+
+
+def test_hours_for_visits_are_cut_into_slots(counter, people):
+    one = clerk(counter, people, Role.CURATOR)
+    hours = EVENT | {"ends": (SOON + timedelta(hours=3)).isoformat()}
+    keys = one.told("visits", hours | {"minutes": 45})["ids"]
+    assert len(keys) == 4
+    found = [one.told(f"events/{key}") for key in keys]
+    assert all(slot["kind"] == "visit" for slot in found)
+    assert [slot["ends"] for slot in found[:-1]] == [slot["begins"] for slot in found[1:]]
+    for minutes in (0, 4, "x"):
+        assert one.api("visits", hours | {"minutes": minutes}).status == 400
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"begins": "tomorrow"}, {"places": 0}, {"places": "many"}, {"party": 9}, {"title_en": ""}]
+)
+def test_a_faulty_plan_is_told_beside_its_form(counter, people, wrong):
+    one = clerk(counter, people, Role.CURATOR)
+    given = {name: str(value) for name, value in (EVENT | wrong).items()}
+    told = one.send("/office/events?lang=en", "form-event", **given)
+    assert told.status == 400
+    assert 'role="alert"' in told.text
+    assert one.api("events", EVENT | wrong).status == 400
+
+
+def test_people_get_roles_codes_and_are_shut_out(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    address = f"new{next(NUMBERS)}@example.org"
+    made = one.send("/office/people?lang=en", "form-person", address=address, name="Newcomer")
+    key = made.address.partition("?")[0].rpartition("/")[2]
+    one.send(made, "form-roles", editor="on", researcher="on")
+    assert one.told(f"people/{key}")["roles"] == ["editor", "researcher"]
+    assert one.told(f"people/{key}/roles", {"roles": ["curator"]})["roles"] == ["curator"]
+    assert one.api(f"people/{key}/roles", {"roles": ["emperor"]}).status == 400
+    shown = one.send(f"/office/people/{key}?lang=en", f"/office/people/{key}/code")
+    code = re.findall(r"<code>([-A-Z0-9]{14})</code>", shown.text)[0]
+    newcomer = Visitor(counter.url)
+    assert (
+        address in newcomer.send("/me/open", "form-open", code=code, password=PASSWORD, again=PASSWORD).text
+    )
+    one.told(f"people/{key}/close", {})
+    assert address not in newcomer.get("/me").text
+    one.told(f"people/{key}/open", {})
+    assert not one.told(f"people/{key}")["closed"]
+    acts = [entry["act"] for entry in one.told("audit") if entry["who"] == one.person]
+    assert {"people", "roles"} <= set(acts)
+    assert address in one.get("/office/audit?lang=en").text
+
+
+def test_tokens_are_made_shown_once_and_revoked(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    secret = one.told("tokens", {"label": "for the paper"})["token"]
+    (kept,) = [token for token in one.told("tokens") if token["label"] == "for the paper"]
+    assert secret not in one.get("/office/tokens").text
+    one.told(f"tokens/{kept['id']}/revoke", {})
+    assert one.api(f"tokens/{kept['id']}/revoke", {}).status == 400
+    assert one.api("tokens", {"label": " "}).status == 400
+
+
+def test_a_suggestion_is_followed_up(counter, people):
+    title = {"zh": "平台", "en": "The platform"}
+    written = {"id": "a1.culture", "title": title, "module": title, "text": "更大的字 <b>"}
+    counter.suggestions.append(written)
+    one = clerk(counter, people, Role.RESEARCHER)
+    (told,) = one.told("suggestions")
+    assert (told["state"], told["by"]) == ("open", "")
+    page = one.get("/office/suggestions?lang=en")
+    assert "更大的字 &lt;b&gt;" in page.text
+    done = one.send(page, "form-follow-0", state="done", note="Letters of 18 px")
+    assert "Letters of 18 px" in done.text
+    (told,) = one.told("suggestions")
+    assert (told["state"], told["note"], told["by"]) == ("done", "Letters of 18 px", one.person)
+    for key, state in (("nothing", "done"), ("a1.culture", "shelved")):
+        assert one.api(f"suggestions/{key}", {"state": state}).status == 400

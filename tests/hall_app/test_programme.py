@@ -1,0 +1,114 @@
+"""Activities and visits as visitors meet them: open to all, booked with an account, cancelled, in a calendar."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from form_visitor import Visitor
+from icalendar import Calendar
+from test_me import PASSWORD, member
+
+from hall_app.house.people.records import Plan
+
+SOON = datetime.now(UTC).replace(microsecond=0) + timedelta(days=3)
+
+
+@pytest.fixture
+def planned(counter):
+    """A function that plans an occasion beside the open hall, as the office does."""
+
+    def plan(**changed) -> str:
+        whole = {"kind": "activity", "title_zh": "缂丝工作坊", "title_en": "Tapestry <weaving>", "places": 2}
+        whole |= {"begins": SOON, "ends": SOON + timedelta(hours=2), "party": 2, "place_zh": "东厢"}
+        whole |= {"text_zh": "带一把剪刀。\n穿便服。", "text_en": "Bring scissors."}
+        return counter.people.occasions.plan("console", Plan(**(whole | changed)))[0]
+
+    return plan
+
+
+def test_the_programme_is_open_to_all(counter, planned):
+    activity, visit = planned(), planned(kind="visit", title_en="Guided hour")
+    stranger = Visitor(counter.url)
+    listed = stranger.get("/activities?lang=en").text
+    assert f"/activities/{activity}?lang=en" in listed
+    assert "Tapestry &lt;weaving&gt;" in listed
+    assert visit not in listed
+    assert f"/visit/{visit}?lang=zh" in stranger.get("/visit?lang=zh").text
+    shown = stranger.get(f"/activities/{activity}?lang=zh").text
+    assert "余 2 位（共 2 位）" in shown
+    assert "东厢" in shown
+    assert "form-book" not in shown
+    assert "东厢" in stranger.get(f"/activities/{activity}?lang=en").text, (
+        "what is not translated is told as it is"
+    )
+    assert stranger.get("/activities/nothing-like-it").status == 400
+
+
+def test_places_are_booked_waited_for_and_given_back(counter, planned):
+    way = f"/activities/{planned()}?lang=en"
+    first, second = member(counter)[0], member(counter)[0]
+    page = first.get(way)
+    assert "looking" not in page.text
+    booked = first.send(page, "form-book", size="2")
+    assert "booked · 2 people" in booked.text
+    again = first.send(page, "form-book", size="2")
+    assert "booked · 2 people" in again.text, "the same form once more is the same booking"
+    waiting = second.send(way, "form-book", size="1")
+    assert "number 1 on the waiting list" in waiting.text
+    assert "Full, 1 waiting" in waiting.text
+    action = way.partition("?")[0] + "/cancel"
+    assert "The reservation is cancelled" in first.send(booked, action).text
+    assert "booked · 1 person" in second.get(way).text
+    assert "booked · 1 person" in second.get("/me?lang=en").text
+
+
+@pytest.mark.parametrize("size", ["0", "3", "-1", "1.5", "two", "", "９"])
+def test_a_number_that_is_none_is_refused_beside_the_form(counter, planned, size):
+    visitor, _ = member(counter)
+    told = visitor.send(f"/activities/{planned()}?lang=en", "form-book", size=size)
+    assert told.status == 400
+    assert 'role="alert">The number of people is a whole number from 1 to 2' in told.text
+
+
+def test_a_class_books_a_visit_and_takes_it_out_in_its_copy(counter, planned):
+    visitor, _ = member(counter)
+    visit = planned(kind="visit", places=40, party=40)
+    told = visitor.send(f"/visit/{visit}?lang=zh", "form-book", size="32", party="三年级二班")
+    assert "已预约 · 32 人 · 三年级二班" in told.text
+    copy = visitor.send("/me", "/me/copy")
+    with zipfile.ZipFile(io.BytesIO(copy.body)) as archive:
+        (kept,) = json.loads(archive.read("bookings.json"))
+    assert (kept["occasion"], kept["size"], kept["party"]) == (visit, 32, "三年级二班")
+    visitor.send("/me/delete", "form-delete", password=PASSWORD)
+    assert "余 40 位" in Visitor(counter.url).get(f"/visit/{visit}?lang=zh").text
+
+
+def test_who_is_not_signed_in_books_nothing(counter, planned):
+    activity = planned()
+    visitor, _ = member(counter)
+    given = visitor.get(f"/activities/{activity}").form("form-book")
+    visitor.send("/me", "/me/sign-out")
+    seal = visitor.get("/me").form("form-sign-in")["seal"]
+    led = visitor.post(f"/activities/{activity}/book", given | {"seal": seal})
+    assert led.headers["Location"].startswith("/me?")
+    assert activity in led.headers["Location"]
+
+
+def test_a_calendar_takes_it_over(counter, planned):
+    activity = planned()
+    for path in (f"/activities/{activity}.ics?lang=en", "/activities.ics?lang=en"):
+        answer = Visitor(counter.url).ask("GET", path)
+        assert answer.headers["Content-Type"] == "text/calendar; charset=utf-8"
+        events = [
+            event
+            for event in Calendar.from_ical(answer.body).walk("VEVENT")
+            if str(event["uid"]).startswith(activity)
+        ]
+        (event,) = events
+        assert event["dtstart"].dt == SOON
+        assert event["summary"] == "Tapestry <weaving>"
+        assert str(event["url"]).startswith(f"{counter.url}/activities/{activity}")
