@@ -321,4 +321,13 @@ def _media_file(house: House, owner: str, path: str) -> Path | None:
         plain = full.is_relative_to(base.resolve()) and full.is_file()
     except (OSError, ValueError):  # a name no file system takes
         return None
-    return full if plain and media_type(full.name) != "application/octet-stream" else None
+    if not plain or media_type(full.name) == "application/octet-stream":
+        return None
+    return None if owner != "hall" and _is_scan(house, owner, full) else full
+
+
+def _is_scan(house: House, owner: str, full: Path) -> bool:
+    """Whether it is what models are made of, not for visitors: large, and whoever owns it may not want it taken."""
+    exhibit = house.content.exhibit(owner)
+    scan = exhibit.file.scan if exhibit is not None else None
+    return exhibit is not None and scan is not None and full == (exhibit.folder / scan).resolve()

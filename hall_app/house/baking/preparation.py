@@ -24,11 +24,11 @@ _NICE = 10  # how far a bake stands back for who serves visitors
 
 
 def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
-    """Exhibits whose garment has no bake of its outfit as it is now."""
+    """Exhibits whose garment or scan has no bake of it as it is now."""
     return tuple(
         exhibit
         for exhibit in content.exhibits
-        if exhibit.file.outfit is not None
+        if exhibit.file.baked_key is not None
         and key_now(content, exhibit) is not None  # an input is missing: nothing can be baked from it
         and bake_folder(content, exhibit, data, stale=False) is None
     )
