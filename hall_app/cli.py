@@ -1,4 +1,4 @@
-"""`hall`: open the hall, build its garments, check its content, measure it."""
+"""`hall`: open the hall, build its garments, check its content, hand on its catalogue, measure it."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ _COMMANDS = {
     "serve": "hall_app.web.command",
     "build": "hall_app.build.command",
     "check": "hall_app.check.command",
+    "collection": "hall_app.web.collection.table.command",
 }
 _BENCHES = ("walking", "page", "look", "crowd")
 
@@ -25,6 +26,7 @@ examples:
   hall serve                          open the hall at http://127.0.0.1:8000
   hall serve --content my-hall        with a content folder of your own
   hall check my-hall                  say what is wrong in it, one line a problem
+  hall collection export all.csv      the catalogue as a table; import takes its changes back
   hall build                          dress the outfits that changed, or what they name
 
 The content folder is --content, else ./assets, else the copy that came with the program.

@@ -31,13 +31,15 @@ Picture = NDArray[np.uint8]
 @dataclass(frozen=True)
 class Part:
     """Triangles of one look: faces (F, 3) int32, sRGB colour 0..1; alpha: share of the light it stops, seen head-on;
-    gloss, sheen: 0..1, as `sim_core.picture.Surface` has them."""
+    gloss, sheen: 0..1, fabric (a `sim_core.picture.Fabric`) and corners (F, 3, 2) [m] as its `Surface` has them."""
 
     faces: NDArray[np.int32]
     colour: tuple[float, float, float]
     alpha: float = 1.0
     gloss: float = 0.0
     sheen: float = 0.0
+    fabric: Any = None
+    corners: NDArray[np.floating] | None = None
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,8 @@ def _surfaces(look: Look, moved: Sequence[NDArray[np.floating]] = ()) -> list[An
         for part in piece.parts:
             through = 0.3 if part.alpha < 1 else 0.0
             more = {"alpha": part.alpha, "gloss": part.gloss, "sheen": part.sheen, "through": through}
-            drawn.append(Surface(raised, part.faces, part.colour, **more))
+            woven = {"fabric": part.fabric, "corners": part.corners}
+            drawn.append(Surface(raised, part.faces, part.colour, **more, **woven))
     return drawn
 
 

@@ -26,6 +26,7 @@ MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to 
 TREAD = 0.06  # [m] above the ground that feet are looked at
 ROUND = 0.04  # [m] of its base round the feet of who walks
 PIXELS = 512  # of the weaves' maps
+FILM_PIXEL = 0.002  # [m] of a repeat in films and stills, whose pixels see about as much
 
 
 @dataclass(frozen=True)
@@ -56,16 +57,21 @@ class Wardrobe:
             weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
             _, first, index = np.unique(weld, return_index=True, return_inverse=True)
             faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
-            parts = self._parts(number, faces, cloth.panel, cloth.names)
+            places = (cloth.vertices - np.array(layer.panel_origins())[cloth.panel_of])[cloth.faces]
+            parts = self._parts(number, faces, places, (cloth.panel, cloth.names))
             pieces.append(Piece(np.zeros((len(cloth.vertices), 3)), parts))
         return self._look(pieces)
 
     def still(self, garments: Sequence[Garment]) -> Look:
         """What the stills show: the garments at rest."""
-        pieces = [
-            Piece(garment.positions, self._parts(number, garment.faces, garment.panel, garment.panels))
-            for number, garment in enumerate(garments)
-        ]
+        from sim_core.picture import split_along
+
+        pieces = []
+        for number, garment in enumerate(garments):
+            faces, welded = split_along(garment.faces, garment.creases())
+            places = garment.cloth_places()[garment.pattern_faces]
+            parts = self._parts(number, faces, places, (garment.panel, garment.panels))
+            pieces.append(Piece(garment.positions[welded], parts))
         return self._look(pieces)
 
     def write_models(
@@ -107,6 +113,7 @@ class Wardrobe:
     def _figure(self, layers: Sequence[Clothed], precision: str, played: Played | None) -> Any:
         """The wearer as far as no dense cloth hides it, as they stand and as they move."""
         from sim_core.garment.levels import shown_figure
+        from sim_core.weave.maps import SHEER, coverage
 
         wearer = self.outfit.wearer
         if wearer is None:
@@ -114,7 +121,7 @@ class Wardrobe:
         points, faces, count = [], [], 0
         for layer in layers:
             garment = layer.garment
-            dense = [k for k in range(len(garment.panels)) if not _sheer(_cover(layer.of(k)))]
+            dense = [k for k in range(len(garment.panels)) if coverage(layer.of(k)) >= SHEER]
             points.append(garment.positions)
             faces.append(garment.faces[np.isin(garment.panel, dense)] + count)
             count += len(garment.positions)
@@ -122,36 +129,47 @@ class Wardrobe:
         body = wearer.posed(self.outfit.pose), wearer.faces
         moments = [] if played is None else _moments(played, wearer)
         cloth = np.concatenate(points), np.concatenate(faces)
-        shown = shown_figure(*body, *cloth, triangles=most, moments=moments)
+        feet = wearer.feet()
+        shown = shown_figure(*body, *cloth, triangles=most, moments=moments, feet=feet)
         reach = max((_reach(figure) for figure, _ in moments), default=0.0)
         radius, height = shown.base
         return replace(shown, base=(max(radius, reach + ROUND), height))
 
     def _parts(
-        self, number: int, faces: np.ndarray, panel: np.ndarray, names: Sequence[str]
+        self,
+        number: int,
+        faces: np.ndarray,
+        places: np.ndarray,
+        panels: tuple[np.ndarray, Sequence[str]],
     ) -> tuple[Part, ...]:
-        """The looks of a layer's cloth: one for each colour and cover."""
-        from sim_core.garment.pattern import unsided
+        """The looks of a layer's cloth: one for each colour, cover and repeat.
 
-        layer, (maps, own) = self.outfit.layers[number], self.maps[number]
+        faces (F, 3); places (F, 3, 2) [m] where they lie in their cloth; panels: numbers (F,) and names of theirs.
+        """
+        from sim_core.garment.pattern import unsided
+        from sim_core.weave.maps import SHEER, coverage
+
+        layer, (maps, own), (panel, names) = self.outfit.layers[number], self.maps[number], panels
         dyes = {cut.name: cut.dye for cut in layer.pattern.panels}
-        looks = []
-        for name in map(unsided, names):
-            woven = own.get(name, maps)
-            cover = _cover(woven)
-            alpha = max(cover, THINNEST) if _sheer(cover) else 1.0
+        looks: dict[Any, list[int]] = {}
+        for k, name in enumerate(map(unsided, names)):
             dye = None if layer.weave_of(name).several else dyes.get(name) or layer.pattern.dye
-            looks.append((_colour(dye, woven), alpha))
-        return tuple(
-            Part(faces[np.isin(panel, [k for k, own in enumerate(looks) if own == look])], *look, sheen=0.5)
-            for look in dict.fromkeys(looks)
-        )
+            looks.setdefault((dye, name if name in own else ""), []).append(k)
+        parts = []
+        for (dye, name), which in looks.items():
+            woven, mine = own.get(name, maps), np.isin(panel, which)
+            cover = coverage(woven)
+            colour, fabric = _far(woven, dye)
+            alpha = max(cover, THINNEST) if cover < SHEER else 1.0
+            woven_in = {} if fabric is None else {"fabric": fabric, "corners": places[mine]}
+            parts.append(Part(faces[mine], colour, alpha, sheen=0.5, **woven_in))
+        return tuple(parts)
 
     def _look(self, cloth: Sequence[Piece]) -> Look:
         """Cloth, given from the skin outwards, and what bears it."""
         from sim_core.cloth import Cylinder
         from sim_core.cloth.contact.solid_meshes import solid_mesh
-        from sim_core.garment.glb import LACQUER, LINEN
+        from sim_core.garment.glb import LACQUER, LINEN, SHOE
         from sim_core.garment.levels.figure import BASE
 
         if self.outfit.wearer is None:
@@ -162,7 +180,10 @@ class Wardrobe:
         radius, lift = BASE
         vertices = self.outfit.wearer.posed(self.outfit.pose)
         disc, around = solid_mesh(Cylinder((0, 0, 0), (0, lift, 0), radius, 0.4 * lift), 48)
-        body = Piece(vertices, (Part(self.outfit.wearer.faces, LINEN, gloss=0.05),), lift)
+        faces, feet = self.outfit.wearer.faces, self.outfit.wearer.feet()
+        shod = feet[faces].all(1)
+        skin = Part(faces[~shod], LINEN, gloss=0.05), Part(faces[shod], SHOE, gloss=0.1)
+        body = Piece(vertices, skin, lift)
         base = Piece(disc, (Part(around, LACQUER, gloss=0.35),))
         raised = [replace(piece, lift=lift) for piece in cloth[::-1]]
         return Look((*raised, body, base), float(vertices[:, 1].max()) + lift)
@@ -197,18 +218,12 @@ def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:
     return replace(lain, surfaces=(body, *surfaces)).solid()
 
 
-def _cover(maps: MapsLike) -> float:
-    """Share of the light that the cloth stops."""
-    return float(maps.opacity.mean() / 255)
+def _far(maps: MapsLike, dye: tuple[float, float, float] | None) -> tuple[tuple[float, float, float], Any]:
+    """The colour [sRGB] of cloth seen from afar, and the repeat that is seen then; None where there is none."""
+    from sim_core.picture import Fabric
+    from sim_core.weave.maps import seen_afar, srgb
 
-
-def _sheer(cover: float) -> bool:
-    from sim_core.garment.glb import SHEER
-
-    return cover < SHEER
-
-
-def _colour(dye: tuple[float, float, float] | None, maps: MapsLike) -> tuple[float, float, float]:
-    """The colour [sRGB] of cloth seen from afar: its dye, else the mean of its yarns."""
-    red, green, blue = dye if dye is not None else maps.albedo.reshape(-1, 3).mean(axis=0) / 255
-    return (float(red), float(green), float(blue))
+    picture, factor = seen_afar(maps, dye, FILM_PIXEL)
+    red, green, blue = srgb(factor)
+    fabric = None if picture is None else Fabric(picture, maps.size)
+    return (float(red), float(green), float(blue)), fabric

@@ -9,12 +9,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from hall_app.check.folder import CHECKS, check, hints
+    from hall_app.check.folder import CHECKS, QUICK, check, hints
 
-__all__ = ["CHECKS", "check", "hints"]
+__all__ = ["CHECKS", "QUICK", "check", "hints"]
 
 _HOME = {
     "CHECKS": "folder",
+    "QUICK": "folder",
     "check": "folder",
     "hints": "folder",
 }

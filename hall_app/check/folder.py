@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from hall_app.check.files.bakes import bake_problems
@@ -14,6 +14,7 @@ from hall_app.check.files.models import scale_problems
 from hall_app.check.files.scans import scan_problems, scan_remarks
 from hall_app.check.files.unused import unused_problems
 from hall_app.check.files.words import word_problems
+from hall_app.check.files.writing import writing_problems
 from hall_app.check.hall.backdrops import backdrop_problems
 from hall_app.check.hall.fittings import fitting_problems
 from hall_app.check.hall.questionnaires import questionnaire_problems, unstated
@@ -23,11 +24,12 @@ from hall_app.content.folder import Content
 from hall_app.content.loading import load, load_exhibit_problems
 from hall_app.content.problems import ContentError, Problem
 
-__all__ = ["CHECKS", "check", "hints"]
+__all__ = ["CHECKS", "QUICK", "check", "hints"]
 
 # What is looked at beyond loading: each function takes the content and returns problems.
 CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     word_problems,
+    writing_problems,
     media_problems,
     scale_problems,
     budget_problems,
@@ -43,16 +45,22 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     unused_problems,
 )
 
+# What changed words can bring about: seconds less than all of it, which measures bakes and walks through the hall.
+QUICK = (word_problems, media_problems, questionnaire_problems, unused_problems)
 
-def check(folder: Path) -> list[Problem]:
-    """All problems of the content folder, in the order of its files; an empty list for a good one."""
+
+def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] | None = None) -> list[Problem]:
+    """All problems of the content folder, in the order of its files; an empty list for a good one.
+
+    looks: what is looked at beyond loading, all of CHECKS where it is left out.
+    """
     try:
         content = load(folder)
     except ContentError as error:
         # Without a floor nothing can be placed on it, but the exhibits' own files can be looked at.
         return [*error.problems, *load_exhibit_problems(folder)]
     found = list(content.problems)
-    for look in CHECKS:
+    for look in CHECKS if looks is None else looks:
         found += _looked(look, content)
     return list(dict.fromkeys(found))
 

@@ -1,4 +1,4 @@
-"""A content folder as values: the hall, its plan, its exhibits, and what is wrong with them."""
+"""A content folder as values: the hall, its plan, its exhibits, what is written of them, and what is wrong with it."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from pathlib import Path
 
 from hall_app.content.files import is_there
 from hall_app.content.problems import Problem
+from hall_app.content.schema.article import ArticleFile
 from hall_app.content.schema.exhibit import ExhibitFile
+from hall_app.content.schema.glossary import Word
 from hall_app.content.schema.hall import HallFile
 from hall_app.content.schema.plan import PlanFile
+from hall_app.content.schema.research import Measured, Paper
 
-__all__ = ["Content", "Exhibit"]
+__all__ = ["Article", "Cloth", "Content", "Exhibit", "Writing"]
 
 
 @dataclass(frozen=True)
@@ -56,13 +59,78 @@ class Exhibit:
 
 
 @dataclass(frozen=True)
+class Article:
+    """An article as its folder describes it. The texts are Markdown; `folder` an absolute path."""
+
+    id: str
+    folder: Path
+    file: ArticleFile
+    text_zh: str
+    text_en: str
+
+    @property
+    def toml(self) -> str:
+        """Name of its file inside the content folder."""
+        return f"articles/{self.id}/article.toml"
+
+    def text(self, language: str) -> str:
+        """Its Markdown in "zh" or "en"."""
+        return self.text_zh if language == "zh" else self.text_en
+
+
+@dataclass(frozen=True)
+class Cloth:
+    """What a weave's file says of itself to readers; the engine reads the rest.
+
+    kind: its draft's; ends, picks: a metre; motif: the name of its motif's file, if it has one.
+    """
+
+    id: str
+    title_zh: str
+    title_en: str
+    source: str
+    kind: str
+    ends: float
+    picks: float
+    motif: str | None
+
+    def title(self, language: str) -> str:
+        """Its name in "zh" or "en"."""
+        return self.title_zh if language == "zh" else self.title_en
+
+
+@dataclass(frozen=True)
+class Writing:
+    """What is there to read beside the exhibits: articles in their order, words, weaves, figures, publications."""
+
+    articles: tuple[Article, ...] = ()
+    words: tuple[Word, ...] = ()
+    cloths: tuple[Cloth, ...] = ()
+    numbers: tuple[Measured, ...] = ()
+    papers: tuple[Paper, ...] = ()
+
+    def article(self, identity: str) -> Article | None:
+        """The article of that id, or None."""
+        return next((article for article in self.articles if article.id == identity), None)
+
+    def word(self, identity: str) -> Word | None:
+        """The word of that id, or None."""
+        return next((word for word in self.words if word.id == identity), None)
+
+    def cloth(self, identity: str) -> Cloth | None:
+        """The weave of that id, or None."""
+        return next((cloth for cloth in self.cloths if cloth.id == identity), None)
+
+
+@dataclass(frozen=True)
 class Content:
-    """A content folder, read. Faulty exhibits are left out and named in `problems`."""
+    """A content folder, read. Faulty exhibits and articles are left out and named in `problems`."""
 
     folder: Path
     hall: HallFile
     plan: PlanFile
     exhibits: tuple[Exhibit, ...]
+    writing: Writing
     problems: tuple[Problem, ...]
     revision: str
 

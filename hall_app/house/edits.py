@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 
+from hall_app.content.loading import Watcher
 from hall_app.content.problems import Problem
-from hall_app.content.reload import Watcher
 from hall_app.house.background import in_thread
 from hall_app.house.baking.preparation import wanted_bakes
 from hall_app.house.baking.queue import BakingQueue

@@ -46,6 +46,7 @@ class House:
     visitors: Visitors = field(default_factory=Visitors)
     places: Places = field(default_factory=Places)
     survey_problems: Callable[[], Iterable[Any]] = tuple
+    survey_results: Callable[[], Iterable[dict[str, Any]]] = tuple  # what everybody may see of the answers
     survey_asks: Callable[[str], bool] = bool  # whether the questionnaire of that id has anything to ask here
 
     def __post_init__(self) -> None:

@@ -1,8 +1,9 @@
 """The hall's web application, and `hall serve`.
 
 limits: what strangers may ask for; answers: made once, packed once; pages: the door, the catalogue and their files;
-sockets: viser's and the walk's; app: all of them on one port; memory: given back after visitors; port, progress_line,
-command: `hall serve`. Names are handed out when they are asked for (PEP 562).
+sockets: viser's and the walk's; collection: the exhibits' records in the formats museums use; app: all of them on one
+port; memory: given back after visitors; port, progress_line, command: `hall serve`. Names are handed out when they are
+asked for (PEP 562).
 """
 
 from importlib import import_module

@@ -17,20 +17,25 @@ from fastapi.responses import FileResponse, HTMLResponse, Response
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hall_app.content.files import is_there
+from hall_app.content.models.pictures import PictureError, picture_size
 from hall_app.content.views.scene import exhibit_json, media_file, media_type, scene_json, yaw_of
+from hall_app.content.views.writing import writing_file
 from hall_app.house.house import House
 from hall_app.show.pieces import Pieces
 from hall_app.web.answers.packed import FOR_GOOD, PRIVATE, REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
+from hall_app.web.collection.routes import OPEN, add_collection, collection_now
 from hall_app.web.limits.addresses import Addresses
 from hall_app.web.limits.doorkeeper import Doorkeeper
 from hall_app.web.limits.portions import Portions
-from hall_app.web.pages.catalogue import Small, catalogue_html, shown_language
+from hall_app.web.pages.catalogue import Small, catalogue_html, schema_records, shown_language
 from hall_app.web.pages.client import viser_client
 from hall_app.web.pages.door import content_security_policy, door_page
 from hall_app.web.pages.static import page_files
 from hall_app.web.pages.still import still_jpeg
 from hall_app.web.pages.thumbnails import Thumbnails
+from hall_app.web.reading import Pictures, add_reading
 from hall_app.web.sockets.origin import key_of, with_key
 from hall_app.web.sockets.relay import Views, add_relay
 from hall_app.web.sockets.walk import add_walk_socket
@@ -76,6 +81,10 @@ def create_app(
     _add_files(app, house.scene.pieces)
     _add_api(app, house, answers)
     _add_media(app, house)
+    add_collection(app, house)
+    add_reading(
+        app, house, lambda: Pictures(_small_pictures(house), lambda url: _size(house, url), house.bakes())
+    )
     views = Views(house.places)
     add_relay(app, house.scene.port, views, addresses, house.scene.pieces)
     add_walk_socket(app, house, views, addresses)
@@ -156,9 +165,13 @@ def _add_page(app: FastAPI, house: House, answers: Answers) -> None:
     async def catalogue(request: Request, lang: str | None = None) -> Response:
         content, shown, bakes = house.content, house.shown(), house.bakes()
         spoken, small = shown_language(content, lang), _small_pictures(house)
+        collection = collection_now(
+            house, ""
+        )  # addresses from / on: the page is one for all names of the machine
 
         def made() -> Packed:
-            return Packed(catalogue_html(content, shown, bakes, spoken, small).encode(), _HTML)
+            records = schema_records(collection())
+            return Packed(catalogue_html(content, shown, bakes, spoken, small, records).encode(), _HTML)
 
         return await (await answers.of(house.state, ("catalogue", spoken), made)).answer(request)
 
@@ -270,7 +283,9 @@ def _add_media(app: FastAPI, house: House) -> None:
             raise HTTPException(404, "no such file in the hall")
         # FileResponse answers Range requests.
         kind = media_type(found.name)
-        return FileResponse(found, media_type=kind, headers={"Cache-Control": FOR_GOOD} | _policy(kind))
+        return FileResponse(
+            found, media_type=kind, headers={"Cache-Control": FOR_GOOD, **OPEN} | _policy(kind)
+        )
 
     @app.get("/thumbnails/{owner}/{path:path}", include_in_schema=False)
     async def thumbnail(owner: str, path: str) -> FileResponse:
@@ -295,17 +310,34 @@ def _small_pictures(house: House) -> Callable[[str], Small | None]:
     thumbnails = Thumbnails(house.data / _THUMBNAILS)
 
     def small(url: str) -> Small | None:
-        inside = urlsplit(url).path.removeprefix("/media/")
-        owner, _, path = unquote(inside).partition("/")
-        found = _media_file(house, owner, path)
+        found = _addressed(house, url)
         size = thumbnails.size(found) if found is not None else None
         return Small(url.replace("/media/", "/thumbnails/", 1), *size) if size is not None else None
 
     return small
 
 
+def _addressed(house: House, url: str) -> Path | None:
+    """The file at an address under /media."""
+    owner, _, path = unquote(urlsplit(url).path.removeprefix("/media/")).partition("/")
+    return _media_file(house, owner, path)
+
+
+def _size(house: House, url: str) -> tuple[int, int] | None:
+    """(width, height) [pixels] of a picture under /media, None where it cannot be told."""
+    found = _addressed(house, url)
+    try:
+        return picture_size(found.read_bytes()) if found is not None else None
+    except (OSError, PictureError):
+        return None
+
+
 def _media_file(house: House, owner: str, path: str) -> Path | None:
-    """A file of the hall or of an exhibit, None for anything outside or of a kind that is not shown."""
+    """A file of the hall, an article, a weave or an exhibit; None for what is outside or of a kind not shown."""
+    if owner in ("articles", "weaves", "research"):
+        found = writing_file(house.content, f"{owner}/{path}")
+        shown = found is not None and media_type(found.name).startswith("image/") and is_there(found)
+        return found if shown else None
     if owner == "hall":
         base = house.content.folder / "media"
         full = house.content.folder / path

@@ -37,7 +37,9 @@ __all__ = ["add_parser", "run"]
 _POLL = 1.0  # [s] between two looks at the content folder, and at what is being baked
 _TICK = 0.25  # [s] between two ticks of the hall's clock
 
-OFFERS: frozenset[str] = frozenset()  # pages of the platform beside the hall: what needs one is not asked yet
+OFFERS = frozenset(
+    {"culture", "research"}
+)  # pages of the platform beside the hall: what needs another is not asked
 
 _TOLD = ProgressLine()  # whatever this command says goes through it, so that no line runs into another
 
@@ -155,6 +157,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
         running=Running(proxies=tuple(arguments.proxy)),
     )
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
+    house.survey_results = survey.results
     for problem in survey.problems:
         _say(f"  left out: {problem}")
     for hint in survey.hints:

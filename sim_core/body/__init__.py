@@ -8,7 +8,7 @@ from sim_core.body.motion import Loop, Motion, load_motion
 from sim_core.body.pose import POSES, Pose, pose_named
 from sim_core.body.skeleton import Skeleton
 from sim_core.body.skinning import LINEAR_JOINTS, SKINS, dual_quaternion_skin, linear_skin
-from sim_core.body.stand import Stand
+from sim_core.body.stand import Stand, TBar, stand_of
 from sim_core.body.wearer import Figure
 
 __all__ = [
@@ -29,8 +29,10 @@ __all__ = [
     "Skeleton",
     "Stand",
     "Surface",
+    "TBar",
     "dual_quaternion_skin",
     "linear_skin",
     "load_motion",
     "pose_named",
+    "stand_of",
 ]

@@ -31,6 +31,7 @@ MARKS = {
     "tip_r": "wrist_r",
 }
 TALLEST = 5.0  # [m]
+SHOE = 0.012  # [m] above the ankle's joint that a low shoe ends
 REMEDY = "make it by `simcore figure`"
 _FIELDS = ("vertices", "faces", "heads", "weights", "marks")
 
@@ -61,6 +62,12 @@ class Mannequin:
         """Vertices (V, 3) [m] in a pose; raises SimCoreError where a joint is turned beyond its limit."""
         pose.check()
         return SKINS[self.skin](self.vertices, self.weights, self.skeleton, pose)
+
+    def feet(self) -> np.ndarray:
+        """Which vertices (V,) a low cloth shoe (履) covers: what goes with ankle and toes, up to the ankle's height."""
+        joints = [JOINTS.index(name) for name in ("ankle_l", "toe_l", "ankle_r", "toe_r")]
+        low = self.vertices[:, 1] < self.heads[joints[0], 1] + SHOE
+        return low & (self.weights[:, joints].sum(1) > 0.5)
 
     def landmarks(self, pose: Pose = T_POSE) -> dict[str, np.ndarray]:
         """Points (3,) [m] of the posed figure by name: its joints, and its marks, which go with a joint each."""

@@ -1,8 +1,10 @@
-"""The dress stand (yihang, 衣桁): two turned posts on feet with a round bar across, as collider and as mesh."""
+"""What dress hangs on: a stand (yihang, 衣桁) of two turned posts with a round bar across, or a T-bar through both
+sleeves, as collider and as mesh."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
@@ -65,6 +67,10 @@ class Stand:
             ring(top - 0.066, r * 1.3, 0.012),
         ]
 
+    def to_dict(self) -> dict[str, Any]:
+        """A plain dictionary that JSON can hold; `stand_of` reads it."""
+        return asdict(self)
+
     def collider(self) -> Union:
         """The stand and the floor as one solid with exact distance."""
         return Union((*self.parts(), HalfSpace((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))))
@@ -78,3 +84,36 @@ class Stand:
             faces.append(f + count)
             count += len(v)
         return np.concatenate(vertices), np.concatenate(faces).astype(np.int32)
+
+
+@dataclass(frozen=True)
+class TBar(Stand):
+    """A post with a bar across, as museums spread a robe: the bar goes through both sleeves, `span` [m] from end to
+    end; the post and its foot are hidden by what hangs there. overhang, upturn and rail are not used."""
+
+    span: float = 1.8
+    bar_radius: float = 0.02
+    post_radius: float = 0.018
+
+    def parts(self) -> tuple[Solid, ...]:
+        """The bar with its end knobs, the post, and a cross of two feet."""
+        h, x, r = self.height, self.span / 2, self.bar_radius
+        ends = [Capsule((s * x, h, 0.0), (s * x, h, 0.0), 1.25 * r) for s in (-1.0, 1.0)]
+        foot = 0.55 * min(self.span, 0.8)
+        return (
+            Capsule((-x, h, 0.0), (x, h, 0.0), r),
+            *ends,
+            Capsule((0.0, 0.05, 0.0), (0.0, h, 0.0), self.post_radius),
+            Box((0.0, 0.024, 0.0), (0.05, 0.048, foot), 0.012),
+            Box((0.0, 0.024, 0.0), (foot, 0.048, 0.05), 0.012),
+            Cylinder((0.0, 0.05, 0.0), (0.0, 0.11, 0.0), 1.9 * self.post_radius, 0.012),
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"kind": "t_bar", **asdict(self)}
+
+
+def stand_of(told: dict[str, Any]) -> Stand:
+    """The stand `to_dict` described; raises TypeError for what is none."""
+    kind, sizes = told.get("kind"), {name: value for name, value in told.items() if name != "kind"}
+    return TBar(**sizes) if kind == "t_bar" else Stand(**sizes)

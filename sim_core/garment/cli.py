@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from sim_core.garment import Garment, Outfit
 
 STEPS = (0.026, 0.013)  # [m] of a study
+FIGURE = 1.65  # [m] that a picture shows from as far as its eyes are
+PICTURED = 0.002  # [m] of a repeat in pictures, at most
 DESCRIPTION = """\
 Dresses what OUTFIT.toml says, layer by layer from the skin outwards, and writes what is asked for:
 
@@ -247,7 +249,7 @@ def _write_model(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> Non
     if outfit.wearer is not None:
         worn = garments[-1]
         body = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
-        figure = shown_figure(*body, worn.positions, worn.faces)
+        figure = shown_figure(*body, worn.positions, worn.faces, feet=outfit.wearer.feet())
     clothed = [
         Clothed.woven(garment, loom=layer.loom)
         for garment, layer in zip(garments, outfit.layers, strict=True)
@@ -281,27 +283,49 @@ def _draw(path: Path, outfit: Outfit, garments: Sequence[Garment]) -> None:
     """Everything from the front, from the side and from behind."""
     import numpy as np
 
-    from sim_core.garment.glb import LACQUER, LINEN, SHEER
-    from sim_core.picture import Camera, Surface, render, save_png
+    from sim_core.garment.glb import LACQUER, LINEN, SHOE, Clothed
+    from sim_core.picture import Camera, Fabric, Surface, render, save_png, split_along
+    from sim_core.weave.maps import SHEER, coverage, seen_afar, srgb
 
     surfaces = []
     if outfit.wearer is not None:
-        surfaces.append(Surface(outfit.wearer.posed(outfit.pose), outfit.wearer.faces, LINEN))
+        vertices, faces = outfit.wearer.posed(outfit.pose), outfit.wearer.faces
+        shod = outfit.wearer.feet()[faces].all(1)
+        surfaces += [Surface(vertices, faces[~shod], LINEN), Surface(vertices, faces[shod], SHOE)]
     if outfit.stand is not None:
         surfaces.append(Surface(*outfit.stand.mesh(), LACQUER, gloss=0.25))
     for garment, layer in zip(garments, outfit.layers, strict=True):
-        share = float(layer.loom.maps(layer.weave, 64).opacity.mean()) / 255
-        sheer = share < SHEER
-        dyes = [garment.dye_of(number) for number in range(len(garment.panels))]
-        for dye in dict.fromkeys(dyes):
-            faces = garment.faces[np.isin(garment.panel, [k for k, own in enumerate(dyes) if own == dye])]
-            look = {"alpha": max(share, 0.5) if sheer else 1.0, "through": 0.55 if sheer else 0.0}
+        clothed = Clothed.woven(garment, loom=layer.loom)
+        places = garment.cloth_places()[garment.pattern_faces]
+        split, welded = split_along(garment.faces, garment.creases())
+        looks: dict[Any, list[int]] = {}
+        for own in range(len(garment.panels)):
+            looks.setdefault((garment.dye_of(own), id(clothed.of(own))), []).append(own)
+        for (dye, _), which in looks.items():
+            mine, maps = np.isin(garment.panel, which), clothed.of(which[0])
+            share, (picture, colour) = coverage(maps), seen_afar(maps, dye, PICTURED)
+            sheer = share < SHEER
             surfaces.append(
-                Surface(garment.positions, faces, dye or (0.86, 0.82, 0.74), gloss=0.12, sheen=0.5, **look)
+                Surface(
+                    garment.positions[welded],
+                    split[mine],
+                    tuple(srgb(colour)),
+                    alpha=max(share, 0.5) if sheer else 1.0,
+                    gloss=0.12,
+                    sheen=0.5,
+                    through=0.55 if sheer else 0.0,
+                    fabric=None if picture is None else Fabric(picture, maps.size),
+                    corners=places[mine],
+                )
             )
-    middle = (0.0, 0.825, 0.0)
-    eyes = ((0.5, 1.25, 3.6), (2.9, 1.2, 2.0), (-1.4, 1.2, -3.2))
-    pictures = [render(surfaces, Camera(eye, middle, 27), (620, 840)) for eye in eyes]
+    points = np.concatenate([surface.vertices for surface in surfaces])
+    low, high = points.min(0), points.max(0)
+    middle, size = 0.5 * (low + high), max(high[1] - low[1], 0.75 * (high[0] - low[0])) / FIGURE
+    eyes = ((0.5, 0.42, 3.6), (2.9, 0.38, 2.0), (-1.4, 0.38, -3.2))
+    pictures = [
+        render(surfaces, Camera(tuple(middle + size * np.array(eye)), tuple(middle), 27), (620, 840))
+        for eye in eyes
+    ]
     save_png(path, np.concatenate(pictures, axis=1))
 
 

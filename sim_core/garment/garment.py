@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.errors import FileProblem, SimCoreError
-from sim_core.garment.pattern import unsided
+from sim_core.garment.pattern import Panel, creases_of, unsided
 from sim_core.garment.settled import Settled
 from sim_core.validation.files import read_npz, shown, written_whole
 
@@ -107,10 +107,18 @@ class Garment:
         """Pattern coordinates (F, 3, 2) [m] of every face's corners."""
         return self.pattern[self.pattern_faces]
 
+    def creases(self) -> np.ndarray:
+        """Edges (C, 2) of draped vertices along the folds of pleats."""
+        told = self.cut.get("panels") or ()
+        if not any(panel.get("pleats") for panel in told):
+            return np.zeros((0, 2), np.int32)
+        cut = [Panel.from_dict(panel) for panel in told]
+        return self.weld[creases_of(cut, self.pattern, self.pattern_faces, self.panel)]
+
     def dye_of(self, panel: int) -> Colour | None:
         """The dye of a panel: its own, else the garment's; None of cloth woven of several colours, which keeps them."""
         weave = self.weaves.get(unsided(self.panels[panel]), self.weave)
-        if any(len(weave.get(f"{side}_colours", ())) > 1 for side in ("warp", "weft")):
+        if any(len({str(c) for c in weave.get(f"{side}_colours", ())}) > 1 for side in ("warp", "weft")):
             return None
         return self.dyes[panel] or self.dye
 

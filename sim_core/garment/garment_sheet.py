@@ -32,7 +32,7 @@ def garment_sheet(garment: Garment) -> Sheet:
     own = garment.panel % len(panels)  # the right half's panels follow the left's
     corner = garment.rest_corners() + APART * np.array(apart)[own][:, None, None] * np.array([1.0, 0.0])
     kinds = np.array(of_panel, np.int32)[own]
-    sheet = Sheet.of_corners(corner, garment.faces, materials, kinds)
+    sheet = Sheet.of_corners(corner, garment.faces, materials, kinds, creases=garment.creases())
     if garment.settled is None or not garment.settled.even:
         return sheet
     return evened(sheet, np.array([material.density for material in materials])[kinds])

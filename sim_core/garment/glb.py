@@ -17,31 +17,42 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.garment import Colour, Garment
 from sim_core.garment.pattern import unsided
 from sim_core.gltf import GlbFile
-from sim_core.picture import normals
+from sim_core.picture import normals, split_along
 from sim_core.validation.files import written_whole
 from sim_core.weave import Loom, Weave
-from sim_core.weave.maps import FiguredMaps, MapsLike, far_look, line_angle
+from sim_core.weave.maps import (
+    SHEER,
+    FiguredMaps,
+    MapsLike,
+    coarser_direction,
+    coloured,
+    coverage,
+    dyed,
+    far_look,
+    linear,
+    mean_colour,
+    seen_afar,
+)
 
 Precision = Literal["close", "hall"]
 LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
-SHEER = 0.8  # mean coverage; denser cloth is drawn opaque, its pores as the shade between yarns
-PORE = 0.35  # of the mean colour
+SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
-STRIPED = 0.1  # of a linear colour, from end to end of a cloth: seen in the hall
-FIGURE_PIXEL = 0.0006  # [m] of a figured cloth's repeat in the hall, at most
 MOST_PIXELS = 4096  # of a texture on any device
 CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m]."""
+    """What is shown of a figure: vertices (V, 3) [m], faces (F, 3), normals (V, 3); base: its radius and height [m];
+    shod (F,): the faces of its shoes, none where it is left out."""
 
     vertices: np.ndarray
     faces: np.ndarray
     normals: np.ndarray
     base: tuple[float, float]
+    shod: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -105,9 +116,13 @@ def write_glb(
         vertices, faces = outermost.settled.beneath.stand.mesh(32 if precision == "close" else 16)
         glb.mesh("stand", vertices, faces, glb.material(_lacquer()))
     if figure is not None:
-        glb.mesh(
-            "figure", figure.vertices + lift, figure.faces, glb.material(_linen()), shading=figure.normals
-        )
+        shod = np.zeros(len(figure.faces), bool) if figure.shod is None else figure.shod
+        for name, own, look in (("figure", ~shod, _linen), ("shoes", shod, _shoe)):
+            if own.any():
+                used, index = np.unique(figure.faces[own], return_inverse=True)
+                faces = index.reshape(-1, 3).astype(np.int32)
+                shading = figure.normals[used]
+                glb.mesh(name, figure.vertices[used] + lift, faces, glb.material(look()), shading=shading)
         base = Cylinder((0.0, 0.0, 0.0), (0.0, figure.base[1], 0.0), figure.base[0], 0.4 * figure.base[1])
         foot = solid_mesh(base, 48 if precision == "close" else 28)
         glb.mesh("base", *foot, glb.material(_lacquer()))
@@ -123,65 +138,26 @@ def _write_panels(
 ) -> None:
     """One mesh per look (dye and weave), in the order of the panels; textures: those stored already, by weave."""
     garment = layer.garment
-    shading, worn = normals(garment.positions, garment.faces)[garment.weld], garment.worn()
+    split, welded = split_along(garment.faces, garment.creases())
+    shading = normals(garment.positions[welded], split)
     places = garment.cloth_places() * 1000.0
     looks: dict[Any, list[int]] = {}
     for number in range(len(garment.panels)):
         looks.setdefault((garment.dye_of(number), id(layer.of(number))), []).append(number)
     for count, ((dye, weave), own) in enumerate(looks.items()):
-        faces = garment.pattern_faces[np.isin(garment.panel, own)]
-        used, index = np.unique(faces, return_inverse=True)
+        mine = np.isin(garment.panel, own)
+        corners = np.column_stack([garment.pattern_faces[mine].ravel(), split[mine].ravel()])
+        used, index = np.unique(corners, axis=0, return_inverse=True)
         make = _cloth_close if precision == "close" else _cloth_hall
         name = garment.name if count == 0 else f"{garment.name} {count + 1}"
         glb.mesh(
             name,
-            worn[used],
+            garment.positions[welded[used[:, 1]]],
             index.reshape(-1, 3).astype(np.int32),
             make(glb, dye, layer.of(own[0]), textures.setdefault(weave if precision == "close" else 0, {})),
-            places[used],
-            shading=shading[used],
+            places[used[:, 0]],
+            shading=shading[used[:, 1]],
         )
-
-
-def _linear(srgb: np.ndarray) -> np.ndarray:
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-
-
-def _mean_colour(maps: MapsLike) -> np.ndarray:
-    """Mean linear colour of the yarns, weighted by what they cover."""
-    weight = maps.opacity.astype(float) + 1e-6
-    return (_linear(maps.albedo / 255.0) * weight[..., None]).sum((0, 1)) / weight.sum()
-
-
-def _coverage(maps: MapsLike) -> float:
-    return float(maps.opacity.mean()) / 255
-
-
-def _srgb(linear: np.ndarray) -> np.ndarray:
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-
-
-def _coloured(
-    maps: MapsLike, mean: np.ndarray, dye: Colour | None, opaque: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Albedo (n, m, 3) uint8 and what it is multiplied by (3,): the yarns' own colours, or what they differ from a dye.
-
-    The pores of an opaque cloth take the shade of the yarns round them.
-    """
-    light = _linear(maps.albedo / 255.0)
-    if opaque:
-        cover = maps.opacity[..., None] / 255.0
-        light = light * cover + PORE * mean * (1 - cover)
-    if dye is None:
-        return np.round(255 * _srgb(light)).astype(np.uint8), np.ones(3)
-    # As bright as the dye leaves room for: a factor of glTF is 1 at most.
-    wanted, share = _linear(np.asarray(dye)), light / np.maximum(mean, 1e-3)
-    peak = min(float(np.quantile(share, 0.98)), 1.0 / max(float(wanted.max()), 1e-3))
-    return np.round(255 * _srgb(np.clip(share / peak, 0, 1))).astype(np.uint8), wanted * peak
-
-
-def _dyed(dye: Colour | None, mean: np.ndarray) -> np.ndarray:
-    return mean if dye is None else _linear(np.asarray(dye))
 
 
 def _silk(colour: np.ndarray, alpha: float, name: str) -> dict[str, Any]:
@@ -215,49 +191,30 @@ def _look_of(picture: np.ndarray) -> str:
     return sha256(picture.tobytes()).hexdigest()
 
 
-def _linen() -> dict[str, Any]:
-    """The figure's cover: matt, light, without colour of its own."""
+def _plain(name: str, colour: Colour, roughness: float) -> dict[str, Any]:
+    """Matter of one colour [sRGB]."""
     return {
-        "name": "linen",
+        "name": name,
         "pbrMetallicRoughness": {
-            "baseColorFactor": [*(float(c) for c in _linear(np.asarray(LINEN))), 1.0],
+            "baseColorFactor": [*(float(c) for c in linear(np.asarray(colour))), 1.0],
             "metallicFactor": 0.0,
-            "roughnessFactor": 0.9,
+            "roughnessFactor": roughness,
         },
     }
+
+
+def _linen() -> dict[str, Any]:
+    """The figure's cover: matt, light, without colour of its own."""
+    return _plain("linen", LINEN, 0.9)
+
+
+def _shoe() -> dict[str, Any]:
+    """Low shoes of dark silk."""
+    return _plain("shoe", SHOE, 0.6)
 
 
 def _lacquer() -> dict[str, Any]:
-    return {
-        "name": "lacquer",
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [*(float(c) for c in _linear(np.asarray(LACQUER))), 1.0],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 0.38,
-        },
-    }
-
-
-def _coarser(picture: np.ndarray, size: tuple[float, float]) -> np.ndarray:
-    """Means of a repeat's picture over so many pixels that one is FIGURE_PIXEL wide at most, each way by itself."""
-    for axis, side in ((0, size[1]), (1, size[0])):
-        count = picture.shape[axis]
-        wanted = max(1, int(FIGURE_PIXEL * count / side))
-        times = max(k for k in range(1, wanted + 1) if count % k == 0)
-        shape = list(picture.shape)
-        shape[axis : axis + 1] = [count // times, times]
-        picture = picture.reshape(shape).mean(axis=axis + 1)
-    return picture
-
-
-def _coarser_direction(maps: FiguredMaps) -> np.ndarray:
-    """`_coarser` of the directions, which way a yarn runs along its line being no matter: means of twice the angle."""
-    told = maps.direction.astype(float)
-    run = told[..., :2] / 127.5 - 1
-    twice = _coarser((run[..., 0] + 1j * run[..., 1]) ** 2 * told[..., 2], maps.size)
-    angle = line_angle(0.5 * np.angle(twice))
-    way = 127.5 + 127.5 * np.dstack([np.cos(angle), np.sin(angle)])
-    return np.dstack([way, np.minimum(np.abs(twice), 255.0)])
+    return _plain("lacquer", LACQUER, 0.38)
 
 
 def _gleam(
@@ -268,7 +225,7 @@ def _gleam(
     glTF's direction is the one in which the highlight is wide.
     """
     if isinstance(maps, FiguredMaps):
-        across = (_coarser_direction(maps) if far else maps.direction).astype(float)
+        across = (coarser_direction(maps) if far else maps.direction).astype(float)
         run, strength = across[..., :2] / 127.5 - 1, across[..., 2:]
         turned = np.dstack([127.5 - 127.5 * run[..., 1:], 127.5 + 127.5 * run[..., :1], strength])
         tile = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
@@ -297,7 +254,7 @@ def _cells(glb: GlbFile, material: dict[str, Any], maps: FiguredMaps, textures: 
     repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
 
     def pattern(cell: MapsLike) -> dict[str, Any]:
-        light = _linear(cell.albedo / 255.0) @ (0.2126, 0.7152, 0.0722)
+        light = linear(cell.albedo / 255.0) @ (0.2126, 0.7152, 0.0722)
         bright = np.clip(128 * light / light.mean(), 0, 255)
         picture = np.dstack([cell.normal[..., :2], np.rint(bright)]).astype(np.uint8)
         return glb.texture(picture, [1e-3 / cell.size[0], 1e-3 / cell.size[1]], quality=CELL_QUALITY)
@@ -320,8 +277,8 @@ def _cells(glb: GlbFile, material: dict[str, Any], maps: FiguredMaps, textures: 
 
 
 def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
-    mean, sheer = _mean_colour(maps), _coverage(maps) < SHEER
-    picture, factor = _coloured(maps, mean, dye, not sheer)
+    mean, sheer = mean_colour(maps), coverage(maps) < SHEER
+    picture, factor = coloured(maps, mean, dye, not sheer)
     material = _silk(factor, 1.0, "silk_close")
     if sheer:
         picture = np.dstack([picture, maps.opacity])
@@ -336,7 +293,7 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
         _cells(glb, material, maps, textures)
     if sheer:
         material["alphaMode"] = "BLEND"
-    tint = _dyed(dye, mean)
+    tint = dyed(dye, mean)
     material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = [
         float(c) for c in 0.55 * (0.5 * tint + 0.5)
     ]
@@ -344,21 +301,19 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
 
 
 def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict[str, Any]) -> int:
-    cover, mean = _coverage(maps), _mean_colour(maps)
-    material = _silk(_dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
+    cover, mean = coverage(maps), mean_colour(maps)
+    material = _silk(dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
     normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
     own = textures.setdefault(f"of {id(maps)}", {})
-    picture, factor = _coloured(maps, mean, dye, cover >= SHEER)
-    mean_light = _coarser(_linear(picture / 255.0), maps.size)
-    if isinstance(maps, FiguredMaps) or np.ptp(mean_light, axis=(0, 1)).max() > STRIPED:
-        picture = np.rint(255 * _srgb(mean_light)).astype(np.uint8)
+    picture, factor = seen_afar(maps, dye)
+    if picture is not None:
         repeat = [1e-3 / maps.size[0], 1e-3 / maps.size[1]]
         material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
             own, _look_of(picture), lambda: glb.texture(picture, repeat, quality=FIGURE_QUALITY)
         )
-        material["pbrMetallicRoughness"]["baseColorFactor"][:3] = [float(c) for c in np.clip(factor, 0, 1)]
+        material["pbrMetallicRoughness"]["baseColorFactor"][:3] = [float(c) for c in factor]
     _gleam(glb, material, maps, own, far=True)
     if cover < SHEER:
         material["alphaMode"] = "BLEND"

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim_core.body.beneath import Beneath, Surface
-from sim_core.body.stand import Stand
+from sim_core.body.stand import stand_of
 from sim_core.cloth import Contact, Holds, Phase
 
 __all__ = ["Settled"]
@@ -45,7 +45,7 @@ class Settled:
             "last": asdict(self.last),
             "limit": list(self.holds.limit),
             "even": self.even,
-            "stand": self.beneath.stand and asdict(self.beneath.stand),
+            "stand": self.beneath.stand and self.beneath.stand.to_dict(),
             "cell": self.beneath.cell,
             "box": self.beneath.box,
             "floor": self.beneath.floor,
@@ -86,7 +86,7 @@ class Settled:
             )
             for k, told in enumerate(header["surfaces"])
         )
-        stand = Stand(**header["stand"]) if header["stand"] else None
+        stand = stand_of(header["stand"]) if header["stand"] else None
         shorter, longer = (float(share) for share in header["limit"])
         kept = {name: np.ascontiguousarray(data[f"holds_{name}"]) for name in _HOLDS}
         last: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in header["last"].items()}

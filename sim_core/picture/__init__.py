@@ -3,6 +3,7 @@
 from sim_core.picture.raster import depth_map
 from sim_core.picture.shading import (
     Camera,
+    Fabric,
     Light,
     Lighting,
     Surface,
@@ -11,10 +12,12 @@ from sim_core.picture.shading import (
     normals,
     render,
     save_png,
+    split_along,
 )
 
 __all__ = [
     "Camera",
+    "Fabric",
     "Light",
     "Lighting",
     "Surface",
@@ -24,4 +27,5 @@ __all__ = [
     "normals",
     "render",
     "save_png",
+    "split_along",
 ]

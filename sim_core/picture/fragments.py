@@ -27,6 +27,11 @@ class Scene(NamedTuple):
         np.ndarray
     )  # (S, 8) linear colour, gloss, sheen, through, alpha, 1 for a floor that only shows shadows
     lights: np.ndarray  # (5, 3) eye, key, key colour, sky, ground
+    texels: np.ndarray  # (T, 3) linear colours of all fabrics, row by row, one behind the other
+    tiles: (
+        np.ndarray
+    )  # (S, 5) of each surface's: first texel, rows, columns (0: none), texels a metre along x and y
+    corners: np.ndarray  # (F, 3, 2) [m] where the faces lie in their fabric
 
 
 class Shadow(NamedTuple):
@@ -63,8 +68,9 @@ def _along(a, i, j, k, u, v, w, c):
 
 @njit(error_model="numpy", inline="always")
 def _shaded(
-    screen, world, normals, sky, faces, of, looks, lights, matrix, opaque, sheer, veil, bias, f, x, y
-):
+    screen, world, normals, sky, faces, of, looks, lights, texels, tiles, corners,
+    matrix, opaque, sheer, veil, bias, f, x, y,
+):  # fmt: skip
     """Linear colour of a face where it is seen at (x, y) [pixel], and how squarely it is seen, 0.05 to 1."""
     i, j, k, s = faces[f, 0], faces[f, 1], faces[f, 2], of[f]
     cx, cy = screen[k, 0], screen[k, 1]
@@ -86,6 +92,13 @@ def _shaded(
     if veil > 0.0:
         seen *= 1.0 - veil * (1.0 - lit_at(mx, my, mz, sheer, bias, 3))
     r, g, b = looks[s, 0], looks[s, 1], looks[s, 2]
+    if tiles[s, 2] > 0.0:
+        across = u * corners[f, 0, 0] + v * corners[f, 1, 0] + w * corners[f, 2, 0]
+        down = u * corners[f, 0, 1] + v * corners[f, 1, 1] + w * corners[f, 2, 1]
+        rows, columns = int(tiles[s, 1]), int(tiles[s, 2])
+        t = int(tiles[s, 0]) + int(math.floor(down * tiles[s, 4])) % rows * columns
+        t += int(math.floor(across * tiles[s, 3])) % columns
+        r, g, b = r * texels[t, 0], g * texels[t, 1], b * texels[t, 2]
     if looks[s, FLOOR] > 0.0:  # nothing but shadows, else the backdrop's own colour
         shade = (0.55 + 0.45 * opened) * (0.72 + 0.28 * seen)
         return r * shade, g * shade, b * shade, 1.0
@@ -127,14 +140,9 @@ def developed(scene, shadow, seen, backdrop, tones, fine):
     pixel that one opaque face fills is shaded once.
     """
     screen, world, normals, sky, faces = scene.screen, scene.world, scene.normals, scene.sky, scene.faces
-    of, looks, lights, owner, count, layers = (
-        scene.of,
-        scene.looks,
-        scene.lights,
-        seen.owner,
-        seen.count,
-        seen.layers,
-    )
+    of, looks, lights = scene.of, scene.looks, scene.lights
+    texels, tiles, corners = scene.texels, scene.tiles, scene.corners
+    owner, count, layers = seen.owner, seen.count, seen.layers
     matrix, opaque, sheer, veil, bias = shadow.matrix, shadow.opaque, shadow.sheer, shadow.veil, shadow.bias
     height, width = owner.shape[0] // fine, owner.shape[1] // fine
     out, sheers = np.zeros((height, width, 3), np.uint8), len(count) > 0
@@ -156,8 +164,8 @@ def developed(scene, shadow, seen, backdrop, tones, fine):
                     if f < 0:
                         continue
                     r1, g1, b1, facing = _shaded(
-                        screen, world, normals, sky, faces, of, looks, lights, matrix, opaque, sheer, veil, bias,
-                        f, sx + 0.5 * wide, sy + 0.5 * wide,
+                        screen, world, normals, sky, faces, of, looks, lights, texels, tiles, corners,
+                        matrix, opaque, sheer, veil, bias, f, sx + 0.5 * wide, sy + 0.5 * wide,
                     )  # fmt: skip
                     a = 1.0
                     if m < depth:  # more threads lie in a slanting line of sight

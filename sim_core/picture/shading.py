@@ -8,6 +8,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from sim_core.errors import SimCoreError
 from sim_core.picture.fragments import ALPHA, FLOOR, TONES, Scene, Seen, Shadow, developed
@@ -22,7 +24,19 @@ from sim_core.picture.raster import (
 )
 from sim_core.validation.files import written_whole
 
-__all__ = ["Camera", "Light", "Lighting", "Surface", "fan", "lighting", "normals", "render", "save_png"]
+__all__ = [
+    "Camera",
+    "Fabric",
+    "Light",
+    "Lighting",
+    "Surface",
+    "fan",
+    "lighting",
+    "normals",
+    "render",
+    "save_png",
+    "split_along",
+]
 
 _SKY_DIRECTIONS = 40
 _SKY_PIXELS = 320
@@ -32,10 +46,19 @@ _BIAS = 0.006  # [m] a surface lies before its own shadow
 
 
 @dataclass(frozen=True)
+class Fabric:
+    """A repeat that covers a surface: picture (h, w, 3) uint8 sRGB, size [m] of it across and down."""
+
+    picture: np.ndarray
+    size: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Surface:
     """A mesh to draw: vertices (V, 3) [m], faces (F, 3), sRGB colour 0..1; alpha < 1 is sheer seen head-on.
 
-    gloss, sheen: strengths 0..1; through: share of light that passes thin cloth from behind.
+    gloss, sheen: strengths 0..1; through: share of light that passes thin cloth from behind; fabric: what the colour is
+    multiplied by, corners (F, 3, 2) [m] where its faces lie in that, y down.
     """
 
     vertices: np.ndarray
@@ -45,6 +68,8 @@ class Surface:
     gloss: float = 0.0
     sheen: float = 0.0
     through: float = 0.0
+    fabric: Fabric | None = None
+    corners: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -114,6 +139,31 @@ def normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.where(size > 0, total / np.maximum(size, 1e-300), [0.0, 1.0, 0.0])
 
 
+def split_along(faces: np.ndarray, creases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Faces (F, 3) whose sides of creases, edges (C, 2), have vertices of their own, and of each such vertex (N,) the
+    one it was: normals are smooth up to a crease, not over it."""
+    if not len(creases):
+        return faces, np.arange(int(faces.max(initial=-1)) + 1)
+    count = int(faces.max()) + 1
+    on = np.isin(np.arange(count), creases)
+    corner = np.arange(faces.size).reshape(-1, 3)
+    ends = np.stack([faces, np.roll(faces, -1, 1)], 2).reshape(-1, 2)
+    own = np.stack([corner, np.roll(corner, -1, 1)], 2).reshape(-1, 2)
+    turned = ends[:, 0] > ends[:, 1]
+    ends[turned], own[turned] = ends[turned][:, ::-1], own[turned][:, ::-1]
+    key = ends[:, 0].astype(np.int64) * count + ends[:, 1]
+    low, high = np.sort(creases, axis=1).T.astype(np.int64)
+    order = np.argsort(key, kind="stable")
+    same = (key[order][1:] == key[order][:-1]) & ~np.isin(key[order][1:], low * count + high)
+    one, other = own[order][:-1][same], own[order][1:][same]
+    graph = coo_array((np.ones(one.size), (one.ravel(), other.ravel())), shape=(faces.size, faces.size))
+    part = connected_components(graph, directed=False)[1].reshape(faces.shape)
+    _, first, index = np.unique(
+        np.where(on[faces], part + count, faces).ravel(), return_index=True, return_inverse=True
+    )
+    return index.reshape(faces.shape).astype(np.int32), faces.ravel()[first]
+
+
 def render(
     surfaces: Sequence[Surface],
     camera: Camera,
@@ -146,6 +196,7 @@ def _scene(surfaces: Sequence[Surface], lit: Lighting, camera: Camera, width: in
         [[*_linear(one.colour), one.gloss, one.sheen, one.through, one.alpha, 0.0] for one in drawn], float
     )
     looks[len(surfaces) :, FLOOR] = 1.0
+    texels, tiles = _texels(drawn)
     return Scene(
         screen=_project(world, camera, width, height),
         world=world,
@@ -155,7 +206,30 @@ def _scene(surfaces: Sequence[Surface], lit: Lighting, camera: Camera, width: in
         of=np.repeat(np.arange(len(drawn), dtype=np.int32), [len(one.faces) for one in drawn]),
         looks=looks,
         lights=np.array([camera.eye, _unit(light.key), light.key_colour, light.sky, light.ground], float),
+        texels=texels,
+        tiles=tiles,
+        corners=np.concatenate(
+            [np.zeros((len(one.faces), 3, 2)) if one.corners is None else one.corners for one in drawn]
+        ),
     )
+
+
+def _texels(drawn: Sequence[Surface]) -> tuple[np.ndarray, np.ndarray]:
+    """The fabrics' linear colours (T, 3) float32, each once, and of every surface (S, 5) where its own are."""
+    tiles, texels = np.zeros((len(drawn), 5)), [np.ones((1, 3), np.float32)]
+    first, begun = 1, dict[int, int]()
+    for number, surface in enumerate(drawn):
+        fabric = surface.fabric
+        if fabric is None or surface.corners is None:
+            continue
+        rows, columns = fabric.picture.shape[:2]
+        if id(fabric) not in begun:
+            begun[id(fabric)] = first
+            texels.append(_linear(fabric.picture.reshape(-1, 3) / 255.0).astype(np.float32))
+            first += rows * columns
+        scale = columns / fabric.size[0], rows / fabric.size[1]
+        tiles[number] = begun[id(fabric)], rows, columns, *scale
+    return np.concatenate(texels), tiles
 
 
 def _seen(scene: Scene, width: int, height: int) -> Seen:
@@ -200,6 +274,10 @@ def _check(number: int, surface: Surface) -> None:
         )
     if not np.isfinite(v).all():
         raise SimCoreError(f"surface {number}: vertices are not finite – nothing to draw")
+    if surface.corners is not None and surface.corners.shape != (len(f), 3, 2):
+        raise SimCoreError(
+            f"surface {number}: corners {surface.corners.shape} of {len(f)} faces – expected (F, 3, 2)"
+        )
 
 
 def _unit(vector: Sequence[float] | np.ndarray) -> np.ndarray:
@@ -207,7 +285,7 @@ def _unit(vector: Sequence[float] | np.ndarray) -> np.ndarray:
     return array / np.linalg.norm(array)
 
 
-def _linear(srgb: Sequence[float]) -> np.ndarray:
+def _linear(srgb: Sequence[float] | np.ndarray) -> np.ndarray:
     c = np.asarray(srgb, float)
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 

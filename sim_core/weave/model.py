@@ -86,7 +86,7 @@ class Weave:
     @property
     def several(self) -> bool:
         """Whether it is woven of yarns of several colours."""
-        return max(len(self.warp_colours), len(self.weft_colours)) > 1
+        return max(len(set(self.warp_colours)), len(set(self.weft_colours))) > 1
 
     @property
     def closeness(self) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from survey.errors import Problem, QuestionnaireError, StoreError
 from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder
@@ -86,6 +86,19 @@ class Mounted:
     def hints(self) -> tuple[Problem, ...]:
         """What is not stated yet, and should be before visitors answer."""
         return read_controller(self.content).gaps if self.questionnaires else ()
+
+    def results(self) -> list[dict[str, Any]]:
+        """What everybody may see of each questionnaire that asks anything here, with its title. Raises StoreError."""
+        from survey.web.api.results import public_results
+
+        found = (
+            Published(self.questionnaires, self.store).as_asked(one)
+            for one in list(self.questionnaires.values())
+        )
+        asked = [one for one in found if one.asking(self.offers).items]
+        return [
+            {"title": one.title.model_dump(), **public_results(one, self.store.public(one))} for one in asked
+        ]
 
     def record(self) -> Record:
         """What is processed here, and how, as of now. Raises StoreError."""

@@ -65,14 +65,16 @@ def draw(path: Path) -> None:
     Image.fromarray(picture).save(path.with_name(f"{path.stem}-figure1{path.suffix}"), quality=90)
 
 
-def swatch(maps: SurfaceMaps, lamp: tuple[float, float, float], millimetres: float) -> Image.Image:
-    """A square piece of a lit cloth so many millimetres wide, as wide as high on the loom."""
-    scale = SIDE / millimetres / 1e-3  # pixels a metre
+def swatch(
+    maps: SurfaceMaps, lamp: tuple[float, float, float], millimetres: float, side: int = SIDE
+) -> Image.Image:
+    """A square piece of a lit cloth so many millimetres wide, as wide as high on the loom; side: its pixels."""
+    scale = side / millimetres / 1e-3  # pixels a metre
     high, wide = (max(1, round(size * scale)) for size in maps.size[::-1])
     tile = Image.fromarray(lit_cloth(maps, light=lamp)).resize((wide, high), Image.Resampling.BOX)
-    picture = Image.new("RGB", (SIDE, SIDE))
-    for x in range(0, SIDE, wide):
-        for y in range(SIDE - high, -high, -high):
+    picture = Image.new("RGB", (side, side))
+    for x in range(0, side, wide):
+        for y in range(side - high, -high, -high):
             picture.paste(tile, (x, y))
     return picture
 

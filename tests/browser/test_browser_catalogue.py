@@ -1,12 +1,11 @@
 """The catalogue in a browser: clean to axe, and whole on a phone."""
 
 import pytest
-from bench.axe import violations
 from full_matrix import by_day
+from read_pages import read_whole
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-SHOWN = "() => document.querySelectorAll('img').forEach((one) => { one.loading = 'eager'; })"
 SMALL = """
 () => [...document.querySelectorAll(".doors a, .contents a, .ways a, summary, article a.plate")]
   .map((one) => [one.textContent.trim(), one.getBoundingClientRect()])
@@ -19,14 +18,7 @@ SMALL = """
 @pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
 def test_the_catalogue_is_clean_and_fits(shipped_hall, chromium, lang, width):
     page = chromium.new_page(viewport={"width": width, "height": 700})
-    page.goto(f"{shipped_hall.url}/catalogue?lang={lang}")
-    page.evaluate(SHOWN)
-    page.wait_for_load_state("networkidle")
-    assert violations(page) == []
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    assert page.evaluate(SMALL) == []
-    page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
+    read_whole(page, f"{shipped_hall.url}/catalogue?lang={lang}", width, SMALL)
     assert page.evaluate("location.hash") == "#exhibits"
     page.close()
 

@@ -207,12 +207,12 @@ def test_an_outfit_that_cannot_be_dressed_is_told_by_file_key_and_remedy(
 
 
 def test_an_exhibit_that_fails_in_an_unforeseen_way(house: Path, monkeypatch: pytest.MonkeyPatch):
-    from hall_app.content import loading
+    from hall_app.content.models import read_glb
 
-    def fail(path: Path, *, whole=loading.read_glb) -> object:
+    def fail(path: Path, *, whole=read_glb) -> object:
         return whole(path) if "other" in str(path) else 1 / 0
 
-    monkeypatch.setattr("hall_app.content.loading.read_glb", fail)
+    monkeypatch.setattr("hall_app.content.loading.exhibits.read_glb", fail)
     content = load(house)
     assert [exhibit.id for exhibit in content.exhibits] == ["other"]
     (problem,) = content.problems
@@ -273,7 +273,7 @@ def test_a_lasting_fault_of_the_folder_is_told_in_the_running_hall(
         raise PermissionError(13, "Permission denied", "hall.toml")
 
     with monkeypatch.context() as failing:
-        failing.setattr("hall_app.content.reload.load", fail)
+        failing.setattr("hall_app.content.loading.reload.load", fail)
         assert watcher.poll() is None
         told = watcher.poll()
         assert told is not None

@@ -11,7 +11,16 @@ import pytest
 from pydantic import BaseModel
 
 from hall_app.content import BEHAVIOURS
-from hall_app.content.schema import Bilingual, ExhibitFile, HallFile, PlanFile, table_of
+from hall_app.content.schema import (
+    ArticleFile,
+    Bilingual,
+    ExhibitFile,
+    GlossaryFile,
+    HallFile,
+    PapersFile,
+    PlanFile,
+    table_of,
+)
 from survey.questionnaire import Text
 from survey.web.privacy import Controller
 
@@ -21,6 +30,9 @@ FILES: dict[str, type[BaseModel]] = {
     "hall.toml": HallFile,
     "plan.toml": PlanFile,
     "exhibit.toml": ExhibitFile,
+    "article.toml": ArticleFile,
+    "glossary.toml": GlossaryFile,
+    "papers.toml": PapersFile,
 }
 DOCUMENTED: dict[str, type[BaseModel]] = FILES | {"controller.toml": Controller}
 

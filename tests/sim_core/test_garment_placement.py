@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim_core import metrics
-from sim_core.body import Figure, Mannequin, pose_named
+from sim_core.body import Figure, Mannequin, TBar, pose_named
 from sim_core.errors import SimCoreError
 from sim_core.garment import Garment, check_fits, dress, layer_order, load_outfit
 from sim_core.garment.dressing import overlap
@@ -88,6 +88,32 @@ do = "weld"
 """
 
 
+T_BAR = '[stand]\nkind = "t_bar"\nheight = 1.0\nspan = 1.4'
+SHORT_ROBE = """\
+name = "jacket"
+edge = 0.035
+mirror = true
+[[panel]]
+name = "body"
+outline = [
+  { name = "nape", at = [0, -20] },
+  { name = "throat", at = [80, 0] },
+  { name = "front_hem", at = [80, 500] },
+  { name = "side_front", at = [250, 500] },
+  { name = "pit_front", at = [250, 250] },
+  { name = "cuff_front", at = [600, 200] },
+  { name = "cuff_back", at = [600, -200] },
+  { name = "pit_back", at = [250, -250] },
+  { name = "side_back", at = [250, -500] },
+  { name = "back_hem", at = [0, -500] },
+]
+[[seam]]
+sewn = ["body: side_front > cuff_front", "body: side_back < cuff_back"]
+[[seam]]
+middle = "body: back_hem > nape"
+"""
+
+
 PINNED = '[[layer.step]]\ndo = "pin"\nat = ["top"]\n'
 
 
@@ -99,6 +125,27 @@ def woman() -> Mannequin:
 def clear(garment: Garment) -> bool:
     facts = garment.provenance["errors"]
     return facts["inside_vertices"] + facts["inside_midpoints"] + facts["inside_centroids"] == 0
+
+
+@pytest.mark.slow
+def test_a_robe_is_spread_on_a_bar_through_both_sleeves(tmp_path: Path) -> None:
+    sewing = '[[layer.step]]\ndo = "sew"\nseconds = 0.4\n[[layer.step]]\ndo = "weld"\n'
+    (jacket,) = of(tmp_path, SHORT_ROBE, 'way = "flat"', T_BAR, sewing + STEPS)
+    facts = jacket.provenance["errors"]
+    assert clear(jacket)
+    assert facts["self_intersections"] == 0
+    assert facts["area_strain_p95"] < 0.03
+    x = jacket.positions
+    assert np.ptp(x[:, 0]) == pytest.approx(1.2, abs=0.03)  # as wide as it was cut
+    assert 1.02 < x[:, 1].max() < 1.045  # over the bar, chords of its mesh clear of it
+    assert 0.5 < x[:, 1].min() < 0.62  # and down in front and behind; sides droop
+    assert jacket.settled is not None
+    stand = jacket.settled.beneath.stand
+    assert isinstance(stand, TBar)
+    jacket.save(tmp_path / "jacket.npz")
+    again = Garment.load(tmp_path / "jacket.npz")
+    assert again.settled is not None
+    assert again.settled.beneath.stand == stand
 
 
 @pytest.mark.slow

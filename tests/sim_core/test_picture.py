@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim_core.errors import SimCoreError
-from sim_core.picture import Camera, Surface, depth_map, lighting, render
+from sim_core.picture import Camera, Fabric, Surface, depth_map, lighting, normals, render, split_along
 
 SQUARE = np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.5, 1.0, 0.0], [-0.5, 1.0, 0.0]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
@@ -116,3 +116,48 @@ def test_a_sheer_square_shows_what_is_behind_it():
 def test_nothing_to_draw_is_said(vertices, says):
     with pytest.raises(SimCoreError, match=says):
         render([Surface(vertices, FACES)], CAMERA, (8, 6))
+
+
+def test_a_fabric_covers_a_surface_in_true_scale():
+    """A square of a metre in a check of 25 cm: four fields each way, the first at the upper left, seen head-on."""
+    picture = np.zeros((2, 2, 3), np.uint8)
+    picture[0, 0] = picture[1, 1] = (255, 60, 60)
+    picture[0, 1] = picture[1, 0] = (60, 60, 255)
+    flat = np.column_stack([SQUARE[:, 0] + 0.5, 1.0 - SQUARE[:, 1]])  # y down
+    surface = Surface(SQUARE, FACES, (1.0, 1.0, 1.0), fabric=Fabric(picture, (0.5, 0.5)), corners=flat[FACES])
+    seen = render(
+        [surface], Camera((0.0, 0.5, 4.0), (0.0, 0.5, 0.0), 2 * np.degrees(np.arctan(1 / 8))), (80, 80)
+    )
+    red = seen[..., 0].astype(int) - seen[..., 2]
+    for row in range(4):
+        for column in range(4):
+            field = red[20 * row + 4 : 20 * row + 16, 20 * column + 4 : 20 * column + 16]
+            assert (field > 20).all() if (row + column) % 2 == 0 else (field < -20).all()
+    plain = render([Surface(SQUARE, FACES, (1.0, 1.0, 1.0))], CAMERA, (40, 30))
+    white = Fabric(np.full((3, 3, 3), 255, np.uint8), (0.1, 0.1))
+    covered = Surface(SQUARE, FACES, (1.0, 1.0, 1.0), fabric=white, corners=flat[FACES])
+    np.testing.assert_array_equal(render([covered], CAMERA, (40, 30)), plain)
+
+
+def test_corners_that_are_not_the_faces_are_refused():
+    corners = np.zeros((3, 3, 2))
+    fabric = Fabric(np.zeros((1, 1, 3), np.uint8), (0.1, 0.1))
+    with pytest.raises(SimCoreError, match=r"corners \(3, 3, 2\) of 2 faces"):
+        lighting([Surface(SQUARE, FACES, fabric=fabric, corners=corners)])
+
+
+def test_normals_are_smooth_up_to_a_crease_and_not_over_it():
+    """A strip folded to a right angle along its middle, with and without the crease told."""
+    x = np.array([[-1.0, 0, 0], [-1, 0, 1], [0, 0, 0], [0, 0, 1], [0, 1, 0], [0, 1, 1]])
+    faces = np.array([[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]], np.int32)
+    same, source = split_along(faces, np.zeros((0, 2), np.int32))
+    np.testing.assert_array_equal(same, faces)
+    split, source = split_along(faces, np.array([[3, 2]], np.int32))
+    assert len(source) == 8  # both ends of the crease are there twice
+    np.testing.assert_array_equal(source[split], faces)
+    assert not set(split[:2].ravel()) & set(split[2:].ravel())
+    shading = normals(x[source], split)
+    for own in (split[:2], split[2:]):
+        flat = shading[np.unique(own)]
+        np.testing.assert_allclose(flat, np.tile(flat[0], (len(flat), 1)), atol=1e-12)  # each side is flat
+    assert abs(float(shading[split[0, 0]] @ shading[split[2, 2]])) < 1e-12

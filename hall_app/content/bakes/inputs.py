@@ -98,5 +98,8 @@ def outfit_problems(folder: Path, outfit: str) -> list[Problem]:
     except (OSError, ValueError, RecursionError) as error:
         what = f"cannot be read ({type(error).__name__})"
         return [Problem(outfit, "", what, "check the file, shorten its numbers and lists")]
-    found = (file_problem(outfit, key, folder, path, root=folder) for key, path in named)
+    found = [file_problem(outfit, key, folder, path, root=folder) for key, path in named]
+    for weave in dict.fromkeys(path for _, path in named):
+        motifs = motif_files(folder, weave)
+        found += [file_problem(weave, "motif", folder, motif, root=folder) for motif in motifs]
     return [problem for problem in found if problem is not None]

@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from hall_app.content.schema.values import Bilingual, ContentPath, Table
+
+
+def _web_address(text: str) -> str:
+    if not re.fullmatch(r"https?://[^\s/?#@]+(/[^\s?#]*)?", text):
+        raise PydanticCustomError("own_address", "this is no address on the web")
+    return text.rstrip("/")
+
+
+def _email(text: str) -> str:
+    if not re.fullmatch(r"[^\s@]+@[^\s@.]+(\.[^\s@.]+)+", text):
+        raise PydanticCustomError("email", "this is no e-mail address")
+    return text
+
+
+WebAddress = Annotated[str, AfterValidator(_web_address)]
+Email = Annotated[str, AfterValidator(_email)]
 
 
 class Start(Table):
@@ -48,5 +65,10 @@ class HallFile(Table):
         365, description="days after which visit data is deleted"
     )
     licence: str = Field(min_length=2, description="licence of the hall's own texts and media")
+    address: WebAddress | None = Field(
+        None,
+        description="where the hall is found on the web, e.g. https://hall.example.org: exported records name it",
+    )
+    contact: Email | None = Field(None, description="e-mail for questions about the exported records")
     start: Start = Field(description="where a visitor comes in")
     eye: Eye = Field(Eye.model_construct(), description="eye height of a visitor")

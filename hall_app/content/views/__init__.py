@@ -1,9 +1,19 @@
 """What pages show of the content.
 
-markdown: curators' texts as HTML; measurements: what a bake measured, in words; scene: the dictionaries of the API.
+markdown: curators' texts as HTML; measurements: what a bake measured, in words; scene: the dictionaries of the API;
+writing: articles, and where what they name is read.
 """
 
-from hall_app.content.views.markdown import html_of, link_allowed, pictures_in, raw_html_in
+from hall_app.content.views.markdown import (
+    html_of,
+    link_allowed,
+    pictures_in,
+    plain_text,
+    raw_html_in,
+    references_in,
+    undescribed_in,
+    words_in,
+)
 from hall_app.content.views.scene import (
     TYPES,
     exhibit_json,
@@ -15,9 +25,36 @@ from hall_app.content.views.scene import (
     thumbnail,
     yaw_of,
 )
+from hall_app.content.views.writing import (
+    article_html,
+    article_picture,
+    articles_on,
+    image_html,
+    is_written,
+    page_of,
+    plot_picture,
+    spoken_of,
+    weave_picture,
+    words_of,
+    writing_file,
+)
 
 __all__ = [
     "TYPES",
+    "article_html",
+    "article_picture",
+    "articles_on",
+    "image_html",
+    "is_written",
+    "page_of",
+    "words_in",
+    "plot_picture",
+    "references_in",
+    "spoken_of",
+    "undescribed_in",
+    "weave_picture",
+    "words_of",
+    "writing_file",
     "exhibit_json",
     "html_of",
     "link_allowed",
@@ -26,6 +63,7 @@ __all__ = [
     "own_file",
     "own_picture",
     "pictures_in",
+    "plain_text",
     "raw_html_in",
     "scene_json",
     "thumbnail",

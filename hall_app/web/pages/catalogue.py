@@ -15,9 +15,11 @@ from typing import Any
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.views.markdown import html_of
 from hall_app.content.views.scene import exhibit_json, own_picture, thumbnail
-from hall_app.web.pages.door import ICON
+from hall_app.web.collection.record import Collection
+from hall_app.web.collection.schema_org import artwork, hall_graph, in_page
+from hall_app.web.pages.frame import Frame
 
-__all__ = ["Small", "catalogue_html", "shown_language"]
+__all__ = ["Records", "Small", "catalogue_html", "schema_records", "shown_language"]
 
 _WORDS = {
     "zh": {
@@ -36,6 +38,8 @@ _WORDS = {
         "visit": "在展厅中观看",
         "back": "回到目录",
         "pages": "网页",
+        "formats": "数据格式",
+        "all_formats": "全部展品的数据格式",
         "empty": "展厅里现在没有展品。",
     },
     "en": {
@@ -54,6 +58,8 @@ _WORDS = {
         "visit": "See it in the hall",
         "back": "Back to the contents",
         "pages": "Pages",
+        "formats": "As data",
+        "all_formats": "All exhibits as data",
         "empty": "There are no exhibits in the hall at present.",
     },
 }
@@ -66,6 +72,40 @@ class Small:
     url: str
     width: int
     height: int
+
+
+# The same records for programs: names and addresses of an exhibit's, and of the whole collection's.
+_FORMATS = {
+    "IIIF": "/iiif/3/{key}/manifest",
+    "LIDO": "/collection/{key}/lido.xml",
+    "Dublin Core": "/collection/{key}/dc.xml",
+    "schema.org": "/collection/{key}/schema.jsonld",
+    "GLB": "/collection/{key}/model.glb",
+}
+_ALL_FORMATS = {
+    "IIIF": "/iiif/3/collection",
+    "LIDO": "/collection/lido.xml",
+    "schema.org": "/collection/schema.jsonld",
+    "CSV": "/collection/table.csv",
+    "OAI-PMH": "/oai?verb=Identify",
+}
+
+
+@dataclass(frozen=True)
+class Records:
+    """What the page tells programs, as script elements: of the hall, and of each exhibit by its id."""
+
+    hall: str
+    exhibits: Mapping[str, str]
+
+
+NO_RECORDS = Records("", {})
+
+
+def schema_records(collection: Collection) -> Records:
+    """The collection in schema.org's words."""
+    works = {item.id: in_page(artwork(collection, item)) for item in collection.items}
+    return Records(in_page(hall_graph(collection)), works)
 
 
 SmallOf = Callable[[str], Small | None]  # address of a picture -> its thumbnail, None where it has none
@@ -82,10 +122,11 @@ def catalogue_html(
     baked: Mapping[str, Path],
     language: str | None,
     small_of: SmallOf = lambda url: None,
+    records: Records = NO_RECORDS,
 ) -> str:
     """The whole catalogue in "zh" or "en" (anything else: the hall's language)."""
     lang = shown_language(content, language)
-    page = _Page(content, lang, _WORDS[lang], small_of)
+    page = _Page(content, lang, _WORDS[lang], small_of, records)
     details = {
         exhibit.id: exhibit_json(content, exhibit.id, baked=baked.get(exhibit.id)) for exhibit in shown
     }
@@ -103,6 +144,7 @@ class _Page:
     lang: str
     words: dict[str, str]
     small_of: SmallOf
+    records: Records
 
     @property
     def other(self) -> str:
@@ -112,21 +154,23 @@ class _Page:
         hall, words, other = self.content.hall, self.words, self.other
         title, subtitle = escape(getattr(hall.title, self.lang)), escape(getattr(hall.subtitle, self.lang))
         about = f'<p class="about">{escape(getattr(hall.about, self.lang))}</p>' if hall.about else ""
-        return f"""<!doctype html>
-<html lang="{self.lang}"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="{ICON}">
-<title>{title} · {words["title"]}</title><link rel="stylesheet" href="/static/catalogue.css"></head>
-<body><a class="skip" href="#exhibits">{words["skip"]}</a>
-<header class="cover"><span class="seal" aria-hidden="true">{escape(hall.title.zh[:1])}</span>
-<h1>{title}</h1>
+        frame = Frame(hall, self.lang, "catalogue", "/catalogue")
+        body = f"""<a class="skip" href="#exhibits">{words["skip"]}</a>{frame.head()}
+<section class="cover" aria-labelledby="cover-title">
+<span class="seal" aria-hidden="true">{escape(hall.title.zh[:1])}</span>
+<h1 id="cover-title">{title}</h1>
 <p class="subtitle">{subtitle}</p><p class="kind">{words["title"]}</p>{about}
 <nav class="doors" aria-label="{words["pages"]}"><a class="door" href="/?lang={self.lang}">{words["hall"]}</a>
-<a href="/catalogue?lang={other}" lang="{other}" hreflang="{other}">{words["switch"]}</a></nav></header>
+<a href="/catalogue?lang={other}" lang="{other}" hreflang="{other}">{words["switch"]}</a></nav></section>
 <nav class="contents" id="contents" aria-labelledby="contents-title"><h2 id="contents-title">{words["contents"]}</h2>
 <ol>{listed}</ol></nav>
-<main id="exhibits">{entries}</main>
-<footer><p>{title} · {subtitle}</p><p>{words["licence"]}: {escape(hall.licence)}</p></footer></body></html>"""
+<main id="exhibits" tabindex="-1">{entries}{self._formats("all_formats", _ALL_FORMATS)}</main>{frame.foot()}"""
+        return frame.whole(words["title"], body, styles=("catalogue",), records=self.records.hall)
+
+    def _formats(self, title: str, addresses: Mapping[str, str], key: str = "") -> str:
+        """The ways to the same records for programs."""
+        ways = " ".join(f'<a href="{path.format(key=key)}">{name}</a>' for name, path in addresses.items())
+        return f'<p class="formats"><span>{self.words[title]}:</span> {ways}</p>'
 
     def line(self, number: int, exhibit: Exhibit, picture: str | None) -> str:
         """An exhibit among the contents."""
@@ -151,7 +195,8 @@ class _Page:
 <div class="text">{self._text(exhibit)}</div>{plates}
 <div class="record">{data}<p class="licence">{words["licence"]}: {escape(detail["licence"])}</p>
 <p class="ways"><a href="/?exhibit={key}&amp;lang={self.lang}">{words["visit"]}</a>
-<a href="#contents">{words["back"]}</a></p></div></article>"""
+<a href="#contents">{words["back"]}</a></p>
+{self._formats("formats", _FORMATS, key)}</div>{self.records.exhibits.get(exhibit.id, "")}</article>"""
 
     def _table(self, title: str, lines: list[dict[str, Any]]) -> str:
         """Lines {label, value} under their heading, nothing where there are none."""

@@ -29,13 +29,17 @@ def bending_matrix(
     count: int,
     *,
     balanced: bool | None = False,
+    creases: np.ndarray | None = None,
 ) -> sparse.csr_array:
     """Q (V, V) [N/m] from the corners of each face in its panel (F, 3, 2) [m]; edges: how many.
 
     bend (F, 3) [N m]: against curvature xx, yy and (twice) xy. balanced: so that constant curvatures push no vertex
-    (`balance.py`); None: unless the mesh is a lattice.
+    (`balance.py`); None: unless the mesh is a lattice. creases: edges (k,) across which nothing resists, as if both
+    sides ended there.
     """
     twin = _twins(face_edges, edges)
+    if creases is not None and len(creases):
+        twin[np.isin(face_edges, creases)] = -1
     curved, known = _curvatures(corner, faces, twin, count)
     turns = _turns(corner, faces, twin)
     operator = _lent(curved, known, twin, turns)

@@ -74,6 +74,7 @@ class Sheet:
         kind: np.ndarray,
         *,
         balanced: bool | None = False,
+        creases: np.ndarray | None = None,
     ) -> Sheet:
         """Assembles panels that share vertices along welded seams.
 
@@ -81,7 +82,8 @@ class Sheet:
         vertices; kind: (F,) which of `materials` each face is made of. Sides that two panels bring together should
         be equally long; an edge takes the mean. rest of the result lays each panel's vertices out as cut, the
         coordinates of a welded vertex being those of the first face that names it. balanced: bending as `of` has it
-        (None: but on lattices); garments are as they were baked, without. Raises SimCoreError as `of`.
+        (None: but on lattices); garments are as they were baked, without. creases: pairs (K, 2) of
+        vertices, edges of the mesh, across which cloth is folded without resistance. Raises SimCoreError as `of`.
         """
         faces, kind = triangles("faces", faces), numeric_array("kind", kind, "expected whole numbers (F,)")
         corner = coordinates("corner", corner)
@@ -106,7 +108,8 @@ class Sheet:
         if not used.all():
             raise SimCoreError(f"faces: vertex {np.flatnonzero(~used)[0]} belongs to no face – remove it")
         rest, faces = _checked_indices(rest, faces)
-        return Sheet._assembled(rest, corner, faces, tuple(materials), np.asarray(kind, np.int32), balanced)
+        kinds = np.asarray(kind, np.int32)
+        return Sheet._assembled(rest, corner, faces, tuple(materials), kinds, balanced, creases)
 
     @staticmethod
     def _assembled(
@@ -116,6 +119,7 @@ class Sheet:
         materials: tuple[Material, ...],
         kind: np.ndarray,
         balanced: bool | None,
+        creases: np.ndarray | None = None,
     ) -> Sheet:
         for material in materials:
             instance_of("material", material, Material, "a Material is meant")
@@ -130,7 +134,10 @@ class Sheet:
             stiffness[own] = _stiffness(corner[own], area[own], material.elasticity())
         own, around, coupling = _membrane(stiffness, face_edges, len(edges))
         bend = np.array([material.bending() for material in materials])[kind]
-        bending = bending_matrix(corner, faces, face_edges, len(edges), bend, len(rest), balanced=balanced)
+        folded = None if creases is None else _numbers(edges, creases)
+        bending = bending_matrix(
+            corner, faces, face_edges, len(edges), bend, len(rest), balanced=balanced, creases=folded
+        )
         rows, neighbour, edge_of, bend = _neighbours(edges, bending, len(rest))
         stencil = Stencil(
             inverse_mass=1 / mass,
@@ -161,6 +168,13 @@ def face_edge_table(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     pairs = np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1).reshape(-1, 2)
     edges, index = np.unique(np.sort(pairs, axis=1), axis=0, return_inverse=True)
     return edges.astype(np.int32), index.reshape(-1, 3).astype(np.int32)
+
+
+def _numbers(edges: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Numbers (k,) of the edges (E, 2) that are among pairs (K, 2) of vertices."""
+    count = int(edges.max()) + 1
+    low, high = np.sort(np.asarray(pairs, np.int64).reshape(-1, 2), axis=1).T
+    return np.flatnonzero(np.isin(edges[:, 0].astype(np.int64) * count + edges[:, 1], low * count + high))
 
 
 def _checked_indices(rest: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

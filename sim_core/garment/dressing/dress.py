@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -155,7 +155,7 @@ class _Dressing:
             rollbacks=sum(run.rollbacks for run in done),
             seconds=clock.laps,
             errors=errors,
-            **({"stand": asdict(self.outfit.stand)} if self.outfit.stand else {}),
+            **({"stand": self.outfit.stand.to_dict()} if self.outfit.stand else {}),
         )
         trail = self._trail(garment)
         if beneath:
@@ -301,7 +301,7 @@ class _Dressing:
             },
             dye=pattern.dye,
             settled=self._settled(runs, ran),
-            origins=_origins(layer, names),
+            origins=layer.panel_origins() if layer.placed else (),
         )
 
     def _settled(self, runs: Runs, ran: Ran) -> Settled:
@@ -352,12 +352,3 @@ def _keys(ends: tuple[int, int], seconds: float) -> list[int]:
     """The key at the end of every frame of a step."""
     count = max(1, round(seconds * 25))
     return [round(ends[0] + (ends[1] - ends[0]) * (k + 1) / count) for k in range(count)]
-
-
-def _origins(layer: Layer, names: Sequence[str]) -> tuple[tuple[float, float], ...]:
-    """Where repeats begin in every panel; in the other half of a mirrored pattern as far from its middle."""
-    if not layer.placed:
-        return ()
-    origins = [layer.origin_of(name) for name in names]
-    turned = [(-x, y) for x, y in origins] if layer.pattern.mirror else []
-    return (*origins, *turned)

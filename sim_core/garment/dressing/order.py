@@ -1,13 +1,14 @@
 """Whether cloth that overlaps itself lies in the order it is meant to: one front over the other, a wrap's end over its
-begin."""
+begin, the plies of pleats as they were folded."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.spatial import KDTree
 
+from sim_core.cloth.contact import DistanceField
 from sim_core.garment.garment import Garment
-from sim_core.garment.pattern import Pattern
+from sim_core.garment.pattern import Pattern, Plies, both_halves
 from sim_core.garment.placement import Flat, Placement, Wrapped
 
 __all__ = ["layer_order", "overlap"]
@@ -35,24 +36,49 @@ def overlap(garment: Garment, place: Placement) -> tuple[int, int]:
         return 0, 0
     if isinstance(place, Flat) and garment.cut.get("panels"):
         left, right = _fronts(garment)
-        outer, inner = (left, right) if place.over == "left" else (right, left)
+        layers = [(left, right) if place.over == "left" else (right, left)]
     elif isinstance(place, Wrapped):
-        outer, inner = _wraps(garment)
+        layers = _pleats(garment) or [_wraps(garment)]
     else:
         return 0, 0
-    if not len(outer) or not len(inner):
-        return 0, 0
     field = garment.settled.beneath.field()
-    tree = KDTree(garment.positions[inner])
-    away, near = tree.query(garment.positions[outer], distance_upper_bound=REACH)
+    found = [_heights(garment.positions, field, *pair) for pair in layers if all(map(len, pair))]
+    height = np.concatenate([np.zeros(0), *found])
+    return int((height < -SLIGHT).sum()), int((height > SLIGHT).sum())
+
+
+def _heights(x: np.ndarray, field: DistanceField, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """How high (n,) [m] those of `outer` lie over `inner`, indices into x (V, 3) [m], that lie over or under it."""
+    away, near = KDTree(x[inner]).query(x[outer], distance_upper_bound=REACH)
     close = np.isfinite(away) & (away > 1e-9)
-    here, there = garment.positions[outer[close]], garment.positions[inner[np.asarray(near)[close]]]
+    here, there = x[outer[close]], x[inner[np.asarray(near)[close]]]
     _, outward = field.with_gradient(0.5 * (here + there))
     size = np.linalg.norm(outward, axis=1)
     towards = here - there
     height = (towards * outward).sum(1) / np.maximum(size, 1e-9)
     facing = (size > 0.3) & (np.abs(height) > FACING * np.linalg.norm(towards, axis=1))
-    return int((facing & (height < -SLIGHT)).sum()), int((facing & (height > SLIGHT)).sum())
+    return height[facing]
+
+
+def _pleats(garment: Garment) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Draped vertices of each ply of pleats that lies over another, and of that; later panels lie over earlier ones."""
+    cut = Pattern.from_dict(garment.cut).panels
+    if not any(panel.pleats for panel in cut):
+        return []
+    found, before = list[tuple[np.ndarray, np.ndarray]](), np.zeros(0, np.int64)
+    for number, panel, sign in both_halves(cut):
+        if number == len(garment.panels):  # it is one half
+            break
+        own = np.unique(garment.pattern_faces[garment.panel == number])
+        x = sign * garment.pattern[own, 0]
+        plies = Plies.of(float(x.min()), float(x.max()), panel.pleats)
+        of = plies.numbers(x)
+        found += [
+            (garment.weld[own[of == over]], garment.weld[own[of == under]]) for over, under in plies.stacked()
+        ]
+        found.append((garment.weld[own], before))
+        before = np.concatenate([before, garment.weld[own]])
+    return found
 
 
 def _fronts(garment: Garment) -> tuple[np.ndarray, np.ndarray]:

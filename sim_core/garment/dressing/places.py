@@ -11,7 +11,7 @@ from sim_core.errors import SimCoreError
 from sim_core.garment.dressing.course import Course
 from sim_core.garment.dressing.sewn_sheet import SewnSheet
 from sim_core.garment.outfit import Layer
-from sim_core.garment.pattern import SIDES, Cloth, Spot
+from sim_core.garment.pattern import SIDES, Cloth, Spot, both_halves, latches
 from sim_core.garment.pattern.sections import hull_girth
 from sim_core.metrics import components
 
@@ -20,6 +20,7 @@ __all__ = ["Places", "belt_pairs", "nearest"]
 OPEN = (
     np.pi / 2
 )  # [rad] that cloth round the body may leave free; a sleeve beside it leaves more than twice that
+LATCH = 1.0  # mesh steps from a fold to the cloth beside it that keeps it from opening
 APART = 1.5  # mesh steps between two points of a belt
 
 
@@ -44,7 +45,7 @@ class Places:
     def pairs(self, course: Course) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (K, 2) that are drawn together in a run, and how far apart (K,) [m] they end."""
         pairs = np.zeros((0, 2), np.int32) if course.closed else self.cloth.pairs
-        ends = np.zeros(len(pairs))
+        pairs, ends = self._latched(pairs)
         for tie in course.ties:
             first, second = self._nearest(tie.a), self._nearest(tie.b)
             twins = [(a, b) for a, b in zip(first, second, strict=False) if a != b]
@@ -53,6 +54,18 @@ class Places:
             pairs = np.concatenate([pairs, np.array(twins, np.int32).reshape(-1, 2)])
             ends = np.concatenate([ends, np.full(len(twins), tie.length)])
         return pairs.astype(np.int32), ends
+
+    def _latched(self, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs that are sewn, and those that keep pleats from opening, with their distances [m]."""
+        found, ends = [pairs], [np.zeros(len(pairs))]
+        for number, panel, sign in both_halves(self.layer.pattern.panels):
+            own = np.flatnonzero(self.cloth.panel_of == number)
+            if panel.pleats and len(own):
+                points = self.cloth.vertices[own] * [sign, 1.0]
+                near, apart = latches(points, panel.pleats, LATCH * self.layer.edge)
+                found.append(self.sheet.number[own[near]])
+                ends.append(apart)
+        return np.concatenate(found), np.concatenate(ends)
 
     @cached_property
     def _edges(self) -> np.ndarray:

@@ -76,7 +76,9 @@ class Runs:
                 if sheet is not None:
                     x, v = x[sheet.number], v[sheet.number]
                     gap = self._gap(x)
-                sheet = sewn_sheet(self.cloth, weld, materials.kinds, kind, apart, even=even)
+                sheet = sewn_sheet(
+                    self.cloth, weld, materials.kinds, kind, apart, even=even, creases=self.cloth.creases
+                )
                 x, v = sheet.gathered(x), sheet.gathered(v)
                 v[sheet.middle, 0] = 0.0
             places = self.places(sheet)

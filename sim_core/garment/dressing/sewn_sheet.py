@@ -55,10 +55,12 @@ def sewn_sheet(
     apart: np.ndarray,
     *,
     even: bool = True,
+    creases: np.ndarray | None = None,
 ) -> SewnSheet:
     """The cloth as a sheet whose twins under `number` (P,) are one; kind (F,) of material, apart (F,) layers of it.
 
-    even: with its mass shared out so that time steps are longer (`cloth.sheet.evened`).
+    even: with its mass shared out so that time steps are longer (`cloth.sheet.evened`). creases: pairs (K, 2) of
+    pattern vertices along the folds of pleats.
     """
     faces = number[cloth.faces]
     corner = cloth.vertices[cloth.faces] + APART * apart[:, None, None] * np.array([1.0, 0.0])
@@ -75,7 +77,10 @@ def sewn_sheet(
     whole = np.concatenate([faces, image[faces[ring]][:, [0, 2, 1]]])
     corners = np.concatenate([corner, (corner[ring] * [-1.0, 1.0])[:, [0, 2, 1]]])
     kinds = np.r_[kind, kind[ring]]
-    sheet = Sheet.of_corners(corners, whole, materials, kinds)
+    folded = None if creases is None else number[creases]
+    if folded is not None:
+        folded = np.concatenate([folded, image[folded]])
+    sheet = Sheet.of_corners(corners, whole, materials, kinds, creases=folded)
     if even:
         density = np.array([material.density for material in materials])
         sheet = evened(sheet, density[kinds], own=len(on))

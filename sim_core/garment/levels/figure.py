@@ -35,11 +35,13 @@ def shown_figure(
     triangles: int | None = None,
     rings: int = 2,
     moments: Sequence[tuple[np.ndarray, np.ndarray]] = (),
+    feet: np.ndarray | None = None,
 ) -> Shown:
     """The visible part of a figure with `rings` of faces around it.
 
     triangles: thinned to that many (None: all are kept). Normals are the fine figure's. moments: where figure and cloth
-    are at other times, vertices (V, 3) and (C, 3) [m] each: what is seen then is shown, too.
+    are at other times, vertices (V, 3) and (C, 3) [m] each: what is seen then is shown, too. feet (V,): what
+    shoes cover.
     """
     visible = seen(vertices, cloth, cloth_faces, faces)
     for figure, worn in moments:
@@ -53,4 +55,5 @@ def shown_figure(
         mesh.to(triangles)
         kept = mesh.faces()
     used, index = np.unique(kept, return_inverse=True)
-    return Shown(vertices[used], index.reshape(-1, 3).astype(np.int32), shading[used], BASE)
+    shod = None if feet is None else np.asarray(feet[kept].all(1))
+    return Shown(vertices[used], index.reshape(-1, 3).astype(np.int32), shading[used], BASE, shod)

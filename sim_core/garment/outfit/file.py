@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from sim_core.body import Figure, Mannequin, Pose, Stand, load_motion, pose_named
+from sim_core.body import Figure, Mannequin, Pose, Stand, TBar, load_motion, pose_named
 from sim_core.body.pose import T_POSE
 from sim_core.cloth import Contact
 from sim_core.errors import FileProblem, SimCoreError
@@ -23,6 +23,7 @@ from sim_core.garment.outfit.tables import (
     Place,
     PoseTable,
     ProgramTable,
+    StandTable,
     StepTable,
 )
 from sim_core.garment.pattern import Pattern
@@ -78,7 +79,7 @@ class _Reader:
                 "wearer", 'give either wearer = "mannequins/….npz" or a [stand] table, one of both'
             )
         wearer = None if read.wearer is None else self._wearer(self._file("wearer", read.wearer), read.size)
-        stand = None if read.stand is None else self._of("stand", lambda: Stand(**read.stand.model_dump()))  # type: ignore[union-attr]
+        stand = None if read.stand is None else self._stand(read.stand)
         for key in ("pose", "size", "motion"):
             if stand is not None and key in read.model_fields_set:
                 raise self._wrong(key, "a stand has none – leave it out")
@@ -91,7 +92,7 @@ class _Reader:
                         f"layer.{k}.edge", "mesh steps are chosen by the study – leave out one of both"
                     )
         motion = load_motion(self._file("motion", read.motion)) if read.motion is not None else None
-        layers = [self.layer(f"layer.{k}", table, wearer is None) for k, table in enumerate(read.layer, 1)]
+        layers = [self.layer(f"layer.{k}", table, stand) for k, table in enumerate(read.layer, 1)]
         self._check_belts(layers, wearer)
         if stand is not None and len(layers) > 1:
             raise self._wrong("layer.2", "a stand bears one layer – give a wearer")
@@ -103,6 +104,10 @@ class _Reader:
         name = read.name or self._path.stem
         title = {str(language): words for language, words in read.title.items()}
         return Outfit(name, tuple(layers), wearer, stand, pose, motion, title, str(self._path))
+
+    def _stand(self, table: StandTable) -> Stand:
+        told = table.model_dump(exclude={"kind"}, exclude_none=True)
+        return self._of("stand", lambda: TBar(**told) if table.kind == "t_bar" else Stand(**told))
 
     def _check_belts(self, layers: Sequence[Layer], wearer: Mannequin | None) -> None:
         known = wearer.landmarks() if wearer is not None else {}
@@ -123,7 +128,7 @@ class _Reader:
             raise FileProblem(f"{file}: {error}") from error
         return wearer
 
-    def layer(self, key: str, table: LayerTable, on_stand: bool) -> Layer:
+    def layer(self, key: str, table: LayerTable, stand: Stand | None) -> Layer:
         pattern = self._pattern(key, table)
         weave = Weave.load(self._file(f"{key}.weave", table.weave))
         weaves = {
@@ -132,10 +137,10 @@ class _Reader:
         for of, panels in (("weaves", weaves), ("origins", table.origins)):
             for name in panels:
                 self._of(f"{key}.{of}", lambda name=name: pattern.panel(name))
-        way = table.place.way if table.place else ("over_bar" if on_stand else "flat")
-        if on_stand != (way in ("over_bar", "folded")):
-            ways = "over_bar or folded on a stand" if on_stand else "flat, wrapped or along_path on a wearer"
-            raise self._wrong(f"{key}.place.way", f"{way!r} – choose {ways}")
+        ways, where = _ways(stand)
+        way = table.place.way if table.place else ways[0]
+        if way not in ways:
+            raise self._wrong(f"{key}.place.way", f"{way!r} – choose {' or '.join(ways)} on {where}")
         place = self.placement(key, table.place) if table.place else WAYS[way]()  # type: ignore[call-arg]
         if way == "flat" and not pattern.panels:
             raise self._wrong(
@@ -145,7 +150,7 @@ class _Reader:
             raise self._wrong(
                 f"{key}.pattern", f"{table.pattern} is no half – along_path needs mirror = true"
             )
-        program = default_program(way)
+        program = default_program("hung" if way == "flat" and stand is not None else way)
         if table.step:
             steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
             program = replace(program, steps=steps)
@@ -294,6 +299,13 @@ def _programs() -> Mapping[str, ProgramTable]:
     folder = resources.files("sim_core.garment.outfit")
     values = read_toml(Path(str(folder / "programs.toml")), "the default programs (TOML)")
     return {way: ProgramTable.model_validate(table) for way, table in values.items()}
+
+
+def _ways(stand: Stand | None) -> tuple[tuple[str, ...], str]:
+    """Ways of placing cloth on a wearer or a stand, the usual one first, and what that is called."""
+    if stand is None:
+        return ("flat", "wrapped", "along_path"), "a wearer"
+    return (("flat",), "a T-bar") if isinstance(stand, TBar) else (("over_bar", "folded"), "a stand")
 
 
 def default_program(way: str) -> Program:

@@ -82,6 +82,11 @@ class Layer:
         """Where a corner of the weave's repeat lies in a panel's axes [m]."""
         return self.origins.get(panel, self.origin)
 
+    def panel_origins(self) -> tuple[tuple[float, float], ...]:
+        """`origin_of` each panel of the whole cloth; in the other half of a mirrored pattern as far from the middle."""
+        origins = [self.origin_of(panel.name) for panel in self.pattern.panels] or [self.origin]
+        return (*origins, *((-x, y) for x, y in origins)) if self.pattern.mirror else tuple(origins)
+
     @property
     def placed(self) -> bool:
         """Whether its cloth was laid with care: a repeat's corner elsewhere than at the axes' zero."""

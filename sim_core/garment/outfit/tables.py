@@ -189,9 +189,14 @@ class LayerTable(Table):
 
 
 class StandTable(Table):
+    kind: Literal["rack", "t_bar"] = Field(
+        "rack", description="two posts with a bar, or a bar through sleeves"
+    )
     height: Number = Field(1.5, gt=0, le=5, description="of the bar [m]")
-    span: Number = Field(0.70, gt=0, le=10, description="between the posts [m]")
-    bar_radius: Number = Field(0.017, ge=0.002, le=0.08, description="[m]")
+    span: Number | None = Field(
+        None, gt=0, le=10, description="between the posts, or of a T-bar from end to end [m]"
+    )
+    bar_radius: Number | None = Field(None, ge=0.002, le=0.08, description="[m]")
 
 
 class OutfitTable(Table):

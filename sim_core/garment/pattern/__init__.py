@@ -1,9 +1,10 @@
 """A garment as it is cut: panels, seams, pattern files and GarmentCode, and the cloth they are meshed to."""
 
-from sim_core.garment.pattern.cloth import SIDES, Cloth, cut_cloth, unsided
+from sim_core.garment.pattern.cloth import SIDES, Cloth, both_halves, creases_of, cut_cloth, unsided
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie
 from sim_core.garment.pattern.pattern import Pattern
+from sim_core.garment.pattern.pleats import Pleat, Plies, latches
 from sim_core.garment.pattern.transfer import Transfer
 
 __all__ = [
@@ -12,11 +13,16 @@ __all__ = [
     "Panel",
     "Path",
     "Pattern",
+    "Pleat",
+    "Plies",
     "Seam",
     "Spot",
     "Tie",
     "Transfer",
+    "both_halves",
+    "creases_of",
     "cut_cloth",
+    "latches",
     "measured",
     "unsided",
 ]

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sim_core.errors import OutlineError
 from sim_core.garment.pattern.panels import Panel, Path, Seam
+from sim_core.garment.pattern.pleats import chords, creased
 from sim_core.mesh import PanelMesh, SeamFit, SeamSide, SewnPanel, sewn_meshes
 from sim_core.mesh import Seam as SewnSeam
 from sim_core.mesh.outline import check_edge, signed_area
 from sim_core.metrics import components
 
-__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "cut_cloth", "unsided"]
+__all__ = ["MOST_VERTICES", "SIDES", "Cloth", "both_halves", "creases_of", "cut_cloth", "unsided"]
 
 SIDES = (" left", " right")  # of the wearer: a panel of a whole cloth is called so behind its name
 
@@ -34,7 +35,8 @@ class Cloth:
     vertices (P, 2) [m] in pattern axes, each panel in its own; faces (F, 3) int32, positive area in (x, -y);
     panel (F,) and panel_of (P,) number the panels of `names`; joined (P,): vertices joined flat have one number,
     closed (P,): once all seams are sewn; pairs (K, 2): what `sewn` draws together; middle (M,): vertices on x = 0;
-    paths: the vertices along each leg; fits: how each seam of two sides came out, of one half.
+    paths: the vertices along each leg; fits: how each seam of two sides came out, of one half; creases (C, 2): edges
+    along the folds of pleats.
     """
 
     names: tuple[str, ...]
@@ -48,6 +50,7 @@ class Cloth:
     middle: np.ndarray
     paths: dict[str, np.ndarray]
     fits: tuple[SeamFit, ...] = ()
+    creases: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), np.int32))
 
     @staticmethod
     def of(mesh: PanelMesh, name: str = "cloth") -> Cloth:
@@ -95,6 +98,7 @@ class Cloth:
             np.zeros(0, np.int32),
             paths,
             self.fits,
+            np.concatenate([self.creases, self.creases + count]).astype(np.int32),
         )
 
     def _legs(self) -> Iterator[tuple[tuple[str, str], np.ndarray]]:
@@ -115,7 +119,15 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
         except OutlineError as error:
             raise OutlineError(f"{_named(panel)}: {error}") from error
     by_name = {panel.name: panel for panel in panels}
-    drawn = [SewnPanel(panel.outline(), _corners(panel), name=_named(panel)) for panel in panels]
+    drawn = [
+        SewnPanel(
+            panel.outline(),
+            _corners(panel),
+            constraints=chords(panel.outline(), panel.pleats),
+            name=_named(panel),
+        )
+        for panel in panels
+    ]
     pairs = [(seam, seam.b) for seam in seams if seam.b is not None]
     wanted = [SewnSeam(_side(seam.a, by_name), _side(b, by_name), seam.notches) for seam, b in pairs]
     meshes, fits = sewn_meshes(drawn, wanted, edge=edge)
@@ -126,7 +138,30 @@ def cut_cloth(panels: Sequence[Panel], seams: Sequence[Seam], edge: float) -> Cl
     cloth = _laid_out(panels, meshes, starts, twins)
     middle = [cloth.along(seam.a, by_name[seam.a.panel]) for seam in seams if seam.b is None]
     numbers = np.unique(np.concatenate([np.zeros(0, np.int32), *middle])).astype(np.int32)
-    return replace(cloth, middle=numbers, fits=tuple(fits))
+    creases = creases_of(panels, cloth.vertices, cloth.faces, cloth.panel)
+    return replace(cloth, middle=numbers, fits=tuple(fits), creases=creases)
+
+
+def both_halves(panels: Sequence[Panel]) -> Iterator[tuple[int, Panel, float]]:
+    """Number, panel and sign of x of each panel of a whole cloth, which may be no more than one half: the second half's
+    panels follow the first's."""
+    for half, sign in enumerate((1.0, -1.0)):
+        for number, panel in enumerate(panels):
+            yield number + half * len(panels), panel, sign
+
+
+def creases_of(
+    panels: Sequence[Panel], vertices: np.ndarray, faces: np.ndarray, panel: np.ndarray
+) -> np.ndarray:
+    """Edges (C, 2) int32 along the folds of pleats, of pattern vertices (P, 2) [m] and faces (F, 3), of which `panel`
+    (F,) tells whose they are; of a mirrored cloth the second half's panels follow the first's."""
+    found = [np.zeros((0, 2), np.int32)]
+    for number, own, sign in both_halves(panels):
+        if own.pleats:
+            mine = faces[panel == number]
+            edges = np.unique(np.sort(mine[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+            found.append(creased(sign * vertices[:, 0], edges, own.pleats))
+    return np.concatenate(found).astype(np.int32)
 
 
 def _laid_out(

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from sim_core.errors import OutlineError
+from sim_core.garment.pattern.pleats import Pleat
 
 __all__ = ["Panel", "Path", "Seam", "Spot", "Tie", "check_extent"]
 
@@ -24,7 +25,7 @@ class Panel:
     corners: names in order; legs: leg k runs from corner k to the next one, (n, 2) [m] with both ends, y down along
     the warp; doubled: cut twice as high and folded along its length; along: the path of another panel that it is laid
     beside before sewing (None: it lies in the garment's own plane, x outwards from the middle, y = 0 the shoulder
-    fold); dye: sRGB 0..1 (None: the pattern's).
+    fold); dye: sRGB 0..1 (None: the pattern's); pleats: folded into it before it is placed.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Panel:
     doubled: bool = False
     along: Path | None = None
     dye: Colour | None = None
+    pleats: tuple[Pleat, ...] = ()
 
     def outline(self) -> np.ndarray:
         """The closed outline (N, 2) [m], first point not repeated."""
@@ -47,8 +49,15 @@ class Panel:
     def to_dict(self) -> dict[str, Any]:
         """A plain dictionary that JSON can hold."""
         legs = [leg.tolist() for leg in self.legs]
-        changed = {"corners": list(self.corners), "legs": legs, "along": self.along and str(self.along)}
-        return {**self.__dict__, **changed, "dye": self.dye and list(self.dye)}
+        told = {
+            "name": self.name,
+            "corners": list(self.corners),
+            "legs": legs,
+            "doubled": self.doubled,
+            "along": self.along and str(self.along),
+            "dye": self.dye and list(self.dye),
+        }
+        return {**told, "pleats": [pleat.to_list() for pleat in self.pleats]} if self.pleats else told
 
     @staticmethod
     def from_dict(data: dict[str, Any]) -> Panel:
@@ -60,6 +69,7 @@ class Panel:
             data["doubled"],
             Path.read(data["along"]) if data["along"] else None,
             tuple(data["dye"]) if data["dye"] else None,
+            tuple(Pleat(*told) for told in data.get("pleats", ())),
         )
 
 

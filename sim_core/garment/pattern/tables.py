@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sim_core.errors import OutlineError
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie, check_extent
+from sim_core.garment.pattern.pleats import Pleat, chords
 from sim_core.mesh.outline import clean_contours
 
 __all__ = [
@@ -49,12 +51,22 @@ class PointTable(Table):
     curve: tuple[tuple[Measure, Measure], tuple[Measure, Measure]] | None = None
 
 
+class PleatsTable(Table):
+    at: Measure = Field(description="x at which the first pleat begins [mm]")
+    count: int = Field(1, strict=True, ge=1, le=200, description="how many, side by side")
+    depth: Measure = Field(description="of each fold [mm]: a pleat takes up twice as much cloth")
+    step: Measure = Field(0.0, description="[mm] that each leaves to be seen before the next begins")
+    towards: Literal["end", "begin"] = Field("end", description="where the outer folds point to, in x")
+    opens: Number = Field(180.0, gt=0, le=180, description="[deg] that its creases may open to; 180: any")
+
+
 class PanelTable(Table):
     name: str = Field(min_length=1, pattern=r"^[a-z][a-z0-9_]*$")
     outline: list[PointTable] = Field(min_length=3, max_length=200)
     doubled: bool = False
     along: str | None = None
     dye: str | None = Field(None, pattern=r"^#[0-9a-fA-F]{6}$")
+    pleats: list[PleatsTable] = Field([], max_length=20)
 
 
 class SeamTable(Table):
@@ -194,13 +206,45 @@ def _panel(table: PanelTable, known: Mapping[str, float], made: Mapping[str, Pan
         if table.along is None
         else _told(f"{key}.along", lambda: _known(Path.read(table.along or ""), made)),
         read_dye(table.dye),
+        _pleats(key, table.pleats, known),
     )
     try:
         check_extent(panel.outline())
         clean_contours(panel.outline(), ())
     except OutlineError as error:
         raise CutProblem(f"{key}.outline", str(error)) from error
+    try:
+        chords(panel.outline(), panel.pleats)
+    except OutlineError as error:
+        raise CutProblem(key, str(error)) from error
     return panel
+
+
+def _pleats(key: str, tables: list[PleatsTable], known: Mapping[str, float]) -> tuple[Pleat, ...]:
+    found: list[Pleat] = []
+    for number, table in enumerate(tables, 1):
+        where = f"{key}.pleats.{number}"
+        at, depth, step = (
+            _told(f"{where}.{name}", partial(measured, getattr(table, name), known)) / 1000
+            for name in ("at", "depth", "step")
+        )
+        if not 0.002 <= depth <= 2.0:
+            raise CutProblem(f"{where}.depth", f"{1000 * depth:.0f} mm – a fold is 2 to 2000 mm deep")
+        if table.count > 1 and step < 0.002:
+            raise CutProblem(f"{where}.step", f"{1000 * step:.1f} mm – pleats leave 2 mm or more to be seen")
+        found += [
+            Pleat(at + k * (2 * depth + step), depth, table.towards, float(np.radians(table.opens)))
+            for k in range(table.count)
+        ]
+    found.sort(key=lambda pleat: pleat.at)
+    for one, other in zip(found, found[1:], strict=False):
+        if one.at + 2 * one.depth > other.at + 1e-9:
+            raise CutProblem(
+                f"{key}.pleats",
+                f"one takes up x = {1000 * one.at:.0f} to {1000 * (one.at + 2 * one.depth):.0f} mm, the next begins "
+                f"at {1000 * other.at:.0f} – let them follow one another",
+            )
+    return tuple(found)
 
 
 def _leg(start: np.ndarray, controls: list[np.ndarray], end: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from sim_core.garment.placement.ground import Ground
 __all__ = ["Flat", "Laying", "laid"]
 
 OVER = 0.012  # [m] of the laid cloth above shoulders and arms
+ON_BAR = 0.001  # [m] more than it keeps from it that cloth lies off a bar
 ON_FLOOR = 0.002  # [m] more than it keeps from it that cloth lies above the floor
 TRAIL = 0.02  # [m] radius of the bend where it comes to lie there
 RISING = 0.07  # [m] of the shoulder fold over which a front that lies outside is raised to its height
@@ -23,7 +24,7 @@ RISING = 0.07  # [m] of the shoulder fold over which a front that lies outside i
 
 @dataclass(frozen=True)
 class Flat:
-    """Flat before and behind the wearer's outstretched arms.
+    """Flat before and behind the wearer's outstretched arms, or a T-bar through both sleeves.
 
     over: the front, of the wearer, that lies outside where fronts overlap, lift [m] off the other from the shoulder
     on; front, back [m]: of the sheets before and behind the middle.
@@ -57,7 +58,17 @@ class Flat:
         return both.reshape(-1, 3)
 
     def _laying(self, ground: Ground) -> Laying:
-        """Over the highest point of arms and shoulders, the neck left out."""
+        """Over a T-bar close to it, else over the highest point of arms and shoulders, the neck left out."""
+        if ground.stand is not None:
+            round_bar = ground.stand.bar_radius + ground.clearance + ON_BAR
+            return Laying(
+                top=ground.stand.height + round_bar,
+                fold=0.0,
+                front=round_bar,
+                back=-round_bar,
+                bend=round_bar,
+                floor=ground.clearance + ON_FLOOR,
+            )
         points = ground.points()
         top = float(points[np.abs(points[:, 0]) > 0.1, 1].max()) + OVER
         return Laying(top=top, front=self.front, back=-self.back, floor=ground.clearance + ON_FLOOR)

@@ -5,15 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, KDTree
 
 from sim_core.errors import SimCoreError
 from sim_core.garment.pattern import Cloth, Pattern
 from sim_core.garment.placement.ground import Ground
+from sim_core.garment.placement.tent import Folds, Tent
 
 __all__ = ["Wrapped", "girth"]
 
 FINE = 0.002  # [m] between the points of the line
+SLAB = 0.01  # [m] of the wearer that a line about it is drawn round at least
+LEVELS = 33  # heights at which pleats are laid about a wearer that is wider below
 
 
 @dataclass(frozen=True)
@@ -39,22 +42,29 @@ class Wrapped:
         """Positions (P, 3) [m] of the pattern vertices. Raises SimCoreError where the cloth does not go round."""
         low, high = cloth.vertices.min(0), cloth.vertices.max(0)
         top = float(ground.mark(self.mark)[1]) + self.rise
-        hull = _section(ground, top - float(high[1] - low[1]), top)
-        width, room = float(high[0] - low[0]), ground.clearance + 0.002
-        begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
         lowest = top - float(high[1] - low[1])
         if lowest < 0.0:
             raise SimCoreError(
                 f"pattern {pattern.name}: {high[1] - low[1]:.2f} m long, {-lowest:.2f} m more than there is from "
                 f"{self.mark!r} to the floor – cut it shorter or raise it"
             )
+        begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
         closed = len(np.intersect1d(begin, end)) > 0  # sewn to itself: a tube
+        room = ground.clearance + 0.002
+        if any(panel.pleats for panel in pattern.panels):
+            depths = np.linspace(0.0, float(high[1] - low[1]), LEVELS)
+            hulls = [_section(ground, top - max(float(depth), SLAB), top) for depth in depths]
+            folds = Folds.of(pattern, cloth)
+            need = girth(hulls[0]) + 2 * np.pi * room
+            _check_width(pattern, folds.width, need, self.mark)
+            if closed or folds.width < 1.02 * need:
+                room += (folds.width - need) / (2 * np.pi)
+            tent = Tent.over(hulls, depths, np.radians(self.begin), room)
+            return tent.hung(folds, cloth.vertices[:, 1] - low[1], self.gap) + [0.0, top, 0.0]
+        hull = _section(ground, lowest, top)
+        width = float(high[0] - low[0])
         need = girth(hull) + 2 * np.pi * room
-        if width < need:
-            raise SimCoreError(
-                f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {self.mark!r} it needs "
-                f"{need:.3f} m; make it wider or place it elsewhere"
-            )
+        _check_width(pattern, width, need, self.mark)
         if closed or width < 1.02 * need:
             line = _around(hull, np.radians(self.begin), (width - girth(hull)) / (2 * np.pi), 0.0, width)
         else:
@@ -65,6 +75,15 @@ class Wrapped:
         return np.stack([x, top - (cloth.vertices[:, 1] - low[1]), z], axis=1)
 
 
+def _check_width(pattern: Pattern, width: float, need: float, mark: str) -> None:
+    """Raises SimCoreError unless cloth goes round once."""
+    if width < need:
+        raise SimCoreError(
+            f"pattern {pattern.name}: {width:.3f} m wide – to go round the wearer below {mark!r} it needs "
+            f"{need:.3f} m; make it wider or place it elsewhere"
+        )
+
+
 def girth(hull: np.ndarray) -> float:
     """Length [m] of a closed convex line (n, 2): what a tape measure says."""
     return float(np.linalg.norm(hull - np.roll(hull, 1, axis=0), axis=1).sum())
@@ -73,8 +92,8 @@ def girth(hull: np.ndarray) -> float:
 def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     """Corners (n, 2) [m] in x and z of the convex hull of trunk, legs and garments between two heights, one way round
     from the front to the wearer's left."""
-    parts = [ground.vertices[ground.trunk], *(vertices for vertices, _ in ground.worn)]
-    points = np.concatenate(parts)
+    worn = [vertices[_on_trunk(ground, vertices)] for vertices, _ in ground.worn]
+    points = np.concatenate([ground.vertices[ground.trunk], *worn])
     points = points[(points[:, 1] >= low) & (points[:, 1] <= high + 0.01)]
     if len(points) < 3:
         raise SimCoreError(
@@ -85,6 +104,12 @@ def _section(ground: Ground, low: float, high: float) -> np.ndarray:
     ahead = np.arctan2(hull[:, 0], hull[:, 1])
     hull = hull[np.argsort(ahead - ahead.min())]
     return hull
+
+
+def _on_trunk(ground: Ground, points: np.ndarray) -> np.ndarray:
+    """Which (N,) of the points (N, 3) [m] of a garment lie nearer to the wearer's trunk and legs than to the arms."""
+    nearest = KDTree(ground.vertices).query(points)[1]
+    return np.isin(nearest, ground.trunk)
 
 
 def _around(hull: np.ndarray, begin: float, away: float, gap: float, length: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-// Help: every key and gesture, the catalogue and the hall's own questionnaire.
+// Help: every key and gesture, the pages to read and the hall's own questionnaire.
 
 import { createDialog } from "./dialogs.js";
 import { el, setAttribute } from "../elements.js";
@@ -70,6 +70,7 @@ export function createHelp({ words, scene, onSurvey }) {
     onSurvey();
   });
   const catalogue = words.text(el("a", { href: "/catalogue" }), "help.catalogue");
+  const culture = words.text(el("a", { href: "/culture" }), "help.culture");
   dialog.body.append(
     el(
       "div",
@@ -77,7 +78,7 @@ export function createHelp({ words, scene, onSurvey }) {
       section(words, "keyboard"),
       el("div", {}, section(words, "mouse"), section(words, "touch")),
     ),
-    el("footer", { class: "help-foot" }, catalogue, survey),
+    el("footer", { class: "help-foot" }, catalogue, culture, survey),
   );
   const updateScene = (next) => setAttribute(survey, "hidden", !next.questionnaire);
   updateScene(scene);

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hall_app.content.files import snapshot
 from hall_app.content.folder import Content
-from hall_app.content.loading import load
+from hall_app.content.loading.hall import load
 from hall_app.content.problems import Problem
 
 

@@ -1,0 +1,158 @@
+"""Pleated cloth round the wearer: panels laid in folds on a tent, narrow where they are held and wider below."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+from scipy.spatial import ConvexHull
+
+from sim_core.garment.pattern import Cloth, Pattern, Plies
+
+__all__ = ["Folds", "Tent"]
+
+ANGLES = 720  # directions in which a line about the wearer is told
+ROUNDED = 60  # of them, to both sides, over which its corners are rounded
+OVER = 1.5  # gaps that a panel lies over those beneath it
+
+
+@dataclass(frozen=True)
+class Tent:
+    """Convex lines round the wearer, from the top down: of each its depth [m] below the top, and how far down (L,) [m]
+    along the cloth it lies."""
+
+    rings: tuple[_Ring, ...]
+    depths: np.ndarray
+    falls: np.ndarray
+
+    @staticmethod
+    def over(hulls: Sequence[np.ndarray], depths: np.ndarray, begin: float, away: float) -> Tent:
+        """At least `away` [m] off convex hulls (m, 2) at depths (L,) [m], each about all those above, from the
+        direction `begin` [rad] on. It widens ever less on the way down, so that plies that lie on each other there do
+        not cut each other's chords."""
+        centre = hulls[-1].mean(0)
+        angle = begin + np.linspace(0.0, 2 * np.pi, ANGLES + 1)
+        outward = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+        reach = np.array([(outward[:-1] @ (hull - centre).T).max(1) for hull in hulls])  # support functions
+        window = np.hanning(2 * ROUNDED + 1)
+        smooth = ndimage.convolve1d(reach, window / window.sum(), axis=1, mode="wrap")
+        smooth += away + (reach - smooth).max(1, keepdims=True)
+        growth = smooth[-1] - smooth[0]
+        wanted = ((smooth - smooth[0]) / np.maximum(growth, 1e-6)).max(1)
+        share = _concave(depths, np.clip(wanted, 0.0, 1.0))
+        lines = smooth[0] + share[:, None] * growth
+        rings = tuple(_Ring.of(line, outward, centre) for line in lines)
+        steps = np.hypot(np.diff(depths), np.diff([ring.girth for ring in rings]) / (2 * np.pi))
+        return Tent(rings, depths, np.r_[0.0, np.cumsum(steps)])
+
+    def hung(self, folds: Folds, fall: np.ndarray, gap: float) -> np.ndarray:
+        """Positions (P, 3) [m] of pleated cloth from the top down, which lies at y = 0; fall (P,) [m] down the cloth;
+        gap [m] between plies."""
+        last = len(self.rings) - 2
+        where = np.clip(np.searchsorted(self.falls, fall, side="right") - 1, 0, last)
+        share = (fall - self.falls[where]) / (self.falls[where + 1] - self.falls[where])
+        out = np.zeros((len(fall), 3))
+        for level, ring in enumerate(self.rings):
+            weight = np.where(where == level, 1 - share, np.where(where == level - 1, share, 0.0))
+            used = np.flatnonzero(weight)
+            places, heights = folds.round(self.rings[0].girth, ring.girth)
+            flat = ring.at(places[used], gap * heights[used])
+            down = np.full(len(used), -self.depths[level])
+            out[used] += weight[used, None] * np.stack([flat[:, 0], down, flat[:, 1]], axis=1)
+        return out
+
+
+def _concave(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The least concave line (n,) over y (n,) at ascending x (n,)."""
+    low = min(float(y.min()), 0.0) - 1.0
+    corners = np.concatenate([np.column_stack([x, y]), [[x[0], low], [x[-1], low]]])
+    upper = np.unique([k for k in ConvexHull(corners).vertices if k < len(x)])
+    return np.interp(x, x[upper], y[upper])
+
+
+@dataclass(frozen=True)
+class _Ring:
+    """A line round the wearer at one height: points (n + 1, 2) [m], the way outwards (n + 1, 2) and how far [m] along
+    it each is, the last as the first."""
+
+    points: np.ndarray
+    outward: np.ndarray
+    arc: np.ndarray
+
+    @staticmethod
+    def of(reach: np.ndarray, outward: np.ndarray, centre: np.ndarray) -> _Ring:
+        """The line about a centre (2,) [m] that reaches so far (n,) [m] in directions (n + 1, 2), the last as the
+        first: where its tangents meet, p = h n + h' t."""
+        step = 2 * np.pi / len(reach)
+        slope = (np.roll(reach, -1) - np.roll(reach, 1)) / (2 * step)
+        onward = np.stack([outward[:, 1], -outward[:, 0]], axis=1)
+        points = (
+            centre + np.r_[reach, reach[:1]][:, None] * outward + np.r_[slope, slope[:1]][:, None] * onward
+        )
+        return _Ring(points, outward, np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+    @property
+    def girth(self) -> float:
+        """[m]"""
+        return float(self.arc[-1])
+
+    def at(self, places: np.ndarray, out: np.ndarray) -> np.ndarray:
+        """Points (k, 2) [m] that far (k,) along it, `out` (k,) [m] outside."""
+        along = places % self.girth
+        on, outward = (
+            np.stack([np.interp(along, self.arc, values[:, c]) for c in range(2)], axis=1)
+            for values in (self.points, self.outward)
+        )
+        return on + out[:, None] * outward / np.linalg.norm(outward, axis=1)[:, None]
+
+
+@dataclass(frozen=True)
+class Folds:
+    """All panels pleated, round the wearer: where every pattern vertex lies (P,) [m] along them, how high (P,) in gaps,
+    and its panel (P,); of each panel its plies, where it begins [m], and its middle; width [m] of everything."""
+
+    place: np.ndarray
+    height: np.ndarray
+    panel: np.ndarray
+    plies: tuple[Plies, ...]
+    begins: np.ndarray
+    middles: np.ndarray
+    width: float
+
+    @staticmethod
+    def of(pattern: Pattern, cloth: Cloth) -> Folds:
+        panels = pattern.panels * (2 if pattern.mirror else 1)
+        x, low = cloth.vertices[:, 0], float(cloth.vertices[:, 0].min())
+        place, height = np.zeros(len(x)), np.zeros(len(x))
+        plies = []
+        for number, panel in enumerate(panels):
+            own = np.flatnonzero(cloth.panel_of == number)
+            folded = Plies.of(float(x[own].min()), float(x[own].max()), panel.pleats)
+            place[own], height[own] = folded.laid(x[own]) - low, folded.heights(x[own])
+            plies.append(folded)
+        ends = np.array([(folded.places.min(), folded.places.max()) for folded in plies]) - low
+        return Folds(
+            place, height, cloth.panel_of, tuple(plies), ends[:, 0], ends.mean(1), float(place.max())
+        )
+
+    def round(self, tight: float, wide: float) -> tuple[np.ndarray, np.ndarray]:
+        """Where (P,) [m] vertices lie along a ring that is `wide` [m] round, of cloth laid to go round one of `tight`
+        [m], and how many gaps (P,) above it.
+
+        Each panel is as wide as it was about its middle, so that laps are less. Later panels, and what goes round a
+        second time, lie over all beneath.
+        """
+        moved = self.middles * (wide / tight - 1.0)
+        places, heights = self.place + moved[self.panel], self.height + OVER * self.panel
+        for number in range(len(self.plies)):
+            own = np.flatnonzero(self.panel == number)
+            for beneath in range(number):
+                low = self.plies[beneath].places[0] - self.begins[beneath] - moved[beneath]
+                for turn in (-wide, 0.0, wide):
+                    heights[own] += self.plies[beneath].top(places[own] + turn + low)
+            again = own[self.place[own] - self.begins[number] > wide]
+            own_low = self.plies[number].places[0] - self.begins[number] - moved[number]
+            heights[again] += OVER + self.plies[number].top(places[again] - wide + own_low)
+        return places, heights

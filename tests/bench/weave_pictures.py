@@ -1,0 +1,43 @@
+"""A picture of every shipped weave for the hall's pages: on the left its figure, on the right its yarns from near.
+
+python tests/bench/weave_pictures.py [NAME …]      writes assets/weaves/NAME.jpg
+"""
+
+import sys
+from pathlib import Path
+
+from PIL import Image
+from weave_sheet import FAR, FOLDER, LIGHTS, NEAR, swatch
+
+from sim_core.weave import Weave, solve
+from sim_core.weave.maps import FiguredMaps, drawn_maps, surface_maps
+
+SIDE, GAP, QUALITY = 320, 6, 80
+LAMP = LIGHTS[1]  # upper left
+
+
+def picture_of(file: Path) -> Image.Image:
+    """Two square pieces of the relaxed, lit cloth beside each other."""
+    weave = Weave.load(file)
+    geometry = solve(weave, particles=True)
+    maps = drawn_maps(weave, geometry, pixels=1024)
+    figured = weave.figure is not None or max(weave.draft.lift.shape) > 16
+    shown = 1e3 * (min(weave.size) if weave.figure else max(weave.size)) if figured else FAR
+    cell = maps.cells[-1] if isinstance(maps, FiguredMaps) else surface_maps(weave, geometry, pixels=1024)
+    picture = Image.new("RGB", (2 * SIDE + GAP, SIDE), (246, 241, 230))
+    picture.paste(swatch(maps, LAMP, shown, SIDE), (0, 0))
+    picture.paste(swatch(cell, LAMP, NEAR, SIDE), (SIDE + GAP, 0))
+    return picture
+
+
+def main(names: list[str]) -> int:
+    files = [FOLDER / f"{name}.toml" for name in names] or sorted(FOLDER.glob("*.toml"))
+    for file in files:
+        target = file.with_suffix(".jpg")
+        picture_of(file).save(target, quality=QUALITY, optimize=True)
+        print(f"{target.name}: {target.stat().st_size / 1000:.0f} kB", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
