@@ -20,6 +20,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from hall_app.content.files import is_there
 from hall_app.content.models.pictures import PictureError, picture_size
 from hall_app.content.views.scene import exhibit_json, media_file, media_type, scene_json, yaw_of
+from hall_app.content.views.sources import is_source
 from hall_app.content.views.writing import writing_file
 from hall_app.house.house import House
 from hall_app.show.pieces import Pieces
@@ -355,11 +356,4 @@ def _media_file(house: House, owner: str, path: str) -> Path | None:
         return None
     if not plain or media_type(full.name) == "application/octet-stream":
         return None
-    return None if owner != "hall" and _is_scan(house, owner, full) else full
-
-
-def _is_scan(house: House, owner: str, full: Path) -> bool:
-    """Whether it is what models are made of, not for visitors: large, and whoever owns it may not want it taken."""
-    exhibit = house.content.exhibit(owner)
-    scan = exhibit.file.scan if exhibit is not None else None
-    return exhibit is not None and scan is not None and full == (exhibit.folder / scan).resolve()
+    return None if is_source(house.content, full) else full

@@ -17,7 +17,9 @@ import resource
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +46,23 @@ def exhibit_of(folder: Path, triangles: int, form: str, pixels: int) -> Path:
     return house
 
 
+class Greatest(threading.Thread):
+    """Asks the system for the greatest memory that a process has had, until it ends; `ru_maxrss` would tell that of the
+    process that began it, where this is larger."""
+
+    def __init__(self, process: int) -> None:
+        super().__init__()
+        self.status, self.kilobytes = Path(f"/proc/{process}/status"), 0
+
+    def run(self) -> None:
+        with suppress(OSError):
+            while line := [
+                line for line in self.status.read_text().splitlines() if line.startswith("VmHWM:")
+            ]:
+                self.kilobytes = int(line[0].split()[1])
+                time.sleep(0.1)
+
+
 def baked(house: Path) -> dict[str, Any]:
     """The record of a bake in a process of its own, with what that took."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -59,18 +78,25 @@ def baked(house: Path) -> dict[str, Any]:
         "robe",
         "--json",
     ]
-    done = subprocess.run([*command, "--data", str(house.parent / "data")], capture_output=True, text=True)
-    if done.returncode:
-        raise SystemExit(done.stderr)
+    place = house.parent / "data"
+    with subprocess.Popen(
+        [*command, "--data", str(place)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as build:
+        memory = Greatest(build.pid)
+        memory.start()
+        said, complaint = build.communicate()
+        memory.join()
+    if build.returncode:
+        raise SystemExit(complaint)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    record = json.loads(done.stdout.strip().splitlines()[-1])
+    record = json.loads(said.strip().splitlines()[-1])
     scan = house / "exhibits/robe/scan"
     return {
         "triangles": record["errors"]["scan_triangles"],
         "file_mb": sum(path.stat().st_size for path in scan.iterdir()) / 1e6,
         "wall_s": round(time.perf_counter() - begin, 1),
         "cpu_s": round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, 1),
-        "memory_gb": round(after.ru_maxrss / 1e6, 2),  # of the largest process so far: sizes rise
+        "memory_gb": round(memory.kilobytes / 1e6, 2),
         "seconds": record["seconds"],
         "hall": record["scan"]["hall"],
         "close": record["scan"]["close"],
@@ -114,8 +140,9 @@ def main() -> int:
             folder = (arguments.kept or Path(place)) / f"{int(triangles)}" / "content"
             found.append(baked(exhibit_of(folder, int(triangles), arguments.form, arguments.pixels)))
             print(rows(found[-1]), flush=True)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({"form": arguments.form, "scans": found}, indent=1), "utf-8")
+            if arguments.json:  # after every size: the last takes long
+                told = {"form": arguments.form, "scans": found}
+                arguments.json.write_text(json.dumps(told, indent=1), "utf-8")
     return 0
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 import scan_like
 from content_house import add_exhibit, edit, make_house
+from PIL import Image
 
 from hall_app.check import check, hints
 from hall_app.cli import main
@@ -96,6 +100,19 @@ def test_following_the_remedies_leads_to_an_exhibit(made, tmp_path):
     remarks = [str(one) for one in hints(house) if one.file.startswith("exhibits/robe/")]
     assert len(remarks) == 1
     assert "it has 3 holes, the largest" in remarks[0]
+
+
+def test_of_a_torn_scan_nothing_else_is_said(made, tmp_path):
+    """Neither the size of a single triangle, nor that there are thousands of parts."""
+    corners = made.vertices[made.faces].reshape(-1, 3)
+    corners += np.random.default_rng(0).normal(scale=1e-3, size=corners.shape)
+    faces = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
+    torn = replace(made, vertices=corners, faces=faces, uv=made.uv[made.faces].reshape(-1, 2))
+    said = [line for line in lines(house_of(tmp_path / "assets", torn, "")) if "robe" in line]
+    assert said == [
+        "exhibits/robe/exhibit.toml: scan: its triangles hardly hang together: 100 % of all edges are open"
+        " – merge its vertices by distance in the scanning software"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -191,6 +208,36 @@ def test_only_one_source_of_models_is_allowed(made, tmp_path):
     house = house_of(tmp_path / "assets", made)
     edit(house / "exhibits/robe/exhibit.toml", "scan = ", 'outfit = "outfits/scarf.toml"\nscan = ')
     assert any("needs one of outfit, scan and [models]" in line for line in lines(house))
+
+
+@pytest.mark.nightly
+def test_a_million_triangles_become_both_models(tmp_path):
+    """With their deviation measured, colours kept, holes and flakes told; a hall's model within its budget."""
+    big = scan_like.scan_of(1_000_000, pixels=2048)
+    big = scan_like.with_flakes(scan_like.with_holes(big, 12, 0.02), 30, 0.004).turned()
+    house = house_of(tmp_path / "assets", big, form="ply")
+    assert build(house) == 0
+    assert lines(house) == []
+    home = house / "exhibits/robe/baked"
+    record = json.loads((home / "bake.json").read_text("utf-8"))
+    condition, hall, close = (record["scan"][name] for name in ("condition", "hall", "close"))
+    assert condition["triangles"] == len(big.faces) > 900_000
+    assert condition["parts"] == 31
+    assert 12 <= condition["holes"] <= 24
+    assert hall["within_budget"]
+    assert close["deviation"]["p99_m"] < 1.5 * close["budget_m"]
+    assert close["triangles"] == read_glb(home / "close.glb").triangles <= 80_000
+    picture = Image.open(BytesIO(picture_of(home / "close.glb"))).convert("RGB")
+    reds = np.asarray(picture).reshape(-1, 3).astype(int)
+    assert 0.2 < ((reds[:, 0] > 1.6 * reds[:, 1]) & (reds[:, 0] > 80)).mean() < 0.9  # the coat's ground
+
+
+def picture_of(path: Path) -> bytes:
+    from sim_core.gltf import glb_parts
+
+    parts = glb_parts(path.read_bytes())
+    begin, end = parts.picture_place(0)
+    return parts.data[begin:end]
 
 
 @pytest.mark.nightly

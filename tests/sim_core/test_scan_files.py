@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+import zlib
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,6 +13,8 @@ import pytest
 import scan_like
 
 from sim_core.mesh.scan import Scan, ScanError, read_scan, scan_companions
+
+PACKED = Path(__file__).parent / "scans"
 
 
 @pytest.fixture(scope="module")
@@ -107,6 +110,50 @@ def test_a_missing_material_file_is_named(made, tmp_path):
     assert "'s.mtl'" in refused(path, tmp_path).what
 
 
+def test_a_name_in_other_capitals_is_told(made, tmp_path):
+    """On a curator's own system both names are one file."""
+    path = write(made, "obj", tmp_path)
+    (tmp_path / "s.jpg").rename(tmp_path / "S.JPG")
+    assert refused(path, tmp_path).fix == "rename S.JPG to s.jpg"
+
+
+@pytest.mark.parametrize(
+    "look", ["newmtl cloth\n\tmap_Kd\ts.jpg\n", "newmtl\tcloth\r\nmap_Kd -s 1 1 1 s.jpg\r\n"]
+)
+def test_a_material_file_may_be_written_with_tabs_and_options(made, tmp_path, look):
+    path = write(made, "obj", tmp_path)
+    (tmp_path / "s.mtl").write_text(look, "utf-8")
+    assert [picture.shape for picture in read_scan(path, tmp_path).pictures] == [(64, 64, 3)]
+
+
+def test_a_picture_beyond_the_limit_is_told_by_its_size(made, tmp_path):
+    """Also where Pillow would have refused it unsaid."""
+    path = write(made, "obj", tmp_path)
+    (tmp_path / "s.jpg").write_bytes(png_head(20_000, 20_000))
+    assert "20000 x 20000 pixels, at most 16384" in refused(path, tmp_path).what
+
+
+def test_a_picture_of_more_pixels_than_can_be_used_is_scaled_down(made, tmp_path, monkeypatch):
+    path = write(made, "obj", tmp_path)
+    whole = mean_colours(read_scan(path, tmp_path))
+    monkeypatch.setattr("sim_core.mesh.scan.files.pictures.ALL", 1024)
+    scan = read_scan(path, tmp_path)
+    assert [picture.shape for picture in scan.pictures] == [(32, 32, 3)]
+    middle = made.uv[made.faces].mean(1)
+    away = (np.abs(middle[:, 0] - 0.5) > 0.1) & (middle[:, 1] > 0.25)
+    assert np.abs(mean_colours(scan) - whole)[away].max() < 12
+
+
+def png_head(wide: int, high: int) -> bytes:
+    """A PNG of that size whose pixels are not there."""
+
+    def chunk(name: bytes, body: bytes) -> bytes:
+        return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+
+    head = struct.pack(">IIBBBBB", wide, high, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", b"") + chunk(b"IEND", b"")
+
+
 @pytest.mark.parametrize(
     "name", ["../../secret.jpg", "/etc/hostname", "C:\\secret.jpg", "https://example.org/a.jpg"]
 )
@@ -147,6 +194,7 @@ def rewritten(path: Path, change) -> Path:
     [
         ("KHR_draco_mesh_compression", "Compression off"),
         ("EXT_meshopt_compression", "gltfpack"),
+        ("KHR_meshopt_compression", "gltfpack"),
         ("KHR_texture_basisu", "PNG or JPEG"),
     ],
 )
@@ -155,6 +203,23 @@ def test_compressed_glb_says_how_to_unpack(made, tmp_path, extension, remedy):
     error = refused(path, tmp_path)
     assert extension in error.what
     assert remedy in error.fix
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"), [("draco", "Compression off"), ("meshopt", "gltfpack -noq -i scan.glb -o plain.glb")]
+)
+def test_what_other_programs_packed_is_refused_with_the_remedy(name, remedy):
+    assert remedy in refused(PACKED / f"{name}.glb", PACKED).fix
+
+
+@pytest.mark.parametrize("name", ["quantised", "unpacked"])
+def test_what_is_quantised_or_was_unpacked_by_the_remedy_is_read(made, name):
+    scan = read_scan(PACKED / f"{name}.glb", PACKED)
+    middle = np.sort(scan.vertices[scan.faces].mean(1), axis=0)
+    assert np.abs(middle - np.sort(made.vertices[made.faces].mean(1), axis=0)).max() < 1e-3
+    mean, left = mean_colours(scan), scan.vertices[scan.faces].mean(1)[:, 0] < 0.45
+    assert (mean[left][:, 0] > 150).all()
+    assert (mean[left][:, 2] < 90).all()
 
 
 def test_a_glb_that_asks_for_another_file_is_refused(made, tmp_path):

@@ -66,12 +66,14 @@ def refuse(found: tuple[Finding, ...], toml: str) -> None:
 
 
 def findings(condition: Condition, scanned: Scanned, size_range: tuple[float, float]) -> tuple[Finding, ...]:
-    """All there is to say of a scan that was saved so; size_range [m]: heights that are right."""
-    return (
-        *_standing(condition, scanned, size_range),
-        *_surface(condition, scanned),
-        *_parts(condition, scanned),
-    )
+    """All there is to say of a scan that was saved so; size_range [m]: heights that are right.
+
+    Of one that is damaged or torn nothing else is said: its parts and their size are not those of the piece.
+    """
+    surface = _surface(condition, scanned)
+    if any(finding.stops for finding in surface):
+        return tuple(surface)
+    return (*_standing(condition, scanned, size_range), *surface, *_parts(condition, scanned))
 
 
 def _standing(condition: Condition, scanned: Scanned, size_range: tuple[float, float]) -> list[Finding]:
@@ -107,6 +109,10 @@ def _metres(length: float) -> str:
     return f"{length:,.0f} m" if length >= 100 else f"{length:.3g} m"
 
 
+def _short(number: float) -> str:
+    return f"{number:.0f}" if number >= 10 else f"{number:.2g}"
+
+
 def _unit(high: float, size_range: tuple[float, float]) -> str:
     low, most = size_range
     middle = (low * most) ** 0.5
@@ -124,15 +130,15 @@ def _surface(condition: Condition, scanned: Scanned) -> list[Finding]:
     """What of it is no surface, open, or without colour."""
     found = []
     lost = (
-        (condition.not_finite, "with a corner that is no number"),
-        (condition.degenerate, "without an area"),
-        (condition.duplicated, "that lie twice in one place"),
+        (condition.not_finite, "have a corner that is no number", "has a corner that is no number"),
+        (condition.degenerate, "have no area", "has no area"),
+        (condition.duplicated, "lie twice in one place", "lies twice in one place"),
     )
-    for count, kind in lost:
+    for count, many, one in lost:
         if count:
-            stops = count > LOST * condition.triangles and kind != lost[2][1]
-            what = f"{count} of its {condition.triangles} triangles are ones {kind}"
-            fix = "export it again" if stops else "they are left out"
+            stops = count > LOST * condition.triangles and many != lost[2][1]
+            what = f"{count} of its {condition.triangles} triangles {one if count == 1 else many}"
+            fix = "export it again" if stops else "it is left out" if count == 1 else "they are left out"
             found.append(Finding("scan", what, fix, stops))
     if condition.open_edges > TORN:
         what = f"its triangles hardly hang together: {100 * condition.open_edges:.0f} % of all edges are open"
@@ -159,8 +165,8 @@ def _parts(condition: Condition, scanned: Scanned) -> list[Finding]:
     loose = condition.parts - 1
     larger = max(a / max(b, 1e-30) for a, b in zip(condition.whole, condition.largest, strict=True))
     many = "a loose part" if loose == 1 else f"{loose} loose parts"
-    what = f"it has {many}, {100 * condition.loose_area:.2g} % of its area"
+    what = f"it has {many}, {_short(100 * condition.loose_area)} % of its area"
     if larger >= ASIDE:
-        what += f", which make it {larger:.2g} times as large"
+        what += f", which make it {_short(larger)} times as large"
     fix = 'write keep = "largest" below [scanned] to leave them out, or keep = "all" if they belong to it'
     return [Finding("scanned.keep", what, fix, larger >= ASIDE)]

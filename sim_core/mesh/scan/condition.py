@@ -64,6 +64,8 @@ def cleaned(scan: Scan) -> tuple[Scan, Condition]:
     single = _single(faces, kept)
     duplicated = int((kept & ~single).sum())
     kept &= single
+    if not_finite == len(scan.faces):
+        raise ScanError("every triangle of it has a corner that is no number", "export it again")
     if not kept.any():
         raise ScanError("it holds no triangle that has an area", "export it again")
     colours = None if scan.colours is None else scan.colours[first]

@@ -26,8 +26,21 @@ def companion_path(path: Path, name: str, root: Path) -> Path:
     except OSError:
         there = False
     if not there:
-        raise ScanError(f"the file it names, {name[:60]!r}, is not there", f"put it beside {path.name}")
+        other = _otherwise(full)
+        fix = f"put it beside {path.name}" if other is None else f"rename {other} to {full.name}"
+        raise ScanError(f"the file it names, {name[:60]!r}, is not there", fix)
     return full
+
+
+def _otherwise(full: Path) -> str | None:
+    """The file there whose name differs in capitals alone, which is the same on other systems."""
+    try:
+        near = sorted(
+            one.name for one in full.parent.iterdir() if one.name.casefold() == full.name.casefold()
+        )
+    except OSError:
+        return None
+    return near[0] if near else None
 
 
 def companion(path: Path, name: str, root: Path) -> bytes:

@@ -18,7 +18,10 @@ __all__ = ["read_glb_scan"]
 TRIANGLES = 4
 PACKED = {  # what would need a decoder, and how to be rid of it
     "KHR_draco_mesh_compression": "open it in Blender and export it as .glb with Compression off",
-    "EXT_meshopt_compression": "unpack it by: gltfpack -noq -i scan.glb -o plain.glb",
+    **dict.fromkeys(
+        ("EXT_meshopt_compression", "KHR_meshopt_compression"),
+        "unpack it by: gltfpack -noq -i scan.glb -o plain.glb",
+    ),
     "KHR_texture_basisu": "export it again with its pictures as PNG or JPEG",
 }
 

@@ -116,7 +116,8 @@ def _uses(text: np.ndarray) -> Iterator[tuple[int, str]]:
 def _materials(data: bytes) -> dict[str, _Material]:
     found: dict[str, _Material] = {}
     for line in data.decode("utf-8-sig", "replace").splitlines():
-        key, _, rest = line.strip().partition(" ")
+        words = line.split(None, 1)  # by spaces or tabs
+        key, rest = (words[0], words[1]) if len(words) == 2 else ("", "")
         if key == "newmtl":
             found[rest.strip()] = _Material(np.full(3, 0.5))
         elif key == "Kd" and found:

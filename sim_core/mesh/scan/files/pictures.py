@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import io
-import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim_core.mesh.scan.scan import ScanError
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 __all__ = ["decoded", "plain"]
 
@@ -20,25 +23,36 @@ def decoded(data: bytes, name: str, share: float = 1.0) -> np.ndarray:
     from PIL import Image
 
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the size is looked at first
-            with Image.open(io.BytesIO(data)) as picture:
-                if max(picture.size) > MOST:
-                    what = f"its picture {name} has {picture.size[0]} x {picture.size[1]} pixels, at most {MOST} a side"
-                    raise ScanError(what, "scale it down and keep its name")
-                most = share * ALL
-                many = picture.size[0] * picture.size[1]
-                if many > most:
-                    less = (most / many) ** 0.5
-                    size = (max(1, int(picture.size[0] * less)), max(1, int(picture.size[1] * less)))
-                    picture = picture.convert("RGB").resize(size, Image.Resampling.BOX)
+        with _opened(data) as picture:
+            if max(picture.size) > MOST:
+                what = f"its picture {name} has {picture.size[0]} x {picture.size[1]} pixels, at most {MOST} a side"
+                raise ScanError(what, "scale it down and keep its name")
+            most, many = share * ALL, picture.size[0] * picture.size[1]
+            if many <= most:
                 return np.array(picture.convert("RGB"))
+            less = (most / many) ** 0.5
+            size = (max(1, int(picture.size[0] * less)), max(1, int(picture.size[1] * less)))
+            picture.draft("RGB", size)  # of a JPEG no more is decoded than is needed
+            whole = picture if picture.mode == "RGB" else picture.convert("RGB")
+            return np.array(whole.resize(size, Image.Resampling.BOX))
     except ScanError:
         raise
     except Exception as error:  # a decoder of foreign files may fail in any way
         raise ScanError(
             f"its picture {name} cannot be read, or is cut off", "copy or export it again"
         ) from error
+
+
+def _opened(data: bytes) -> Image.Image:
+    """A picture of which only the head was read. Pillow's own limit is less than scanners write, and ours is looked at
+    before anything is decoded."""
+    from PIL import Image
+
+    kept, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+    try:
+        return Image.open(io.BytesIO(data))
+    finally:
+        Image.MAX_IMAGE_PIXELS = kept
 
 
 def plain(linear: np.ndarray) -> np.ndarray:
