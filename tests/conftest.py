@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from plain_hall import write_plain_hall
 from running_hall import running_hall
+from scanned_hall import bake_small, write_scanned_hall
 
 ROOT = Path(__file__).parent.parent
 _NUMBERS = itertools.count()
@@ -20,6 +21,16 @@ def plain_hall(tmp_path_factory):
     """A running hall of plain boxes."""
     work = tmp_path_factory.mktemp("plain")
     with running_hall(write_plain_hall(work / "content"), work) as hall:
+        yield hall
+
+
+@pytest.fixture(scope="session")
+def scanned_hall(tmp_path_factory):
+    """A running hall that shows a scan, baked with small pictures."""
+    work = tmp_path_factory.mktemp("scanned")
+    content = write_scanned_hall(work / "content")
+    bake_small(content, work / "data")
+    with running_hall(content, work) as hall:
         yield hall
 
 

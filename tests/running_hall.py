@@ -1,6 +1,7 @@
 """A real `hall serve` in a process of its own, as a visitor's browser meets it."""
 
 import contextlib
+import json
 import os
 import signal
 import socket
@@ -86,6 +87,17 @@ def running_hall(
                 process.kill()
                 process.wait()
                 raise AssertionError("hall serve did not end on Ctrl-C:\n" + hall.said()) from None
+
+
+def wait_for_exhibit(hall: RunningHall, identity: str, patience: float = OPENING) -> None:
+    """Until an exhibit that the hall has to bake first stands in it."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        with urllib.request.urlopen(f"{hall.url}/api/scene", timeout=60) as answer:
+            if identity in [one["id"] for one in json.load(answer)["exhibits"]]:
+                return
+        time.sleep(0.5)
+    raise AssertionError(f"{identity} was not baked within {patience} s:\n{hall.said()}")
 
 
 def _wait_until_it_answers(hall: RunningHall, patience: float) -> None:

@@ -27,6 +27,7 @@ def test_every_figure_of_the_front_page_is_the_last_one_measured(front) -> None:
         + front.page()
         + front.look()
         + front.mesh_figures.summary()
+        + front.scans()
         + front.room()
     )
     for exhibit, name in WORN:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hall_app.content.bakes.store import (
+    SCAN,
     bake_fault,
     bake_folder,
     bake_work,
@@ -28,9 +29,9 @@ Progress = Callable[[float, str], None]
 
 _EPILOG = """\
 Each outfit (exhibit.toml: outfit = "outfits/….toml") is baked into baked/ beside the exhibit: the simulated garments,
-both models, film and pictures. The room is raised from plan.toml and its light
-computed, into room/. What is up to date is left alone; where only [show] changed, the garment is not dressed again. An
-interrupted build goes on where it stopped. Films need the
+both models, film and pictures. Each scan (exhibit.toml: scan = "….glb") becomes both models, whose deviation is
+measured. The room is raised from plan.toml and its light computed, into room/. What is up to date is left alone; where
+only [show] changed, the garment is not dressed again. An interrupted build goes on where it stopped. Films need the
 extra 'bake' (pip install '.[bake]'); without it they are left out.
 
 examples:
@@ -97,11 +98,30 @@ def run(arguments: argparse.Namespace) -> int:
         _tell(
             arguments.json,
             {"exhibit": exhibit.id, "state": "baked", **summary},
-            f"{exhibit.id}: baked in {summary['seconds']['all']:.0f} s",
+            "\n".join(
+                [
+                    f"{exhibit.id}: baked in {summary['seconds']['all']:.0f} s",
+                    *_scan_lines(exhibit.id, summary),
+                ]
+            ),
         )
     if arguments.exhibit is None:
         _build_room(content, arguments)
     return 0
+
+
+def _scan_lines(exhibit: str, record: dict) -> list[str]:
+    """What was measured of a scan's models, and what was remarked of the scan itself."""
+    if SCAN not in record:
+        return []
+    lines = [f"{exhibit}: {remark}" for remark in record[SCAN]["remarks"]]
+    for name in ("close", "hall"):
+        told = record[SCAN][name]
+        apart = ", ".join(f"{key[:-2]} {1000 * value:.2f} mm" for key, value in told["deviation"].items())
+        lines.append(
+            f"{exhibit}: {name}.glb {told['triangles']} triangles, deviation {apart}, {told['bytes'] / 1e6:.2f} MB"
+        )
+    return lines
 
 
 def _draw_patterns(content: Content, arguments: argparse.Namespace) -> None:
@@ -109,7 +129,8 @@ def _draw_patterns(content: Content, arguments: argparse.Namespace) -> None:
     from hall_app.media.make import write_pattern_sheet
 
     for exhibit in _chosen(content, arguments.exhibit):
-        assert exhibit.file.outfit is not None
+        if exhibit.file.outfit is None:
+            continue  # a scan was cut from no pattern that is known
         path = write_pattern_sheet(content.folder, exhibit.id, exhibit.file.outfit)
         name = path.relative_to(content.folder).as_posix()
         _tell(arguments.json, {"exhibit": exhibit.id, "pattern": name}, f"{exhibit.id}: {name}")
@@ -144,13 +165,13 @@ def _chosen(content: Content, wanted: str | None) -> list[Exhibit]:
     if wanted is None:
         for problem in content.problems:
             print(f"left out: {problem}", file=sys.stderr)
-        return [exhibit for exhibit in content.exhibits if exhibit.file.outfit is not None]
+        return [exhibit for exhibit in content.exhibits if exhibit.file.baked_key is not None]
     exhibit = content.exhibit(wanted)
     if exhibit is None:
         named = [str(problem) for problem in content.problems if _concerns(content, problem.file, wanted)]
         raise ValueError(named[0] if named else f"no exhibit {wanted!r} in {content.folder}")
-    if exhibit.file.outfit is None:
-        raise ValueError(f"{exhibit.toml}: names no outfit, nothing to bake")
+    if exhibit.file.baked_key is None:
+        raise ValueError(f"{exhibit.toml}: names no outfit and no scan, nothing to bake")
     return [exhibit]
 
 
@@ -163,10 +184,15 @@ def _concerns(content: Content, file: str, wanted: str) -> bool:
 
 
 def _bake(content: Content, exhibit: Exhibit, key: str, target: Path, arguments: argparse.Namespace) -> dict:
-    from hall_app.build.outfit import bake_outfit
-
     make_data_folder(arguments.data)
     work = bake_work(arguments.data, exhibit.id, key)
+    if exhibit.file.scan is not None:
+        from hall_app.build.scan import bake_scan
+
+        with _progress(arguments.json, exhibit.id) as progress:
+            return bake_scan(content, exhibit, key=key, target=target, work=work, progress=progress)
+    from hall_app.build.outfit import bake_outfit
+
     former = None if arguments.force else bake_folder(content, exhibit, arguments.data)
     with _progress(arguments.json, exhibit.id) as progress:
         return bake_outfit(
@@ -188,7 +214,7 @@ def _progress(as_json: bool, what: str) -> Iterator[Progress]:
             json.dumps({"fraction": round(fraction, 4), "label": label}), flush=True
         )
         return
-    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
     from rich.progress import Progress as Bars
 
     columns = (
@@ -196,6 +222,8 @@ def _progress(as_json: bool, what: str) -> Iterator[Progress]:
         BarColumn(),
         TextColumn("{task.description}"),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
     )
     with Bars(*columns) as bars:
         task = bars.add_task("…", total=1.0, what=what)

@@ -75,12 +75,15 @@ def _surfaces(look: Look, moved: Sequence[NDArray[np.floating]] = ()) -> list[An
     return drawn
 
 
-def _camera(look: Look, angle: float) -> Any:
-    """Where the garment is seen from `angle` [deg] about +y, 0 = the front."""
+def _camera(look: Look, angle: float, size: tuple[int, int]) -> Any:
+    """Where all of the garment is seen from `angle` [deg] about +y, 0 = the front, in a picture of `size` pixels: as
+    far off for all angles."""
     from sim_core.picture import Camera
 
     turn, middle = math.radians(angle), look.height / 2
-    away = 1.28 * look.height / (2 * math.tan(math.radians(15)))
+    reach = max(float(np.hypot(*piece.vertices[:, [0, 2]].T).max()) for piece in look.pieces)
+    half = max(1.28 * look.height / 2, 1.12 * reach * size[1] / size[0])
+    away = half / math.tan(math.radians(15))
     eye = (away * math.sin(turn), middle + 0.12 * look.height, away * math.cos(turn))
     return Camera(eye, (0.0, middle, 0.0), 30.0)
 
@@ -187,7 +190,7 @@ def _shoot(look: Look, pictures: Sequence[_Picture]) -> None:
             continue
         share = number / max(1, len(pictures) - 1)
         lit = first if still else lighting(surfaces, sky=(1.0 - share) * first.sky + share * last.sky)
-        shown = render(surfaces, _camera(look, picture.angle), SIZE, lit=lit)
+        shown = render(surfaces, _camera(look, picture.angle, SIZE), SIZE, lit=lit)
         partial = picture.path.with_suffix(".part")
         Image.fromarray(shown).save(partial, format="png", compress_level=1)
         partial.replace(picture.path)
@@ -220,5 +223,5 @@ def stills(look: Look, folder: Path) -> None:
     views = {"drape": (STILLS["front"], SIZE)}
     views |= {f"still-{name}": (angle, (900, 1125)) for name, angle in STILLS.items()}
     for name, (angle, size) in views.items():
-        shown = render(surfaces, _camera(look, angle), size, lit=lit)
+        shown = render(surfaces, _camera(look, angle, size), size, lit=lit)
         Image.fromarray(shown).save(folder / f"{name}.jpg", quality=88, optimize=True)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Wardrobe"]
 
 HALL_FIGURE = 1600  # triangles of a figure in the hall
-THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
+THINNEST = 0.3  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
 MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to the next
 TREAD = 0.06  # [m] above the ground that feet are looked at
 ROUND = 0.04  # [m] of its base round the feet of who walks
@@ -204,10 +204,11 @@ def _reach(figure: np.ndarray) -> float:
 
 
 def _worn(garment: Garment, beneath: Sequence[Garment]) -> Any:
-    """The solid that a coarser mesh is moved out of: the wearer in these levels. None: as the garment knows."""
+    """The solid that a coarser mesh is moved out of: the wearer in these levels. None: as the garment knows,
+    which on a stand touches no other."""
     from sim_core.garment.dressing import capped
 
-    if not beneath or garment.settled is None:
+    if not beneath or garment.settled is None or garment.settled.beneath.stand is not None:
         return None
     lain = garment.settled.beneath
     body, *worn = lain.surfaces

@@ -11,6 +11,7 @@ from hall_app.check.files.clips import clip_problems
 from hall_app.check.files.mannequins import figure_problems
 from hall_app.check.files.media import media_problems
 from hall_app.check.files.models import scale_problems
+from hall_app.check.files.scans import scan_problems, scan_remarks
 from hall_app.check.files.unused import unused_problems
 from hall_app.check.files.words import word_problems
 from hall_app.check.files.writing import writing_problems
@@ -36,6 +37,7 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
     reach_problems,
     backdrop_problems,
     bake_problems,
+    scan_problems,
     figure_problems,
     questionnaire_problems,
     fitting_problems,
@@ -65,7 +67,11 @@ def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] | No
 
 def hints(folder: Path) -> list[Problem]:
     """What is not wrong, but should be done before the hall opens to visitors."""
-    return unstated(folder)
+    try:
+        content = load(folder)
+    except ContentError:
+        return unstated(folder)  # what is wrong is said by the check
+    return [*unstated(folder), *scan_remarks(content)]
 
 
 def _looked(look: Callable[[Content], list[Problem]], content: Content) -> list[Problem]:

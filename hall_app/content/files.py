@@ -34,6 +34,8 @@ def exhibit_files(file: ExhibitFile) -> Iterator[tuple[str, str]]:
         yield "models.hall", file.models.hall
         if file.models.close:
             yield "models.close", file.models.close
+    if file.scan:
+        yield "scan", file.scan
     if file.motion:
         yield "motion", file.motion
     if file.comparison:
@@ -59,7 +61,7 @@ def tracked_beside(motion: str) -> str:
 
 def made_by_build(file: ExhibitFile, path: str) -> bool:
     """Whether `path` is written by `hall build`, so that its absence is no fault of the curator's."""
-    return file.outfit is not None and path.startswith(BAKED)
+    return file.baked_key is not None and path.startswith(BAKED)
 
 
 def file_problem(toml: str, key: str, base: Path, path: str, *, root: Path) -> Problem | None:
@@ -126,13 +128,19 @@ def snapshot(folder: Path) -> dict[str, tuple[int, int]]:
 
 def digest(path: Path) -> str:
     """First 8 hex digits of the file's SHA-256, read again only when time or size changed."""
+    return whole_digest(path)[:8]
+
+
+def whole_digest(path: Path) -> str:
+    """The 64 hex digits of the file's SHA-256, read again only when time or size changed."""
     stat = path.stat()
     return _digest(path, stat.st_mtime_ns, stat.st_size)
 
 
 @lru_cache(maxsize=4096)
 def _digest(path: Path, _mtime: int, _size: int) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:8]
+    with path.open("rb") as file:  # a scan may have half a gigabyte
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def revision(folder: Path) -> str:

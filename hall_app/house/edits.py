@@ -40,7 +40,10 @@ class Following:
         if set(house.content.problems) - set(content.problems):
             queue.forgive()
         lit = self._light and house.room.lacking is None
-        wanted = await in_thread(functools.partial(wanted_bakes, content, house.data, light=lit))
+        running = queue.running
+        wanted = await in_thread(
+            functools.partial(wanted_bakes, content, house.data, light=lit, running=running)
+        )
         house.expect(queue.to_come(wanted))
         self._owed = self._owed or content is not house.content
         if self._owed:

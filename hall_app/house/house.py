@@ -122,9 +122,9 @@ class House:
         """Garments that are not shown as they should be, and will not be without a curator's doing."""
         return self._drawn.unreadable + tuple(
             self._failed.get(self._drawn.keys[e.id] or "")
-            or Problem(e.toml, "outfit", "has not been baked", "run hall build")
+            or Problem(e.toml, e.file.baked_key or "", "has not been baked", "run hall build")
             for e in self.content.exhibits
-            if e.file.outfit is not None and (self.given_up(e) or self._lacking(e))
+            if e.file.baked_key is not None and (self.given_up(e) or self._lacking(e))
         )
 
     def _lacking(self, exhibit: Exhibit) -> bool:
@@ -165,8 +165,9 @@ class House:
             self._failed[bake.key] = Problem("plan.toml", "", what, fix)
         elif exhibit is not None:
             what = f"baking failed: {failure}"
+            source = exhibit.file.baked_key or "outfit"
             self._failed[bake.key] = Problem(
-                exhibit.toml, "outfit", what, "correct the outfit or what it names"
+                exhibit.toml, source, what, f"correct the {source} or what it names"
             )
 
     def given_up(self, exhibit: Exhibit) -> bool:

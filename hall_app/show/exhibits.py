@@ -64,7 +64,7 @@ def drawn_exhibits(
         if figure is not None:
             models[exhibit.id] = found
             figures.append(figure)
-    keys = {e.id: key_now(content, e) for e in content.exhibits if e.file.outfit is not None}
+    keys = {e.id: key_now(content, e) for e in content.exhibits if e.file.baked_key is not None}
     return Drawn(tuple(figures), models, keys, tuple(problems))
 
 
@@ -86,7 +86,7 @@ def _models(
     fresh = models_of(content, exhibit, data, stale=False)
     if fresh is not None:
         return fresh
-    if last is not None and last.baked is not None and exhibit.file.outfit is not None and last.whole():
+    if last is not None and last.baked is not None and exhibit.file.baked_key is not None and last.whole():
         return last
     return models_of(content, exhibit, data)
 

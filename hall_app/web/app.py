@@ -20,6 +20,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from hall_app.content.files import is_there
 from hall_app.content.models.pictures import PictureError, picture_size
 from hall_app.content.views.scene import exhibit_json, media_file, media_type, scene_json, yaw_of
+from hall_app.content.views.sources import is_source
 from hall_app.content.views.writing import writing_file
 from hall_app.house.house import House
 from hall_app.house.people import People
@@ -363,4 +364,6 @@ def _media_file(house: House, owner: str, path: str) -> Path | None:
         plain = full.is_relative_to(base.resolve()) and full.is_file()
     except (OSError, ValueError):  # a name no file system takes
         return None
-    return full if plain and media_type(full.name) != "application/octet-stream" else None
+    if not plain or media_type(full.name) == "application/octet-stream":
+        return None
+    return None if is_source(house.content, full) else full

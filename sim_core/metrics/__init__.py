@@ -2,6 +2,7 @@
 
 from sim_core.metrics.compile_time import CompileClock, compile_clock
 from sim_core.metrics.components import components
+from sim_core.metrics.nearest import Surface
 from sim_core.metrics.surfaces import (
     FAR,
     Distances,
@@ -20,6 +21,7 @@ __all__ = [
     "CompileClock",
     "Distances",
     "Penetration",
+    "Surface",
     "area_strain",
     "compile_clock",
     "components",

@@ -5,6 +5,7 @@ hall bench crowd -- --json docs/figures/crowd.json --beside CHECKOUT_OF_47c1f8d
 hall bench page -- --json docs/figures/page.json
 hall bench look -- --json docs/figures/look.json
 simcore bench mesh -- --peers --large --json docs/figures/mesh.json
+python tests/bench/bench_scan.py --json docs/figures/scan.json
 python tests/mesh_polygons.py 10000 --json docs/figures/mesh-polygons.json
 python tests/bench/readme_figures.py
 """
@@ -219,8 +220,31 @@ def robe() -> list[tuple[str, str, str]]:
     ]
 
 
+def scans() -> list[tuple[str, str, str]]:
+    """What a bake of a scan takes, and how far its models are from it."""
+    rows, command = [], "`python tests/bench/bench_scan.py`"
+    for one in read("scan")["scans"]:
+        name = f"scan of {one['triangles']:,} triangles"
+        memory = f", {one['memory_gb']:.1f} GB at most" if one["memory_gb"] is not None else ""
+        rows.append(
+            (f"{name}, {one['file_mb']:.0f} MB: baked, processor", f"{one['cpu_s']:.0f} s{memory}", command)
+        )
+        for model, what in (("close", "close-up"), ("hall", "hall model")):
+            told = one[model]
+            apart = " / ".join(f"{1000 * told['deviation'][key]:.2f}" for key in ("mean_m", "p99_m", "max_m"))
+            within = f"aim p99 ≤ {1000 * told['budget_m']:.2f}{'' if told['within_budget'] else ', missed'}"
+            rows.append(
+                (
+                    f"{name}: {what} of {told['triangles']:,} against it, mean / p99 / max",
+                    f"{apart} mm ({within}), {told['bytes'] / 1e6:.1f} MB",
+                    command,
+                )
+            )
+    return rows
+
+
 def main() -> int:
-    rows = walking() + crowd() + page() + look() + mesh_figures.summary() + room()
+    rows = walking() + crowd() + page() + look() + mesh_figures.summary() + scans() + room()
     rows += garment("beizi", "beizi") + garment("pibo-figure", "pibo over a robe") + robe()
     rows += garment("pibo", "scarf") + garment("gown", "gauze gown")
     lines = ["| What | Measured | Command |", "|---|---|---|"]

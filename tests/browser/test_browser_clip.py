@@ -180,3 +180,34 @@ def test_damaged_clips_are_refused(page, clip, change):
         list(Clip.of([waving(edge=0.2, frames=3)]).to_bytes()),
     )
     assert told
+
+
+CREASE = """
+([index, normal]) => {
+  const {geometry} = __meshes[0];
+  geometry.index = {array: Uint32Array.from(index)};
+  geometry.attributes.normal.array.set(normal);
+  window.playback = replay();
+}
+"""
+
+
+@pytest.mark.parametrize("sharp", [True, False])
+def test_both_sides_of_a_crease_keep_their_own_light(chromium, sharp: bool) -> None:
+    flat = np.array([[0, 0, 0], [1, 0, 0], [1, 0, 1], [0, 0, 1], [2, 0, 0], [2, 0, 1]], float)
+    fold, faces = flat.copy(), np.array([[0, 2, 1], [0, 3, 2], [1, 5, 4], [1, 2, 5]], np.int32)
+    fold[4:, :2] = [[1.2, 0.9]]
+    index = np.array([0, 1, 2, 3, 1, 2, 4, 5], np.int32)  # the edge is there twice
+    drawn_faces = np.array([0, 2, 1, 0, 3, 2, 4, 7, 6, 4, 5, 7])
+    sides = np.array([[0, 1, 0]] * 4 + [[-0.9, 0.4, 0] if sharp else [0, 1, 0]] * 4, float)
+    clip = Clip.of([Moved("fold", np.stack([flat, fold]), faces, (Drawn("fold", index),))])
+    tab = chromium.new_page()
+    page = ClipPage(tab, clip.to_bytes(), [("fold", len(index))])
+    tab.evaluate(CREASE, [drawn_faces.tolist(), sides.ravel().tolist()])
+    page.play(1.5 / 25)
+    lit = page.arrays(0)[1]
+    tab.close()
+    own = normals(fold[index], drawn_faces.reshape(-1, 3))
+    shared = normals(fold, faces)[index]
+    assert np.abs(own - shared).max() > 0.3
+    assert np.abs(lit - (own if sharp else shared)).max() < 1e-3

@@ -15,7 +15,8 @@ STAND, LAYERED = "pibo", "pibo-figure"  # the exhibits that are kept: a scarf on
 def coarse(place: Path) -> Path:
     """The shipped content with two coarse outfits that have not been baked."""
     home = place / "content"
-    shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked", "beizi", "gown"))
+    others = {path.name for path in (ASSETS / "exhibits").iterdir()} - {STAND, LAYERED, "mirror"}
+    shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked", *others))
     for name, steps in (("pibo", (0.06,)), ("pibo-figure", (0.05, 0.04))):
         outfit = home / f"outfits/{name}.toml"
         lines = [

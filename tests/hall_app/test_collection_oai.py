@@ -90,7 +90,11 @@ def test_formats_and_sets(many):
     assert prefixes == ["oai_dc", "lido"]
     one = asked(many, verb="ListMetadataFormats", identifier=f"oai:{HOST}:e03")
     assert [e.text for e in one.iter(f"{OAI}metadataPrefix")] == prefixes
-    assert [e.text for e in asked(many, verb="ListSets").iter(f"{OAI}setSpec")] == ["simulated", "model"]
+    assert [e.text for e in asked(many, verb="ListSets").iter(f"{OAI}setSpec")] == [
+        "simulated",
+        "scanned",
+        "model",
+    ]
 
 
 @pytest.mark.parametrize("prefix", ["oai_dc", "lido"])

@@ -131,11 +131,11 @@ CASES: dict[str, tuple[Callable[[Path], object], tuple[str, ...]]] = {
     ),
     "two models": (
         lambda home: edit(home / "exhibit.toml", "licence", 'outfit = "outfits/o.toml"\nlicence'),
-        ("exhibit.toml: needs either outfit or [models]", "keep one"),
+        ("exhibit.toml: needs one of outfit, scan and [models]", "keep one"),
     ),
     "nothing to show": (
         lambda home: edit(home / "exhibit.toml", '[models]\nhall = "media/chest.glb"', ""),
-        ("exhibit.toml: needs either outfit or [models]", "keep one"),
+        ("exhibit.toml: needs one of outfit, scan and [models]", "keep one"),
     ),
     "a ready-made model that is shown": (
         lambda home: edit(home / "exhibit.toml", "[body]", "[show]\nnearest = 2.0\n[body]"),

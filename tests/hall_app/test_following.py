@@ -80,6 +80,33 @@ def test_a_finished_bake_is_owed_until_it_is_shown(tmp_path: Path, monkeypatch, 
         house.close()
 
 
+def test_a_bake_whose_files_lie_there_before_its_process_ends_is_shown(tmp_path: Path):
+    """On a machine that has much else to do, ending takes a process seconds."""
+    content = load(with_scarf(tmp_path / "content"))
+    house, said = House(content, tmp_path / "data"), []
+    alive = [None, None, None, 0]
+
+    class Slow(Build):
+        def poll(self) -> int | None:
+            return alive.pop(0)
+
+    def tell(name: str, line: str, last: bool) -> None:
+        said.extend([line] if last else [])
+
+    queue = BakingQueue(lambda bake: Slow(house.data, bake), tell=tell)
+    follow = Following(house, queue, light=False, say=lambda line: None)
+
+    async def story() -> None:
+        for _ in range(5):
+            await follow.look()
+        assert house.models("scarf") is not None
+        assert queue.running is None
+
+    event_loop.run(story())
+    house.close()
+    assert said == ["done"]
+
+
 def test_an_edit_whose_showing_failed_is_shown_at_the_next_look(tmp_path: Path, monkeypatch):
     folder = make_house(tmp_path / "content")
     house = House(load(folder), tmp_path / "data")

@@ -8,7 +8,7 @@ import pytest
 
 from sim_core.body import Pose, pose_named
 from sim_core.errors import FileProblem, SimCoreError
-from sim_core.garment import check_fits, load_outfit
+from sim_core.garment import check_fits, dress, load_outfit
 from sim_core.garment.dressing import courses
 from sim_core.garment.outfit import default_program
 from sim_core.garment.placement import AlongPath, Flat, OverBar
@@ -27,6 +27,16 @@ height = 1.5
 [[layer]]
 pattern = "patterns/pibo.toml"
 weave = "weaves/gauze.toml"
+"""
+LENGTH = """\
+[[layer]]
+name = "{name}"
+pattern = "patterns/length.toml"
+weave = "weaves/juan.toml"
+[layer.place]
+way = "folded"
+front = 1.2
+at = {at}
 """
 GOWN = ROBE.replace("robe.toml", "gown.toml").replace("juan", "gauze")
 
@@ -225,7 +235,22 @@ BAD = {
     ),
     "twice": (ROBE + ROBE.split("\n", 2)[2], "layer.2.name: 'robe' is there twice"),
     "two on a stand": (SCARF + SCARF.split("\n", 2)[2], "layer.2: a stand bears one layer"),
+    "two in one place": (
+        "[stand]\nspan = 1.2\n" + LENGTH.format(name="red", at=-0.1) + LENGTH.format(name="blue", at=0.1),
+        "layer.2.place.at: 0.1 m – lies within 10 mm of 'red'; move it",
+    ),
 }
+
+
+def test_lengths_hang_beside_each_other_on_one_stand(tmp_path: Path) -> None:
+    rack = "[stand]\nheight = 1.4\nspan = 0.8\n"
+    text = rack + LENGTH.format(name="red", at=-0.18) + LENGTH.format(name="blue", at=0.18)
+    red, blue = dress(load_outfit(written(tmp_path, text), ASSETS).coarser(0.06))
+    assert red.positions[:, 0].max() < 0.0 < blue.positions[:, 0].min()
+    assert red.provenance["errors"]["inside_vertices"] == blue.provenance["errors"]["inside_vertices"] == 0
+    wide = rack + LENGTH.format(name="red", at=0.3)
+    with pytest.raises(SimCoreError, match=r"0\.27 m wide at 0\.3 m reaches 0\.04 m beyond a post – move it"):
+        check_fits(load_outfit(written(tmp_path, wide), ASSETS))
 
 
 @pytest.mark.parametrize("case", BAD)

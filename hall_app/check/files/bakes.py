@@ -12,7 +12,7 @@ from typing import Any
 from hall_app.content.bakes.inputs import outfit_files, outfit_problems
 from hall_app.content.bakes.key import bake_key
 from hall_app.content.bakes.steps import read_study
-from hall_app.content.bakes.store import NEEDED, RECORD, bake_fault
+from hall_app.content.bakes.store import RECORD, bake_fault, needed
 from hall_app.content.files import BAKED, LEAVES, exhibit_files, is_there, leaves, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
@@ -35,7 +35,7 @@ def bake_problems(content: Content) -> list[Problem]:
     found = list(faults.values())
     for exhibit in content.exhibits:
         if exhibit.file.outfit and not faults.keys() & _inputs_of(content.folder, exhibit.file.outfit):
-            found += _bake(content, exhibit)
+            found += bake_state(content, exhibit)
     return found
 
 
@@ -128,25 +128,25 @@ def _fault(folder: Path, path: str, reader: Callable[[Path], Any]) -> Problem | 
     return None
 
 
-def _bake(content: Content, exhibit: Exhibit) -> list[Problem]:
-    note = exhibit.folder / BAKED / RECORD
+def bake_state(content: Content, exhibit: Exhibit) -> list[Problem]:
+    """Why what lies beside an exhibit with an outfit or a scan is not its bake; empty where it is."""
+    note, source = exhibit.folder / BAKED / RECORD, exhibit.file.baked_key or ""
     fix = f"run: hall build --exhibit {exhibit.id}"
     try:
-        key = json.loads(note.read_text("utf-8"))["key"]
+        record = json.loads(note.read_text("utf-8"))
+        key = record["key"]
     except FileNotFoundError:
-        return [Problem(exhibit.toml, "outfit", "has not been baked", fix)]
+        return [Problem(exhibit.toml, source, "has not been baked", fix)]
     except (OSError, ValueError, KeyError, TypeError):
-        return [Problem(exhibit.toml, "outfit", "baked/bake.json cannot be read", fix)]
+        return [Problem(exhibit.toml, source, "baked/bake.json cannot be read", fix)]
     if key != bake_key(content, exhibit):
-        return [
-            Problem(exhibit.toml, "outfit", "its bake is stale: an input or the engine changed since", fix)
-        ]
+        return [Problem(exhibit.toml, source, "its bake is stale: an input or the engine changed since", fix)]
     named = [path for _, path in exhibit_files(exhibit.file) if path.startswith(BAKED)]
-    wanted = dict.fromkeys([BAKED + name for name in NEEDED] + named)
+    wanted = dict.fromkeys([BAKED + name for name in needed(record)] + named)
     missing = [
-        Problem(exhibit.toml, "outfit", f"{name} is missing from the bake", fix)
+        Problem(exhibit.toml, source, f"{name} is missing from the bake", fix)
         for name in wanted
         if not is_there(exhibit.folder / name)
     ]
     fault = None if missing else bake_fault(exhibit.folder / BAKED)
-    return [Problem(exhibit.toml, "outfit", f"{BAKED}{fault[0]} {fault[1]}", fix)] if fault else missing
+    return [Problem(exhibit.toml, source, f"{BAKED}{fault[0]} {fault[1]}", fix)] if fault else missing

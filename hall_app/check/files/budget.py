@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hall_app.content.files import walk_files
+from hall_app.content.bakes.inputs import scan_files
+from hall_app.content.files import is_there, walk_files
 from hall_app.content.folder import Content
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.content.problems import Problem
@@ -25,7 +26,10 @@ def budget_problems(content: Content) -> list[Problem]:
         if (compared := exhibit.compared_path()) is not None:
             found += _model(exhibit.toml, "comparison.model", "close", compared)
     total = 0
+    scans = _scans(content)
     for path in walk_files(content.folder):
+        if path in scans:
+            continue  # no visitor loads it; what reads it has a limit of its own
         name, size = path.relative_to(content.folder).as_posix(), path.stat().st_size
         total += size
         if size == 0:
@@ -40,6 +44,15 @@ def budget_problems(content: Content) -> list[Problem]:
     if total > FOLDER:
         what = f"the folder has {total / MB:.1f} MB, at most {FOLDER / MB:g} MB"
         found.append(Problem(".", "", what, "remove or shrink the largest files"))
+    return found
+
+
+def _scans(content: Content) -> set[Path]:
+    """Scans, and the pictures that belong to them: what models are made of."""
+    found: set[Path] = set()
+    for exhibit in content.exhibits:
+        if exhibit.file.scan is not None and is_there(exhibit.folder / exhibit.file.scan):
+            found.update(scan_files(content.folder, exhibit.folder, exhibit.file.scan))
     return found
 
 

@@ -28,7 +28,7 @@ def scale_problems(content: Content) -> list[Problem]:
 
 def _model_problems(exhibit: Exhibit, key: str, path: Path) -> list[Problem]:
     fix = "export the model again"
-    if exhibit.file.outfit:
+    if exhibit.file.baked_key:
         if bake_fault(exhibit.folder / BAKED):
             return []  # the check of bakes names it
         fix = f"run: hall build --exhibit {exhibit.id}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 
+from hall_app.content.bakes.inputs import scan_files
 from hall_app.content.files import BAKED, SHEET, TEXTS, exhibit_files, tracked_beside, walk_files
 from hall_app.content.folder import Content, Exhibit
 from hall_app.content.problems import Problem
@@ -19,7 +20,7 @@ def unused_problems(content: Content) -> list[Problem]:
         used = _used(exhibit)
         for path in walk_files(exhibit.folder):
             name = path.relative_to(exhibit.folder).as_posix()
-            if name not in used and not (exhibit.file.outfit and _built(name)):
+            if name not in used and not (exhibit.file.baked_key and _built(name)):
                 found.append(_unused(f"exhibits/{exhibit.id}/{name}", "exhibit.toml"))
     media = content.folder / "media"
     if media.is_dir():
@@ -32,13 +33,20 @@ def unused_problems(content: Content) -> list[Problem]:
 
 
 def _built(name: str) -> bool:
-    """Whether `hall build` writes it for an exhibit with an outfit, shown by a text or not."""
+    """Whether `hall build` writes it for an exhibit with an outfit or a scan, shown by a text or not."""
     return name.startswith(BAKED) or name == SHEET
 
 
 def _used(exhibit: Exhibit) -> set[str]:
     used = {"exhibit.toml", "LICENCE.txt", *TEXTS.values()}
     used.update(path for _, path in exhibit_files(exhibit.file))
+    if exhibit.file.scan:
+        beside = scan_files(exhibit.folder.parents[1], exhibit.folder, exhibit.file.scan)
+        used.update(
+            path.relative_to(exhibit.folder).as_posix()
+            for path in beside
+            if path.is_relative_to(exhibit.folder)
+        )
     if exhibit.file.motion:
         used.add(tracked_beside(exhibit.file.motion))
     texts = (exhibit.text_zh, exhibit.text_en)

@@ -5,7 +5,7 @@ where a bake lies; models: what an
 exhibit is drawn with.
 """
 
-from hall_app.content.bakes.inputs import outfit_files, outfit_problems
+from hall_app.content.bakes.inputs import outfit_files, outfit_problems, scan_files
 from hall_app.content.bakes.key import BAKE_VERSION, KEY_DIGITS, bake_key
 from hall_app.content.bakes.models import ExhibitModels, models_of
 from hall_app.content.bakes.record import FILES, Fault, publish, seal, seal_fault, seal_record, text_of
@@ -45,6 +45,7 @@ __all__ = [
     "publish",
     "read_record",
     "read_study",
+    "scan_files",
     "seal",
     "seal_fault",
     "seal_record",

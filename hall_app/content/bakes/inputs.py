@@ -12,7 +12,7 @@ from hall_app.content.files import file_problem, is_there
 from hall_app.content.problems import Problem
 from hall_app.content.schema.complaints import toml_problem
 
-__all__ = ["motif_files", "outfit_files", "outfit_problems"]
+__all__ = ["motif_files", "outfit_files", "outfit_problems", "scan_files"]
 
 OUTFIT = ("wearer", "motion", "study")  # keys of an outfit that name a file
 MOST_MOTIFS = 200  # files looked at for one weave
@@ -41,6 +41,21 @@ def _named(table: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         weaves = layer.get("weaves")
         for panel, path in (weaves if isinstance(weaves, dict) else {}).items():
             yield f"layer.{number}.weaves.{panel}", path
+
+
+def scan_files(content: Path, exhibit: Path, scan: str) -> tuple[Path, ...]:
+    """The scan in an exhibit's folder and what lies beside it and belongs to it: material files, pictures.
+
+    What cannot be found is left out: whoever reads the scan says so. Raises OSError where it is not there itself.
+    """
+    from sim_core.mesh.scan import ScanError, scan_companions
+
+    path = exhibit / scan
+    path.stat()
+    try:
+        return path, *scan_companions(path, content)
+    except ScanError:
+        return (path,)
 
 
 def motif_files(folder: Path, weave: str) -> tuple[str, ...]:

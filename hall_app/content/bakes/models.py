@@ -27,12 +27,12 @@ class ExhibitModels:
 def models_of(
     content: Content, exhibit: Exhibit, data: Path | None, *, stale: bool = True
 ) -> ExhibitModels | None:
-    """What to draw `exhibit` with, or None while its garment has not been baked.
+    """What to draw `exhibit` with, or None while its garment or scan has not been baked.
 
     data: the data folder, where a bake of its own may lie; None looks beside the exhibit alone. stale: whether a bake
     of earlier inputs will do.
     """
-    if exhibit.file.outfit is None:
+    if exhibit.file.baked_key is None:
         hall, close = exhibit.model_path("hall"), exhibit.model_path("close")
         return ExhibitModels(hall, close or hall, None) if hall is not None else None
     folder = bake_folder(content, exhibit, data, stale=stale)

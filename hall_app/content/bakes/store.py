@@ -11,8 +11,10 @@ from hall_app.content.bakes.record import Fault, seal_fault
 from hall_app.content.folder import Content, Exhibit
 
 __all__ = [
+    "MODELS",
     "NEEDED",
     "RECORD",
+    "SCAN",
     "bake_fault",
     "bake_folder",
     "bake_work",
@@ -20,12 +22,15 @@ __all__ = [
     "data_bake",
     "key_now",
     "layer_files",
+    "needed",
     "read_record",
 ]
 
 RECORD = "bake.json"
 GARMENT = "garment.npz"  # the outermost layer
-NEEDED = (GARMENT, "hall.glb", "close.glb")
+MODELS = ("hall.glb", "close.glb")
+NEEDED = (GARMENT, *MODELS)  # of an outfit; of a scan the models alone
+SCAN = "scan"  # the key of a record that tells of a scan
 
 
 def layer_files(count: int) -> tuple[str, ...]:
@@ -39,14 +44,23 @@ def read_record(folder: Path) -> dict[str, Any] | None:
         record = json.loads((folder / RECORD).read_text("utf-8"))
     except (OSError, ValueError):
         return None
-    if not isinstance(record, dict) or not all((folder / name).is_file() for name in NEEDED):
+    if not isinstance(record, dict) or not all((folder / name).is_file() for name in needed(record)):
         return None
     return record
 
 
+def needed(record: dict[str, Any]) -> tuple[str, ...]:
+    """The files without which it is no bake."""
+    return MODELS if SCAN in record else NEEDED
+
+
 def bake_fault(folder: Path) -> Fault | None:
     """(file name, what is wrong with it) of a bake whose files are not those that were baked."""
-    return seal_fault(folder, RECORD, NEEDED)
+    try:
+        told = json.loads((folder / RECORD).read_text("utf-8"))
+    except (OSError, ValueError, RecursionError):
+        told = {}  # which the seal says
+    return seal_fault(folder, RECORD, needed(told if isinstance(told, dict) else {}))
 
 
 def baked_here(exhibit: Exhibit) -> Path:

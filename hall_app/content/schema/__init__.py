@@ -8,7 +8,7 @@ exhibit.toml; complaints: pydantic's words as a curator's.
 from hall_app.content.schema.article import ArticleFile, Source
 from hall_app.content.schema.comparison import Comparison, Side
 from hall_app.content.schema.complaints import key_name, schema_problems, table_of, toml_problem
-from hall_app.content.schema.exhibit import Body, ExhibitFile, Media, Models, Place, Record, Show
+from hall_app.content.schema.exhibit import Body, ExhibitFile, Media, Models, Place, Record, Scanned, Show
 from hall_app.content.schema.glossary import GlossaryFile, Word
 from hall_app.content.schema.hall import Eye, HallFile, Start
 from hall_app.content.schema.plan import (
@@ -52,6 +52,7 @@ __all__ = [
     "PlanFile",
     "Record",
     "Round",
+    "Scanned",
     "Show",
     "Side",
     "Sign",

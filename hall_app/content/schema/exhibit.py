@@ -45,12 +45,30 @@ class Models(Table):
 
 
 class Show(Table):
-    """From how near an outfit is seen, which decides how coarse its model in the hall may be."""
+    """From how near an outfit or a scan is seen, which decides how coarse its model in the hall may be."""
 
     nearest: Metres = Field(1.3, description="nearest distance from which a visitor sees it [m]")
     hall_error_px: float = Field(
         1.0, gt=0, le=20, description="greatest deviation of the hall's model, in pixels at the nearest view"
     )
+
+
+class Scanned(Table):
+    """How a scan was saved, where that is not in metres and y up, and what of it is shown."""
+
+    units: Literal["m", "cm", "mm", "in"] = Field("m", description="length of its unit")
+    scale: float = Field(1.0, gt=0, le=1e6, description="times its units, where they are none of these")
+    up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = Field(
+        None, description="its axis that points upwards; without it y, as long as that can be"
+    )
+    keep: Literal["all", "largest"] | None = Field(
+        None, description="of several loose parts: all, or the largest alone; without it all"
+    )
+
+    @property
+    def metres(self) -> float:
+        """How many one of its units is."""
+        return {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}[self.units] * self.scale
 
 
 class Body(Table):
@@ -124,14 +142,20 @@ class ExhibitFile(Table):
     title: Bilingual = Field(description="name of the exhibit")
     caption: Bilingual | None = Field(None, description="one sentence shown when a visitor comes near")
     place: Place = Field(description="where it stands")
-    models: Models | None = Field(None, description="ready-made models; either this or outfit")
+    models: Models | None = Field(None, description="ready-made models; either this or outfit or scan")
     outfit: ContentPath | None = Field(
-        None, description="outfit that hall build dresses, e.g. outfits/beizi.toml; either this or models"
+        None,
+        description="outfit that hall build dresses, e.g. outfits/beizi.toml; either this or models or scan",
     )
+    scan: ContentPath | None = Field(
+        None,
+        description="dense scan that hall build makes models of: .glb, .ply or .obj; either this or outfit",
+    )
+    scanned: Scanned = Field(Scanned.model_construct(), description="how the scan was saved")
     motion: ContentPath | None = Field(
         None, description="clip its model in the hall moves by, e.g. motion.clip; at most 2 MB"
     )
-    show: Show = Field(Show.model_construct(), description="from how near the outfit is seen")
+    show: Show = Field(Show.model_construct(), description="from how near the outfit or scan is seen")
     body: Body = Field(description="rigid body")
     behaviours: tuple[Behaviour, ...] = Field(
         ("open_on_click", "glow_when_near"),
@@ -149,13 +173,20 @@ class ExhibitFile(Table):
 
     @model_validator(mode="after")
     def _one_model(self) -> ExhibitFile:
-        if (self.models is None) == (self.outfit is None):
-            raise PydanticCustomError("one_model", "needs either outfit or [models]")
-        if self.outfit is None and "show" in self.model_fields_set:
+        if sum(source is not None for source in (self.models, self.outfit, self.scan)) != 1:
+            raise PydanticCustomError("one_model", "needs one of outfit, scan and [models]")
+        if self.models is not None and "show" in self.model_fields_set:
             raise PydanticCustomError(
-                "show_alone", "[show] is for an outfit; ready-made models stay as they are"
+                "show_alone", "[show] is for an outfit or a scan; ready-made models stay as they are"
             )
+        if self.scan is None and "scanned" in self.model_fields_set:
+            raise PydanticCustomError("scanned_alone", "[scanned] is for a scan, and none is named")
         return self
+
+    @property
+    def baked_key(self) -> Literal["outfit", "scan"] | None:
+        """The key that names what `hall build` makes its models of, None for ready-made ones."""
+        return "outfit" if self.outfit is not None else "scan" if self.scan is not None else None
 
     @model_validator(mode="after")
     def _one_turning(self) -> ExhibitFile:

@@ -1,7 +1,7 @@
 """What pages show of the content.
 
 markdown: curators' texts as HTML; measurements: what a bake measured, in words; scene: the dictionaries of the API;
-writing: articles, and where what they name is read.
+sources: what no visitor is handed; writing: articles, and where what they name is read.
 """
 
 from hall_app.content.views.markdown import (
@@ -25,6 +25,7 @@ from hall_app.content.views.scene import (
     thumbnail,
     yaw_of,
 )
+from hall_app.content.views.sources import is_source
 from hall_app.content.views.writing import (
     article_html,
     article_picture,
@@ -45,6 +46,7 @@ __all__ = [
     "article_picture",
     "articles_on",
     "image_html",
+    "is_source",
     "is_written",
     "page_of",
     "words_in",

@@ -54,6 +54,15 @@ ERRORS: dict[str, tuple[str, str, Callable[[float], str]]] = {
         _percent,
     ),
     "rest_max_m": ("静止时每 1/25 秒的最大位移", "Greatest movement at rest in 1/25 s", _millimetres),
+    "scan_triangles": ("扫描件三角形", "Triangles of the scan", _count),
+    "close_triangles": ("近观模型三角形", "Triangles of the close-up model", _count),
+    "close_hausdorff_mean": ("近观模型平均偏差", "Close-up model, mean deviation", _millimetres),
+    "close_hausdorff_p99": (
+        "近观模型偏差（99 % 分位）",
+        "Close-up model, deviation, 99th percentile",
+        _millimetres,
+    ),
+    "close_hausdorff_max": ("近观模型最大偏差", "Close-up model, greatest deviation", _millimetres),
     "hall_triangles": ("展厅模型三角形", "Triangles of the hall model", _count),
     "hall_hausdorff_mean": ("展厅模型平均偏差", "Hall model, mean deviation", _millimetres),
     "hall_hausdorff_p99": (

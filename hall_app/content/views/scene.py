@@ -186,6 +186,7 @@ def exhibit_json(content: Content, identity: str, *, baked: Path | None = None) 
         "licence": file.licence,
         "questionnaire": file.questionnaire,
         "has_close": _has_close(exhibit, baked),
+        "scanned": file.scan is not None,
         "points": _points(exhibit, baked),
         "comparison": _comparison(exhibit),
     }
@@ -208,7 +209,7 @@ def _comparison(exhibit: Exhibit) -> dict[str, Any] | None:
 
 
 def _has_close(exhibit: Exhibit, baked: Path | None) -> bool:
-    if exhibit.file.outfit is not None:
+    if exhibit.file.baked_key is not None:
         return media_file(exhibit, BAKED + "close.glb", baked).is_file()
     return exhibit.model_path("close") is not None
 

@@ -24,18 +24,21 @@ _NICE = 10  # how far a bake stands back for who serves visitors
 
 
 def stale_garments(content: Content, data: Path) -> tuple[Exhibit, ...]:
-    """Exhibits whose garment has no bake of its outfit as it is now."""
+    """Exhibits whose garment or scan has no bake of it as it is now."""
     return tuple(
         exhibit
         for exhibit in content.exhibits
-        if exhibit.file.outfit is not None
+        if exhibit.file.baked_key is not None
         and key_now(content, exhibit) is not None  # an input is missing: nothing can be baked from it
         and bake_folder(content, exhibit, data, stale=False) is None
     )
 
 
-def wanted_bakes(content: Content, data: Path, *, light: bool) -> tuple[Bake, ...]:
-    """Every bake that the content lacks as it is now; light: the room's as well.
+def wanted_bakes(
+    content: Content, data: Path, *, light: bool, running: Bake | None = None
+) -> tuple[Bake, ...]:
+    """Every bake that the content lacks as it is now; light: the room's as well; running: the one that runs, which is
+    wanted until its process has ended, though what it makes lies there a moment before.
 
     Reads and hashes files, some 5 ms of them: to be called beside the event loop.
     """
@@ -44,10 +47,21 @@ def wanted_bakes(content: Content, data: Path, *, light: bool) -> tuple[Bake, ..
 
     keys = ((exhibit.id, key_now(content, exhibit)) for exhibit in stale_garments(content, data))
     garments = tuple(Bake(name, key) for name, key in keys if key is not None)
-    if not light or room_folder(content, data) is not None:
-        return garments
+    if running is not None and running not in garments and _fits(running, content):
+        garments = (running, *garments)
     # Garments cast shadows: the light of one baked before them would be that of another hall.
-    return (*garments, Bake(ROOM, room_key(content, data), patient=True))
+    room = Bake(ROOM, room_key(content, data), patient=True) if light else None
+    if room is None or (room_folder(content, data) is not None and room != running):
+        return garments
+    return (*garments, room)
+
+
+def _fits(bake: Bake, content: Content) -> bool:
+    """Whether it is of an exhibit as this is now."""
+    exhibit = content.exhibit(bake.name)
+    return (
+        exhibit is not None and exhibit.file.baked_key is not None and key_now(content, exhibit) == bake.key
+    )
 
 
 def bake_places(bake: Bake, data: Path) -> tuple[Path, Path]:

@@ -34,7 +34,7 @@ def tidy(content: Content, data: Path, *, shown: Iterable[Path], wanted: Iterabl
     present = [*wanted, Bake(ROOM, room_key(content, data))]
     last = [former_room(content, data)]
     for exhibit in content.exhibits:
-        if exhibit.file.outfit is not None:
+        if exhibit.file.baked_key is not None:
             last.append(bake_folder(content, exhibit, data))
             key = key_now(content, exhibit)
             present += [Bake(exhibit.id, key)] if key is not None else []

@@ -34,6 +34,7 @@ _SECONDS, _DAYS = "%Y-%m-%dT%H:%M:%SZ", "%Y-%m-%d"
 _LAST = datetime.max.replace(tzinfo=UTC)
 _SETS = {
     "simulated": "由模拟着装的衣物 · Garments dressed by simulation",
+    "scanned": "扫描的展品 · Scanned exhibits",
     "model": "现成模型 · Ready-made models",
 }
 

@@ -27,8 +27,9 @@ __all__ = ["GLB", "LANGUAGES", "Collection", "Item", "Medium", "Model", "Source"
 
 LANGUAGES = ("zh", "en")
 GLB = "model/gltf-binary"
-Kind = Literal["simulated", "model"]
+Kind = Literal["simulated", "scanned", "model"]
 ModelsOf = Callable[[str], ExhibitModels | None]
+_KINDS: dict[str | None, Kind] = {"outfit": "simulated", "scan": "scanned", None: "model"}
 
 
 @dataclass(frozen=True)
@@ -158,7 +159,7 @@ def _item(content: Content, exhibit: Exhibit, models: ExhibitModels, address: st
     media = [_medium(exhibit, medium, baked, address) for medium in file.media]
     return Item(
         exhibit.id,
-        "model" if file.outfit is None else "simulated",
+        _KINDS[file.baked_key],
         file.title,
         file.caption,
         Bilingual(zh=_plain(exhibit.text_zh, file.title.zh), en=_plain(exhibit.text_en, file.title.en)),

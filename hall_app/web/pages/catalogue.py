@@ -33,6 +33,7 @@ _WORDS = {
         "transcript": "文字稿",
         "data": "资料",
         "measured": "模拟与实测数据",
+        "scanned": "扫描与测量",
         "licence": "许可",
         "visit": "在展厅中观看",
         "keep": "收藏",
@@ -53,6 +54,7 @@ _WORDS = {
         "transcript": "Transcript",
         "data": "Data",
         "measured": "Simulated and measured",
+        "scanned": "Scanned and measured",
         "licence": "Licence",
         "visit": "See it in the hall",
         "keep": "Keep as a favourite",
@@ -184,7 +186,9 @@ class _Page:
     def entry(self, number: int, exhibit: Exhibit, detail: dict[str, Any]) -> str:
         words, key = self.words, escape(exhibit.id)
         title, second = escape(detail["title"][self.lang]), escape(detail["title"][self.other])
-        data = self._table("data", detail["record"]) + self._table("measured", detail["measured"])
+        data = self._table("data", detail["record"]) + self._table(
+            "scanned" if detail["scanned"] else "measured", detail["measured"]
+        )
         media = "".join(self._medium(medium) for medium in detail["media"])
         plates = f'<div class="plates">{media}</div>' if media else ""
         return f"""<article id="exhibit-{key}" aria-labelledby="title-{key}">

@@ -3,6 +3,8 @@ begin, the plies of pleats as they were folded."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.spatial import KDTree
 
@@ -34,16 +36,19 @@ def overlap(garment: Garment, place: Placement) -> tuple[int, int]:
     """Vertices of what should lie outside that lie under the rest, and those that lie over it."""
     if garment.settled is None or not garment.settled.beneath.surfaces:
         return 0, 0
+    plies: list[np.ndarray] = []
+    field = garment.settled.beneath.field()
     if isinstance(place, Flat) and garment.cut.get("panels"):
         left, right = _fronts(garment)
         layers = [(left, right) if place.over == "left" else (right, left)]
     elif isinstance(place, Wrapped):
-        layers = _pleats(garment) or [_wraps(garment)]
+        folded = _folded(garment)
+        plies = [height for panel, _ in folded for height in _plies(garment, field, panel)]
+        layers = [pair for _, pair in folded] or [_wraps(garment)]
     else:
         return 0, 0
-    field = garment.settled.beneath.field()
     found = [_heights(garment.positions, field, *pair) for pair in layers if all(map(len, pair))]
-    height = np.concatenate([np.zeros(0), *found])
+    height = np.concatenate([np.zeros(0), *found, *plies])
     return int((height < -SLIGHT).sum()), int((height > SLIGHT).sum())
 
 
@@ -60,24 +65,62 @@ def _heights(x: np.ndarray, field: DistanceField, outer: np.ndarray, inner: np.n
     return height[facing]
 
 
-def _pleats(garment: Garment) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Draped vertices of each ply of pleats that lies over another, and of that; later panels lie over earlier ones."""
+@dataclass(frozen=True)
+class _Panel:
+    """A pleated panel: which faces (F,) are of it, x (P,) [m] of pattern vertices and how it is folded."""
+
+    faces: np.ndarray
+    x: np.ndarray
+    plies: Plies
+
+
+def _folded(garment: Garment) -> list[tuple[_Panel, tuple[np.ndarray, np.ndarray]]]:
+    """All panels of a garment with pleats, and draped vertices of each and of those before it, which it lies over."""
     cut = Pattern.from_dict(garment.cut).panels
     if not any(panel.pleats for panel in cut):
         return []
-    found, before = list[tuple[np.ndarray, np.ndarray]](), np.zeros(0, np.int64)
+    found, before = list[tuple[_Panel, tuple[np.ndarray, np.ndarray]]](), np.zeros(0, np.int64)
     for number, panel, sign in both_halves(cut):
         if number == len(garment.panels):  # it is one half
             break
-        own = np.unique(garment.pattern_faces[garment.panel == number])
-        x = sign * garment.pattern[own, 0]
-        plies = Plies.of(float(x.min()), float(x.max()), panel.pleats)
-        of = plies.numbers(x)
-        found += [
-            (garment.weld[own[of == over]], garment.weld[own[of == under]]) for over, under in plies.stacked()
-        ]
-        found.append((garment.weld[own], before))
+        faces = np.flatnonzero(garment.panel == number)
+        own, x = np.unique(garment.pattern_faces[faces]), sign * garment.pattern[:, 0]
+        folded = _Panel(faces, x, Plies.of(float(x[own].min()), float(x[own].max()), panel.pleats))
+        found.append((folded, (garment.weld[own], before)))
         before = np.concatenate([before, garment.weld[own]])
+    return found
+
+
+def _plies(garment: Garment, field: DistanceField, panel: _Panel) -> list[np.ndarray]:
+    """How high (n,) [m] the vertices of each ply lie over the ply it should lie over, along the normals of that.
+
+    Pleats stand open, so that outwards of the wearer says little: what counts is on which side of a ply the other is.
+    """
+    pattern_faces, x = garment.pattern_faces[panel.faces], garment.positions
+    faces = garment.weld[pattern_faces]
+    area = np.cross(x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]])
+    stretch = panel.plies.numbers(panel.x[pattern_faces].mean(1))
+    ways = np.sign(np.diff(panel.plies.places))
+    _, outward = field.with_gradient(x[faces].mean(1))
+    face_up = float(np.sign((ways[stretch] * (area * outward).sum(1)).sum()))
+    sides = []
+    for ply, way in enumerate(ways):
+        own = stretch == ply
+        normals = np.zeros_like(x)
+        np.add.at(normals, faces[own], face_up * way * area[own, None])
+        vertices = np.unique(faces[own])
+        size = np.linalg.norm(normals[vertices], axis=1, keepdims=True)
+        sides.append((vertices, normals[vertices] / np.maximum(size, 1e-12)))
+    found = []
+    for over, under in panel.plies.stacked():
+        (above, _), (beneath, up) = sides[over], sides[under]
+        free = np.setdiff1d(above, beneath)  # on the fold they are one
+        if len(free) and len(beneath):
+            away, near = KDTree(x[beneath]).query(x[free], distance_upper_bound=REACH)
+            close = np.isfinite(away)
+            towards = x[free[close]] - x[beneath[near[close]]]
+            height = (towards * up[near[close]]).sum(1)
+            found.append(height[np.abs(height) > FACING * np.linalg.norm(towards, axis=1)])
     return found
 
 

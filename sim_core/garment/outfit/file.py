@@ -9,6 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from sim_core.body import Figure, Mannequin, Pose, Stand, TBar, load_motion, pose_named
@@ -34,6 +35,7 @@ from sim_core.weave import Loom, Weave
 
 __all__ = ["default_program", "load_motion", "load_outfit"]
 
+BESIDE = 0.01  # [m] between lengths of cloth on one stand
 LOOK = 0.02  # [m] cell of the field by which a figure is tried
 READ_BY = {  # keys that few kinds of steps read
     "at": ("pin", "release"),
@@ -94,8 +96,8 @@ class _Reader:
         motion = load_motion(self._file("motion", read.motion)) if read.motion is not None else None
         layers = [self.layer(f"layer.{k}", table, stand) for k, table in enumerate(read.layer, 1)]
         self._check_belts(layers, wearer)
-        if stand is not None and len(layers) > 1:
-            raise self._wrong("layer.2", "a stand bears one layer – give a wearer")
+        if stand is not None:
+            self._check_beside(layers)
         for k, layer in enumerate(layers):
             if any(layer.name == other.name for other in layers[:k]):
                 raise self._wrong(
@@ -108,6 +110,28 @@ class _Reader:
     def _stand(self, table: StandTable) -> Stand:
         told = table.model_dump(exclude={"kind"}, exclude_none=True)
         return self._of("stand", lambda: TBar(**told) if table.kind == "t_bar" else Stand(**told))
+
+    def _check_beside(self, layers: Sequence[Layer]) -> None:
+        """Layers on one stand do not touch each other: folded lengths beside each other alone."""
+        held: list[tuple[float, float, str]] = []
+        for number, layer in enumerate(layers, 1):
+            if not isinstance(layer.place, Folded):
+                if len(layers) > 1:
+                    raise self._wrong(
+                        f"layer.{max(number, 2)}",
+                        "a stand bears one layer, or several lengths folded beside each other – give a wearer",
+                    )
+                return
+            across = np.concatenate([panel.outline()[:, 0] for panel in layer.pattern.panels])
+            half = 0.5 * float(np.ptp(across)) + 0.5 * BESIDE
+            low, high = layer.place.at - half, layer.place.at + half
+            for begin, end, name in held:
+                if low < end and begin < high:
+                    raise self._wrong(
+                        f"layer.{number}.place.at",
+                        f"{layer.place.at} m – lies within {1e3 * BESIDE:.0f} mm of {name!r}; move it along the bar",
+                    )
+            held.append((low, high, layer.name))
 
     def _check_belts(self, layers: Sequence[Layer], wearer: Mannequin | None) -> None:
         known = wearer.landmarks() if wearer is not None else {}

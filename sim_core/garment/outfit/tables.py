@@ -158,6 +158,9 @@ class WrappedTable(Table):
 class FoldedTable(Table):
     way: Literal["folded"]
     front: Length = Field(description="[m] of cloth in front of the bar")
+    at: Number = Field(
+        0.0, ge=-5, le=5, description="[m] of its middle along the bar, from the bar's to the visitor's right"
+    )
 
 
 Place = Annotated[

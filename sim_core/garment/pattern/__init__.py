@@ -4,7 +4,7 @@ from sim_core.garment.pattern.cloth import SIDES, Cloth, both_halves, creases_of
 from sim_core.garment.pattern.measures import measured
 from sim_core.garment.pattern.panels import Panel, Path, Seam, Spot, Tie
 from sim_core.garment.pattern.pattern import Pattern
-from sim_core.garment.pattern.pleats import Pleat, Plies, latches
+from sim_core.garment.pattern.pleats import Opened, Pleat, Plies, latches
 from sim_core.garment.pattern.transfer import Transfer
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Panel",
     "Path",
     "Pattern",
+    "Opened",
     "Pleat",
     "Plies",
     "Seam",

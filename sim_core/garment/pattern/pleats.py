@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
+from scipy import ndimage
 from scipy.spatial import KDTree
 
 from sim_core.errors import OutlineError
 
-__all__ = ["Pleat", "Plies", "chords", "creased", "latches"]
+__all__ = ["Opened", "Pleat", "Plies", "chords", "creased", "latches"]
 
 Way = Literal["end", "begin"]
 NEAR = 1e-6  # [m] from a fold, that lies on it
+BISECTIONS = 40
+FINE, SPREAD = (
+    0.001,
+    0.03,
+)  # [m] between points of what lies over pleats, and over which its bends are rounded
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,8 @@ class Plies:
 
     bounds (n + 1,): x [m] where they begin and end; places (n + 1,): where those come to lie [m] along the pleated
     panel, from the x of its begin on; ramps (n, 2, 2): how high each lies, as lines a + b place (in gaps between plies,
-    and in gaps a metre) of which the highest counts, and 0.
+    and in gaps a metre) of which the highest counts, and 0. Of each fold, between the stretches, whether it is an outer
+    one: outer (n - 1,), and which group of pleats it belongs to: group (n - 1,).
 
     Pleats side by side lean on each other like shingles. All plies between the outermost rise with one slope, two gaps
     a step, so that no ply meets another wherever a mesh has its vertices.
@@ -55,13 +62,15 @@ class Plies:
     bounds: np.ndarray
     places: np.ndarray
     ramps: np.ndarray
+    outer: np.ndarray
+    group: np.ndarray
 
     @staticmethod
     def of(low: float, high: float, pleats: Sequence[Pleat]) -> Plies:
         """Of a panel from x = low to high [m]."""
         bounds, places = [low], [low]
-        ramps = [_LEVEL.copy()]
-        for group in _groups(pleats):
+        ramps, outer, groups = [_LEVEL.copy()], [], []
+        for number, group in enumerate(_groups(pleats)):
             first, begins = len(ramps) - 1, len(places)
             for pleat in group:
                 here = places[-1] + pleat.at - bounds[-1]
@@ -72,9 +81,12 @@ class Plies:
                     bounds += [pleat.at + pleat.depth, pleat.at + 2 * pleat.depth]
                     places += [here + pleat.depth, here]
                 ramps += [_LEVEL.copy(), _LEVEL.copy()]
+                outer += [pleat.towards == "end", pleat.towards == "begin"]
+                groups += [number, number]
             _lean(ramps[first:], places[begins:], group)
         places.append(places[-1] + high - bounds[-1])
-        return Plies(np.array([*bounds, high]), np.array(places), np.array(ramps))
+        folds = np.array(outer, bool), np.array(groups, np.int64)
+        return Plies(np.array([*bounds, high]), np.array(places), np.array(ramps), *folds)
 
     def laid(self, x: np.ndarray) -> np.ndarray:
         """Where points at x (n,) [m] lie along the pleated panel [m]."""
@@ -96,21 +108,117 @@ class Plies:
 
     def heights(self, x: np.ndarray) -> np.ndarray:
         """How many gaps above the undermost ply points at x (n,) [m] lie; on a fold the mean of both its plies."""
-        place, last = self.laid(x), len(self.ramps) - 1
-        found = np.zeros(len(x))
+        place, found = self.laid(x), np.zeros(len(x))
         for aside in (-NEAR, NEAR):
-            ramp = self.ramps[np.clip(np.searchsorted(self.bounds, x + aside, side="right") - 1, 0, last)]
-            found += 0.5 * np.maximum(0.0, (ramp[..., 0] + ramp[..., 1] * place[:, None]).max(1))
+            found += 0.5 * self._leaning(self._ply(x + aside), place)
         return found
 
-    def top(self, places: np.ndarray) -> np.ndarray:
-        """How many gaps high the uppermost ply lies at places (n,) [m] along the pleated panel; 0 beside it."""
-        found = np.zeros(len(places))
-        for k, ramp in enumerate(self.ramps):
-            low, high = sorted(self.places[k : k + 2])
-            lines = (ramp[:, 0] + ramp[:, 1] * places[:, None]).max(1)
-            found = np.where((places >= low) & (places <= high), np.maximum(found, lines), found)
-        return found
+    def _leaning(self, ply: np.ndarray, place: np.ndarray) -> np.ndarray:
+        ramp = self.ramps[ply]
+        return np.maximum(0.0, (ramp[..., 0] + ramp[..., 1] * place[:, None]).max(1))
+
+    def opened(self, rise: float, gap: float) -> Opened:
+        """The same with its outer folds `rise` [m] above its inner ones, plies being `gap` [m] apart besides: creases
+        stand open, and it goes further."""
+        x, high = [self.bounds[0]], [0.0]
+        for k in range(len(self.ramps)):
+            begin, end = self.bounds[k : k + 2]
+            before = k > 0 and bool(self.outer[k - 1])
+            after = k < len(self.outer) and bool(self.outer[k])
+            if (
+                not 0 < k < len(self.outer) or self.group[k - 1] != self.group[k]
+            ):  # beside pleats: level, then a slope
+                down = begin + self._slope(k - 1) if before else begin
+                up = end - self._slope(k) if after else end
+                if down <= up or not (before and after):  # where both slopes have no room it stays up
+                    x += [min(down, end)] if before else []
+                    x += [max(up, begin)] if after else []
+                    high += [0.0] * (before + after)
+            x.append(end)
+            high.append(rise if after else 0.0)
+        knots, rises = np.array(x), np.array(high)
+        closed, ply = self.laid(knots), self._ply(0.5 * (knots[1:] + knots[:-1]))
+        leaning = gap * (self._leaning(ply, closed[1:]) - self._leaning(ply, closed[:-1]))
+        climbs = np.diff(rises) + leaning
+        steps = np.sign(np.diff(closed)) * np.sqrt(np.maximum(np.diff(knots) ** 2 - climbs**2, 0.0))
+        return Opened(self, gap, knots, self.places[0] + np.r_[0.0, np.cumsum(steps)], rises)
+
+    def _ply(self, x: np.ndarray) -> np.ndarray:
+        return np.clip(np.searchsorted(self.bounds, x, side="right") - 1, 0, len(self.ramps) - 1)
+
+    def _slope(self, fold: int) -> float:
+        """Length [m] of the slope beside an outermost fold, which is no ply of its own: as long as its neighbours."""
+        of = np.flatnonzero(self.group == self.group[fold])
+        lengths = np.diff(self.bounds[1:-1])[of[:-1]]
+        return max(float(lengths.max()), 1.5 * float(lengths.min()))
+
+    def as_wide(self, width: float, most: float, gap: float) -> Opened:
+        """Opened until it is `width` [m] wide, but its outer folds no more than `most` [m] high."""
+        low, high = 0.0, most
+        if self.opened(most, gap).width <= self.opened(0.0, gap).width:  # a fold beside a short door
+            return self.opened(0.0, gap)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            if self.opened(middle, gap).width < width:
+                low = middle
+            else:
+                high = middle
+        return self.opened(low, gap)
+
+
+@dataclass(frozen=True)
+class Opened:
+    """Pleats whose creases stand open, plies `gap` [m] apart besides. x (k,) [m] of their folds and of where they begin
+    to rise; places (k,) and rises (k,) [m]: where those lie along the panel, and how high they stand above plies that
+    lie closed."""
+
+    plies: Plies
+    gap: float
+    x: np.ndarray
+    places: np.ndarray
+    rises: np.ndarray
+
+    @property
+    def width(self) -> float:
+        """[m]"""
+        return float(self.places[-1] - self.places[0])
+
+    def laid(self, x: np.ndarray) -> np.ndarray:
+        """Where points at x (n,) [m] lie along the panel [m]."""
+        return np.interp(x, self.x, self.places)
+
+    def finer(self, step: float) -> Opened:
+        """The same with points `step` [m] apart at most."""
+        parts = np.maximum(1, np.ceil(np.diff(self.x) / step).astype(int))
+        shares = np.concatenate([k + np.arange(count) / count for k, count in enumerate(parts)])
+        x, places, rises = (
+            np.interp(np.r_[shares, len(parts)], np.arange(len(parts) + 1), told)
+            for told in (self.x, self.places, self.rises)
+        )
+        return replace(self, x=x, places=places, rises=rises)
+
+    def scaled(self, along: np.ndarray, middle: float) -> Opened:
+        """The same, its stretches between points so many times (k - 1,) as long along the panel; its middle at [m]."""
+        places = np.r_[0.0, np.cumsum(along * np.diff(self.places))]
+        return replace(self, places=places + middle - 0.5 * places[-1])
+
+    def heights(self, x: np.ndarray) -> np.ndarray:
+        """How high [m] points at x (n,) [m] lie above the undermost ply."""
+        return self.gap * self.plies.heights(x) + np.interp(x, self.x, self.rises)
+
+    def over(self, places: np.ndarray, apart: float) -> np.ndarray:
+        """How high [m] cloth lies at places (n,) [m] along the panel that is spread over it, `apart` [m] off, without a
+        sharp bend; 0 where it has come down again beside it."""
+        low, high = self.places.min() - 2.5 * SPREAD, self.places.max() + 2.5 * SPREAD
+        grid = np.linspace(low, high, int((high - low) / FINE) + 1)
+        top, window = np.zeros(len(grid)), 2 * int(SPREAD / FINE) + 1
+        x = np.linspace(
+            self.x[0], self.x[-1], int(np.ptp(self.x) / (0.5 * FINE)) + 1
+        )  # no point of the grid without one
+        at = np.rint((self.laid(x) - low) / (grid[1] - low)).astype(int)
+        np.maximum.at(top, at, apart + self.heights(x))
+        spread = ndimage.uniform_filter1d(ndimage.maximum_filter1d(top, window), window)
+        return np.interp(places, grid, spread, left=0.0, right=0.0)
 
 
 _LEVEL = np.array([[0.0, 0.0], [-np.inf, 0.0]])  # of a ply that lies under all others

@@ -15,9 +15,14 @@ __all__ = ["Folded"]
 
 @dataclass(frozen=True)
 class Folded:
-    """front [m]: of the cloth that hangs in front of the bar; x of the pattern lies along the bar, y goes over it."""
+    """front [m]: of the cloth that hangs in front of the bar; x of the pattern lies along the bar, y goes over it.
+
+    at [m]: where along the bar the cloth's middle lies, from the bar's, to the visitor's right: several lengths hang
+    side by side.
+    """
 
     front: float
+    at: float = 0.0
 
     halves = False  # `start` takes the whole of a mirrored pattern
 
@@ -42,8 +47,14 @@ class Folded:
             )
         if width > stand.span - 0.02:
             raise SimCoreError(f"pattern {pattern.name}: {width:.2f} m wide – wider than the stand")
+        beyond = abs(self.at) + 0.5 * (width - stand.span) + 0.01
+        if beyond > 0:
+            raise SimCoreError(
+                f"pattern {pattern.name}: {width:.2f} m wide at {self.at} m reaches {beyond:.2f} m beyond a post – "
+                "move it towards the middle or widen the stand's span"
+            )
         along = self.front - (points[:, 1] - low[1])  # from the top of the bar, forwards
         angle = np.clip(along / radius, -np.pi / 2, np.pi / 2)
         hanging = np.maximum(np.abs(along) - radius * np.pi / 2, 0.0)
-        x = 0.5 * (low[0] + high[0]) - points[:, 0]  # the face is turned to the visitor
+        x = self.at + 0.5 * (low[0] + high[0]) - points[:, 0]  # the face is turned to the visitor
         return np.stack([x, stand.height + radius * np.cos(angle) - hanging, radius * np.sin(angle)], axis=1)

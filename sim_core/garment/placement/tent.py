@@ -9,12 +9,15 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from sim_core.garment.pattern import Cloth, Pattern, Plies
+from sim_core.garment.pattern import Cloth, Opened, Pattern, Plies
 
 __all__ = ["Folds", "Tent"]
 
 ANGLES = 720  # directions in which a line about the wearer is told
 ROUNDED = 60  # of them, to both sides, over which its corners are rounded
+STANDING = 0.8  # of the angle a crease may open to, that one is laid open
+FINER = 0.004  # [m] between points at which it is told how high pleated cloth lies
+ROUNDS = 4  # of fitting pleats to a ring that is longer where they lie higher
 OVER = 1.5  # gaps that a panel lies over those beneath it
 
 
@@ -57,8 +60,8 @@ class Tent:
         for level, ring in enumerate(self.rings):
             weight = np.where(where == level, 1 - share, np.where(where == level - 1, share, 0.0))
             used = np.flatnonzero(weight)
-            places, heights = folds.round(self.rings[0].girth, ring.girth)
-            flat = ring.at(places[used], gap * heights[used])
+            places, heights = folds.round(self.rings[0].girth, ring.girth, gap)
+            flat = ring.at(places[used], heights[used])
             down = np.full(len(used), -self.depths[level])
             out[used] += weight[used, None] * np.stack([flat[:, 0], down, flat[:, 1]], axis=1)
         return out
@@ -110,49 +113,75 @@ class _Ring:
 
 @dataclass(frozen=True)
 class Folds:
-    """All panels pleated, round the wearer: where every pattern vertex lies (P,) [m] along them, how high (P,) in gaps,
-    and its panel (P,); of each panel its plies, where it begins [m], and its middle; width [m] of everything."""
+    """All panels pleated, round the wearer: x (P,) [m] of pattern vertices and their panel (P,); of each panel its
+    plies, how high [m] its outer folds may stand and where its middle lies [m]; low, width [m]: where everything
+    begins, and how wide it is."""
 
-    place: np.ndarray
-    height: np.ndarray
+    x: np.ndarray
     panel: np.ndarray
     plies: tuple[Plies, ...]
-    begins: np.ndarray
+    highest: tuple[float, ...]
     middles: np.ndarray
+    low: float
     width: float
 
     @staticmethod
     def of(pattern: Pattern, cloth: Cloth) -> Folds:
         panels = pattern.panels * (2 if pattern.mirror else 1)
         x, low = cloth.vertices[:, 0], float(cloth.vertices[:, 0].min())
-        place, height = np.zeros(len(x)), np.zeros(len(x))
-        plies = []
+        plies, highest = [], []
         for number, panel in enumerate(panels):
-            own = np.flatnonzero(cloth.panel_of == number)
-            folded = Plies.of(float(x[own].min()), float(x[own].max()), panel.pleats)
-            place[own], height[own] = folded.laid(x[own]) - low, folded.heights(x[own])
-            plies.append(folded)
+            own = x[cloth.panel_of == number]
+            plies.append(Plies.of(float(own.min()), float(own.max()), panel.pleats))
+            angles = [np.sin(min(STANDING * pleat.crease, 1.0)) * pleat.depth for pleat in panel.pleats]
+            highest.append(float(min(angles, default=0.0)))
         ends = np.array([(folded.places.min(), folded.places.max()) for folded in plies]) - low
         return Folds(
-            place, height, cloth.panel_of, tuple(plies), ends[:, 0], ends.mean(1), float(place.max())
+            x, cloth.panel_of, tuple(plies), tuple(highest), ends.mean(1), low, float(ends[:, 1].max())
         )
 
-    def round(self, tight: float, wide: float) -> tuple[np.ndarray, np.ndarray]:
+    def round(self, tight: float, wide: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
         """Where (P,) [m] vertices lie along a ring that is `wide` [m] round, of cloth laid to go round one of `tight`
-        [m], and how many gaps (P,) above it.
+        [m], and how high (P,) [m] above it, plies being `gap` [m] apart.
 
-        Each panel is as wide as it was about its middle, so that laps are less. Later panels, and what goes round a
-        second time, lie over all beneath.
+        Pleats open as far as they may, so that each panel goes as far round as it did; where they may not, it is as
+        wide as they let it be, about its middle, and laps are less. Later panels, and what goes round a second time,
+        lie over all beneath.
         """
-        moved = self.middles * (wide / tight - 1.0)
-        places, heights = self.place + moved[self.panel], self.height + OVER * self.panel
+        opened: list[Opened] = []
+        places, heights = np.zeros(len(self.x)), np.zeros(len(self.x))
         for number in range(len(self.plies)):
+            each = self._panel(opened, (tight, wide), gap)
             own = np.flatnonzero(self.panel == number)
-            for beneath in range(number):
-                low = self.plies[beneath].places[0] - self.begins[beneath] - moved[beneath]
-                for turn in (-wide, 0.0, wide):
-                    heights[own] += self.plies[beneath].top(places[own] + turn + low)
-            again = own[self.place[own] - self.begins[number] > wide]
-            own_low = self.plies[number].places[0] - self.begins[number] - moved[number]
-            heights[again] += OVER + self.plies[number].top(places[again] - wide + own_low)
+            places[own] = each.laid(self.x[own])
+            heights[own] = each.heights(self.x[own]) + _beneath(places[own], (*opened, each), wide, gap)
+            opened.append(each)
         return places, heights
+
+    def _panel(self, beneath: Sequence[Opened], girths: tuple[float, float], gap: float) -> Opened:
+        """The next panel over those beneath, its places along the ring: what lies high goes further round for the same
+        cloth, as if the ring were a circle."""
+        number, (tight, wide) = len(beneath), girths
+        plies, middle = self.plies[number], self.middles[number] * wide / tight
+        wanted = float(np.ptp(plies.places[[0, -1]])) * wide / tight
+        aim, found = wanted, None
+        for _ in range(ROUNDS):
+            flat = plies.as_wide(aim, self.highest[number], gap).finer(FINER)
+            found = flat.scaled(np.ones(len(flat.x) - 1), middle) if found is None else found
+            high = flat.heights(flat.x) + _beneath(
+                np.interp(flat.x, found.x, found.places), (*beneath, found), wide, gap
+            )
+            found = flat.scaled(1.0 / (1.0 + np.pi / wide * (high[1:] + high[:-1])), middle)
+            aim += wanted - found.width
+        assert found is not None
+        return found
+
+
+def _beneath(places: np.ndarray, panels: Sequence[Opened], wide: float, gap: float) -> np.ndarray:
+    """How high (n,) [m] the last of some panels lies at places (n,) [m] along a ring, for what it lies over: the
+    others, and itself where it goes round again."""
+    found = np.zeros(len(places))
+    for panel in panels:
+        for turn in (-wide,) if panel is panels[-1] else (-wide, 0.0, wide):
+            found += panel.over(places + turn, OVER * gap)
+    return found

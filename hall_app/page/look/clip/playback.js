@@ -3,6 +3,7 @@
 
 import { drawBehind } from "../../picture/behind.js";
 import { meshesOf, requestRender } from "../../viser/viser_adapter.js";
+import { creased } from "./creases.js";
 import { normalsOf } from "./normals.js";
 import { createSkin } from "./skin.js";
 
@@ -20,15 +21,30 @@ const renamed = (mesh, name) => mesh.name.startsWith(`${name}_`) && /^\d+$/.test
 export const frameAt = ({ frames, period, rate }, seconds) =>
   Math.min(frames - 1, Math.floor((((seconds % period) + period) % period) * rate + 1e-6));
 
-/** A mesh of the clip: its vertices and their directions in a frame. */
+/** A mesh of the clip: its vertices and their directions in a frame; along creases of the model each side has its own. */
 function createSurface(mesh, place) {
-  const positions = new Float32Array(3 * mesh.count), normals = new Float32Array(3 * mesh.count);
+  const positions = new Float32Array(3 * mesh.count);
+  let normals = new Float32Array(3 * mesh.count), corners = positions, creases = null;
   return {
     drawn: mesh.drawn.map(({ node, index }) => ({ name: loaded(node), index })),
     positions,
-    normals,
+    normals: () => normals,
     place: (frame) => place(frame, positions),
-    shade: () => normalsOf(positions, mesh.faces, normals),
+    /** parts: what it is drawn by, as the model came; gives which direction each vertex of each of them takes. */
+    creaseAs(parts) {
+      creases = creased(parts, mesh.count);
+      const size = 3 * (mesh.count + (creases?.from.length ?? 0));
+      normals = new Float32Array(size);
+      corners = creases ? new Float32Array(size) : positions;
+      return creases?.ids ?? parts.map(({ index }) => index);
+    },
+    shade() {
+      if (creases) {
+        corners.set(positions);
+        creases.from.forEach((vertex, k) => corners.copyWithin(3 * (mesh.count + k), 3 * vertex, 3 * vertex + 3));
+      }
+      normalsOf(corners, creases?.faces ?? mesh.faces, normals);
+    },
   };
 }
 
@@ -57,18 +73,20 @@ function ball(surface, frames, more) {
   return { centre, radius: Math.hypot(...high.map((value, axis) => value - centre[axis])) + more };
 }
 
-/** Write a surface into the vertices of a drawn mesh. */
-function write({ positions, normals }, index, { geometry }) {
-  const place = geometry.attributes.position, shade = geometry.attributes.normal;
-  const to = place.array, lit = shade?.array;
+/** Write a surface into the vertices of a drawn mesh; index, shades: the vertex, and the direction, each of them takes. */
+function write(surface, { index, shades }, { geometry }) {
+  const positions = surface.positions, normals = surface.normals();
+  const place = geometry.attributes.position, normal = geometry.attributes.normal;
+  const to = place.array, lit = normal?.array;
   for (let p = 0; p < index.length; p++) {
     const from = 3 * index[p], at = 3 * p;
     to[at] = positions[from]; to[at + 1] = positions[from + 1]; to[at + 2] = positions[from + 2];
     if (!lit) continue;
-    lit[at] = normals[from]; lit[at + 1] = normals[from + 1]; lit[at + 2] = normals[from + 2];
+    const shade = 3 * shades[p];
+    lit[at] = normals[shade]; lit[at + 1] = normals[shade + 1]; lit[at + 2] = normals[shade + 2];
   }
   place.needsUpdate = true;
-  if (shade) shade.needsUpdate = true;
+  if (normal) normal.needsUpdate = true;
 }
 
 /**
@@ -100,6 +118,10 @@ export function createPlayback(clip, node) {
     const same = found.length === bound.length && found.every((one, k) => one.geometry === bound[k].geometry);
     if (same) return false;
     bound = found;
+    for (const surface of new Set(bound.map((one) => one.surface))) {
+      const parts = bound.filter((one) => one.surface === surface);
+      surface.creaseAs(parts).forEach((shades, k) => (parts[k].shades = shades));
+    }
     for (const { mesh, surface, geometry, ball: { centre, radius } } of bound) {
       if (surface === figure) drawBehind(mesh.material, BEHIND);
       if (!geometry.boundingSphere) geometry.computeBoundingSphere();
@@ -120,7 +142,7 @@ export function createPlayback(clip, node) {
         surface.place(now);
         surface.shade();
       }
-      for (const { surface, index, mesh } of bound) write(surface, index, mesh);
+      for (const one of bound) write(one.surface, one, one.mesh);
       if (bound.length) requestRender();
       return bound.length > 0;
     },

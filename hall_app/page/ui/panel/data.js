@@ -20,7 +20,7 @@ export function createDataPage(words) {
     const licence = words.pick(detail.licence);
     const parts = [
       ...table(words, words.t("panel.record"), detail.record),
-      ...table(words, words.t("panel.measured"), detail.measured),
+      ...table(words, words.t(detail.scanned ? "panel.scanned" : "panel.measured"), detail.measured),
       ...(licence
         ? [el("h3", { text: words.t("panel.licence") }), el("p", { class: "licence", text: licence })]
         : []),
