@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts"]
+__all__ = ["GlbError", "GlbFile", "GlbParts", "glb_parts", "node_matrix"]
 
 VERTICES, INDICES = 34962, 34963  # what a buffer view holds
 FLOAT, U16, U32 = 5126, 5123, 5125
@@ -241,3 +241,19 @@ class GlbFile:
         size = 12 + 8 + len(text) + 8 + len(self.blob)
         head = struct.pack("<4sII", MAGIC, 2, size) + struct.pack("<I4s", len(text), JSON_PART)
         return head + text + struct.pack("<I4s", len(self.blob), b"BIN\0") + bytes(self.blob)
+
+
+def node_matrix(node: dict[str, Any]) -> np.ndarray:
+    """A node's own transform (4, 4): its matrix, or translation, rotation [x, y, z, w] and scale."""
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=float).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
+    turn = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1.0, 1.0, 1.0)))
+    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
+    return matrix

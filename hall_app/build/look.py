@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Wardrobe"]
 
 HALL_FIGURE = 1600  # triangles of a figure in the hall
-THINNEST = 0.3  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
+THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
 MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to the next
 TREAD = 0.06  # [m] above the ground that feet are looked at
 ROUND = 0.04  # [m] of its base round the feet of who walks

@@ -52,6 +52,7 @@ WORN = {
     "wrapped": (Worn("skirt", "wrapped", seams=True, sewn=True),),
     "gathered": (Worn("scarf", "overbar"),),
     "folded": (Worn("scarf", "folded"),),
+    "spread": (Worn("robe", "flat", seams=True, sewn=True, spread=True),),
     "layered": (ROBE, Worn("pibo", "alongpath", seams=True, half=True)),
 }
 UNDER = {f"robe_{name}": value for name, value in (CLOTH | SEWN | MODELS).items()}
@@ -73,6 +74,7 @@ ASKED = {
     "wrapped": DRESSED + TRIANGLES + THINNED,
     "gathered": HUNG,
     "folded": HUNG,
+    "spread": DRESSED + THINNED,
     "layered": [
         *INSIDE,
         *STRAIN,

@@ -146,9 +146,9 @@ def test_each_fault_has_its_own_line(house: Path, case: str):
 
 
 def test_too_large_a_folder(house: Path):
-    for number in range(5):
-        (house / f"{number}.bin").write_bytes(bytes(8_500_000))
-    assert lines(house) == [".: the folder has 42.5 MB, at most 40 MB – remove or shrink the largest files"]
+    for number in range(7):
+        (house / f"{number}.bin").write_bytes(bytes(9_000_000))
+    assert lines(house) == [".: the folder has 63.0 MB, at most 60 MB – remove or shrink the largest files"]
 
 
 def test_too_many_triangles(house: Path, monkeypatch: pytest.MonkeyPatch):

@@ -14,7 +14,7 @@ MB = 1_000_000
 TRIANGLES = {"hall": 15_000, "close": 300_000}
 BYTES = {"hall": 1.5 * MB, "close": 15 * MB}
 TEXTURE = 2048  # [pixels]
-FILE, FOLDER = 10 * MB, 40 * MB
+FILE, FOLDER = 10 * MB, 60 * MB
 
 
 def budget_problems(content: Content) -> list[Problem]:

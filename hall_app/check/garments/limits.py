@@ -16,7 +16,8 @@ ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
 @dataclass(frozen=True)
 class Worn:
     """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
-    whether one half was dressed against its mirror image, and whether others are worn over it."""
+    whether one half was dressed against its mirror image, whether others are worn over it, and whether it hangs on a
+    T-bar, where robes are placed as they are on a wearer."""
 
     name: str
     way: str
@@ -24,18 +25,20 @@ class Worn:
     sewn: bool = False
     half: bool = False
     beneath: bool = False
+    spread: bool = False
 
     @staticmethod
     def of(garment: Any, *, beneath: bool) -> Worn:
         """What a `sim_core.garment.Garment` tells of itself; raises KeyError or TypeError where it does not."""
         kinds = {seam["kind"] for seam in garment.cut["seams"]}
         whole, way = garment.provenance["whole"], str(garment.provenance["way"])
-        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath)
+        spread = way not in ON_STAND and "stand" in garment.provenance
+        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread)
 
     @property
     def on_stand(self) -> bool:
         """Whether it hangs on a stand, else on a wearer."""
-        return self.way in ON_STAND
+        return self.spread or self.way in ON_STAND
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,7 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = F
     if worn.seams:
         found.append(Limit("seam_gap_m", 1e-4))
     found += [Limit("area_strain_p95", 0.03), Limit("area_strain_max", 0.10)]
-    found += [Limit("rest_p99_m", 1e-4 if worn.on_stand else 1e-5)]
+    found += [Limit("rest_p99_m", 1e-4 if worn.way in ON_STAND else 1e-5)]
     found += [Limit("self_intersections", _crossings(worn)), Limit("layer_order", 0)]
     if moving:
         found += [Limit("moving_deepest_m", 1e-3), Limit("moving_self_intersections", _crossings(worn))]

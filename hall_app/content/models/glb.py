@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hall_app.content.models.pictures import PictureError, picture_size
-from sim_core.gltf import GlbError, GlbParts, glb_parts
+from sim_core.gltf import GlbError, GlbParts, glb_parts, node_matrix
 
 # The page has no decoder for these: it would look for one on the network, and the hall works without.
 REFUSED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu")
@@ -111,7 +111,7 @@ def _bounds(document: dict[str, Any]) -> tuple[Corner, Corner]:
         if index in met:
             raise GlbError(f"node {index} has two parents or is in a loop", "export the model again")
         met.add(index)
-        matrix = above @ _matrix(nodes[index])
+        matrix = above @ node_matrix(nodes[index])
         todo += [(child, matrix) for child in nodes[index].get("children", ())]
         if "mesh" in nodes[index]:
             for primitive in document["meshes"][nodes[index]["mesh"]]["primitives"]:
@@ -124,22 +124,6 @@ def _bounds(document: dict[str, Any]) -> tuple[Corner, Corner]:
         raise GlbError("has no finite size", "export the model again")
     low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
-
-
-def _matrix(node: dict[str, Any]) -> np.ndarray:
-    """A node's own transform (4, 4): its matrix, or translation, rotation [x, y, z, w] and scale."""
-    if "matrix" in node:
-        return np.array(node["matrix"], dtype=float).reshape(4, 4).T
-    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
-    turn = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1.0, 1.0, 1.0)))
-    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
-    return matrix
 
 
 def _textures(parts: GlbParts) -> tuple[tuple[int, int], ...]:

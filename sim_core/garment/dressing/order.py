@@ -118,8 +118,9 @@ def _plies(garment: Garment, field: DistanceField, panel: _Panel) -> list[np.nda
         if len(free) and len(beneath):
             away, near = KDTree(x[beneath]).query(x[free], distance_upper_bound=REACH)
             close = np.isfinite(away)
-            towards = x[free[close]] - x[beneath[near[close]]]
-            height = (towards * up[near[close]]).sum(1)
+            at = np.asarray(near)[close]
+            towards = x[free[close]] - x[beneath[at]]
+            height = (towards * up[at]).sum(1)
             found.append(height[np.abs(height) > FACING * np.linalg.norm(towards, axis=1)])
     return found
 

@@ -113,17 +113,16 @@ class _Reader:
 
     def _check_beside(self, layers: Sequence[Layer]) -> None:
         """Layers on one stand do not touch each other: folded lengths beside each other alone."""
+        if len(layers) < 2:
+            return
         held: list[tuple[float, float, str]] = []
         for number, layer in enumerate(layers, 1):
             if not isinstance(layer.place, Folded):
-                if len(layers) > 1:
-                    raise self._wrong(
-                        f"layer.{max(number, 2)}",
-                        "a stand bears one layer, or several lengths folded beside each other – give a wearer",
-                    )
-                return
-            across = np.concatenate([panel.outline()[:, 0] for panel in layer.pattern.panels])
-            half = 0.5 * float(np.ptp(across)) + 0.5 * BESIDE
+                raise self._wrong(
+                    f"layer.{max(number, 2)}",
+                    "a stand bears one layer, or several lengths folded beside each other – give a wearer",
+                )
+            half = 0.5 * float(np.ptp(layer.cloth.vertices[:, 0])) + 0.5 * BESIDE
             low, high = layer.place.at - half, layer.place.at + half
             for begin, end, name in held:
                 if low < end and begin < high:

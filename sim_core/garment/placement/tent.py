@@ -114,15 +114,14 @@ class _Ring:
 @dataclass(frozen=True)
 class Folds:
     """All panels pleated, round the wearer: x (P,) [m] of pattern vertices and their panel (P,); of each panel its
-    plies, how high [m] its outer folds may stand and where its middle lies [m]; low, width [m]: where everything
-    begins, and how wide it is."""
+    plies, how high [m] its outer folds may stand and where its middle lies [m] from where everything begins; width [m]
+    of everything."""
 
     x: np.ndarray
     panel: np.ndarray
     plies: tuple[Plies, ...]
     highest: tuple[float, ...]
     middles: np.ndarray
-    low: float
     width: float
 
     @staticmethod
@@ -136,9 +135,7 @@ class Folds:
             angles = [np.sin(min(STANDING * pleat.crease, 1.0)) * pleat.depth for pleat in panel.pleats]
             highest.append(float(min(angles, default=0.0)))
         ends = np.array([(folded.places.min(), folded.places.max()) for folded in plies]) - low
-        return Folds(
-            x, cloth.panel_of, tuple(plies), tuple(highest), ends.mean(1), low, float(ends[:, 1].max())
-        )
+        return Folds(x, cloth.panel_of, tuple(plies), tuple(highest), ends.mean(1), float(ends[:, 1].max()))
 
     def round(self, tight: float, wide: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
         """Where (P,) [m] vertices lie along a ring that is `wide` [m] round, of cloth laid to go round one of `tight`

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.gltf import GlbError, GlbParts, glb_parts
+from sim_core.gltf import GlbError, GlbParts, glb_parts, node_matrix
 from sim_core.mesh.scan.files.pictures import decoded, plain
 from sim_core.mesh.scan.scan import MOST_TRIANGLES, Scan, ScanError
 
@@ -102,7 +102,7 @@ def _pieces(parts: GlbParts) -> Iterator[_Piece]:
             raise ScanError(f"its node {number} has two parents or is in a loop", "export it again")
         met.add(number)
         node = nodes[number]
-        matrix = above @ _matrix(node)
+        matrix = above @ node_matrix(node)
         todo += [(child, matrix) for child in node.get("children", ())]
         if "mesh" in node:
             for primitive in document["meshes"][node["mesh"]]["primitives"]:
@@ -136,22 +136,6 @@ def _piece(parts: GlbParts, primitive: dict[str, Any], matrix: np.ndarray) -> _P
     with np.errstate(all="ignore"):  # what is not finite is counted later
         placed = points @ matrix[:3, :3].T + matrix[:3, 3]
     return _Piece(placed, faces, uv, material, colours)
-
-
-def _matrix(node: dict[str, Any]) -> np.ndarray:
-    """A node's own transform (4, 4)."""
-    if "matrix" in node:
-        return np.array(node["matrix"], float).reshape(4, 4).T
-    x, y, z, w = node.get("rotation", (0.0, 0.0, 0.0, 1.0))
-    turn = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.array(turn) * np.array(node.get("scale", (1.0, 1.0, 1.0)))
-    matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
-    return matrix
 
 
 def _texture(document: dict[str, Any], material: int) -> tuple[str, np.ndarray]:
