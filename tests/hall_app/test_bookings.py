@@ -153,6 +153,15 @@ def test_a_party_has_a_size(people, size):
     assert people.occasions.of(occasion).taken == 0
 
 
+def test_a_key_is_of_one_occasion_alone(people):
+    """A program that sends its own key everywhere books each of them, and no one else's booking answers it."""
+    first, second = planned(people), planned(people)
+    one, other = visitors(people, 2)
+    made = [people.bookings.book(one, occasion, 1, "key") for occasion in (first, second)]
+    assert [booking.occasion for booking in made] == [first, second]
+    assert people.bookings.book(other, first, 1, "key").person == other
+
+
 def test_what_is_over_or_off_is_not_booked(people):
     (person,) = visitors(people, 1)
     past = planned(people, begins=SOON - timedelta(days=9), ends=SOON)

@@ -138,7 +138,7 @@ booking = Table(
     Column("party", String(80), nullable=False),  # name of a class or group; "" for none
     Column("waiting", Integer, nullable=False),  # 1: on the waiting list, 0: has its places
     Column("turn", Integer, nullable=False),
-    Column("key", String(64), nullable=False, unique=True),  # of the form: sent twice it books once
+    Column("key", String(64), nullable=False),  # of the form: sent twice it is the same booking
     Column("made", DateTime(timezone=True), nullable=False),
     Column("arrived", DateTime(timezone=True)),
     UniqueConstraint("occasion", "user", name="booking_once"),

@@ -37,7 +37,7 @@ def upgrade() -> None:
         sa.Column("party", sa.String(80), nullable=False),
         sa.Column("waiting", sa.Integer, nullable=False),
         sa.Column("turn", sa.Integer, nullable=False),
-        sa.Column("key", sa.String(64), nullable=False, unique=True),
+        sa.Column("key", sa.String(64), nullable=False),
         sa.Column("made", sa.DateTime(timezone=True), nullable=False),
         sa.Column("arrived", sa.DateTime(timezone=True)),
         sa.UniqueConstraint("occasion", "user", name="booking_once"),
