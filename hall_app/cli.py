@@ -19,6 +19,7 @@ _COMMANDS = {
     "check": "hall_app.check.command",
     "collection": "hall_app.web.collection.table.command",
     "admin": "hall_app.house.people.command",
+    "backup": "hall_app.house.safekeeping.command",  # and restore
 }
 _BENCHES = ("walking", "page", "look", "crowd")
 
@@ -30,6 +31,7 @@ examples:
   hall collection export all.csv      the catalogue as a table; import takes its changes back
   hall build                          dress the outfits that changed, or what they name
   hall admin create anna@example.org  make the first administrator of the house, who signs in at /office
+  hall backup today.zip               content, accounts and answers in one file; hall restore makes a house of it
 
 The content folder is --content, else ./assets, else the copy that came with the program.
 Exit status: 0 done, 1 the work failed or content is invalid, 2 wrong arguments."""

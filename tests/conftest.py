@@ -69,6 +69,7 @@ POSTGRES_BY_DAY = {
     "test_survey_privacy.py",
     "test_people.py",
     "test_bookings.py",
+    "test_safekeeping.py",
 }
 
 

@@ -13,7 +13,8 @@ def read_whole(page: Any, address: str, width: int, small: str) -> None:
     page.goto(address)
     page.evaluate(SHOWN)
     page.wait_for_load_state("networkidle")
-    assert violations(page) == []
+    found = violations(page)
+    assert not found, found
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.evaluate(small) == []
     page.keyboard.press("Tab")

@@ -37,7 +37,7 @@ from hall_app.web.pages.door import content_security_policy, door_page
 from hall_app.web.pages.static import page_files
 from hall_app.web.pages.still import still_jpeg
 from hall_app.web.pages.thumbnails import Thumbnails
-from hall_app.web.platform import NoteLook, add_platform
+from hall_app.web.platform import NoteLook, add_platform, programme_entries
 from hall_app.web.reading import Pictures, add_reading
 from hall_app.web.sockets.origin import key_of, with_key
 from hall_app.web.sockets.relay import Views, add_relay
@@ -89,7 +89,10 @@ def create_app(
     _add_media(app, house)
     add_collection(app, house)
     add_reading(
-        app, house, lambda: Pictures(_small_pictures(house), lambda url: _size(house, url), house.bakes())
+        app,
+        house,
+        lambda: Pictures(_small_pictures(house), lambda url: _size(house, url), house.bakes()),
+        lambda: () if people is None else programme_entries(people),
     )
     views = Views(house.places)
     add_relay(app, house.scene.port, views, addresses, house.scene.pieces)

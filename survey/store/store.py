@@ -16,7 +16,17 @@ from survey.questionnaire import Answer, Questionnaire
 from survey.store.answers import Stored, given_answer, standing, stored_rows
 from survey.store.audit import Audit, note
 from survey.store.commit import Entry, Receipt, Writer, commit_batch, freeze_version
-from survey.store.database import Place, explained, in_utc, now, tables, write_copy
+from survey.store.database import (
+    ANSWERS,
+    Place,
+    explained,
+    in_utc,
+    now,
+    see_that_it_takes,
+    tables,
+    take_copy,
+    write_copy,
+)
 from survey.store.erasure import (
     Erased,
     Eraser,
@@ -216,6 +226,18 @@ class Store:
         """Write a consistent copy of everything into a new SQLite file, while answers come in. Answers in it."""
         count = write_copy(self._engine, path)
         self.audit.note("backup", path.name, count)
+        return count
+
+    def see_that_it_takes(self, path: Path) -> None:
+        """Upgrade a copy that copy_to wrote, where it lies, and see that this store is empty. Raises StoreError."""
+        with self._read() as connection:
+            see_that_it_takes(connection, path, ANSWERS)
+
+    def take_copy(self, path: Path) -> int:
+        """Take in such a copy, whole or not at all. Answers in it. Raises StoreError."""
+        with self._write() as connection:
+            count = take_copy(connection, path, ANSWERS)
+            note(connection, "restore", path.name, count)
         return count
 
     def count(self, questionnaire: str, version: int) -> int:

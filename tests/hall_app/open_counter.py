@@ -26,11 +26,12 @@ OPENING = 120  # [s]
 
 @dataclass(frozen=True)
 class OpenCounter:
-    """Its address and data folder; suggestions: what the questionnaires' visitors wrote."""
+    """Its address, data folder and application; suggestions: what the questionnaires' visitors wrote."""
 
     url: str
     data: Path
     people: People
+    app: FastAPI
     suggestions: list[dict[str, Any]] = field(default_factory=list)
 
 
@@ -38,7 +39,7 @@ class OpenCounter:
 def open_counter(work: Path) -> Iterator[OpenCounter]:
     port, app, data = free_port(), FastAPI(), work / "data"
     people, store = People(data), Store(data)
-    counter = OpenCounter(f"http://127.0.0.1:{port}", data, people)
+    counter = OpenCounter(f"http://127.0.0.1:{port}", data, people, app)
     house: Any = SimpleNamespace(
         content=load(make_house(work / "content")),
         bakes=dict,

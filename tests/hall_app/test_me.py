@@ -18,7 +18,8 @@ from plain_hall import write_plain_hall
 from running_hall import RunningHall, running_hall
 from sqlalchemy import create_engine, text
 
-from hall_app.web.platform.counter import RATES
+from hall_app.house.people.records import CODE_DAYS, OFFICE_HOURS, VISITOR_DAYS
+from hall_app.web.platform.counter import OFFICE, RATES, VISITOR
 
 PASSWORD = "a robe of blue ramie"
 NUMBERS = itertools.count()
@@ -194,7 +195,7 @@ def test_favourites_and_visits_are_kept_when_asked(plain_hall):
     assert f"/?exhibit={exhibit}&amp;lang=en" in visitor.get("/me?lang=en").text
     dropped = visitor.send("/me?lang=en", "/me/drop", found={"exhibit": exhibit})
     assert f"/?exhibit={exhibit}" not in dropped.text
-    assert visitor.get("/me/keep?exhibit=no-such-thing&lang=en").status == 400
+    assert visitor.get("/me/keep?exhibit=no-such-thing&lang=en").status == 404
 
     visitor.get(f"/api/exhibits/{exhibit}")
     assert f"/?exhibit={exhibit}" not in visitor.get("/me?lang=en").text, "nothing is kept unasked"
@@ -339,3 +340,16 @@ def test_a_store_that_is_lost_is_said_and_the_hall_stays_open(tmp_path):
         assert "try again in a minute" in lost.text
         for path in ("/", "/catalogue", "/api/scene"):
             assert visitor.get(path).status == 200
+
+
+@pytest.mark.parametrize("lang", ["zh", "en"])
+def test_what_is_kept_is_told_before_one_makes_an_account(counter, lang):
+    stranger = Visitor(counter.url)
+    assert f'href="/me/privacy?lang={lang}"' in stranger.get(f"/me/register?lang={lang}").text
+    told = stranger.get(f"/me/privacy?lang={lang}")
+    assert told.status == 200
+    for figure in (VISITOR_DAYS, OFFICE_HOURS, CODE_DAYS):
+        assert f" {figure} " in told.text
+    assert stranger.cookies.keys() <= {"hall-form", "hall-place"}
+    for name in (OFFICE.name, VISITOR.name, "hall-form", "hall-place"):
+        assert name in told.text, "every cookie is named"

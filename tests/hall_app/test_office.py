@@ -125,6 +125,34 @@ def test_what_a_role_may_not_is_refused_and_written_down(counter, people, role):
         assert f'href="/office/{part}' not in one.get("/office").text, "nobody is shown what he may not"
 
 
+def test_the_table_holds_every_address_of_the_office(counter):
+    """A new one that nobody forbade to anybody would be missed by the test above."""
+    at_the_door = {("GET", ""), ("POST", "sign-in"), ("POST", "sign-out"), ("GET", "me")}
+    told = {
+        (method, path)
+        for method, table in (("GET", READ), ("POST", DONE))
+        for paths in table.values()
+        for path in paths
+    }
+    found = set()
+    for route in counter.app.routes:
+        path = getattr(route, "path", "")
+        if path.startswith(("/office", "/api/office")):
+            below = path.partition("office")[2].removeprefix("/")
+            found |= {(method, below.replace("{booking}", "1")) for method in route.methods}
+    found = {(method, path.replace("tokens/{key}", "tokens/1")) for method, path in found} - at_the_door
+    assert found == told
+
+
+def test_what_is_not_there_is_not_found(counter, people):
+    one = clerk(counter, people, Role.ADMINISTRATOR)
+    for path in ("events/nothing", "people/nothing"):
+        assert one.api(path).status == 404
+        told = one.get(f"/office/{path}?lang=en")
+        assert told.status == 404
+        assert "There is no such" in told.text
+
+
 def test_strangers_see_none_of_it(counter):
     stranger = Visitor(counter.url)
     seal = stranger.get("/office").form("form-sign-in")["seal"]

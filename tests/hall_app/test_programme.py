@@ -12,7 +12,10 @@ from form_visitor import Visitor
 from icalendar import Calendar
 from test_me import PASSWORD, member
 
+from hall_app.content.search import Query, SearchIndex
+from hall_app.house.people import People
 from hall_app.house.people.records import Plan
+from hall_app.web.platform import programme_entries
 
 SOON = datetime.now(UTC).replace(microsecond=0) + timedelta(days=3)
 
@@ -45,7 +48,15 @@ def test_the_programme_is_open_to_all(counter, planned):
     assert "东厢" in stranger.get(f"/activities/{activity}?lang=en").text, (
         "what is not translated is told as it is"
     )
-    assert stranger.get("/activities/nothing-like-it").status == 400
+
+
+@pytest.mark.parametrize("path", ["/activities/nothing", "/visit/nothing", "/activities/nothing.ics"])
+@pytest.mark.parametrize(("lang", "title"), [("zh", "没有这一页"), ("en", "There is no such page")])
+def test_what_is_not_planned_is_not_found(counter, path, lang, title):
+    told = Visitor(counter.url).get(f"{path}?lang={lang}")
+    assert told.status == 404
+    assert f"<h1>{title}</h1>" in told.text
+    assert f'href="/{path.split("/")[1]}?lang={lang}"' in told.text, "and the way to what there is"
 
 
 def test_places_are_booked_waited_for_and_given_back(counter, planned):
@@ -112,3 +123,35 @@ def test_a_calendar_takes_it_over(counter, planned):
         assert event["dtstart"].dt == SOON
         assert event["summary"] == "Tapestry <weaving>"
         assert str(event["url"]).startswith(f"{counter.url}/activities/{activity}")
+
+
+@pytest.mark.parametrize("asked", ["缂丝", "工作坊", "tapestry", "WEAVING", "剪刀", "scissors", "东厢"])
+@pytest.mark.parametrize("lang", ["zh", "en"])
+def test_an_activity_is_found_in_either_language(counter, planned, asked, lang):
+    activity, visit, off = planned(), planned(kind="visit"), planned()
+    counter.people.occasions.call_off("console", off)
+    found = SearchIndex(programme_entries(counter.people)).find(Query.of(asked), lang)
+    addresses = [one.shown.address for one in found]
+    assert f"/activities/{activity}?lang={lang}" in addresses
+    assert not any(visit in address or off in address for address in addresses)
+
+
+def test_the_search_goes_on_without_accounts(tmp_path):
+    people = People(tmp_path)
+    (tmp_path / "people.sqlite").unlink()
+    people.close()
+    assert programme_entries(people) == ()
+
+
+def test_what_was_just_planned_is_found_in_the_open_hall(plain_hall):
+    people = People(plain_hall.data)
+    whole = {"title_zh": "拓印课", "title_en": "Rubbings", "places": 2, "party": 2}
+    plan = Plan("activity", begins=SOON, ends=SOON + timedelta(hours=1), **whole)
+    (key,) = people.occasions.plan("console", plan)
+    stranger = Visitor(plain_hall.url)
+    (found,) = json.loads(stranger.get("/api/search?q=rubbing&lang=en").body)["found"]
+    assert (found["kind"], found["address"]) == ("activity", f"/activities/{key}?lang=en")
+    assert "<mark>拓印</mark>课" in stranger.get("/search?q=拓印&lang=zh").text
+    people.occasions.call_off("console", key)
+    assert json.loads(stranger.get("/api/search?q=rubbing&lang=en").body)["found"] == []
+    people.close()

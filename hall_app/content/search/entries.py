@@ -9,7 +9,7 @@ from hall_app.content.folder import Content, Exhibit
 from hall_app.content.views.markdown import words_in
 from hall_app.content.views.writing import page_of
 
-KINDS = ("exhibit", "article", "word", "weave")  # in the order in which equals are listed
+KINDS = ("exhibit", "article", "activity", "word", "weave")  # in the order in which equals are listed
 LANGUAGES = ("zh", "en")
 
 

@@ -142,12 +142,20 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
 }
 
 
+_MISSING = frozenset({"no-account", "no-exhibit", "no-occasion"})
+
+
 class PeopleError(ValueError):
     """A refusal of the table. Its text is English; `text("zh")` is the other."""
 
     def __init__(self, key: str, **figures: object) -> None:
         self.key, self.figures = key, figures
         super().__init__(self.text("en"))
+
+    @property
+    def missing(self) -> bool:
+        """Whether what was asked for is not there: of a page, 404."""
+        return self.key in _MISSING
 
     def text(self, language: str) -> str:
         zh, en = REFUSALS[self.key]

@@ -37,6 +37,9 @@ class People:
         self.followups = FollowUps(self._ledger)
         self.journal = Journal(self._ledger)
         self.refuse = self._ledger.refuse
+        self.copy_to = self._ledger.copy_to
+        self.see_that_it_takes = self._ledger.see_that_it_takes
+        self.take_copy = self._ledger.take_copy
 
     def note(self, who: str, act: str, subject: str) -> None:
         """Write down what is about to be done elsewhere, in the survey's own store."""

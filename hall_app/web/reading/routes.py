@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Annotated, Any
 
 from fastapi import FastAPI, HTTPException, Query, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse, HTMLResponse, Response
 
 from hall_app.content.folder import Content
-from hall_app.content.search import LONGEST, SearchIndex, entries_of
+from hall_app.content.search import LONGEST, Entry, SearchIndex, entries_of
 from hall_app.content.search import Query as Asked
 from hall_app.house.house import House
 from hall_app.web.answers.packed import REVALIDATED, Packed
@@ -28,6 +29,7 @@ __all__ = ["add_reading"]
 HTML = "text/html; charset=utf-8"
 LOOK_EVERY = 1.0  # [s] between two looks at what the survey publishes
 Make = Callable[[Content, str, Pictures], str]
+More = Callable[[], tuple[Entry, ...]]
 
 _LOST = {
     "zh": ("没有这一页", "这篇文章不在这里，也许改了名字，或已撤下。", "看看全部文章"),
@@ -39,8 +41,11 @@ _LOST = {
 }
 
 
-def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures]) -> None:
-    """Add /culture and what is below it, /search and /api/search. pictures_of: as pages show them now."""
+def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures], more: More = tuple) -> None:
+    """Add /culture and what is below it, /search and /api/search. pictures_of: as pages show them now.
+
+    more: what is to be found beside the content, as it is now; asked in a thread, at each search.
+    """
     pages = Answers()  # of their own: there are many, and they are asked for one by one
 
     async def told(request: Request, key: str, lang: str | None, make: Make) -> Response:
@@ -80,7 +85,7 @@ def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures])
         )
 
     _add_research(app, house, pictures_of)
-    _add_search(app, house)
+    _add_search(app, house, more)
 
 
 def _lost(content: Content, lang: str) -> str:
@@ -129,23 +134,28 @@ def _published(house: House) -> str:
         return "[]"
 
 
-def _add_search(app: FastAPI, house: House) -> None:
+def _add_search(app: FastAPI, house: House, more: More) -> None:
     indexes = Answers()
 
-    async def index() -> SearchIndex:
-        """The index of what is shown now; made anew when that changes."""
-        content, shown = house.content, house.shown()
-        return await indexes.of(house.state, "index", lambda: SearchIndex(entries_of(content, shown)))
+    async def index() -> tuple[SearchIndex, Hashable]:
+        """The index of what is shown now, and the state it is of; made anew when that changes."""
+        beside = await run_in_threadpool(more)
+        content, shown, state = house.content, house.shown(), (*house.state, beside)
+
+        def made() -> SearchIndex:
+            return SearchIndex((*entries_of(content, shown), *beside))
+
+        return await indexes.of(state, "index", made), state
 
     @app.get("/search", response_class=HTMLResponse, include_in_schema=False)
     async def page(q: str = "", lang: str | None = None) -> Response:
         content, spoken = house.content, shown_language(house.content, lang)
-        asked, known = _plain(q), await index()
+        asked, (known, state) = _plain(q), await index()
 
         def made() -> str:
             return search_page(content, asked, spoken, known.find(Asked.of(asked), spoken))
 
-        return HTMLResponse(await SLOW.of(("search", house.state, spoken, asked), made))
+        return HTMLResponse(await SLOW.of(("search", state, spoken, asked), made))
 
     @app.get("/api/search")
     async def search(
@@ -154,15 +164,13 @@ def _add_search(app: FastAPI, house: House) -> None:
         ] = "",
         lang: Annotated[str | None, Query(description='"zh" or "en"; else the hall\'s own language')] = None,
     ) -> dict[str, Any]:
-        """Exhibits, articles, words and weaves that hold what is asked for, the best first.
+        """Exhibits, articles, activities, words and weaves that hold what is asked for, the best first.
 
         `title` and `excerpt` are pieces [words, whether they were looked for]; `lang` is the excerpt's language.
         """
         spoken = shown_language(house.content, lang)
-        asked, known = _plain(q), await index()
-        found = await SLOW.of(
-            ("find", house.state, spoken, asked), lambda: known.find(Asked.of(asked), spoken)
-        )
+        asked, (known, state) = _plain(q), await index()
+        found = await SLOW.of(("find", state, spoken, asked), lambda: known.find(Asked.of(asked), spoken))
         return found_json(asked, spoken, found)
 
 

@@ -12,13 +12,19 @@ from hall_app.web.pages.frame import Frame, other_language
 __all__ = ["found_json", "search_page"]
 
 KIND = {
-    "zh": {"exhibit": "展品", "article": "文章", "word": "词语", "weave": "织物"},
-    "en": {"exhibit": "Exhibit", "article": "Article", "word": "Word", "weave": "Weave"},
+    "zh": {"exhibit": "展品", "article": "文章", "activity": "活动", "word": "词语", "weave": "织物"},
+    "en": {
+        "exhibit": "Exhibit",
+        "article": "Article",
+        "activity": "Activity",
+        "word": "Word",
+        "weave": "Weave",
+    },
 }
 _WORDS = {
     "zh": {
         "title": "搜索",
-        "lead": "在展品、文章、词语与织物里寻找，中文、英文、拼音都可以。",
+        "lead": "在展品、文章、活动、词语与织物里寻找，中文、英文、拼音都可以。",
         "count": "找到 {n} 条",
         "none": "没有找到“{q}”。换一个词试试：中文可用两个字，如“褙子”；英文可用词的开头，如“gauz”。也可以浏览",
         "catalogue": "展品目录",
@@ -29,7 +35,7 @@ _WORDS = {
     },
     "en": {
         "title": "Search",
-        "lead": "Looks through exhibits, articles, words and weaves, in Chinese, in English and by pinyin.",
+        "lead": "Looks through exhibits, articles, activities, words and weaves, in Chinese, in English and by pinyin.",
         "count": "{n} found",
         "none": "Nothing was found for “{q}”. Try another word: in Chinese two characters such as 褙子, in English the "
         "beginning of a word such as “gauz”. Or look through",

@@ -5,7 +5,7 @@ is handed out as a whole: `tables.answer`, …
 """
 
 from survey.store.database import tables
-from survey.store.database.backup import write_copy
+from survey.store.database.backup import ANSWERS, Schema, see_that_it_takes, take_copy, write_copy
 from survey.store.database.permissions import make_private, take_rights
 from survey.store.database.place import Place, explained
 from survey.store.database.schema import HEAD
@@ -13,15 +13,19 @@ from survey.store.database.sessions import Session, in_utc, now
 from survey.store.database.tables import open_engine
 
 __all__ = [
+    "ANSWERS",
     "HEAD",
     "Place",
+    "Schema",
     "Session",
     "explained",
     "in_utc",
     "make_private",
     "now",
     "open_engine",
+    "see_that_it_takes",
     "tables",
+    "take_copy",
     "take_rights",
     "write_copy",
 ]

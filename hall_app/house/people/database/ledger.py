@@ -11,13 +11,22 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, event
+from sqlalchemy import Connection, Engine, delete, event
 from sqlalchemy.exc import SQLAlchemyError
 
 from hall_app.house.people.acts import ACTS, OWN_ACTS
 from hall_app.house.people.database import tables
 from hall_app.house.people.database.schema import NAMESPACE, bring_up_to_date
-from survey.store.database import explained, make_private, now, open_engine
+from survey.store.database import (
+    Schema,
+    explained,
+    make_private,
+    now,
+    open_engine,
+    see_that_it_takes,
+    take_copy,
+    write_copy,
+)
 from survey.store.database import tables as survey_tables
 
 __all__ = ["CONSOLE", "NOBODY", "PEOPLE_FILE", "Ledger"]
@@ -25,6 +34,7 @@ __all__ = ["CONSOLE", "NOBODY", "PEOPLE_FILE", "Ledger"]
 PEOPLE_FILE = "people.sqlite"  # in the data folder
 CONSOLE = "console"  # `who` of what is done by `hall admin`: by whoever may read the data folder
 NOBODY = ""  # `who` of what a stranger tries
+_PEOPLE = Schema(tables.metadata, bring_up_to_date, tables.user)
 
 
 class Ledger:
@@ -73,6 +83,28 @@ class Ledger:
         """Write down that somebody tried what he may not."""
         with self.change(who, act, subject, refused=True):
             pass
+
+    def copy_to(self, path: Path) -> int:
+        """Write a consistent copy of everything into a new SQLite file, while people come and go. Accounts in it."""
+        with self.change(CONSOLE, "backup", path.name):
+            pass
+        return write_copy(self._engine, path, _PEOPLE)
+
+    def see_that_it_takes(self, path: Path) -> None:
+        """Upgrade a copy that copy_to wrote, where it lies, and see that nobody is here yet. Raises StoreError."""
+        with self.read() as connection:
+            see_that_it_takes(connection, path, _PEOPLE)
+
+    def take_copy(self, path: Path) -> int:
+        """Take in such a copy, whole or not at all. Accounts in it. Raises StoreError.
+
+        Sessions and codes end: what was revoked after the copy was made must not be good again.
+        """
+        with self.change(CONSOLE, "backup", f"{path.name} restored") as connection:
+            count = take_copy(connection, path, _PEOPLE)
+            connection.execute(delete(tables.session))
+            connection.execute(delete(tables.code).where(tables.code.c.purpose == "open"))
+        return count
 
     def scrub(self) -> None:
         """Take what was deleted out of SQLite's log as well; where somebody reads just now, its next turn does it."""

@@ -41,6 +41,7 @@ _HEADERS = {
 }
 _STATUS = {"too-often": 429, "form": 403, "not-allowed": 403, "form-size": 413}
 _REFUSED = ("请再试一次", "Please try again")
+_NOWHERE = ("没有这一页", "There is no such page")
 _LOST = (
     ("现在读不到数据", "账户数据暂时读不到，请稍后再试。"),
     ("Not available now", "Accounts cannot be reached at the moment: try again in a minute."),
@@ -103,7 +104,8 @@ class Counter:
                     check_form(given.get(SEAL, ""), asking.seal)
                 answer = act(asking)
             except PeopleError as error:
-                answer = self._refused(replace(asking, refusal=error.text(asking.lang)), error, again)
+                status = 404 if given is None and error.missing else _STATUS.get(error.key, 400)
+                answer = self._refused(replace(asking, refusal=error.text(asking.lang)), status, again)
         except StoreError as error:
             _log.warning("%s", error)
             asking = Asking(request.url.path, self._language(request, "", None), "", "", "")
@@ -134,15 +136,14 @@ class Counter:
         asked = form or request.query_params.get("lang") or (guest.person.language if guest else None)
         return shown_language(self.house.content, asked)
 
-    def _refused(self, asking: Asking, error: PeopleError, again: View) -> Answer:
-        """The page again, with the reason beside its form; by itself where that page is no longer for who asks."""
-        status = _STATUS.get(error.key, 400)
+    def _refused(self, asking: Asking, status: int, again: View) -> Answer:
+        """The page again, with the reason beside its form; by itself where that page is not for who asks."""
         try:
             answer = again(asking)
         except PeopleError:
             answer = None
         if not isinstance(answer, Shown) or escape(asking.refusal) not in answer.page.main:
-            title = asking.word(*_REFUSED)
+            title = asking.word(*(_NOWHERE if status == 404 else _REFUSED))
             back = asking.word("返回", "Back")
             main = f"""<h1>{title}</h1><p class="refused" role="alert">{escape(asking.refusal)}</p>
 <p class="doors"><a href="{escape(asking.address(_home(asking.path)))}">{back}</a></p>"""

@@ -154,4 +154,5 @@ def _data(asking: Asking) -> str:
     )
     copy = button(asking, "copy", "/me/copy", word("导出全部资料（ZIP）", "Take a copy (ZIP)"), hidden={})
     away = f'<a href="{asking.address("/me/delete")}">{word("删除账户", "Delete the account")}</a>'
-    return f'<p class="quiet">{told}</p>{copy}<p class="doors">{away}</p>'
+    kept = f'<a href="{asking.address("/me/privacy")}">{word("账户与隐私", "Accounts and privacy")}</a>'
+    return f'<p class="quiet">{told}</p>{copy}<p class="doors">{kept}{away}</p>'

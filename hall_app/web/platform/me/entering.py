@@ -102,7 +102,8 @@ class Entrance:
             ),
             sent,
             f'<p class="doors"><a href="{escape(asking.address("/me", next=asking.afterwards))}">'
-            f"{word('已有账户，去登录', 'I have an account: sign in')}</a></p>",
+            f"{word('已有账户，去登录', 'I have an account: sign in')}</a>"
+            f'<a href="{asking.address("/me/privacy")}">{word("保存哪些资料", "What is kept of you")}</a></p>',
         )
 
     def register(self, asking: Asking) -> Moved:

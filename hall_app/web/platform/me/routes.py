@@ -6,6 +6,7 @@ from hall_app.web.platform.counter import Act, Asking, Counter, Moved, Shown, Vi
 from hall_app.web.platform.me.centre import Centre
 from hall_app.web.platform.me.entering import Entrance
 from hall_app.web.platform.me.keepsakes import Shelf
+from hall_app.web.platform.me.privacy import privacy_page
 from hall_app.web.platform.me.safety import Safety
 
 __all__ = ["add_me"]
@@ -21,6 +22,7 @@ def add_me(counter: Counter) -> None:
 
     counter.page("/me", me)
     counter.act("/me/sign-in", entrance.sign_in, entrance.sign_in_page)
+    counter.page("/me/privacy", privacy_page)
     counter.page("/me/register", entrance.register_page)
     counter.act("/me/register", entrance.register, entrance.register_page)
     counter.page("/me/open", entrance.open_page)

@@ -101,7 +101,7 @@ class Access:
                 asking = self._counter.asking(request, _fields(request, body))
             return JSONResponse(of(asking), headers=_HEADERS)
         except PeopleError as error:
-            return _told(error, lang)
+            return _told(error, lang, 404 if request.method == "GET" and error.missing else None)
         except StoreError as error:
             return JSONResponse({"error": "store", "text": str(error)}, 503, headers=_HEADERS)
 
@@ -127,6 +127,6 @@ def _fields(request: Request, body: bytes) -> dict[str, str]:
     return fields
 
 
-def _told(error: PeopleError, lang: str) -> JSONResponse:
+def _told(error: PeopleError, lang: str, status: int | None = None) -> JSONResponse:
     told = {"error": error.key, "text": error.text(lang)}
-    return JSONResponse(told, _STATUS.get(error.key, 400), headers=_HEADERS)
+    return JSONResponse(told, status or _STATUS.get(error.key, 400), headers=_HEADERS)

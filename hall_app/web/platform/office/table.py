@@ -41,7 +41,10 @@ def office_page(
 
 
 def rows(caption: str, heads: Iterable[str], lines: Iterable[Iterable[str]]) -> str:
-    """A table; cells are HTML, the first of a line names it. caption: for who hears the page."""
+    """A table; cells are HTML, the first of a line names it. caption: for who hears the page.
+
+    It is no landmark: the sheet of a day holds several, which may be called alike.
+    """
     head = "".join(f'<th scope="col">{name}</th>' for name in heads)
     body = "".join(
         "<tr>"
@@ -51,5 +54,5 @@ def rows(caption: str, heads: Iterable[str], lines: Iterable[Iterable[str]]) -> 
         + "</tr>"
         for line in lines
     )
-    return f"""<div class="wide" tabindex="0" role="region" aria-label="{escape(caption)}"><table class="numbers">
+    return f"""<div class="wide" tabindex="0" role="group" aria-label="{escape(caption)}"><table class="numbers">
 <thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>"""

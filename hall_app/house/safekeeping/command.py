@@ -1,0 +1,106 @@
+"""`hall backup` and `hall restore`: a whole house in one checked file."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hall_app.house.people.command import add_accounts
+
+if TYPE_CHECKING:
+    from hall_app.house.safekeeping import Holdings, Manifest
+
+__all__ = ["add_parser", "run"]
+
+_BACKUP = """\
+Write the content folder, the accounts (people, roles, activities, reservations, journal) and the answers into one file,
+while the hall is open or not. From PostgreSQL, too: the databases are in it as SQLite files, which any program reads.
+The file is a ZIP that holds the digest of each of its parts; it is read back before it appears under its name, and is
+its owner's alone. It holds addresses and hashes of passwords: keep it as you keep the data folder.
+Left out is what is made anew: caches, and what was baked into the data folder."""
+
+_RESTORE = """\
+Make a house of a file that `hall backup` wrote: content folder, accounts, answers. Nothing is overwritten: the content
+folder is new or empty, and so are both databases. The whole file is checked before anything is put anywhere.
+Nobody is signed in afterwards, and one-time codes are good no more. What people deleted or withdrew after the backup
+was made is there again: delete it once more."""
+
+_EPILOG = """\
+examples:
+  hall backup 2026-11-28.zip
+  hall restore 2026-11-28.zip --content my-hall --data my-data        then: hall serve with the same two
+  hall restore 2026-11-28.zip --accounts postgresql+psycopg://…       accounts into PostgreSQL
+  hall restore 2026-11-28.zip --check                                 only look whether the file is whole
+
+Exit status: 0 done, 1 it failed (the message says why), 2 wrong arguments."""
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Declare `hall backup` and `hall restore`."""
+    for name, told, long in (
+        ("backup", "content, accounts and answers in one file", _BACKUP),
+        ("restore", "make a house of such a file", _RESTORE),
+    ):
+        parser = subparsers.add_parser(
+            name,
+            help=told,
+            description=long,
+            epilog=_EPILOG,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        parser.add_argument("file", type=Path, metavar="FILE", help="the backup")
+        parser.add_argument(
+            "--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)"
+        )
+        parser.add_argument(
+            "--data",
+            type=Path,
+            default=Path("hall-data"),
+            metavar="FOLDER",
+            help="data folder of the hall (default ./hall-data)",
+        )
+        parser.add_argument(
+            "--db", metavar="URL", help="database of answers (default: survey.sqlite in --data)"
+        )
+        add_accounts(parser)
+        if name == "restore":
+            parser.add_argument("--check", action="store_true", help="check the file and change nothing")
+        parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do it; what fails is one line on standard error."""
+    from hall_app.content.lookup import content_folder
+    from hall_app.house.safekeeping import back_up, check_archive, restore
+
+    if arguments.command == "backup":
+        house = _holdings(arguments, content_folder(arguments.content))
+        print(_told(arguments.file, back_up(arguments.file, house)))
+    elif arguments.check:
+        print(f"{_told(arguments.file, check_archive(arguments.file))}; whole")
+    else:
+        house: Holdings = _holdings(arguments, arguments.content or Path("assets"))
+        print(f"{_told(arguments.file, restore(arguments.file, house))}; restored to {house.content}")
+    return 0
+
+
+def _holdings(arguments: argparse.Namespace, content: Path) -> Holdings:
+    from hall_app.house.safekeeping import Holdings
+
+    return Holdings(content, arguments.accounts or arguments.data, arguments.db or arguments.data)
+
+
+def _told(file: Path, manifest: Manifest) -> str:
+    size = sum(member.size for member in manifest.files.values())
+    facts = (
+        _count(len(manifest.files), "file"),
+        f"{size / 1e6:.1f} MB",
+        _count(manifest.people, "account"),
+        _count(manifest.answers, "answer"),
+    )
+    return f"{file}: {', '.join(facts)}, made {manifest.made[:19].replace('T', ' ')} UTC"
+
+
+def _count(number: int, of: str) -> str:
+    return f"{number} {of}{'' if number == 1 else 's'}"

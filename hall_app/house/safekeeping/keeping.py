@@ -1,0 +1,99 @@
+"""What a house holds, put into one file and taken out of it again."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from hall_app.house.people import People, existing_people
+from hall_app.house.safekeeping.archive import (
+    ANSWERS,
+    CONTENT,
+    PEOPLE,
+    ArchiveError,
+    Manifest,
+    extract,
+    write_archive,
+)
+from survey import Store
+from survey.store import existing_store
+
+__all__ = ["Holdings", "back_up", "restore"]
+
+
+@dataclass(frozen=True)
+class Holdings:
+    """content: folder; accounts, answers: the data folder, or the URL of a database."""
+
+    content: Path
+    accounts: Path | str
+    answers: Path | str
+
+
+def back_up(file: Path, house: Holdings) -> Manifest:
+    """Write all into `file`, which must not exist, while the hall is open or not. Each database is one moment's.
+
+    Raises ArchiveError, SurveyError.
+    """
+    _see_that_it_is_new(file)
+    with tempfile.TemporaryDirectory(dir=file.parent, prefix=".backup-") as work:  # its owner's alone
+        people_copy, answers_copy = Path(work) / PEOPLE, Path(work) / ANSWERS
+        with closing(existing_people(house.accounts)) as people:
+            accounts = people.copy_to(people_copy)
+        with closing(existing_store(house.answers)) as store:
+            answers = store.copy_to(answers_copy)
+        members = [(PEOPLE, people_copy), (ANSWERS, answers_copy), *_content(house.content)]
+        return write_archive(file, members, people=accounts, answers=answers)
+
+
+def restore(file: Path, house: Holdings) -> Manifest:
+    """Make a house of the file. Nothing is overwritten: the content folder is absent or empty, the databases empty.
+
+    The file is checked and unpacked, and all three places are, before anything is put anywhere.
+    Raises ArchiveError, StoreError.
+    """
+    if house.content.exists() and (not house.content.is_dir() or any(house.content.iterdir())):
+        raise ArchiveError(
+            f"{house.content}: is there already – give --content a folder that is new or empty"
+        )
+    house.content.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=house.content.parent, prefix=".restore-") as work:
+        folder = Path(work)
+        manifest = extract(file, folder)
+        with closing(People(house.accounts)) as people, closing(Store(house.answers)) as store:
+            people.see_that_it_takes(folder / PEOPLE)
+            store.see_that_it_takes(folder / ANSWERS)
+            people.take_copy(folder / PEOPLE)
+            store.take_copy(folder / ANSWERS)
+        if house.content.exists():
+            house.content.rmdir()
+        os.replace(folder / CONTENT, house.content)
+    return manifest
+
+
+def _see_that_it_is_new(file: Path) -> None:
+    if file.exists():
+        raise ArchiveError(f"{file}: exists already – give another name, a backup never overwrites one")
+    if not file.parent.is_dir():
+        raise ArchiveError(f"{file}: no folder {file.parent} – make it, or give another place")
+
+
+def _content(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Name and file of all that lies in the content folder. Raises ArchiveError for a link to a folder, never left out
+    in silence; a link to a file counts as the file."""
+    for where, folders, files in os.walk(folder):
+        here = Path(where)
+        folders.sort()
+        for name in folders:
+            if (here / name).is_symlink():
+                raise ArchiveError(f"{here / name}: a link to a folder – put the folder itself in its place")
+        for name in sorted(files):
+            if not (here / name).is_file():
+                raise ArchiveError(
+                    f"{here / name}: no plain file, or a link to none – take it out of the content"
+                )
+            yield f"{CONTENT}/{(here / name).relative_to(folder).as_posix()}", here / name
