@@ -100,7 +100,8 @@ class _Rooms:
                     given={"maxlength": "400"},
                 ),
             )
-            by = f" · {escape(names.get(one['by'], one['by']))}" if one["by"] else ""
+            who: str = one["by"]
+            by = f" · {escape(names.get(who, who))}" if who else ""
             sent = form(
                 asking,
                 f"follow-{number}",

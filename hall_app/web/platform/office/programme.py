@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import date, datetime, timedelta
 from html import escape
 from typing import Any
@@ -69,11 +69,10 @@ class _Rooms:
         length = timedelta(minutes=number_in(given.get("minutes", "")))
         if not timedelta(minutes=5) <= length or not (first.ends - first.begins) // length <= MOST_SLOTS:
             raise PeopleError("occasion-slots", most=MOST_SLOTS)
-        whole = asdict(first) | {"kind": "visit"}
         slots = []
         while first.begins + length * (len(slots) + 1) <= first.ends:
             begins = first.begins + length * len(slots)
-            slots.append(Plan(**(whole | {"begins": begins, "ends": begins + length})))
+            slots.append(replace(first, kind="visit", begins=begins, ends=begins + length))
         if not slots:
             raise PeopleError("occasion-times")
         return {"ids": list(self._people.occasions.plan(asking.person.id, *slots))}
@@ -262,8 +261,9 @@ def _plan(asking: Asking) -> Plan:
         name: given.get(name, "")
         for name in ("title_zh", "title_en", "text_zh", "text_en", "place_zh", "place_en")
     }
-    counts = {name: number_in(given.get(name, "")) for name in ("places", "party")}
-    return Plan(kind=given.get("kind", "activity"), begins=begins, ends=ends, **counts, **texts)
+    places, party = (number_in(given.get(name, "")) for name in ("places", "party"))
+    kind = given.get("kind", "activity")
+    return Plan(kind=kind, begins=begins, ends=ends, places=places, party=party, **texts)
 
 
 def _fields(
