@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from hall_app.build.film import Look, Part, Piece
-from hall_app.content.bakes.steps import HALL_BENEATH
 
 if TYPE_CHECKING:
     from sim_core.body import Mannequin
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Wardrobe"]
 
 HALL_FIGURE = 1600  # triangles of a figure in the hall
-THINNEST = 0.5  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
+THINNEST = 0.3  # of a cloth's cover in pictures: what stops less light than that would hardly be seen
 MOMENT = 5  # frames of a motion from one look at what is seen of its wearer to the next
 TREAD = 0.06  # [m] above the ground that feet are looked at
 ROUND = 0.04  # [m] of its base round the feet of who walks
@@ -75,20 +74,24 @@ class Wardrobe:
         return self._look(pieces)
 
     def write_models(
-        self, garments: Sequence[Garment], folder: Path, budget: float, played: Played | None = None
+        self,
+        garments: Sequence[Garment],
+        folder: Path,
+        budgets: tuple[float, float],
+        played: Played | None = None,
     ) -> tuple[Garment, ...]:
         """Writes close.glb, and hall.glb with each layer's cheapest level; returns these levels.
 
-        budget [m]: how far (p99) the outermost may deviate in the hall; played: how they move, which shows more of
-        their wearer, and bends what hangs flat.
+        budgets [m]: how far (p99) what is worn beneath may deviate in the hall, and how far the outermost; played: how
+        they move, which shows more of their wearer, and bends what hangs flat.
         """
         from sim_core.garment import choose_detail
 
         self._write(garments, folder / "close.glb", "close", (garments, played))
         moved = [() if played is None else tuple(played.frames[k]) for k in range(len(garments))]
-        levels = [choose_detail(one, HALL_BENEATH, moments=moved[k]) for k, one in enumerate(garments[:-1])]
+        levels = [choose_detail(one, budgets[0], moments=moved[k]) for k, one in enumerate(garments[:-1])]
         levels.append(
-            choose_detail(garments[-1], budget, solid=_worn(garments[-1], levels), moments=moved[-1])
+            choose_detail(garments[-1], budgets[1], solid=_worn(garments[-1], levels), moments=moved[-1])
         )
         self._write(levels, folder / "hall.glb", "hall", (garments, played))
         return tuple(levels)

@@ -19,7 +19,7 @@ from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
-from hall_app.content.bakes.steps import Step, budget, chosen_steps, hall_budget, study_of
+from hall_app.content.bakes.steps import Step, beneath_budget, budget, chosen_steps, hall_budget, study_of
 from hall_app.content.bakes.store import RECORD, bake_fault, layer_files, read_record
 from hall_app.content.files import CLIP, TRACKED
 from hall_app.content.folder import Content, Exhibit
@@ -71,8 +71,8 @@ def bake_outfit(
             if not (out / name).exists():  # one that was kept is the file it was, to the byte
                 garment.save(out / name)
         played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
-        fine = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
-        levels.extend(wardrobe.write_models(garments, out, fine, played))
+        outermost = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
+        levels.extend(wardrobe.write_models(garments, out, (beneath_budget(show), outermost), played))
         if played is not None:
             told = write_motion(
                 wardrobe.outfit,

@@ -110,6 +110,11 @@ def soon(page, holds: Callable[[], object], patience: float = 30.0) -> None:
         page.wait_for_timeout(50)
 
 
+def back_in_the_hall(page) -> None:
+    """Wait until the picture is seen from the hall again, not from the studio."""
+    soon(page, lambda: displayed(page)[0] < 400, PATIENCE / 1000)
+
+
 # Nothing fades or slides any more; what turns for ever does not count.
 STILL = """
 () => document.getAnimations().every(

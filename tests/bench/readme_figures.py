@@ -18,6 +18,16 @@ import mesh_figures
 
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
+# Exhibits that are dressed, and what their rows call them.
+GARMENTS = (
+    ("beizi", "beizi"),
+    ("song-daxiushan", "robe of large sleeves"),
+    ("gown", "gauze gown"),
+    ("pibo-figure", "pibo over a robe"),
+    ("walking", "coat that walks"),
+    ("zhiju", "robe on a T-bar"),
+    ("pibo", "scarf"),
+)
 BEGIN, END = "<!-- figures: python tests/bench/readme_figures.py -->", "<!-- end of figures -->"
 
 
@@ -245,8 +255,7 @@ def scans() -> list[tuple[str, str, str]]:
 
 def main() -> int:
     rows = walking() + crowd() + page() + look() + mesh_figures.summary() + scans() + room()
-    rows += garment("beizi", "beizi") + garment("pibo-figure", "pibo over a robe") + robe()
-    rows += garment("pibo", "scarf") + garment("gown", "gauze gown")
+    rows += [row for exhibit, name in GARMENTS for row in garment(exhibit, name)] + robe()
     lines = ["| What | Measured | Command |", "|---|---|---|"]
     lines += [f"| {what} | {value} | {command} |" for what, value, command in rows]
     path = ROOT / "README.md"

@@ -12,6 +12,9 @@ ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
 GARMENTS = {
     "beizi": ("褙子", "beizi"),
+    "song-daxiushan": ("大袖衫", "robe of large sleeves"),
+    "walking": ("行走的褙子", "coat that walks"),
+    "zhiju": ("直裾", "robe on a T-bar"),
     "pibo-figure": ("披帛与袍", "pibo over a robe"),
     "pibo": ("披帛", "scarf"),
     "gown": ("襌衣", "gauze gown"),

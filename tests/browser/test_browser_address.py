@@ -5,7 +5,7 @@ import math
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
-from bench.browser import PATIENCE, displayed, enter, pose, soon
+from bench.browser import PATIENCE, back_in_the_hall, displayed, enter, pose, soon
 from bench.track import place
 from plain_hall import write_plain_hall
 from running_hall import free_port, running_hall
@@ -40,11 +40,7 @@ def is_closed(page) -> None:
     page.locator(PANEL).wait_for(state="hidden", timeout=PATIENCE)
     page.wait_for_function("() => hall.opened() === null && !location.search.includes('exhibit')")
     page.wait_for_function("() => document.title === 'Plain hall'")
-    for _ in range(100):
-        if displayed(page)[0] < 400:
-            return
-        page.wait_for_timeout(50)
-    raise AssertionError("the camera stayed in the studio")
+    back_in_the_hall(page)
 
 
 def open_by_list(page) -> None:

@@ -66,12 +66,13 @@ def test_nothing_is_fetched_before_it_is_asked_for_and_then_all_move_by_one_cloc
     assert not any("three." in url for url in page.asked)
     compared(page)
     seen = []
-    for k in range(12):
-        page.mouse.move(120 + k, 300)
-        page.wait_for_timeout(90)
+
+    def swayed() -> bool:
         seen.append([high for _, high in sorted(page.evaluate(REACH).values())])
+        return len(seen) > 12 and np.ptp(seen, axis=0).min() > 0.05
+
+    alive(page, swayed)
     moved = np.array(seen) - seen[0]
-    assert np.ptp(moved, axis=0).min() > 0.05
     assert np.abs(moved - moved[:, :1]).max() < 1e-3  # the same sway in every picture
     assert sum("three.clip" in url for url in page.asked) == 1
 

@@ -24,12 +24,12 @@ async (node) => {
 """
 
 
-@pytest.mark.parametrize(("address", "node"), [("", "/exhibits/beizi"), ("&exhibit=beizi", "/closeup")])
+@pytest.mark.parametrize(("address", "node"), [("", "/exhibits/walking"), ("&exhibit=walking", "/closeup")])
 def test_cloth_and_figure_walk_together(shipped_hall, chromium, address, node):
     page = chromium.new_page(viewport={"width": 480, "height": 270})
     enter(page, f"{shipped_hall.url}/?lang=en{address}")
     if not address:
-        stand_before(page, "beizi")
+        stand_before(page, "walking")
     page.wait_for_function("(node) => hall.playing().includes(node)", arg=node, timeout=PATIENCE)
     before = page.evaluate(WHERE, node)
     assert len(before) == 3  # coat, its bands, figure

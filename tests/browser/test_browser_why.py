@@ -106,13 +106,14 @@ def test_the_page_reads_what_python_wrote(page):
 
 def test_they_lie_where_the_model_is_and_go_with_its_frames(page):
     frames = set()
-    for _ in range(8):
-        page.mouse.move(120 + len(frames), 300)
-        page.wait_for_timeout(130)
+
+    def followed() -> bool:
         told = page.evaluate(BOTH)
         frames.add(told["frame"])
         assert away(told).max() < 1.5, told["frame"]  # of a box that sways by a hundred pixels
-    assert len(frames) > 3
+        return len(frames) > 7
+
+    alive(page, followed)
 
 
 def test_the_trunk_is_red_the_limbs_are_green_and_cloth_is_hollow(page):

@@ -269,6 +269,6 @@ def test_a_harvester_takes_all_of_it(harbour):
                 f"oai:{HOST}:e{n:02}" for n in range(23)
             ]
         titles = next(iter(scythe.list_records(metadata_prefix="oai_dc"))).metadata["title"]
-        assert titles == ["秋香绫褙子", "Autumn-gold silk beizi"]
+        assert titles == ["秋香缠枝花绫褙子", "Autumn-gold beizi in flowered silk"]
         models = list(scythe.list_identifiers(metadata_prefix="oai_dc", set_="model"))
         assert len(models) == 8

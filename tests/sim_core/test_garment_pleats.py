@@ -246,6 +246,17 @@ def test_pleats_lie_round_the_waist_without_a_crossing(pattern: Pattern) -> None
     assert np.diff(angle, append=angle[0] + 2 * np.pi).max() < 0.3  # all the way round
 
 
+def test_the_edge_that_is_pinned_begins_hardly_stretched() -> None:
+    """Where pleats stand open on the narrow sides of a waist, and where a second lap climbs on them."""
+    skirt = load_outfit(ASSETS / "outfits/song-beizi.toml", ASSETS).layers[1]
+    cloth = skirt.pattern.cloth(0.02)
+    x = replace(skirt.place, gap=0.002).start(skirt.pattern, cloth, ground(), np.random.default_rng(0))
+    top = np.flatnonzero(cloth.vertices[:, 1] < 1e-6)
+    top = top[np.argsort(cloth.vertices[top, 0])]
+    lengths = np.linalg.norm(np.diff(x[top], axis=0), axis=1)
+    assert np.abs(lengths / np.diff(cloth.vertices[top, 0]) - 1).max() < 0.06
+
+
 def test_nothing_resists_folding_along_a_crease() -> None:
     mesh = panel_mesh(
         [(0, 0), (0.2, 0), (0.2, 0.2), (0, 0.2)], edge=0.02, constraints=[[(0.1, 0), (0.1, 0.2)]]

@@ -11,7 +11,7 @@ from typing import Any
 from hall_app.check.garments.limits import Worn, limits_of, writer
 from hall_app.check.garments.measurement import Measured, measured_again
 from hall_app.content.bakes.record import FILES
-from hall_app.content.bakes.steps import HALL_BENEATH, hall_budget
+from hall_app.content.bakes.steps import beneath_budget, hall_budget
 from hall_app.content.bakes.store import bake_fault, baked_here, key_now, layer_files, read_record
 from hall_app.content.files import BAKED, MOTION
 from hall_app.content.folder import Content, Exhibit
@@ -117,7 +117,9 @@ def _told(record: Numbers) -> dict[str, Any]:
 
 def _deviation(worn: Worn, show: Show, moving: bool) -> float:
     """How far a garment's hall model may be from the close one [m], p99: what it was thinned to."""
-    return HALL_BENEATH if worn.beneath else hall_budget(show.nearest, show.hall_error_px, moving=moving)
+    if worn.beneath:
+        return beneath_budget(show)
+    return hall_budget(show.nearest, show.hall_error_px, moving=moving)
 
 
 def _agree(name: str, told: float, found: float) -> bool:

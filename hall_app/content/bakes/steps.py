@@ -11,13 +11,14 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hall_app.content.bakes.inputs import outfit_files
 from hall_app.content.folder import Content, Exhibit
+from hall_app.content.schema.exhibit import Show
 
 __all__ = [
-    "HALL_BENEATH",
     "PATIENCE",
     "PATIENCE_WHOLE",
     "Step",
     "Study",
+    "beneath_budget",
     "budget",
     "chosen_steps",
     "hall_budget",
@@ -155,6 +156,12 @@ def hall_budget(nearest: float, pixels: float, *, moving: bool = False) -> float
     return budget(nearest, pixels) * (MOVING if moving else 1.0)
 
 
+def beneath_budget(show: Show) -> float:
+    """The same of what is worn beneath [m]."""
+    pixels = show.hall_beneath_px
+    return HALL_BENEATH if pixels is None else budget(show.nearest, pixels)
+
+
 def study_of(content: Content, exhibit: Exhibit) -> Study | None:
     """The study that an exhibit's outfit names, None where it names none.
 
@@ -168,7 +175,7 @@ def study_of(content: Content, exhibit: Exhibit) -> Study | None:
 def chosen_steps(content: Content, exhibit: Exhibit) -> tuple[Step, ...]:
     """The steps of an exhibit's layers, none where its outfit names no study; raises as `study_of` does."""
     study, show = study_of(content, exhibit), exhibit.file.show
-    return study.steps(HALL_BENEATH, budget(show.nearest, show.hall_error_px)) if study else ()
+    return study.steps(beneath_budget(show), budget(show.nearest, show.hall_error_px)) if study else ()
 
 
 def read_study(path: Path) -> Study:

@@ -51,6 +51,12 @@ class Show(Table):
     hall_error_px: float = Field(
         1.0, gt=0, le=20, description="greatest deviation of the hall's model, in pixels at the nearest view"
     )
+    hall_beneath_px: float | None = Field(
+        None,
+        gt=0,
+        le=20,
+        description="the same of layers worn beneath others; without it 4 mm, for what openings show of them",
+    )
 
 
 class Scanned(Table):

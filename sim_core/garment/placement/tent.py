@@ -17,7 +17,8 @@ ANGLES = 720  # directions in which a line about the wearer is told
 ROUNDED = 60  # of them, to both sides, over which its corners are rounded
 STANDING = 0.8  # of the angle a crease may open to, that one is laid open
 FINER = 0.004  # [m] between points at which it is told how high pleated cloth lies
-ROUNDS = 4  # of fitting pleats to a ring that is longer where they lie higher
+STEEPEST = 0.3  # of its way along, that cloth which climbs goes at least
+ROUNDS = 8  # of fitting pleats to a ring that is longer where they lie higher
 OVER = 1.5  # gaps that a panel lies over those beneath it
 
 
@@ -60,7 +61,7 @@ class Tent:
         for level, ring in enumerate(self.rings):
             weight = np.where(where == level, 1 - share, np.where(where == level - 1, share, 0.0))
             used = np.flatnonzero(weight)
-            places, heights = folds.round(self.rings[0].girth, ring.girth, gap)
+            places, heights = folds.round(self.rings[0].girth, ring, gap)
             flat = ring.at(places[used], heights[used])
             down = np.full(len(used), -self.depths[level])
             out[used] += weight[used, None] * np.stack([flat[:, 0], down, flat[:, 1]], axis=1)
@@ -101,6 +102,13 @@ class _Ring:
         """[m]"""
         return float(self.arc[-1])
 
+    def curvature(self, places: np.ndarray) -> np.ndarray:
+        """How fast it turns (k,) [1/m] that far (k,) [m] along it."""
+        turn = 2 * np.pi / (len(self.arc) - 1)
+        return np.interp(
+            places, 0.5 * (self.arc[1:] + self.arc[:-1]), turn / np.diff(self.arc), period=self.girth
+        )
+
     def at(self, places: np.ndarray, out: np.ndarray) -> np.ndarray:
         """Points (k, 2) [m] that far (k,) along it, `out` (k,) [m] outside."""
         along = places % self.girth
@@ -137,9 +145,9 @@ class Folds:
         ends = np.array([(folded.places.min(), folded.places.max()) for folded in plies]) - low
         return Folds(x, cloth.panel_of, tuple(plies), tuple(highest), ends.mean(1), float(ends[:, 1].max()))
 
-    def round(self, tight: float, wide: float, gap: float) -> tuple[np.ndarray, np.ndarray]:
-        """Where (P,) [m] vertices lie along a ring that is `wide` [m] round, of cloth laid to go round one of `tight`
-        [m], and how high (P,) [m] above it, plies being `gap` [m] apart.
+    def round(self, tight: float, ring: _Ring, gap: float) -> tuple[np.ndarray, np.ndarray]:
+        """Where (P,) [m] vertices lie along a ring, of cloth laid to go round one of `tight` [m], and how high (P,) [m]
+        above it, plies being `gap` [m] apart.
 
         Pleats open as far as they may, so that each panel goes as far round as it did; where they may not, it is as
         wide as they let it be, about its middle, and laps are less. Later panels, and what goes round a second time,
@@ -148,30 +156,38 @@ class Folds:
         opened: list[Opened] = []
         places, heights = np.zeros(len(self.x)), np.zeros(len(self.x))
         for number in range(len(self.plies)):
-            each = self._panel(opened, (tight, wide), gap)
+            each = self._panel(opened, tight, ring, gap)
             own = np.flatnonzero(self.panel == number)
             places[own] = each.laid(self.x[own])
-            heights[own] = each.heights(self.x[own]) + _beneath(places[own], (*opened, each), wide, gap)
+            heights[own] = each.heights(self.x[own]) + _beneath(places[own], (*opened, each), ring.girth, gap)
             opened.append(each)
         return places, heights
 
-    def _panel(self, beneath: Sequence[Opened], girths: tuple[float, float], gap: float) -> Opened:
-        """The next panel over those beneath, its places along the ring: what lies high goes further round for the same
-        cloth, as if the ring were a circle."""
-        number, (tight, wide) = len(beneath), girths
+    def _panel(self, beneath: Sequence[Opened], tight: float, ring: _Ring, gap: float) -> Opened:
+        """The next panel over those beneath, its places along the ring: what lies high goes further for the same cloth
+        where the ring turns, and cloth goes less far where it climbs on what lies beneath."""
+        number, wide = len(beneath), ring.girth
         plies, middle = self.plies[number], self.middles[number] * wide / tight
         wanted = float(np.ptp(plies.places[[0, -1]])) * wide / tight
         aim, found = wanted, None
         for _ in range(ROUNDS):
             flat = plies.as_wide(aim, self.highest[number], gap).finer(FINER)
             found = flat.scaled(np.ones(len(flat.x) - 1), middle) if found is None else found
-            high = flat.heights(flat.x) + _beneath(
-                np.interp(flat.x, found.x, found.places), (*beneath, found), wide, gap
-            )
-            found = flat.scaled(1.0 / (1.0 + np.pi / wide * (high[1:] + high[:-1])), middle)
+            own = flat.heights(flat.x)
+            under = _beneath(np.interp(flat.x, found.x, found.places), (*beneath, found), wide, gap)
+            turns = ring.curvature(0.5 * (found.places[1:] + found.places[:-1]))
+            longer = 1.0 + 0.5 * turns * (own + under)[1:] + 0.5 * turns * (own + under)[:-1]
+            found = flat.scaled(_sloping(np.diff(flat.places), np.diff(own), np.diff(under)) / longer, middle)
             aim += wanted - found.width
         assert found is not None
         return found
+
+
+def _sloping(along: np.ndarray, rises: np.ndarray, climbs: np.ndarray) -> np.ndarray:
+    """How many times as far (n,) stretches of cloth that go `along` (n,) [m] and rise by so much [m] go where they
+    climb besides by what they lie on [m]."""
+    left = along**2 + rises**2 - (rises + climbs) ** 2
+    return np.sqrt(np.maximum(left / np.maximum(along**2, 1e-18), STEEPEST**2))
 
 
 def _beneath(places: np.ndarray, panels: Sequence[Opened], wide: float, gap: float) -> np.ndarray:
