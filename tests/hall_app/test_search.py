@@ -32,7 +32,7 @@ def test_a_run_of_chinese_is_all_its_pairs_and_its_last_character():
     ("asked", "wanted"),
     [
         ("褙子", ("exhibit", "beizi")),
-        ("一件褙子", ("exhibit", "beizi")),
+        ("三件褙子", ("exhibit", "beizi")),
         ("beizi", ("article", "beizi")),
         ("bèizi", ("word", "beizi")),
         ("mamianqun", ("word", "mamian")),

@@ -97,7 +97,9 @@ def test_what_is_made_is_for_its_owner_alone_whatever_the_umask(tmp_path, umask)
 
 def test_a_backup_is_for_its_owner_alone_while_it_is_written(tmp_path, monkeypatch):
     seen = []
-    monkeypatch.setattr("survey.store.database.backup._check", lambda part: seen.append(rights(part)) or 0)
+    monkeypatch.setattr(
+        "survey.store.database.backup._check", lambda part, schema: seen.append(rights(part)) or 0
+    )
     with closing(Store(tmp_path / "data")) as store:
         store.copy_to(tmp_path / "copy.sqlite")
     assert seen == [0o600]
