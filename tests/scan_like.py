@@ -30,7 +30,7 @@ class Made:
         return replace(self, vertices=scale * np.stack([x, -z, y], axis=1))
 
 
-def garment_mesh(exhibit: str = "beizi") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def garment_mesh(exhibit: str = "walking") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Cloth of a baked close-up: vertices (V, 3) [m], faces (F, 3), pattern (V, 2) [mm]."""
     parts = glb_parts((ASSETS / f"exhibits/{exhibit}/baked/close.glb").read_bytes())
     document, at = parts.document, 0
@@ -61,7 +61,7 @@ def _cloth_paint(mm: np.ndarray) -> np.ndarray:
 
 
 def scan_of(
-    triangles: int, *, exhibit: str = "beizi", pixels: int = 2048, noise: float = NOISE, seed: int = 1
+    triangles: int, *, exhibit: str = "walking", pixels: int = 2048, noise: float = NOISE, seed: int = 1
 ) -> Made:
     """The garment as about so many triangles, each vertex off by `noise` [m], its cloth painted in an atlas."""
     vertices, faces, pattern = garment_mesh(exhibit)

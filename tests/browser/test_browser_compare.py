@@ -50,10 +50,10 @@ def page(chromium, hall):
     page.close()
 
 
-def alive(page, holds) -> None:
+def alive(page, holds, patience: float = 90.0) -> None:
     """Until it holds, with a visitor who moves now and then."""
     seen = iter(range(10_000))
-    soon(page, lambda: page.mouse.move(100 + next(seen) % 50, 300) or holds())
+    soon(page, lambda: page.mouse.move(100 + next(seen) % 50, 300) or holds(), patience)
 
 
 def compared(page) -> None:

@@ -79,7 +79,7 @@ def test_what_is_wrong_is_said_with_its_remedy(made, tmp_path, capsys):
     said = lines(house)
     toml = "exhibits/robe/exhibit.toml: "
     assert [line.split(" – ")[1] for line in said if line.startswith(f"{toml}scanned: ")] == [
-        'write units = "mm" below [scanned] (1.15 m)'
+        'write units = "mm" below [scanned] (1.14 m)'
     ]
     assert any(line.startswith(f"{toml}scanned.up: it seems to lie") and 'up = "z"' in line for line in said)
     loose = next(line for line in said if line.startswith(f"{toml}scanned.keep: "))

@@ -308,22 +308,26 @@ def test_a_garment_that_followed_its_wearer():
     assert a_vertex * 5000 * 100 <= 1_900_000
 
 
-@pytest.mark.parametrize("name", ["gown", "beizi"])
-@pytest.mark.parametrize("precision", ["hall", "close"])
-def test_the_clip_of_a_baked_model(name: str, precision: str):
-    """Of the fine garment and the whole figure only what the model shows, and it begins as the model stands."""
-    garment = Garment.load(ROOT / "assets" / "exhibits" / name / "baked" / "garment.npz")
-    model = (ROOT / "assets" / "exhibits" / name / "baked" / f"{precision}.glb").read_bytes()
-    outfit = load_outfit(ROOT / "assets" / "outfits" / f"{name}.toml")
-    swaying = np.linspace(0, 0.1, 60)[:, None] * (1.5 - garment.positions[:, 1])
-    moved = np.repeat(garment.positions[None], 60, axis=0)
-    moved[:, :, 0] += swaying
+@pytest.mark.parametrize(
+    ("exhibit", "worn", "precision"),
+    [("gown", "han-gown", "close"), ("walking", "walking", "hall"), ("walking", "walking", "close")],
+)
+def test_the_clip_of_a_baked_model(exhibit: str, worn: str, precision: str):
+    """Of the fine garments and the whole figure only what the model shows, and it begins as the model stands."""
+    baked = ROOT / "assets" / "exhibits" / exhibit / "baked"
+    garments = [Garment.load(path) for path in (*sorted(baked.glob("beneath-*.npz")), baked / "garment.npz")]
+    model = (baked / f"{precision}.glb").read_bytes()
+    outfit = load_outfit(ROOT / "assets" / "outfits" / f"{worn}.toml")
+    moved = {}
+    for garment in garments:
+        moved[garment.name] = np.repeat(garment.positions[None], 60, axis=0)
+        moved[garment.name][:, :, 0] += np.linspace(0, 0.1, 60)[:, None] * (1.5 - garment.positions[:, 1])
     poses = [outfit.pose.facing(k) for k in range(60)]
-    clip = model_clip(model, {name: moved}, figure=(outfit.wearer, poses), lift=0.025, loop=True)
+    clip = model_clip(model, moved, figure=(outfit.wearer, poses), lift=0.025, loop=True)
     assert clip.figure is not None
     parts = glb_parts(model)
     nodes = {node["name"]: node["mesh"] for node in parts.document["nodes"]}
-    drawn = {d.node: (name, d.index) for d in clip.meshes[0].drawn} | {
+    drawn = {d.node: (mesh.name, d.index) for mesh in clip.meshes for d in mesh.drawn} | {
         d.node: ("figure", d.index) for d in clip.figure.drawn
     }
     assert set(nodes) - set(drawn) <= {"base"}
@@ -339,4 +343,4 @@ def test_the_clip_of_a_baked_model(name: str, precision: str):
     if precision == "hall":
         assert len(clip.to_bytes()) / 60 * 100 <= 2_000_000
     with pytest.raises(SimCoreError, match="no node of the model lies on mesh"):
-        model_clip(model, {name: moved}, lift=0.05)
+        model_clip(model, moved, lift=0.05)
