@@ -17,7 +17,7 @@ from hall_app.content.lookup import content_folder, make_data_folder
 from hall_app.content.problems import ContentError
 from hall_app.house.baking.preparation import Preparation, forsake, wanted_bakes
 from hall_app.house.baking.queue import BakingQueue
-from hall_app.house.people.command import add_accounts
+from hall_app.house.people.command import add_accounts, add_data
 from hall_app.house.signals import at_once
 from hall_app.visit.places import Places
 from hall_app.web.limits.addresses import Addresses
@@ -67,13 +67,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--host", default="127.0.0.1", help="address to listen on (default 127.0.0.1: this machine alone)"
     )
     parser.add_argument("--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)")
-    parser.add_argument(
-        "--data",
-        type=Path,
-        default=Path("hall-data"),
-        metavar="FOLDER",
-        help="answers and caches (default ./hall-data)",
-    )
+    add_data(parser, "answers and caches")
     parser.add_argument(
         "--walk",
         choices=("predict", "server"),

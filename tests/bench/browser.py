@@ -110,6 +110,12 @@ def soon(page, holds: Callable[[], object], patience: float = 30.0) -> None:
         page.wait_for_timeout(50)
 
 
+def alive(page, holds: Callable[[], object], patience: float = 30.0) -> None:
+    """Wait until `holds()` is true, with a visitor who moves now and then."""
+    seen = iter(range(10_000))
+    soon(page, lambda: page.mouse.move(100 + next(seen) % 50, 300) or holds(), patience)
+
+
 def back_in_the_hall(page) -> None:
     """Wait until the picture is seen from the hall again, not from the studio."""
     soon(page, lambda: displayed(page)[0] < 400, PATIENCE / 1000)

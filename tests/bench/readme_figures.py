@@ -15,19 +15,10 @@ import sys
 from pathlib import Path
 
 import mesh_figures
+from research_sections import GARMENTS
 
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
-# Exhibits that are dressed, and what their rows call them.
-GARMENTS = (
-    ("beizi", "beizi"),
-    ("song-daxiushan", "robe of large sleeves"),
-    ("gown", "gauze gown"),
-    ("pibo-figure", "pibo over a robe"),
-    ("walking", "coat that walks"),
-    ("zhiju", "robe on a T-bar"),
-    ("pibo", "scarf"),
-)
 BEGIN, END = "<!-- figures: python tests/bench/readme_figures.py -->", "<!-- end of figures -->"
 
 
@@ -201,6 +192,11 @@ def garment(exhibit: str, name: str) -> list[tuple[str, str, str]]:
     return rows
 
 
+def garments() -> list[tuple[str, str, str]]:
+    """Of all exhibits that are dressed."""
+    return [row for exhibit, (_, name) in GARMENTS.items() for row in garment(exhibit, name)]
+
+
 def apart(errors: dict[str, float], prefix: str = "") -> str:
     mean, p99, most = (1000 * errors[f"{prefix}hall_hausdorff_{name}"] for name in ("mean", "p99", "max"))
     return f"{mean:.2f} / {p99:.1f} / {most:.1f} mm"
@@ -255,7 +251,7 @@ def scans() -> list[tuple[str, str, str]]:
 
 def main() -> int:
     rows = walking() + crowd() + page() + look() + mesh_figures.summary() + scans() + room()
-    rows += [row for exhibit, name in GARMENTS for row in garment(exhibit, name)] + robe()
+    rows += garments() + robe()
     lines = ["| What | Measured | Command |", "|---|---|---|"]
     lines += [f"| {what} | {value} | {command} |" for what, value, command in rows]
     path = ROOT / "README.md"

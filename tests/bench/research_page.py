@@ -55,7 +55,7 @@ def lines_of(section: str) -> list[tuple[str, str, str]]:
         "look": front.look,
         "mesh": front.mesh_figures.summary,
         "light": front.room,
-        "garments": lambda: [row for exhibit, name in front.GARMENTS for row in front.garment(exhibit, name)],
+        "garments": front.garments,
         "weave": lambda: [
             (what, value, "`simcore bench weave`")
             for what, _, value in readme_weave.rows(json.loads((FIGURES / "weave.json").read_text("utf-8")))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from bench.axe import violations
-from bench.browser import enter, soon
+from bench.browser import alive, enter
 from bench.wire import wire
 from moving_hall import write_comparing_hall
 from running_hall import running_hall
@@ -48,12 +48,6 @@ def page(chromium, hall):
     page = look_closely(chromium, hall.url)
     yield page
     page.close()
-
-
-def alive(page, holds, patience: float = 90.0) -> None:
-    """Until it holds, with a visitor who moves now and then."""
-    seen = iter(range(10_000))
-    soon(page, lambda: page.mouse.move(100 + next(seen) % 50, 300) or holds(), patience)
 
 
 def compared(page) -> None:
@@ -117,7 +111,7 @@ def test_it_is_there_again_after_a_lost_line(chromium, hall):
         page.evaluate("() => { window.__viserMutable.nodeRefFromName['/comparison'].__old = true; }")
         line.cut()
         new = "() => window.__viserMutable.nodeRefFromName['/comparison']?.__old === undefined"
-        alive(page, lambda: page.evaluate(NODES) == ["/comparison"] and page.evaluate(new))
+        alive(page, lambda: page.evaluate(NODES) == ["/comparison"] and page.evaluate(new), 90)
         assert page.evaluate("() => hall.compares()")
         assert "豪斯多夫" in page.locator("[data-testid=compare]").inner_text()
         page.close()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 from bench.axe import violations
-from bench.browser import enter, settled, soon
+from bench.browser import alive, enter, settled
 from full_matrix import by_day
 from moving_hall import FRAMES, box_points, write_moving_hall
 from running_hall import running_hall
@@ -59,12 +59,6 @@ def away(told) -> np.ndarray:
     """How far [px] each of the box's points is from the nearest corner of the model that is drawn."""
     own = np.array(told["points"]).reshape(-1, 3)[:8, :2]
     return np.linalg.norm(own[:, None] - np.array(told["corners"])[None], axis=2).min(1)
-
-
-def alive(page, holds) -> None:
-    """Until it holds, with a visitor who moves now and then."""
-    seen = iter(range(10_000))
-    soon(page, lambda: page.mouse.move(100 + next(seen) % 50, 300) or holds())
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from hall_app.house.people import People, Person
 
-__all__ = ["add_accounts", "add_parser", "run"]
+__all__ = ["add_accounts", "add_data", "add_parser", "run"]
 
 _DESCRIPTION = """\
 Administer the accounts of a house: name its first administrator, open an account whose password was lost, see who
@@ -87,6 +87,17 @@ def add_accounts(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_data(parser: argparse.ArgumentParser, what: str = "data folder of the hall") -> None:
+    """Declare where a hall keeps its data."""
+    parser.add_argument(
+        "--data",
+        type=Path,
+        default=Path("hall-data"),
+        metavar="FOLDER",
+        help=f"{what} (default ./hall-data)",
+    )
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Do it; what fails is one line on standard error."""
     from hall_app.house.people import People, existing_people
@@ -103,13 +114,7 @@ def _action(actions, name: str, told: str, *, address: bool = True) -> argparse.
     parser = actions.add_parser(name, help=told, description=told[:1].upper() + told[1:] + ".")
     if address:
         parser.add_argument("address", metavar="EMAIL", help="address of the account")
-    parser.add_argument(
-        "--data",
-        type=Path,
-        default=Path("hall-data"),
-        metavar="FOLDER",
-        help="data folder of the hall (default ./hall-data)",
-    )
+    add_data(parser)
     add_accounts(parser)
     return parser
 

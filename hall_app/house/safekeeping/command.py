@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hall_app.house.people.command import add_accounts
+from hall_app.house.people.command import add_accounts, add_data
 
 if TYPE_CHECKING:
     from hall_app.house.safekeeping import Holdings, Manifest
@@ -53,13 +53,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         parser.add_argument(
             "--content", type=Path, metavar="FOLDER", help="content folder (default ./assets)"
         )
-        parser.add_argument(
-            "--data",
-            type=Path,
-            default=Path("hall-data"),
-            metavar="FOLDER",
-            help="data folder of the hall (default ./hall-data)",
-        )
+        add_data(parser)
         parser.add_argument(
             "--db", metavar="URL", help="database of answers (default: survey.sqlite in --data)"
         )

@@ -5,7 +5,18 @@ from __future__ import annotations
 from html import escape
 
 from hall_app.house.people import PeopleError
-from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, Shown, form
+from hall_app.web.platform.counter import (
+    Asking,
+    Counter,
+    Field,
+    Moved,
+    Page,
+    Shown,
+    address_field,
+    form,
+    sign_in_fields,
+    signed_in,
+)
 
 __all__ = ["Entrance"]
 
@@ -14,7 +25,7 @@ class Entrance:
     """Pages and acts of who is not signed in."""
 
     def __init__(self, counter: Counter) -> None:
-        self._people, self._pace = counter.people, counter.pace
+        self._counter, self._people, self._pace = counter, counter.people, counter.pace
 
     def sign_in_page(self, asking: Asking) -> Shown:
         word, after = asking.word, asking.afterwards
@@ -22,21 +33,8 @@ class Entrance:
             asking,
             "sign-in",
             "/me/sign-in",
-            (
-                _address(asking),
-                Field(
-                    "password",
-                    word("密码", "Password"),
-                    "password",
-                    given={"autocomplete": "current-password"},
-                ),
-                Field(
-                    "code",
-                    word("验证码（如已开启两步验证）", "Authenticator code (where one is set up)"),
-                    needed=False,
-                    hint=word("六位数字，或一个恢复码", "Six digits, or a recovery code"),
-                    given={"autocomplete": "one-time-code", "maxlength": "40"},
-                ),
+            sign_in_fields(
+                asking, code_hint=word("六位数字，或一个恢复码", "Six digits, or a recovery code")
             ),
             word("登录", "Sign in"),
             hidden={"next": after},
@@ -57,17 +55,8 @@ class Entrance:
         )
 
     def sign_in(self, asking: Asking) -> Moved:
-        from hall_app.house.people.records import checked_address
-
-        given = asking.form
-        address = checked_address(given.get("address", ""))
-        self._pace.take("try from here", asking.network)
-        self._pace.take("account from here", address, asking.network)
-        self._pace.take("account", address)
-        person, token = self._people.sessions.sign_in(
-            address, given.get("password", ""), given.get("code", "")
-        )
-        lang = given.get("lang") or person.language
+        person, token = signed_in(self._counter, asking)
+        lang = asking.form.get("lang") or person.language
         return Moved(asking.afterwards or f"/me?lang={lang}", token)
 
     def register_page(self, asking: Asking) -> Shown | Moved:
@@ -79,7 +68,7 @@ class Entrance:
             "register",
             "/me/register",
             (
-                _address(asking),
+                address_field(asking),
                 Field(
                     "name",
                     word("称呼（可不填）", "What to call you (may stay empty)"),
@@ -174,11 +163,6 @@ def given_password(asking: Asking) -> str:
     if password != asking.form.get("again", ""):
         raise PeopleError("again-differs")
     return password
-
-
-def _address(asking: Asking) -> Field:
-    label = asking.word("电子邮箱", "E-mail address")
-    return Field("address", label, "email", given={"autocomplete": "username", "maxlength": "254"})
 
 
 def _shown(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hall_app.house.people import ROLES
-from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, Shown, form
+from hall_app.web.platform.counter import Asking, Counter, Moved, Page, Shown, form, sign_in_fields, signed_in
 from hall_app.web.platform.office.table import office_page
 
 __all__ = ["Reception"]
@@ -13,46 +13,24 @@ class Reception:
     """Signing in and out."""
 
     def __init__(self, counter: Counter) -> None:
-        self._people, self._pace = counter.people, counter.pace
+        self._counter, self._people = counter, counter.people
 
     def page(self, asking: Asking) -> Shown:
         return self._first(asking) if asking.guest else self.sign_in_page(asking)
 
     def sign_in_page(self, asking: Asking) -> Shown:
         word = asking.word
-        given = {"autocomplete": "username", "maxlength": "254"}
-        fields = (
-            Field("address", word("电子邮箱", "E-mail address"), "email", given=given),
-            Field(
-                "password", word("密码", "Password"), "password", given={"autocomplete": "current-password"}
-            ),
-            Field(
-                "code",
-                word("验证码（如已开启两步验证）", "Authenticator code (where one is set up)"),
-                needed=False,
-                given={"autocomplete": "one-time-code", "maxlength": "40"},
-            ),
-        )
         title = word("办公室", "Office")
         lead = word(
             "供本馆工作人员使用。第一位管理员由命令 hall admin create 任命。",
             "For the staff of the house. Its first administrator is named by the command hall admin create.",
         )
-        sent = form(asking, "sign-in", "/office/sign-in", fields, word("登录", "Sign in"))
+        sent = form(asking, "sign-in", "/office/sign-in", sign_in_fields(asking), word("登录", "Sign in"))
         main = f'<header><h1>{title}</h1><p class="lead">{lead}</p></header><div class="desk">{sent}</div>'
         return Shown(Page(title, main), path="/office")
 
     def sign_in(self, asking: Asking) -> Moved:
-        from hall_app.house.people.records import checked_address
-
-        given = asking.form
-        address = checked_address(given.get("address", ""))
-        self._pace.take("try from here", asking.network)
-        self._pace.take("account from here", address, asking.network)
-        self._pace.take("account", address)
-        _, token = self._people.sessions.sign_in(
-            address, given.get("password", ""), given.get("code", ""), office=True
-        )
+        _, token = signed_in(self._counter, asking)
         return Moved(asking.address("/office"), token)
 
     def sign_out(self, asking: Asking) -> Moved:
