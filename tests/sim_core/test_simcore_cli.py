@@ -162,7 +162,8 @@ def test_weave_tells_what_is_published_beside_what_it_reckons(tmp_path, capsys):
     """Inside the range that a source tells nothing is off; what it does not tell has no source."""
     text = (REPO / "assets/weaves/gauze.toml").read_text("utf-8")
     table = '[published]\nsource = "a bolt"\nareal_density = [0.010, 0.0154]\nopenness = 0.9\n\n[draft]'
-    (tmp_path / "gauze.toml").write_text(text.replace("[draft]", table), "utf-8")
+    yarns, weaving = text.partition("[published]")[0], text.partition("[draft]")[2]
+    (tmp_path / "gauze.toml").write_text(yarns + table + weaving, "utf-8")
     assert cli.main(["weave", str(tmp_path / "gauze.toml"), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)
     told = summary["published"]

@@ -79,13 +79,9 @@ def test_gauze_is_seen_through_and_satin_is_not(relaxed):
 
 
 SHEER = {"cotton", "cup-luo", "gauze", "gown-gauze", "heavy-sha", "luo", "ramie", "sha", "zhou"}
-# Worn by garments that were baked before sections relaxed: they close with the next bake.
-WORN = {"juan", "ling"}
 
 
-@pytest.mark.parametrize(
-    "name", [n if n not in WORN else pytest.param(n, marks=pytest.mark.xfail(strict=True)) for n in NAMES]
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_cloths_that_are_not_sheer_are_closed(relaxed, name):
     """At most half a per cent of the area is open; of what is meant to be seen through, at least a tenth.
 
