@@ -18,8 +18,9 @@ from running_hall import free_port
 
 from hall_app.content import load
 from hall_app.house.people import People
+from hall_app.house.safekeeping import Holdings
 from hall_app.web.platform import add_platform
-from survey.store import Store
+from survey import mount
 
 OPENING = 120  # [s]
 
@@ -30,6 +31,7 @@ class OpenCounter:
 
     url: str
     data: Path
+    content: Path
     people: People
     app: FastAPI
     suggestions: list[dict[str, Any]] = field(default_factory=list)
@@ -38,13 +40,25 @@ class OpenCounter:
 @contextlib.contextmanager
 def open_counter(work: Path) -> Iterator[OpenCounter]:
     port, app, data = free_port(), FastAPI(), work / "data"
-    people, store = People(data), Store(data)
-    counter = OpenCounter(f"http://127.0.0.1:{port}", data, people, app)
+    content = make_house(work / "content")
+    (content / "questionnaires").mkdir()
+    asked = Path(__file__).parents[2] / "assets" / "questionnaires" / "garment.toml"
+    (content / "questionnaires" / "garment.toml").write_bytes(asked.read_bytes())
+    people, survey = People(data), mount(app, content=content, data=data, problems=[])
+    counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app)
     house: Any = SimpleNamespace(
-        content=load(make_house(work / "content")),
+        content=load(content),
+        data=data,
+        quota=50_000_000,
+        queue=None,
+        preparing=(),
         bakes=dict,
+        given_up=lambda exhibit: False,
         survey_suggestions=lambda: counter.suggestions,
-        survey_tokens=lambda: store.tokens,
+        survey_tokens=lambda: survey.store.tokens,
+        survey_standing=survey.standing,
+        survey_made=survey.made,
+        holdings=Holdings(content, data, data),
     )
     add_platform(app, house, people)
     server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
@@ -58,5 +72,5 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
     finally:
         server.should_exit = True
         thread.join()
-        store.close()
+        survey.close()
         people.close()
