@@ -57,6 +57,25 @@ def test_pages_are_clean_and_fit(plain_hall, chromium, lang, width, signed_in):
     page.context.close()
 
 
+def test_an_exhibit_is_kept_from_its_close_up_by_key_alone(plain_hall, chromium):
+    page = page_of(chromium, member(plain_hall)[0], 1000)
+    for lang, name in (("zh", "收藏这件展品"), ("en", "Keep this exhibit")):
+        page.goto(f"{plain_hall.url}/?exhibit=box&lang={lang}")
+        way = page.get_by_role("dialog").get_by_role("link", name=name)
+        way.wait_for(timeout=120_000)
+        assert way.get_attribute("href") == f"/me/keep?exhibit=box&lang={lang}"
+        box = way.bounding_box()
+        assert min(box["width"], box["height"]) >= 44
+    page.locator("[data-testid=panel]").press("Tab")  # from the title to what comes first after it
+    assert page.evaluate("document.activeElement.dataset.testid") == "keep"
+    page.keyboard.press("Enter")
+    page.locator("#form-keep button").press("Enter")
+    page.get_by_text("It is among your favourites.").wait_for()
+    page.get_by_role("link", name="Back to the hall").click()
+    page.get_by_role("dialog").get_by_role("link", name="Keep this exhibit").wait_for(timeout=120_000)
+    page.context.close()
+
+
 def test_signing_up_and_out_by_key_alone(plain_hall, chromium):
     page = page_of(chromium, Visitor(plain_hall.url), 1000)
     refused = []

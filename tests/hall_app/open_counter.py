@@ -34,6 +34,7 @@ class OpenCounter:
     content: Path
     people: People
     app: FastAPI
+    house: Any = None
     suggestions: list[dict[str, Any]] = field(default_factory=list)
 
 
@@ -45,7 +46,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
     asked = Path(__file__).parents[2] / "assets" / "questionnaires" / "garment.toml"
     (content / "questionnaires" / "garment.toml").write_bytes(asked.read_bytes())
     people, survey = People(data), mount(app, content=content, data=data, problems=[])
-    counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app)
+    suggestions: list[dict[str, Any]] = []
     house: Any = SimpleNamespace(
         content=load(content),
         data=data,
@@ -54,12 +55,13 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
         preparing=(),
         bakes=dict,
         given_up=lambda exhibit: False,
-        survey_suggestions=lambda: counter.suggestions,
+        survey_suggestions=lambda: suggestions,
         survey_tokens=lambda: survey.store.tokens,
         survey_standing=survey.standing,
         survey_made=survey.made,
         holdings=Holdings(content, data, data),
     )
+    counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, suggestions)
     add_platform(app, house, people)
     server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
     thread = threading.Thread(target=server.run)

@@ -42,8 +42,8 @@ def description(readings: Iterable[Reading], deeds: Iterable[Deed]) -> dict[str,
         "info": {
             "title": "The office",
             "version": "1",
-            "description": "Sign in at /office; its cookie is the session. A POST names the hall as its Origin and brings "
-            "the seal of /api/office/me in X-Seal. Whoever may not gets 403, and it stands in the journal.",
+            "description": "Sign in at /office; its cookie is the session. A POST names the hall as its Origin and "
+            "brings the seal of /api/office/me in X-Seal. Whoever may not gets 403, and it stands in the journal.",
         },
         "paths": paths,
         "components": {
