@@ -19,7 +19,7 @@ FEW = 8
 LINES = (
     ("errors",),
     ("validation",),
-    ("metrics", "picture"),
+    ("metrics", "picture", "drawing"),
     ("gltf",),
     ("weave", "mesh"),
     ("cloth",),
