@@ -19,7 +19,7 @@ FEW = 8
 LINES = (
     ("errors",),
     ("validation",),
-    ("metrics", "picture", "drawing"),
+    ("metrics", "picture"),
     ("gltf",),
     ("weave", "mesh"),
     ("cloth",),

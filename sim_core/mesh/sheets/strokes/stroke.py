@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim_core.drawing import MOST_VISITED
+from sim_core.validation.svg import MOST_VISITED
 
 __all__ = ["Drawn", "Stroke", "visited"]
 

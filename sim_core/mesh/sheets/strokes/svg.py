@@ -12,10 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.drawing import PIXEL, check_bounds, curves_of, drawing_of, left_out_of, polylines, svg_root
 from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
 from sim_core.mesh.sheets.strokes.words import speaks, spoken
+from sim_core.validation.svg import (
+    PIXEL,
+    check_bounds,
+    curves_of,
+    drawing_of,
+    left_out_of,
+    polylines,
+    svg_root,
+)
 
 __all__ = ["svg_strokes"]
 

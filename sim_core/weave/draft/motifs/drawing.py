@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.drawing import (
+from sim_core.errors import FileProblem, WeaveError
+from sim_core.validation.svg import (
     LENGTHS,
     NUMBER,
     PIXEL,
@@ -23,7 +24,6 @@ from sim_core.drawing import (
     polylines,
     svg_root,
 )
-from sim_core.errors import FileProblem, WeaveError
 
 __all__ = ["Area", "Drawing", "areas_of", "read_drawing"]
 

@@ -1,11 +1,11 @@
 """SVG drawings from outside as polylines: pattern sheets and motifs are read by one reader.
 
-`tree` decodes a file, bounds its entities, depth and `<use>`, and turns nested viewports into groups; `svg` makes
+`tree` decodes a file, bounds its entities, depth and `<use>`, and turns nested viewports into groups; `shapes` makes
 polylines of what is drawn.
 """
 
-from sim_core.drawing.svg import PIXEL, curves_of, drawing_of, polylines
-from sim_core.drawing.tree import LENGTHS, MOST_VISITED, NUMBER, check_bounds, left_out_of, svg_root
+from sim_core.validation.svg.shapes import PIXEL, curves_of, drawing_of, polylines
+from sim_core.validation.svg.tree import LENGTHS, MOST_VISITED, NUMBER, check_bounds, left_out_of, svg_root
 
 __all__ = [
     "LENGTHS",

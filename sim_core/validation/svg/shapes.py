@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from sim_core.drawing.tree import LENGTHS, NUMBER, flatten_viewports
+from sim_core.validation.svg.tree import LENGTHS, NUMBER, flatten_viewports
 
 __all__ = ["PIXEL", "curves_of", "drawing_of", "polylines"]
 
