@@ -189,6 +189,21 @@ def test_pictures_are_drawn_anew_named_and_shown(counter, curator, chest):
     assert names[0] not in (chest / TOML).read_text("utf-8")
 
 
+@pytest.mark.slow
+def test_a_model_is_drawn_for_who_brought_it(counter, curator, chest):
+    box = (chest / "media/chest.glb").read_bytes()
+    assert curator.bring(chest.name, [("close.glb", box)], use="close").status == 200
+    page = curator.get(f"/office/collection/{chest.name}/preview?lang=en").text
+    assert f"/office/collection/{chest.name}/picture" in page
+    drawn = curator.get(f"/office/collection/{chest.name}/picture?name=media/close.glb")
+    assert drawn.headers["Content-Type"] == "image/jpeg"
+    pixels = Image.open(io.BytesIO(drawn.body)).convert("L")
+    low, high = pixels.crop((200, 250, 280, 350)).getextrema()
+    assert pixels.size == (480, 600)
+    assert high > low, "there is something in the middle of it"
+    assert curator.ask("GET", f"/office/collection/{chest.name}/picture?name=media/front.jpg").status == 404
+
+
 def test_history_tells_differences_and_undo_takes_them_back(curator, chest):
     key, before = chest.name, (chest / TOML).read_bytes()
     for title in ("First", "Second"):

@@ -9,7 +9,6 @@ from content_house import EXHIBIT, add_exhibit
 from hostile_files import hostile_files
 from office_clerk import clerk
 
-from hall_app.content.files import snapshot
 from hall_app.house.people import Role
 
 SHOWN = {"image/jpeg", "image/png", "image/webp", "video/mp4", "audio/mpeg", "audio/ogg", "model/gltf-binary"}
@@ -20,6 +19,10 @@ NAMES = [f"{number}-{use}" for number, (_, _, use) in enumerate(hostile_files())
 def curator(counter):
     add_exhibit(counter.content, "hostile", EXHIBIT.replace("z = -1.0", "z = 4.0"))
     return clerk(counter, counter.people, Role.CURATOR)
+
+
+def snapshot(folder) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def test_there_are_forty():

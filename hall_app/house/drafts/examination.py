@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from hall_app.content.files import revision, whole_digest
 from hall_app.content.floor.footprints import solids_of
 from hall_app.content.loading import load
 from hall_app.content.problems import ContentError, Problem
+from hall_app.house.drafts.beside import beside
 
 __all__ = ["Examination"]
 
@@ -86,28 +86,21 @@ class _Walk:
     def _walk(self, content: Path, files: dict[str, Any]) -> None:
         if _same_floor(content, files):
             return
-        context = get_context("spawn")
-        here, there = context.Pipe(duplex=False)
-        with here:
-            process = context.Process(target=_reached, args=(there, content, files), daemon=True)
-            process.start()
-            there.close()
-            try:
-                self._problems = here.recv()
-            except EOFError:
-                what = "the ways through the hall could not be walked"
-                self._problems = [Problem("plan.toml", "", what, "try again, or run hall check")]
-            process.join()
+        found = beside(_reached, content, files)
+        if found is None:
+            what = "the ways through the hall could not be walked"
+            found = [Problem("plan.toml", "", what, "try again, or run hall check")]
+        self._problems = found
 
 
-def _reached(answer: Any, content: Path, files: Mapping[str, Any]) -> None:
-    """Send what a walk finds that one through the hall as it is does not."""
+def _reached(content: Path, files: Mapping[str, Any]) -> list[Problem]:
+    """What a walk finds that one through the hall as it is does not."""
     with likeness_of(content, files) as whole:
         found = check(whole, STANDING)
     if found:
         known = set(check(content, STANDING))
         found = [problem for problem in found if problem not in known]
-    answer.send(found)
+    return found
 
 
 def _same_floor(content: Path, files: Changed) -> bool:

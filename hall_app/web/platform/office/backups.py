@@ -154,7 +154,7 @@ class _Rooms:
             why = ""
         lines = "".join(self._line(asking, number, one) for number, one in enumerate(self.all(asking)))
         none = f"<p>{word('还没有备份。', 'There is none yet.')}</p>"
-        listed = f'<ul class="programme">{lines}</ul>' if lines else none
+        listed = f'<ul class="programme kept">{lines}</ul>' if lines else none
         return office_page(asking, title, f"{why}{make}{listed}", path="backups", lead=told)
 
     def _line(self, asking: Asking, number: int, one: dict[str, Any]) -> str:
@@ -173,7 +173,7 @@ class _Rooms:
         goes = button(asking, "remove", f"{at}/remove", word("删除", "Remove"), about=name, hidden={})
         fetch = f'<a class="way" href="{asking.address(f"{at}/file")}">{word("下载", "Download")}</a>'
         opened = " open" if asking.refusal and asking.form.get("of") == f"restore-{number}" else ""
-        return f"""<li><h2 class="small"><code>{escape(name)}</code></h2>
+        return f"""<li><h2><code>{escape(name)}</code></h2>
 <p class="quiet">{one["size"] / 1e6:.1f} MB</p><div class="deeds">{fetch}{goes}</div>
 <details{opened}><summary>{word("恢复…", "Restore …")}</summary><div class="desk">{again}</div></details></li>"""
 

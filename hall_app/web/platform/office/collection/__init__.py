@@ -41,6 +41,9 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         Reading(
             f"{_ONE}/file", "preview", uploads.facts, uploads.shown, {"name": "of a file of the exhibit"}
         ),
+        Reading(
+            f"{_ONE}/picture", "preview", uploads.facts, uploads.picture, {"name": "of a GLB of the exhibit"}
+        ),
         Reading(f"{_ONE}/preview", "preview", previews.told, previews.page),
         Reading(f"{_ONE}/place", "place", places.where, places.page),
         Reading(f"{_ONE}/history", "draft", history.all, history.page),

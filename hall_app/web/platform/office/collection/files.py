@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import posixpath
+import threading
 from collections.abc import Mapping
 from html import escape
 from typing import Any
 
-from hall_app.content.files import BAKED
+from hall_app.content.files import BAKED, replace_file, whole_digest
 from hall_app.content.views.scene import media_type
-from hall_app.house.drafts import TEXT_FILES, USES, Taken, take_in
+from hall_app.house.drafts import TEXT_FILES, USES, Taken, beside, portrait, take_in
 from hall_app.house.people import PeopleError
 from hall_app.web.collection.table import Change
 from hall_app.web.pages.frame import part
@@ -18,9 +19,10 @@ from hall_app.web.platform.office.collection.desk import Desk
 from hall_app.web.platform.office.collection.keys import changes_of, fields_of, media_keys
 from hall_app.web.platform.office.table import office_page
 
-__all__ = ["MOST_FILES", "Uploads", "file_address", "media_part"]
+__all__ = ["MOST_FILES", "Uploads", "drawn_model", "file_address", "media_part", "shown_medium"]
 
 MOST_FILES = 12  # at once
+_DRAWING = threading.Lock()
 _MEDIA = {"picture": "picture", "film": "video", "sound": "audio"}  # use -> kind in exhibit.toml
 
 
@@ -85,6 +87,24 @@ class Uploads:
         """The file itself, as it is to be; nothing in it runs, and it is a page of no kind."""
         name, path = self._asked(asking)
         return Download(path, posixpath.basename(name), media_type(name), inline=True)
+
+    def picture(self, asking: Asking) -> Download:
+        """A model drawn, kept for the next who asks; one at a time, since that takes seconds."""
+        name, path = self._asked(asking)
+        if not name.endswith(".glb"):
+            raise PeopleError("no-file")
+        kept = self._desk.house.data / "portraits" / f"{whole_digest(path)}.jpg"
+        if not kept.is_file():
+            if not _DRAWING.acquire(blocking=False):
+                raise PeopleError("too-often", seconds=10)
+            try:
+                drawn = beside(portrait, path)
+            finally:
+                _DRAWING.release()
+            if drawn is None:
+                raise PeopleError("file-broken", name=name, why="it cannot be drawn")
+            replace_file(kept, drawn)
+        return Download(kept, f"{posixpath.basename(name)}.jpg", "image/jpeg", inline=True)
 
     def _asked(self, asking: Asking):
         key, name = self._desk.key(asking), asking.query.get("name", "")
@@ -191,14 +211,33 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
             if own and len(names) == 1
             else ""
         )
-        title = f"{number + 1} · <code>{escape(', '.join(map(str, names)))}</code>"
+        told = one.get("caption") or one.get("alt")
+        words_of = str(told.get(asking.lang, "")) if isinstance(told, dict) else ""
+        named = f'<code class="quiet">{escape(", ".join(map(str, names)))}</code>'
+        title = f"<b>{escape(words_of or str(number + 1))}</b> · {named}"
         parts.append(
             f"<li>{shown_medium(asking, key, one, names)}"
             f"<details><summary>{title}</summary>{words}{goes}</details></li>"
         )
     title = word("图片、影片、声音与模型", "Pictures, films, sounds, models")
+    models = table.get("models")
+    own = (
+        [name for name in (models or {}).values() if name in desk.drafts.files(key)]
+        if isinstance(models, dict)
+        else []
+    )
+    drawn = "".join(f"<figure>{drawn_model(asking, key, name)}</figure>" for name in own)
+    parts += [f'<li class="drawn">{drawn}</li>'] if drawn else []
     listed = f'<ul class="media">{"".join(parts)}</ul>' if parts else ""
     return part("media", title, f'{listed}<div class="desk">{_upload_form(asking, key)}</div>')
+
+
+def drawn_model(asking: Asking, key: str, name: str) -> str:
+    """A model as a picture of it."""
+    at = escape(asking.address(f"/office/collection/{key}/picture", name=name))
+    told = asking.word("模型的形体", "Shape of the model")
+    return f'''<img src="{at}" alt="{told} {escape(name)}" loading="lazy" width="480" height="600">
+<figcaption><code>{escape(name)}</code></figcaption>'''
 
 
 def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[Any]) -> str:

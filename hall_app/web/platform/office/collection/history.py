@@ -65,7 +65,9 @@ class History:
         back = f"/office/collection/{key}" if known else "/office/collection"
         way = f'<p class="doors"><a href="{asking.address(back)}">{word("返回", "Back")}</a></p>'
         title = f"{self._desk.title(key, asking.lang)} · {word('历史', 'History')}"
-        inside = f'{refusal(asking)}<ol class="programme">{told}</ol>' if told else refusal(asking) + none
+        inside = (
+            f'{refusal(asking)}<ol class="programme kept">{told}</ol>' if told else refusal(asking) + none
+        )
         return office_page(asking, title, inside + way, path=f"collection/{key}/history")
 
     def _one(self, asking: Asking, key: str, one: Revision, names: dict[str, str]) -> str:
@@ -80,7 +82,7 @@ class History:
                 about=str(one.id), hidden={"revision": str(one.id)},
             )  # fmt: skip
         return f"""<li><p class="kicker">{told_time(one.at, asking.lang)} · {escape(names.get(one.who, one.who))}</p>
-<h2 class="small">{act} · {len(one.files)} {many}</h2>{parts}{undo}</li>"""
+<h2>{act} · {len(one.files)} {many}</h2>{parts}{undo}</li>"""
 
     def _file(self, asking: Asking, name: str, before: str, after: str) -> str:
         word = asking.word

@@ -25,6 +25,15 @@ __all__ = ["Key", "changes_of", "fields_of", "keys_of", "media_keys"]
 
 LANGUAGES = ("zh", "en")
 Path = tuple[str | int, ...]
+_PLAIN = {
+    "place.x",
+    "place.z",
+    "body.radius",
+    "body.size",
+    "body.height",
+    "show.nearest",
+    "licence",
+}  # labels say all
 _TABLES: Mapping[str, type[BaseModel]] = {
     "place": Place,
     "body": Body,
@@ -152,7 +161,8 @@ def _label(asking: Asking, key: Key) -> tuple[str, str]:
     """Words for the key; where the file has a better description, in English, as a hint."""
     name = ".".join(part for part in key.path if isinstance(part, str))
     label = asking.word(*WORDS.get(name, (name, name)))
-    return label, key.told if asking.lang == "en" and key.kind in ("text", "number", "numbers") else ""
+    told = asking.lang == "en" and key.kind in ("text", "number", "numbers") and name not in _PLAIN
+    return label, key.told if told else ""
 
 
 def changes_of(

@@ -107,7 +107,7 @@ class Listing:
             if asking.person.may("bake")
             else ""
         )
-        inside = f"""<ul class="cards">{cards}</ul>{bakes}<h2 class="small">{word("新展品", "A new exhibit")}</h2>
+        inside = f"""<ul class="pieces">{cards}</ul>{bakes}<h2 class="small">{word("新展品", "A new exhibit")}</h2>
 <div class="desk">{new}</div>"""
         return office_page(asking, word("藏品", "Collection"), inside, path="collection", lead=told)
 

@@ -15,7 +15,7 @@ from hall_app.content.views.markdown import html_of
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Shown, form
 from hall_app.web.platform.office.collection.desk import Desk, listed_problems, refusal
-from hall_app.web.platform.office.collection.files import file_address, shown_medium
+from hall_app.web.platform.office.collection.files import drawn_model, file_address, shown_medium
 from hall_app.web.platform.office.collection.words import WORDS
 from hall_app.web.platform.office.table import office_page
 
@@ -104,5 +104,6 @@ def _models(asking: Asking, desk: Desk, exhibit: Exhibit) -> str:
             continue
         size = " × ".join(f"{high - low:.2f}" for low, high in zip(info.low, info.high, strict=True))
         triangles = asking.word(f"{info.triangles} 个三角形", f"{info.triangles} triangles")
-        lines.append(f"<li><code>{escape(name)}</code> · {triangles} · {size} m</li>")
-    return f'<ul class="names">{"".join(lines)}</ul>' if lines else ""
+        shown = drawn_model(asking, exhibit.id, name)
+        lines.append(f'<figure>{shown}<p class="quiet">{triangles} · {size} m</p></figure>')
+    return f'<div class="gallery">{"".join(lines)}</div>' if lines else ""
