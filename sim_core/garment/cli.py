@@ -55,6 +55,9 @@ An outfit file:
   do = "sew"                          # sew, weld, pin, release, close, pose, settle, rest
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label
                                       # close: ties, or belt = { length = 0.72, mark = "waist", rise = 0.0 }
+  [[layer.then]]                      # steps that follow on the usual ones, or on those of [[layer.step]]
+  do = "rest"
+  seconds = 6.0
 
 Files are found beside the folder `outfits` the file lies in, or in --content. What cannot be dressed is refused
 before anything runs. Interrupted, the same command goes on where it stopped and comes to the same result: with --out,

@@ -40,7 +40,7 @@ LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 4096  # of a texture on any device
-CELL_QUALITY, FIGURE_QUALITY = 88, 90  # JPEG
+CELL_QUALITY, FIGURE_QUALITY = 82, 88  # JPEG
 
 
 @dataclass(frozen=True)
@@ -283,10 +283,11 @@ def _cloth_close(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dic
     if sheer:
         picture = np.dstack([picture, maps.opacity])
     tile = [1e-3 / float(maps.size[0]), 1e-3 / float(maps.size[1])]
+    quality = None if sheer else FIGURE_QUALITY  # JPEG knows no openness
     material["pbrMetallicRoughness"]["baseColorTexture"] = _once(
-        textures, _look_of(picture), lambda: glb.texture(picture, tile)
+        textures, _look_of(picture), lambda: glb.texture(picture, tile, quality=quality)
     )
-    normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile))
+    normal = _once(textures, "normal", lambda: glb.texture(maps.normal, tile, quality=FIGURE_QUALITY))
     material["normalTexture"] = {**normal, "scale": 1.0}
     _gleam(glb, material, maps, textures, far=False)
     if isinstance(maps, FiguredMaps):

@@ -7,6 +7,8 @@ Everything goes through the commands of `simcore learn`, each run in a process o
 them side by side; interrupted or killed, the same command goes on. Steps, in this order: `data` (34,000 frames),
 `train` (three seeds of ours, one of each rival), `evaluate` (rows on sequences held back, the reference over half of
 each), `more` (two more seeds of the best rival), `reconstruct` (the paper's own task, from .6 and .25 of the vertices).
+A scene takes about two hours of a core; --json keeps what its file tells of scenes that FOLDER does not hold, so that
+the three need not be made in one go, nor on one machine.
 --quick: sheets and sequences of a size that tries the way out in minutes; their figures say nothing.
 """
 
@@ -159,12 +161,13 @@ def merged(course: Course, scene: str) -> dict:
 
 def summary(course: Course, scenes: Sequence[str]) -> dict:
     """What the tables are written from."""
-    made: dict = {"cores": os.cpu_count(), "machine": platform.machine(), "scenes": {}}
+    made: dict = {"scenes": {}}
     for scene in scenes:
         if not course.result(scene, "data").is_file():
             continue
         found = merged(course, scene) | {"data": json.loads(course.result(scene, "data").read_text("utf-8"))}
         found["data"].pop("folder", None)
+        found |= {"cores": os.cpu_count(), "machine": platform.machine()}
         trained = sorted((course.folder / "weights").glob(f"{scene}-*.json"))
         keep = ("row", "seed", "share", "updates", "seconds", "parameters", "device")
         told = [json.loads(path.read_text("utf-8")) for path in trained]
@@ -228,7 +231,10 @@ def main() -> int:
     found = summary(course, scenes)
     print(table(found))
     if args.json:
-        args.json.write_text(json.dumps(found, indent=1) + "\n", "utf-8")
+        before = json.loads(args.json.read_text("utf-8"))["scenes"] if args.json.is_file() else {}
+        known = before | found["scenes"]
+        told = {"scenes": {scene: known[scene] for scene in SCENES if scene in known}}
+        args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
     return 0
 
 

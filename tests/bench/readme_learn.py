@@ -47,7 +47,7 @@ def scene_table(scene: str, one: dict[str, Any]) -> list[str]:
     lines = [
         f"**{scene}**: {data['sequences']} sequences, {data['frames']:,} frames, {data['coarse_vertices'][0]:,} → "
         f"{data['fine_vertices'][0]:,} vertices; coarse physics {data['coarse_ms']:.1f} ms a frame, fine "
-        f"{data['fine_ms']:.0f} ms",
+        f"{data['fine_ms']:.0f} ms; {one['cores']} cores ({one['machine']}), each command on one",
         "",
         "| row | mean [mm] | Hausdorff [mm] | p95 [mm] | normals | network [ms] | whole [ms] |",
         "|-|-|-|-|-|-|-|",
@@ -107,7 +107,7 @@ def reconstruction(found: dict[str, Any]) -> list[str]:
 
 
 def tables(found: dict[str, Any]) -> list[str]:
-    lines = [f"{found['cores']} cores ({found['machine']}), each command on one.", ""]
+    lines = []
     for scene, one in found["scenes"].items():
         lines += scene_table(scene, one)
     lines += compared(found)

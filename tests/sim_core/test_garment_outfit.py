@@ -143,7 +143,19 @@ def test_steps_replace_the_usual_ones(tmp_path: Path) -> None:
     assert layer.program.contact == default_program("flat").contact
 
 
+def test_steps_follow_on_the_usual_ones(tmp_path: Path) -> None:
+    text = ROBE + '[[layer.then]]\ndo = "rest"\nseconds = 2.0\n'
+    (layer,) = load_outfit(written(tmp_path, text), ASSETS).layers
+    *usual, last = layer.program.steps
+    assert tuple(usual) == default_program("flat").steps
+    assert (last.do, last.seconds) == ("rest", 2.0)
+
+
 BAD = {
+    "a tie that follows and is none": (
+        ROBE + '[[layer.then]]\ndo = "close"\nties = ["x"]\n[[layer.then]]\ndo = "rest"\nseconds = 1.0\n',
+        "layer.1.then.1.ties",
+    ),
     "neither": (SCARF.replace("[stand]\nheight = 1.5\n", ""), "wearer: give either"),
     "both": ('wearer = "mannequins/woman.npz"\n' + SCARF, "wearer: give either"),
     "no layer": ('wearer = "mannequins/woman.npz"\n', "layer"),

@@ -288,6 +288,24 @@ def test_dense_cloth_is_opaque_and_its_pores_are_dark(tmp_path: Path, precision)
         assert picture[:8, :8].mean() < 0.75 * picture[8:, 8:].mean()
 
 
+def test_pictures_of_a_closed_cloth_are_small_and_what_its_maps_say(tmp_path: Path) -> None:
+    """JPEG at full chroma: of a woven relief a level or two is lost."""
+    maps = plain_maps()
+    run = np.linspace(0, 8 * np.pi, maps.normal.shape[0])
+    maps.normal[..., 0] = np.rint(128 + 16 * np.sin(run)[:, None])
+    maps.normal[..., 1] = np.rint(128 + 16 * np.cos(run)[None, :])
+    write_glb(tmp_path / "g.glb", [Clothed(arched(0.05), maps)], precision="close")
+    document, blob = chunks(tmp_path / "g.glb")
+    source = document["textures"][document["materials"][0]["normalTexture"]["index"]]["source"]
+    assert document["images"][source]["mimeType"] == "image/jpeg"
+    view = document["bufferViews"][document["images"][source]["bufferView"]]
+    start = view.get("byteOffset", 0)
+    picture = np.asarray(Image.open(BytesIO(blob[start : start + view["byteLength"]]))).astype(float)
+    off = np.abs(picture - maps.normal)
+    assert off.mean() < 2.0
+    assert np.percentile(off, 99) < 6.0
+
+
 def test_glb_is_read_by_another_library(tmp_path: Path) -> None:
     garment = arched(0.04)
     write_glb(tmp_path / "g.glb", [Clothed(garment, plain_maps(120))], precision="close")

@@ -20,6 +20,7 @@ from sim_core.garment.placement import Flat, Ground, Wrapped
 __all__ = ["check_fits", "first_positions"]
 
 BESIDE = 0.02  # [m] above and below a tie that its girth is taken from
+COLLAR = 0.1  # [m] from the shoulder fold, within which a tie goes round the neck and not round the trunk
 ROOM = 0.01  # [m] more than the girth of what passes an opening
 ARMPIT = 0.03  # [m] from where arms begin to where they are round
 STATION = 0.01  # [m] between the sections that are measured
@@ -134,7 +135,10 @@ def _check_ties(key: str, layer: Layer, body: np.ndarray, trunk: np.ndarray) -> 
             continue  # of both sides at once: it goes round nothing
         (a,), (b,) = ends
         cloth_way = float(dijkstra(ways, directed=False, indices=int(cloth.closed[a]))[cloth.closed[b]])
-        height = top - float(np.mean([tie.a.place[1], tie.b.place[1]]))
+        fall = float(np.mean([tie.a.place[1], tie.b.place[1]]))
+        if fall < COLLAR:
+            continue  # it closes a collar: the neck has been measured
+        height = top - fall
         near = body[trunk][np.abs(body[trunk, 1] - height) < BESIDE]
         girth, reach = hull_girth(near[:, [0, 2]]), cloth_way + tie.length
         if np.isfinite(cloth_way) and reach < girth:

@@ -174,9 +174,9 @@ class _Reader:
                 f"{key}.pattern", f"{table.pattern} is no half – along_path needs mirror = true"
             )
         program = default_program("hung" if way == "flat" and stand is not None else way)
-        if table.step:
-            steps = tuple(self.step(f"{key}.step.{k}", step, pattern) for k, step in enumerate(table.step, 1))
-            program = replace(program, steps=steps)
+        steps = self._steps(f"{key}.step", table.step, pattern) or program.steps
+        then = self._steps(f"{key}.then", table.then, pattern)
+        program = replace(program, steps=(*steps, *then))
         if table.start is not None:
             program = self._begun(f"{key}.start", table.start, way, program)
         _check_order(self, key, program.steps, pattern)
@@ -220,6 +220,9 @@ class _Reader:
             return pose_named(told, where) if isinstance(told, str) else Pose.of(told, where)
         except SimCoreError as error:
             raise FileProblem(str(error)) from error
+
+    def _steps(self, key: str, tables: Sequence[StepTable], pattern: Pattern) -> tuple[Step, ...]:
+        return tuple(self.step(f"{key}.{k}", step, pattern) for k, step in enumerate(tables, 1))
 
     def step(self, key: str, table: StepTable, pattern: Pattern | None) -> Step:
         spots: list[Any] = []

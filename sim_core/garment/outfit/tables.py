@@ -189,6 +189,7 @@ class LayerTable(Table):
     step: list[StepTable] = Field(
         [], max_length=200, description="dressing steps; else those of its way of placing"
     )
+    then: list[StepTable] = Field([], max_length=200, description="dressing steps that follow on those")
 
 
 class StandTable(Table):
