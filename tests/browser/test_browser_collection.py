@@ -5,6 +5,7 @@ import urllib.request
 
 import pytest
 from bench.axe import violations
+from bench.browser import soon
 from full_matrix import by_day
 from plain_hall import write_plain_hall
 from read_pages import read_whole
@@ -65,11 +66,13 @@ def test_a_curator_s_day(hall, chromium, tmp_path):
 
     upload("hall", hall.content / "exhibits/box/box.glb")
     upload("picture", tmp_path / "Front view.jpg", tmp_path / "back.png", zh="一只蓝匣", en="A blue box")
-    shown = page.locator(".media img")
+    shown = page.locator(".media > li > img")
     assert shown.count() == 2
-    page.wait_for_function(
-        "[...document.querySelectorAll('.media img')].every((one) => one.naturalWidth > 0)"
-    )
+    widths = "[...document.querySelectorAll('.media > li > img')].map((one) => one.naturalWidth)"
+    soon(page, lambda: page.evaluate(widths) == [1600, 900])
+    page.locator(".drawn img").scroll_into_view_if_needed()
+    drawn = "document.querySelector('.drawn img').naturalWidth"
+    soon(page, lambda: page.evaluate(drawn) == 480, patience=120)
     page.get_by_role("link", name="Place on the plan").click()
     page.get_by_role("img", name="Plan").wait_for()
     drag(page)
@@ -80,7 +83,7 @@ def test_a_curator_s_day(hall, chromium, tmp_path):
     page.get_by_role("link", name="Back to the exhibit").click()
     page.get_by_role("link", name="Preview").click()
     page.get_by_role("article").get_by_role("heading", name="Blue box").wait_for()
-    assert page.locator("article img").count() == 2
+    assert page.locator("article img").count() == 3
     assert page.locator(".faults").count() == 0
     assert "blue-box" not in exhibits(hall), "a draft is not in the hall"
     page.get_by_role("button", name="Publish").click()
