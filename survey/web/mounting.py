@@ -153,7 +153,7 @@ class Mounted:
         from survey.web.api import Wanted, find_questionnaire
 
         asked = find_questionnaire(Published(self.questionnaires, self.store), key)
-        told = Wanted().model_dump() | dict(settings or {})
+        told = Wanted.model_validate({}).model_dump() | dict(settings or {})
         job = {"task": task, "questionnaire": asked.document(), "k": None, "settings": told}
         data = self.jobs.made(job)
         self.store.audit.note("export", f"{asked.id} version {asked.version} {task}, office")

@@ -147,9 +147,10 @@ def _in_srgb(source):
     if profile and source.mode in ("RGB", "RGBA"):
         try:
             own = ImageCms.ImageCmsProfile(io.BytesIO(profile))
-            picture = ImageCms.profileToProfile(picture, own, ImageCms.createProfile("sRGB"), outputMode=mode)
+            srgb = ImageCms.createProfile("sRGB")
+            picture = ImageCms.profileToProfile(picture, own, srgb, outputMode=mode) or picture
         except (ImageCms.PyCMSError, OSError, ValueError):
-            picture = source.convert(mode)  # a profile that nobody can read says nothing
+            pass  # a profile that nobody can read says nothing
     plain = Image.new(mode, picture.size)
     plain.paste(picture)
     return plain

@@ -16,14 +16,14 @@ _FOV = 28.0  # [degrees]
 
 
 def portrait(path: Path) -> bytes:
-    """A picture of the GLB, as JPEG: its shape, each part in its mean colour. Raises what a foreign file brings about."""
+    """A picture of the GLB, as JPEG: its shape, each part in its mean colour. Raises what foreign files bring about."""
     import trimesh
     from PIL import Image
 
     from sim_core.picture import Camera, Surface, render
 
     surfaces = []
-    for mesh in trimesh.load(path, file_type="glb", force="scene").dump():
+    for mesh in trimesh.load_scene(path, file_type="glb").dump():
         faces = np.asarray(getattr(mesh, "faces", ()), np.int32)
         if len(faces):
             surfaces.append(Surface(np.asarray(mesh.vertices, float), faces, _colour(mesh.visual)))

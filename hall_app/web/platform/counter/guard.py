@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hmac
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from dataclasses import dataclass
 from hashlib import sha256
 from urllib.parse import parse_qsl, urlsplit
@@ -95,7 +95,7 @@ async def _with_files(request: Request, takes: Takes) -> Form:
     return form
 
 
-async def _bounded(request: Request, takes: Takes) -> AsyncIterator[bytes]:
+async def _bounded(request: Request, takes: Takes) -> AsyncGenerator[bytes, None]:
     size = 0
     async for part in request.stream():
         size += len(part)

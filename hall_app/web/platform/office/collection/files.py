@@ -23,6 +23,7 @@ __all__ = ["MOST_FILES", "Uploads", "drawn_model", "file_address", "media_part",
 
 MOST_FILES = 12  # at once
 _DRAWING = threading.Lock()
+_ASKED = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
 _MEDIA = {"picture": "picture", "film": "video", "sound": "audio"}  # use -> kind in exhibit.toml
 
 
@@ -95,15 +96,16 @@ class Uploads:
             raise PeopleError("no-file")
         kept = self._desk.house.data / "portraits" / f"{whole_digest(path)}.jpg"
         if not kept.is_file():
-            if not _DRAWING.acquire(blocking=False):
+            if not _ASKED.acquire(blocking=False):
                 raise PeopleError("too-often", seconds=10)
             try:
-                drawn = beside(portrait, path)
+                with _DRAWING:
+                    if not kept.is_file() and (drawn := beside(portrait, path)) is not None:
+                        replace_file(kept, drawn)
             finally:
-                _DRAWING.release()
-            if drawn is None:
+                _ASKED.release()
+            if not kept.is_file():
                 raise PeopleError("file-broken", name=name, why="it cannot be drawn")
-            replace_file(kept, drawn)
         return Download(kept, f"{posixpath.basename(name)}.jpg", "image/jpeg", inline=True)
 
     def _asked(self, asking: Asking):

@@ -117,7 +117,7 @@ def drawing(content: Content, key: str, table: dict[str, Any], name: str) -> str
 
 def _own(table: dict[str, Any]) -> str:
     """The exhibit itself, in its own measures about its place, with its front marked."""
-    place, body = (table.get(name) if isinstance(table.get(name), dict) else {} for name in ("place", "body"))
+    place, body = _table(table.get("place")), _table(table.get("body"))
     x, z, facing = (_number(place.get(name)) for name in ("x", "z", "facing"))
     size = body.get("size")
     if isinstance(size, list) and len(size) == 2:
@@ -131,6 +131,10 @@ def _own(table: dict[str, Any]) -> str:
     return (
         f'<g class="own" id="own" transform="translate({x:g} {z:g}) rotate({-facing:g})">{shape}{arrow}</g>'
     )
+
+
+def _table(value: Any) -> dict[str, Any]:
+    return value if isinstance(value, dict) else {}
 
 
 def _shape(one: Footprint, kind: str, name: str) -> str:
