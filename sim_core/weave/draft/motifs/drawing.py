@@ -232,8 +232,8 @@ def _stroked(lines: list[tuple[np.ndarray, bool]], width: float, values: Mapping
 
     if not 0 <= width <= 4000:
         raise ValueError("a stroke-width out of all range – give it in the units of the drawing")
-    cap = CAPS.get(str(values.get("stroke-linecap", "butt")), "flat")
-    join = JOINS.get(str(values.get("stroke-linejoin", "miter")), "mitre")
+    cap: Any = CAPS.get(str(values.get("stroke-linecap", "butt")), "flat")
+    join: Any = JOINS.get(str(values.get("stroke-linejoin", "miter")), "mitre")
     strokes = [
         shapely.LinearRing(points) if closed and len(points) > 2 else shapely.LineString(points)
         for points, closed in lines
@@ -253,7 +253,7 @@ def _filled(rings: list[np.ndarray], rule: str) -> Any:
         return shapely.Polygon()
     if len(rings) == 1 and (whole := shapely.Polygon(rings[0])).is_valid:
         return whole
-    edges = shapely.multilinestrings([shapely.linearrings(ring) for ring in rings])
+    edges: Any = shapely.MultiLineString([shapely.LinearRing(ring) for ring in rings])
     if not shapely.is_simple(edges):
         many = sum(map(len, rings))
         if many > MOST_CROSSED or _crossings(rings) > MOST_CROSSED:
@@ -267,7 +267,7 @@ def _filled(rings: list[np.ndarray], rule: str) -> Any:
     inner = shapely.get_coordinates([face.representative_point() for face in faces])
     if len(faces) * sum(map(len, rings)) > MOST_WORK:
         raise ValueError(f"a path of {len(rings):,} rings – part it into several paths")
-    turns = sum(_winding(ring, inner) for ring in rings)
+    turns = np.sum([_winding(ring, inner) for ring in rings], axis=0)
     chosen = turns % 2 == 1 if rule == "evenodd" else turns != 0
     return shapely.union_all([face for face, there in zip(faces, chosen, strict=True) if there])
 
