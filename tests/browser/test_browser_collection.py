@@ -131,6 +131,9 @@ def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
     ).encode()
     assert clerks.ask("POST", "/api/office/collection/box/fields", draft, told).status == 200
     assert clerks.ask("POST", "/api/office/backups", b"{}", told).status == 200
+    assert (
+        clerks.get("/office/collection/box/picture?name=box.glb").status == 200
+    )  # drawn before the pages ask
     page = page_of(chromium, clerks, width)
     box = "/collection/box"
     parts = (

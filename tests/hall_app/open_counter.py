@@ -53,6 +53,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
         quota=50_000_000,
         queue=None,
         preparing=(),
+        own_problems=(),
         bakes=dict,
         given_up=lambda exhibit: False,
         survey_suggestions=lambda: suggestions,

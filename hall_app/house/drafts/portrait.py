@@ -23,7 +23,8 @@ def portrait(path: Path) -> bytes:
     from sim_core.picture import Camera, Surface, render
 
     surfaces = []
-    for mesh in trimesh.load_scene(path, file_type="glb").dump():
+    meshes: Any = trimesh.load_scene(path, file_type="glb").dump()
+    for mesh in meshes:
         faces = np.asarray(getattr(mesh, "faces", ()), np.int32)
         if len(faces):
             surfaces.append(Surface(np.asarray(mesh.vertices, float), faces, _colour(mesh.visual)))

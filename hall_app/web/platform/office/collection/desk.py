@@ -53,10 +53,10 @@ class Desk:
         return text if isinstance(text, str) and text.strip() else key
 
     def problems(self, key: str) -> list[Problem]:
-        """What the draft would bring about and, without one, what is wrong with the exhibit in the hall."""
+        """What the draft would bring about and, without one, what the open hall says of the exhibit."""
         if self.drafts.of(key) is not None:
             return self.examination.problems(self.drafts.changes(key))
-        return [one for one in self.examination.now() if one.file.startswith(f"exhibits/{key}/")]
+        return [one for one in self.house.own_problems if one.file.startswith(f"exhibits/{key}/")]
 
     def change(
         self,

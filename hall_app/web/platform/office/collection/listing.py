@@ -42,7 +42,7 @@ class Listing:
         desk, drafts = self._desk, self._desk.drafts.all()
         home = desk.drafts.content / "exhibits"
         published = {path.name for path in home.iterdir() if path.is_dir()} if home.is_dir() else set()
-        wrong = [one.file for one in desk.examination.now()]
+        wrong = [one.file for one in desk.house.own_problems]
         return [
             {
                 "id": key,
