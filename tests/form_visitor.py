@@ -13,7 +13,7 @@ class Forms(HTMLParser):
     def __init__(self, text: str) -> None:
         super().__init__()
         self.all: list[tuple[str, str, dict[str, str]]] = []
-        self._choices = ""
+        self._choices = self._typed = ""
         self.feed(text)
 
     def handle_starttag(self, tag, attrs) -> None:
@@ -26,8 +26,19 @@ class Forms(HTMLParser):
         elif tag in ("select", "textarea") and self.all:
             self._choices = given["name"]
             self.all[-1][2].setdefault(self._choices, "")
+            self._typed = self._choices if tag == "textarea" else ""
         elif tag == "option" and "selected" in given:
             self.all[-1][2][self._choices] = given["value"]
+
+    def handle_data(self, data) -> None:
+        if self._typed and self.all:
+            self.all[-1][2][self._typed] += data
+
+    def handle_endtag(self, tag) -> None:
+        if tag == "textarea" and self._typed:
+            fields = self.all[-1][2]
+            fields[self._typed] = fields[self._typed].removeprefix("\n")
+            self._typed = ""
 
 
 @dataclass

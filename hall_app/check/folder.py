@@ -24,7 +24,7 @@ from hall_app.content.folder import Content
 from hall_app.content.loading import load, load_exhibit_problems
 from hall_app.content.problems import ContentError, Problem
 
-__all__ = ["CHECKS", "QUICK", "check", "hints"]
+__all__ = ["CHECKS", "EDITED", "QUICK", "STANDING", "check", "hints"]
 
 # What is looked at beyond loading: each function takes the content and returns problems.
 CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
@@ -47,6 +47,12 @@ CHECKS: tuple[Callable[[Content], list[Problem]], ...] = (
 
 # What changed words can bring about: seconds less than all of it, which measures bakes and walks through the hall.
 QUICK = (word_problems, media_problems, questionnaire_problems, unused_problems)
+
+# What an exhibit's changed files can bring about, its place aside: what is baked follows by itself, halls stay.
+EDITED = (*QUICK, writing_problems, scale_problems, budget_problems, clip_problems, scan_problems)
+
+# And its place: whether everything is still reached on foot, seconds of work.
+STANDING = (reach_problems,)
 
 
 def check(folder: Path, looks: Iterable[Callable[[Content], list[Problem]]] | None = None) -> list[Problem]:

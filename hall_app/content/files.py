@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import os
+import shutil
+import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -153,3 +157,35 @@ def revision(folder: Path) -> str:
             state = "unread"  # gone since it was listed, or not ours to read: who needs it says so
         total.update(f"{path.relative_to(folder).as_posix()}\0{state}\n".encode())
     return total.hexdigest()[:12]
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Put the whole file in place in one step, with the rights of the one that was there; folders above are made.
+
+    Raises OSError; what was there is there still.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:60]}.", suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        if path.exists():
+            shutil.copymode(path, name)
+        else:
+            os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+def remove_file(path: Path, root: Path) -> None:
+    """Remove the file where it is there, and folders below `root` that hold nothing then. Raises OSError."""
+    path.unlink(missing_ok=True)
+    for folder in path.parents:
+        if folder == root or not folder.is_dir() or any(folder.iterdir()):
+            return
+        folder.rmdir()

@@ -9,7 +9,7 @@ from hall_app.content.loading import Watcher
 from hall_app.content.problems import Problem
 from hall_app.house.background import in_thread
 from hall_app.house.baking.preparation import wanted_bakes
-from hall_app.house.baking.queue import BakingQueue
+from hall_app.house.baking.queue import STOPPED, BakingQueue
 from hall_app.house.baking.retention import tidy
 from hall_app.house.house import House
 
@@ -37,6 +37,9 @@ class Following:
         if ended is not None:
             self._owed = self._untidy = True  # the queue tells it once
             house.baked(*ended)
+        for bake in queue.stopped():
+            house.baked(bake, STOPPED)
+            self._owed = True
         if set(house.content.problems) - set(content.problems):
             queue.forgive()
         lit = self._light and house.room.lacking is None

@@ -17,8 +17,10 @@ from hall_app.content.problems import Problem
 from hall_app.content.views.scene import yaw_of
 from hall_app.house.background import Latest, in_thread
 from hall_app.house.baking.preparation import ROOM
-from hall_app.house.baking.queue import Bake
+from hall_app.house.baking.queue import Bake, BakingQueue
+from hall_app.house.drafts import QUOTA
 from hall_app.house.floor_grid import grid_beside, ready_grid
+from hall_app.house.safekeeping import Holdings
 from hall_app.room.bake.display import ShownRoom, shown_room, still_right
 from hall_app.room.bake.key import room_key
 from hall_app.room.bake.store import data_room
@@ -49,6 +51,13 @@ class House:
     survey_results: Callable[[], Iterable[dict[str, Any]]] = tuple  # what everybody may see of the answers
     survey_suggestions: Callable[[], Iterable[dict[str, Any]]] = tuple  # what visitors wrote, for the office
     survey_tokens: Callable[[], Any] = tuple  # of programs that read answers: survey's Tokens
+    queue: BakingQueue | None = None  # of bakes, for the office
+    holdings: Holdings | None = None  # where all that the house has lies, for backups from the office
+    quota: int = QUOTA  # [bytes] that the office's drafts and history may have
+    survey_standing: Callable[[], list[dict[str, Any]]] = list  # every questionnaire with its answers counted
+    survey_made: Callable[..., tuple[str, bytes]] | None = (
+        None  # an export or the analysis: survey's Mounted.made
+    )
     survey_asks: Callable[[str], bool] = bool  # whether the questionnaire of that id has anything to ask here
 
     def __post_init__(self) -> None:

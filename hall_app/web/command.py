@@ -24,7 +24,7 @@ from hall_app.web.limits.addresses import Addresses
 from hall_app.web.limits.descriptors import connections, raise_limit, shortage
 from hall_app.web.limits.threads import few_threads
 from hall_app.web.memory import settle
-from hall_app.web.port import add_limits, check_port, port, server
+from hall_app.web.port import add_limits, check_port, gigabytes, port, server
 from hall_app.web.progress_line import ProgressLine
 
 if TYPE_CHECKING:
@@ -80,6 +80,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_false",
         help="where the room's light has not been computed for this plan, leave it even",
     )
+    parser.add_argument(
+        "--quota",
+        type=gigabytes,
+        default=2.0,
+        metavar="GB",
+        help="what drafts and the history of the office may take up in --data (default 2)",
+    )
     add_accounts(parser)
     add_limits(parser)
     parser.set_defaults(run=run)
@@ -128,6 +135,7 @@ def _end(number: int, frame: object) -> None:
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
     from hall_app.house.house import House
     from hall_app.house.people import People
+    from hall_app.house.safekeeping import Holdings
     from hall_app.web.app import create_app
     from survey import mount
     from survey.web import Running
@@ -162,6 +170,9 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     house.survey_results = survey.results
     house.survey_suggestions, house.survey_tokens = survey.suggestions, lambda: survey.store.tokens
+    house.survey_standing, house.survey_made = survey.standing, survey.made
+    house.holdings = Holdings(content.folder, arguments.accounts or arguments.data, arguments.data)
+    house.quota = int(arguments.quota * 1e9)
     for problem in survey.problems:
         _say(f"  left out: {problem}")
     for hint in survey.hints:
@@ -187,6 +198,7 @@ async def _living(
         lambda bake: forsake(bake, house.data),
         lambda name, line, last: _TOLD.tell(f"Preparing {name}: {line}", done=last),
     )
+    house.queue = queue
     _greet(house, arguments)
     look = Following(house, queue, light=arguments.light, say=_say).look
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import uvicorn
     from fastapi import FastAPI
 
-__all__ = ["add_limits", "check_port", "port", "server"]
+__all__ = ["add_limits", "check_port", "gigabytes", "port", "server"]
 
 
 def add_limits(parser: argparse.ArgumentParser) -> None:
@@ -84,3 +84,14 @@ def check_port(host: str, port: int) -> None:
             raise OSError(
                 f"cannot listen on {host}:{port} ({error.strerror}) – choose another with --port"
             ) from error
+
+
+def gigabytes(text: str) -> float:
+    """A size for argparse [GB]."""
+    try:
+        size = float(text)
+    except ValueError:
+        size = 0.0
+    if not 0 < size <= 10_000:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size in GB: give one above 0, such as 2")
+    return size

@@ -1,4 +1,4 @@
-"""Checking at the doors: values that callers hand over, files from outside, arguments of commands."""
+"""Checking at the doors: values that callers hand over, files and drawings from outside, arguments of commands."""
 
 from sim_core.validation.values import (
     FURTHEST,

@@ -49,8 +49,7 @@ class _Motif(_Part):
     def figure(self, folder: Path, kind: FigureKind, **rest: Any) -> Figure | None:
         """The figure of a motif file; None where rows are written out."""
         if isinstance(self.motif, str):
-            told = recipe_of(folder / self.motif, self.parameters)
-            return Figure(kind, told.program, told.parameters, parts=told.parts, **rest)
+            return Figure.of(kind, recipe_of(folder / self.motif, self.parameters), **rest)
         if self.parameters:
             raise WeaveError("draft.parameters: of a motif file – the rows of draft.motif have none")
         return None
@@ -139,8 +138,7 @@ class _Leno(_Part):
         if (self.form == "figured") != (self.motif is not None):
             raise WeaveError('draft.form: "figured" has a motif, and no other form – give both, or none')
         if self.motif:
-            told = recipe_of(folder / self.motif, self.parameters)
-            return Figure("leno", told.program, told.parameters, parts=told.parts)
+            return Figure.of("leno", recipe_of(folder / self.motif, self.parameters))
         from sim_core.weave.draft.structures import four_end_gauze, gauze
 
         return gauze() if self.form == "pair" else four_end_gauze()

@@ -122,6 +122,43 @@ class Mounted:
                 ]
         return sorted(found, key=lambda one: one["received"], reverse=True)
 
+    def standing(self) -> list[dict[str, Any]]:
+        """Every questionnaire with its versions that have answers: id, title, version, asked (whether it asks anything
+        here), items, answers of this version, versions {number: answers}. Raises StoreError.
+        """
+        published = Published(self.questionnaires, self.store)
+        found = []
+        for one in (published.as_asked(one) for one in list(self.questionnaires.values())):
+            versions = {number: self.store.count(one.id, number) for number in self.store.versions(one.id)}
+            found.append(
+                {
+                    "id": one.id,
+                    "title": one.title.model_dump(),
+                    "version": one.version,
+                    "asked": bool(one.asking(self.offers).items),
+                    "items": len(one.items),
+                    "answers": versions.get(one.version, 0),
+                    "versions": versions,
+                }
+            )
+        return found
+
+    def made(self, key: str, task: str, settings: Mapping[str, Any] | None = None) -> tuple[str, bytes]:
+        """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a questionnaire as it is now:
+        the file's name and what it holds, made by a process of its own and noted in the survey's journal.
+
+        settings: of an analysis, as the API takes it. Raises AnswerError, StoreError.
+        """
+        from survey.export import file_name
+        from survey.web.api import Wanted, find_questionnaire
+
+        asked = find_questionnaire(Published(self.questionnaires, self.store), key)
+        told = Wanted.model_validate({}).model_dump() | dict(settings or {})
+        job = {"task": task, "questionnaire": asked.document(), "k": None, "settings": told}
+        data = self.jobs.made(job)
+        self.store.audit.note("export", f"{asked.id} version {asked.version} {task}, office")
+        return file_name(task, asked) if task != "analysis" else f"{key}-analysis.json", data
+
     def record(self) -> Record:
         """What is processed here, and how, as of now. Raises StoreError."""
         asked = tuple(found for found in self.questionnaires.values() if found.asking(self.offers).items)

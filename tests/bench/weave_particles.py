@@ -25,7 +25,7 @@ from sim_core.weave import (
     surface_maps,
     twill,
 )
-from sim_core.weave.draft import basket, damask
+from sim_core.weave.draft import basket, damask, four_end_gauze
 from sim_core.weave.files.wif import parse_wif
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
@@ -38,10 +38,23 @@ Found = TypeVar("Found")
 # taken as 2), catalogue g/m2. Sources: tests/sim_core/test_weave_surface.py; both silk and flax pongees are of the same
 # dictionary of silk cloths (thread 17652) as "derived from plain weave": reeded four a dent, taken as hopsack 2/2. The
 # first of them contradicts itself: its tex and sett give 62 % silk and 120 g/m2 without crimp, it says 51 % and 152.
+# The robe and the cup lozenge luo of Mawangdui: freedefine.cn/wenzhan/33446.html (a secondary source): 58 x 40 per cm,
+# 10.2-11.3 den, 15.4 g/m2; 88-92 x 26-30 per cm of 20/22 den woven raw and dyed in the piece (taken as degummed, net of
+# four ends), 30-37 g/m2. Of its crêpes it tells thickness (.07-.10 mm) and ends, but neither picks nor denier.
 CITED = {
     "taffeta 15209": (plain(), 5640, 3650, 4.662e-6 * 0.77, 7.77e-6 * 0.77, 2.0, 43.0),
     "Mawangdui gauze": (plain(), 5800, 4000, 10.75e-6 / 9, 10.75e-6 / 9, 1.3, 12.0),
     "silk and flax pongee 2": (basket(2, 2), 4130, 2450, 25.0e-6, 25.0e-6, 2.0, 166.0),
+    "Mawangdui robe gauze": (plain(), 5800, 4000, 10.75e-6 / 9, 10.75e-6 / 9, 1.3, 15.4),
+    "Mawangdui cup lozenge luo": (
+        four_end_gauze(),
+        9000,
+        2800,
+        21e-6 / 9 * 0.77,
+        21e-6 / 9 * 0.77,
+        1.3,
+        33.5,
+    ),
     "silk and flax pongee 1": (basket(2, 2), 5600, 2750, 13.4e-6, 16.4e-6, 2.0, 152.0),
 }
 

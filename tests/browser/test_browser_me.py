@@ -4,6 +4,7 @@ import itertools
 
 import pytest
 from bench.axe import violations
+from bench.browser import enter
 from form_visitor import Visitor
 from full_matrix import by_day
 from read_pages import read_whole
@@ -54,6 +55,25 @@ def test_pages_are_clean_and_fit(plain_hall, chromium, lang, width, signed_in):
         address = f"{plain_hall.url}{path.format(exhibit=found)}{mark}lang={lang}"
         read_whole(page, address, width, SMALL)
         assert page.evaluate("document.activeElement.id") == "main", path
+    page.context.close()
+
+
+def test_an_exhibit_is_kept_from_its_close_up_by_key_alone(plain_hall, chromium):
+    page = page_of(chromium, member(plain_hall)[0], 1000)
+    for lang, name in (("zh", "收藏这件展品"), ("en", "Keep this exhibit")):
+        enter(page, f"{plain_hall.url}/?exhibit=box&lang={lang}")
+        way = page.get_by_role("dialog").get_by_role("link", name=name)
+        way.wait_for(timeout=120_000)
+        assert way.get_attribute("href") == f"/me/keep?exhibit=box&lang={lang}"
+        box = way.bounding_box()
+        assert min(box["width"], box["height"]) >= 44
+    page.locator("[data-testid=panel]").press("Tab")  # from the title to what comes first after it
+    assert page.evaluate("document.activeElement.dataset.testid") == "keep"
+    page.keyboard.press("Enter")
+    page.locator("#form-keep button").press("Enter")
+    page.get_by_role("status").get_by_text("It is among your favourites.").wait_for()
+    back = page.get_by_role("link", name="Back to the hall").get_attribute("href")
+    assert back == "/?exhibit=box&lang=en"
     page.context.close()
 
 

@@ -18,8 +18,9 @@ from running_hall import free_port
 
 from hall_app.content import load
 from hall_app.house.people import People
+from hall_app.house.safekeeping import Holdings
 from hall_app.web.platform import add_platform
-from survey.store import Store
+from survey import mount
 
 OPENING = 120  # [s]
 
@@ -30,22 +31,38 @@ class OpenCounter:
 
     url: str
     data: Path
+    content: Path
     people: People
     app: FastAPI
+    house: Any = None
     suggestions: list[dict[str, Any]] = field(default_factory=list)
 
 
 @contextlib.contextmanager
 def open_counter(work: Path) -> Iterator[OpenCounter]:
     port, app, data = free_port(), FastAPI(), work / "data"
-    people, store = People(data), Store(data)
-    counter = OpenCounter(f"http://127.0.0.1:{port}", data, people, app)
+    content = make_house(work / "content")
+    (content / "questionnaires").mkdir()
+    asked = Path(__file__).parents[2] / "assets" / "questionnaires" / "garment.toml"
+    (content / "questionnaires" / "garment.toml").write_bytes(asked.read_bytes())
+    people, survey = People(data), mount(app, content=content, data=data, problems=[])
+    suggestions: list[dict[str, Any]] = []
     house: Any = SimpleNamespace(
-        content=load(make_house(work / "content")),
+        content=load(content),
+        data=data,
+        quota=50_000_000,
+        queue=None,
+        preparing=(),
+        own_problems=(),
         bakes=dict,
-        survey_suggestions=lambda: counter.suggestions,
-        survey_tokens=lambda: store.tokens,
+        given_up=lambda exhibit: False,
+        survey_suggestions=lambda: suggestions,
+        survey_tokens=lambda: survey.store.tokens,
+        survey_standing=survey.standing,
+        survey_made=survey.made,
+        holdings=Holdings(content, data, data),
     )
+    counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, suggestions)
     add_platform(app, house, people)
     server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
     thread = threading.Thread(target=server.run)
@@ -58,5 +75,5 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
     finally:
         server.should_exit = True
         thread.join()
-        store.close()
+        survey.close()
         people.close()

@@ -333,11 +333,11 @@ def test_a_file_that_changes_meanwhile_is_not_overwritten(house, monkeypatch):
     file = house / "exhibits/chest/exhibit.toml"
     data = cell(table(read(house).exhibits), 2, "title.en", "Trunk")
 
-    def somebody(folder, files):
+    def somebody(folder, files, looks):
         file.write_text(WRITTEN + "# somebody else\n", "utf-8")
         return []
 
-    monkeypatch.setattr("hall_app.web.collection.table.acceptance._problems", somebody)
+    monkeypatch.setattr("hall_app.web.collection.table.acceptance.new_problems", somebody)
     done = accept(house, data)
     assert "changed meanwhile" in done.faults[0]
     assert file.read_text("utf-8").endswith("# somebody else\n")

@@ -235,6 +235,11 @@ def test_a_bake_depends_on_the_outfit_all_it_names_and_how_it_is_shown(house: Pa
         with (motifs / name).open("a", encoding="utf-8") as file:
             file.write("# changed\n")
         keys.append(key())
+    (motifs / "vine.toml").write_text('svg = "vine.svg"\n', "utf-8")
+    for drawing in ("<svg/>", '<svg width="3mm"/>'):
+        keys.append(key())
+        (motifs / "vine.svg").write_text(drawing, "utf-8")
+    keys.append(key())
     edit(toml, "[body]", "[show]\nnearest = 3.0\n[body]")
     keys.append(key())
     assert len(set(keys)) == len(keys)

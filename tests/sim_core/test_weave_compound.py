@@ -36,8 +36,8 @@ def test_what_shows_lies_over_what_is_hidden_and_touches_it_somewhere(series: in
     weave = warp_woven(np.array([[0, 0, 1, 1], [0, 0, 1, 1], [1, 0, 0, 1], [1, 1, 0, 0]]), series)
     geometry = solve(weave)
     assert geometry.penetration < 1e-7 * WARP.height
-    assert geometry.residual < 1e-5
-    assert geometry.complementarity < 1e-5
+    assert geometry.residual < 1e-6
+    assert geometry.complementarity < 1e-6
     heights, shows, above = stacked(weave)
     nearest = np.inf
     for a, b in combinations(range(series), 2):
@@ -51,6 +51,17 @@ def test_what_shows_lies_over_what_is_hidden_and_touches_it_somewhere(series: in
     if series == 3:
         gap = (sign * (geometry.warp_height - geometry.weft_height))[:, 1::3]
         assert gap.min() == pytest.approx((WARP.height + WEFT.height) / 2, rel=1e-6)
+
+
+@pytest.mark.parametrize("series", [4, 6, 8])
+def test_many_series_settle_as_well_as_few(series: int) -> None:
+    """Beyond a thousand steps the mode in which all yarns rise together is taken out: its rounding held at 1e-5."""
+    motif = np.random.default_rng(series).integers(0, series, (8, 8))
+    geometry = solve(warp_woven(motif, series))
+    assert geometry.residual < 1e-6
+    assert geometry.complementarity < 1e-6
+    assert geometry.penetration < 1e-7 * WARP.height
+    assert geometry.iterations < 3000
 
 
 def test_it_is_the_least_energy_that_a_dense_search_finds() -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from full_matrix import by_day
 
 from sim_core.cloth.sheet import Material
 from sim_core.errors import WeaveError
@@ -24,6 +25,21 @@ from sim_core.weave.yarns import solve, strands
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
+# By day one of each structure, of written-out, programmed and drawn motifs; large repeats are of the night.
+DAY = [
+    "gauze",
+    "juan",
+    "twill",
+    "satin",
+    "luo",
+    "cup-luo",
+    "jin",
+    "zhuanghua",
+    "stripe-juan",
+    "lozenge-qi",
+    "crane-duan",
+]
+LARGE = ("anhuaduan", "qi", "kesi", "weijin", "skirt-duan")
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +62,7 @@ def test_at_least_ten_named_han_weaves_with_their_sources():
     assert all("source" in text or "assumption" in text for text in texts)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", by_day(DAY, NAMES))
 def test_a_tile_continues_into_its_copy(relaxed, name):
     """The same cloth drawn half a tile further is the tile rolled by half: no seam anywhere."""
     weave, geometry = relaxed(name)
@@ -81,7 +97,7 @@ def test_gauze_is_seen_through_and_satin_is_not(relaxed):
 SHEER = {"cotton", "cup-luo", "gauze", "gown-gauze", "heavy-sha", "luo", "ramie", "sha", "zhou"}
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", by_day((name for name in NAMES if name not in LARGE), NAMES))
 def test_cloths_that_are_not_sheer_are_closed(relaxed, name):
     """At most half a per cent of the area is open; of what is meant to be seen through, at least a tenth.
 
@@ -193,7 +209,7 @@ def test_yarn_files_open_in_other_programs(relaxed, tmp_path):
         write_yarns(systems, tmp_path / "y.obj")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", by_day(DAY, NAMES))
 def test_parameters_feed_the_cloth_solver_and_say_where_they_come_from(relaxed, name):
     weave, geometry = relaxed(name)
     parameters = parameters_of(weave, geometry)

@@ -59,7 +59,8 @@ def scan_files(content: Path, exhibit: Path, scan: str) -> tuple[Path, ...]:
 
 
 def motif_files(folder: Path, weave: str) -> tuple[str, ...]:
-    """The motif files that a weave file names, and those that they name, relative to the content folder.
+    """The motif files that a weave file names, and the motif files and drawings that they name, relative to the content
+    folder.
 
     What cannot be read names none: the engine, which reads it, says what is wrong.
     """
@@ -74,7 +75,7 @@ def motif_files(folder: Path, weave: str) -> tuple[str, ...]:
 
 
 def _motifs(folder: Path, path: str) -> list[str]:
-    """What a weave's draft or a motif's parts name, as paths from the content folder."""
+    """What a weave's draft, or a motif and its parts, name, as paths from the content folder."""
     if not path.endswith(".toml"):
         return []
     try:
@@ -83,7 +84,7 @@ def _motifs(folder: Path, path: str) -> list[str]:
         return []
     draft, parts = table.get("draft"), table.get("part")
     tables = [draft, *(parts if isinstance(parts, list) else [])]
-    named = [one.get("motif") for one in tables if isinstance(one, dict)]
+    named = [table.get("svg"), *(one.get("motif") for one in tables if isinstance(one, dict))]
     beside = [normpath(Path(path).parent / name) for name in named if isinstance(name, str) and name]
     names = [Path(name).as_posix() for name in beside]
     return [name for name in names if is_there(folder / name)]

@@ -5,13 +5,16 @@ One bake runs at a time. `decide` is the whole of the queue; the class below it 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 from hall_app.house.background import in_thread
 
-__all__ = ["Bake", "BakingQueue", "Build", "Decision", "decide"]
+__all__ = ["STOPPED", "Bake", "BakingQueue", "Build", "Decision", "Standing", "decide"]
+
+STOPPED = "stopped in the office"  # why a bake failed that somebody stopped
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +51,15 @@ def decide(wanted: Iterable[Bake], running: Bake | None, failed: Mapping[Bake, s
     return Decision(run, tuple(bake for bake in left if bake != run))
 
 
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How a bake stands. state: "running", "waiting" or "failed"; line: what it is doing, or why it failed."""
+
+    name: str
+    state: str
+    line: str = ""
+
+
 class Build(Protocol):
     """A bake under way, in a process of its own (preparation.Preparation)."""
 
@@ -74,6 +86,31 @@ class BakingQueue:
         self._wanted: tuple[Bake, ...] = ()
         self._failed: dict[Bake, str] = {}
         self._running: tuple[Bake, Build] | None = None
+        self._asked: deque[tuple[str, str]] = deque()  # by the office's threads, done at the next look
+
+    def now(self) -> tuple[Standing, ...]:
+        """All bakes, as they stand. For any thread."""
+        running, failed, wanted = self._running, dict(self._failed), self._wanted
+        found = [Standing(running[0].name, "running", running[1].line())] if running else []
+        left = [bake for bake in wanted if bake not in failed and (running is None or bake != running[0])]
+        found += [Standing(bake.name, "waiting") for bake in left]
+        return (*found, *(Standing(bake.name, "failed", why) for bake, why in failed.items()))
+
+    def ask(self, what: str, name: str) -> None:
+        """what: "stop", or "again" for one that failed. For any thread; done at the next look."""
+        self._asked.append((what, name))
+
+    def stopped(self) -> tuple[Bake, ...]:
+        """Do what was asked; the bakes that are given up by it, told once."""
+        given_up: list[Bake] = []
+        while self._asked:
+            what, name = self._asked.popleft()
+            if what == "again":
+                self._failed = {bake: why for bake, why in self._failed.items() if bake.name != name}
+            else:
+                given_up += [bake for bake in self._wanted if bake.name == name and bake not in self._failed]
+                self._failed |= dict.fromkeys(given_up, STOPPED)
+        return tuple(given_up)
 
     @property
     def running(self) -> Bake | None:
@@ -120,7 +157,9 @@ class BakingQueue:
         bake, build = self._running
         await in_thread(build.end)
         self._running = None
-        if bake in self._wanted:
+        if bake in self._failed:
+            self._tell(bake.name, STOPPED, True)
+        elif bake in self._wanted:
             self._tell(bake.name, "put off, another goes first", True)
         else:
             self._tell(bake.name, "given up, what it is made from has changed", True)

@@ -126,6 +126,87 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "说明最多 4000 字，地点最多 120 字。",
         "A text has 4000 characters at most, a place 120.",
     ),
+    "changed": (
+        "{name} 在此期间已被改动。下面并列两个版本，请合并后再保存。",
+        "{name} was changed meanwhile. Both versions stand below: put them together, and save again.",
+    ),
+    "undo-changed": (
+        "{name} 此后又被改动，无法撤销；请先撤销较新的改动。",
+        "{name} was changed again since, so this cannot be undone: undo the newer change first.",
+    ),
+    "no-draft": (
+        "这件展品没有草稿，可能已经发布或放弃。",
+        "This exhibit has no draft: it may have been published or dropped already.",
+    ),
+    "exhibit-id": (
+        "名称须由小写字母、数字与连字符组成，最多 {most} 个字符，且不是保留名称。",
+        "A name has a-z, 0-9 and hyphens, {most} characters at most, and is none of the reserved ones.",
+    ),
+    "exhibit-taken": ("已有同名展品，请另取名称。", "There is an exhibit of this name: choose another."),
+    "content-check": (
+        "展厅检查指出：{problems}",
+        "The hall's check says: {problems}",
+    ),
+    "content-file": (
+        "文件不能这样保存：{why}",
+        "The file cannot be saved so: {why}",
+    ),
+    "content-write": (
+        "文件写入失败（{why}），一切如旧；请检查磁盘。",
+        "The files could not be written ({why}), and everything is as it was: check the disk.",
+    ),
+    "text-size": ("文字最多 {most} 字节，请缩短。", "A text has {most} bytes at most: shorten it."),
+    "no-file": ("没有这个文件，请从列表中选择。", "There is no such file: choose one of the list."),
+    "no-revision": ("没有这次改动的记录。", "There is no such change on record: choose one of the history."),
+    "no-former": (
+        "这次改动之前的文件已不在数据文件夹中，无法恢复。",
+        "The files as they were before are no longer in the data folder, so this cannot be undone.",
+    ),
+    "no-upload": ("没有收到文件，请先选择。", "No file came: choose one first."),
+    "file-size": (
+        "{name} 过大：{kind}最多 {most} MB，请缩小后再上传。",
+        "{name} is too large: a {kind} has {most} MB at most. Make it smaller and send it again.",
+    ),
+    "file-kind": (
+        "{name}：无法识别内容。可用 JPEG、PNG、WebP、TIFF，GLB、PLY、OBJ，WebM、MP4、Ogg、MP3、WAV。",
+        "{name}: its content is none of JPEG, PNG, WebP, TIFF; GLB, PLY, OBJ; WebM, MP4, Ogg, MP3, WAV.",
+    ),
+    "file-use": (
+        "{name} 的内容是{kind}，不能用于此处，请换一项用途。",
+        "{name} holds a {kind}, which cannot be used for this: choose another use.",
+    ),
+    "file-svg": (
+        "{name} 是 SVG，可能含有程序；请导出为 PNG。",
+        "{name} is an SVG, which may hold programs: export it as PNG.",
+    ),
+    "file-archive": (
+        "{name} 是压缩包，请解压后逐个上传。",
+        "{name} is an archive: unpack it and send its files.",
+    ),
+    "file-broken": (
+        "{name} 已损坏或不完整（{why}），请重新导出。",
+        "{name} is broken or cut off ({why}): export it again.",
+    ),
+    "file-pixels": (
+        "{name} 像素过多：最多 {most} 百万像素，请缩小。",
+        "{name} has too many pixels, {most} million at most: scale it down.",
+    ),
+    "quota": (
+        "草稿与历史已占满 {most} GB，请删去草稿，或由管理员以 --quota 增加。",
+        "Drafts and history fill the {most} GB there are: drop a draft, or have an administrator raise --quota.",
+    ),
+    "no-bake": ("没有这项烘焙，可能已结束。", "There is no such bake: it may have ended already."),
+    "no-backup": ("没有这个备份，请从列表中选择。", "There is no such backup: choose one of the list."),
+    "backup-failed": ("备份未成：{why}", "The backup failed: {why}"),
+    "restore-confirm": (
+        "请照抄备份的名称以确认恢复。",
+        "Type the name of the backup to confirm that it is to be restored.",
+    ),
+    "no-questionnaire": (
+        "没有这份问卷，请从列表中选择。",
+        "There is no such questionnaire: choose one of the list.",
+    ),
+    "survey-refused": ("问卷服务拒绝：{why}", "The questionnaires say: {why}"),
     "again-differs": ("两次输入的密码不一致，请重新输入。", "The two passwords differ: type both again."),
     "not-allowed": (
         "您的角色不能做这件事；此次尝试已记入审计。需要时请联系管理员。",
@@ -142,7 +223,18 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
 }
 
 
-_MISSING = frozenset({"no-account", "no-exhibit", "no-occasion"})
+_MISSING = frozenset(
+    {
+        "no-account",
+        "no-exhibit",
+        "no-occasion",
+        "no-draft",
+        "no-file",
+        "no-revision",
+        "no-backup",
+        "no-questionnaire",
+    }
+)
 
 
 class PeopleError(ValueError):

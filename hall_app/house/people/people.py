@@ -13,6 +13,7 @@ from hall_app.house.people.records import (
     Keepsakes,
     Occasions,
     Person,
+    Revisions,
     Roles,
     Sessions,
     own_copy,
@@ -35,6 +36,7 @@ class People:
         self.occasions = Occasions(self._ledger)
         self.bookings = Bookings(self._ledger)
         self.followups = FollowUps(self._ledger)
+        self.revisions = Revisions(self._ledger)
         self.journal = Journal(self._ledger)
         self.refuse = self._ledger.refuse
         self.copy_to = self._ledger.copy_to

@@ -40,7 +40,8 @@ class Figure:
 
     words: the weaves of a damask by number (0 the ground; the last one for all numbers above), the ground of a brocade.
     longest: floats of a damask that get a binding point; 0 leaves them.  series: yarns of a compound unit.
-    every: of how many ends one binds the extra wefts of a brocade.  parts: of a layout, see `Part`.
+    every: of how many ends one binds the extra wefts of a brocade.  parts: of a layout, see `Part`.  areas: of a
+    drawing, see `Recipe`.
     Raises WeaveError where the motif cannot be drawn, or has more numbers than a compound has series.
     """
 
@@ -52,6 +53,7 @@ class Figure:
     series: int = 2
     every: int = 4
     parts: tuple[Part, ...] = ()
+    areas: tuple[tuple[int, str], ...] = ()
 
     def __post_init__(self) -> None:
         if self.kind not in get_args(FigureKind):
@@ -60,6 +62,7 @@ class Figure:
         object.__setattr__(self, "words", tuple(self.words))
         parts = (part if isinstance(part, Part) else Part(**part) for part in self.parts)
         object.__setattr__(self, "parts", tuple(parts))
+        object.__setattr__(self, "areas", tuple((int(number), str(text)) for number, text in self.areas))
         if self.kind == "damask" and len(self.words) < 2:
             raise WeaveError("figure: a damask needs two weaves – name its ground and its figure")
         colours = self.motif.colours
@@ -68,10 +71,15 @@ class Figure:
                 f"figure: the motif has {colours} numbers and the weave {self.series} series – give it {colours}"
             )
 
+    @classmethod
+    def of(cls, kind: FigureKind, recipe: Recipe, **rest: Any) -> Figure:
+        """A recipe woven as some kind; rest: the fields that are no recipe's."""
+        return cls(kind, recipe.program, recipe.parameters, parts=recipe.parts, areas=recipe.areas, **rest)
+
     @property
     def motif(self) -> Motif:
         """The motif as it is drawn."""
-        return Recipe(self.program, self.parameters, self.parts).motif(self.program)
+        return Recipe(self.program, self.parameters, self.parts, self.areas).motif(self.program)
 
     def numbers(self, ends_per_m: float, picks_per_m: float) -> np.ndarray:
         """The number at each place (picks, ends) int8 of the whole draft, the first pick lowest.
@@ -135,6 +143,9 @@ class Figure:
         values: dict[str, Any] = asdict(self) | {"words": list(self.words)}
         for told in (values, *values["parts"]):
             told["parameters"] = [list(pair) for pair in told["parameters"]]
+            told["areas"] = [list(area) for area in told["areas"]]
+            if not told["areas"]:
+                del told["areas"]
         if not self.parts:
             del values["parts"]
         return values

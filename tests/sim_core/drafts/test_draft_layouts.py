@@ -74,7 +74,7 @@ def test_a_place_puts_a_motif_where_it_is_wanted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "program: give a program, or [[part]] tables"),
+        ("", "program: give a program, or svg, or [[part]] tables"),
         ("[[part]]\nfill = 1\nwithin = [0, 20, 101, 30]\n", "part.1.within: [0.0, 20.0, 101.0, 30.0] – left"),
         (LINE + "[[part]]\n", "part.2: give it a motif file or fill"),
         ("[[part]]\nfill = 1\nat = [2, 3]\n", "part.1: parameters, at, turned and numbers are a motif's"),

@@ -72,7 +72,7 @@ def test_counts_give_way_to_the_weaves_that_are_bound_in() -> None:
 
 def test_files_hold_all_programs_and_mistakes_are_named(tmp_path: Path) -> None:
     found = {path.stem: read_motif(path) for path in sorted(MOTIFS.glob("*.toml"))}
-    assert set(found) == {*PROGRAMS, "skirt-bands", "edge-vine"}
+    assert set(found) == {*PROGRAMS, "skirt-bands", "edge-vine", "cranes"}
     assert read_motif(MOTIFS / "roundels.toml").colours == 4
     assert read_motif(MOTIFS / "frets.toml", {"unit": 3}).size == (0.012, 0.012)
     path = tmp_path / "mine.toml"

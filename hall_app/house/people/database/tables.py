@@ -29,6 +29,7 @@ __all__ = [
     "look",
     "metadata",
     "occasion",
+    "revision",
     "role",
     "session",
     "user",
@@ -154,6 +155,20 @@ followup = Table(
     Column("by", String(16), nullable=False),
     Column("at", DateTime(timezone=True), nullable=False),
 )
+
+# What was published of the collection. `files` is JSON, name -> digests before and after; the files lie in the data
+# folder, named by these digests, and a restored house without them has the table all the same.
+revision = Table(
+    "revision",
+    metadata,
+    Column("id", Integer, primary_key=True),
+    Column("exhibit", String(64), nullable=False),
+    Column("at", DateTime(timezone=True), nullable=False),
+    Column("who", String(16), nullable=False),
+    Column("act", String(8), nullable=False),
+    Column("files", Text, nullable=False),
+)
+Index("revision_by_exhibit", revision.c.exhibit)
 
 # `who` and `subject` are ids, never addresses: once an account is gone they lead to nobody. So they are no keys.
 audit = Table(

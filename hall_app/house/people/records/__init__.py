@@ -8,6 +8,7 @@ from hall_app.house.people.records.journal import Entry, Journal
 from hall_app.house.people.records.keepsakes import Favourite, Keepsakes, Look
 from hall_app.house.people.records.occasions import Occasion, Occasions, Plan
 from hall_app.house.people.records.person import Person, checked_address
+from hall_app.house.people.records.revisions import Revision, Revisions
 from hall_app.house.people.records.roles import Roles
 from hall_app.house.people.records.sessions import OFFICE_HOURS, VISITOR_DAYS, Session, Sessions
 
@@ -31,6 +32,8 @@ __all__ = [
     "Occasions",
     "Person",
     "Plan",
+    "Revision",
+    "Revisions",
     "Roles",
     "Session",
     "Sessions",

@@ -66,7 +66,7 @@ function createFold(words, turn) {
 
   /** The head can be pushed up and down by a thumb; whoever only taps it turns it over. */
   function grip(head) {
-    const taken = (event) => button.offsetParent && !event.target.closest("button");
+    const taken = (event) => button.offsetParent && !event.target.closest("button, a");
     let from = null;
     let pushed = false;
     head.addEventListener("pointerdown", (event) => {
@@ -104,6 +104,8 @@ export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSou
     icon("close"),
   );
   words.label(shut, "panel.close");
+  // A link, so that it works as one: among one's own it is known who asks, and the way back leads to this exhibit.
+  const keep = words.label(el("a", { class: "icon-button panel-keep", testid: "keep" }, icon("keep")), "panel.keep");
   const pages = createPages(words, { onEnlarge, onSounding, onCompare, motion });
   const tabs = createTabs(words, pages);
   const surveyText = el("span");
@@ -137,7 +139,7 @@ export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSou
     if (folded) silence();
     onFold(folded);
   });
-  head.append(el("div", { class: "panel-names" }, title, second, line), fold.button, shut);
+  head.append(el("div", { class: "panel-names" }, title, second, line), keep, fold.button, shut);
   fold.grip(head);
 
   function silence() {
@@ -151,6 +153,7 @@ export function createPanel({ words, motion, onClose, onSurvey, onEnlarge, onSou
     second.lang = words.other;
     line.textContent = words.pick(detail.caption) || words.pick(detail.title, words.other);
     tabs.render(detail);
+    keep.href = `/me/keep?${new URLSearchParams({ exhibit: detail.id, lang: words.lang })}`;
     setAttribute(survey, "hidden", !detail.questionnaire);
     const done = answered.has(detail.id);
     surveyText.textContent = words.t(done ? "panel.answered" : "panel.survey");

@@ -6,15 +6,12 @@ one atomic step each. Whoever looks at the folder meanwhile, a running hall too,
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from hall_app.check.folder import QUICK, check
+from hall_app.check import QUICK, new_problems
+from hall_app.content.files import replace_file
 from hall_app.content.loading import load
 from hall_app.web.collection.table.difference import Change, changes
 from hall_app.web.collection.table.sheet import read_sheet
@@ -56,7 +53,10 @@ def accept(folder: Path, data: bytes, *, dry_run: bool = False) -> Acceptance:
             keys = "; ".join(str(change) for change in changed)
             wrong.append(f"exhibits/{name}/exhibit.toml: {error} – make these changes there by hand: {keys}")
     if not wrong and wanted:
-        wrong = _problems(folder, after)
+        found = new_problems(
+            folder, {f"exhibits/{name}/exhibit.toml": data for name, data in after.items()}, QUICK
+        )
+        wrong = [str(problem) for problem in found]
     if wrong or dry_run or not wanted:
         return Acceptance(wanted, tuple(wrong), False)
     for name, old in before.items():
@@ -64,7 +64,7 @@ def accept(folder: Path, data: bytes, *, dry_run: bool = False) -> Acceptance:
             what = f"exhibits/{name}/exhibit.toml: it was changed meanwhile – look at it, and import the table again"
             return Acceptance(wanted, (what,), False)
     for name, new in after.items():
-        _replace(_file(folder, name), new)
+        replace_file(_file(folder, name), new)
     return Acceptance(wanted, (), True)
 
 
@@ -75,40 +75,3 @@ def _file(folder: Path, name: str) -> Path:
 def _rewritten(data: bytes, changed: tuple[Change, ...]) -> bytes:
     mark = _MARK if data.startswith(_MARK) else b""
     return mark + edited(data.decode("utf-8-sig"), changed).encode()
-
-
-def _problems(folder: Path, files: Mapping[str, bytes]) -> list[str]:
-    """What `hall check` would say with these files that it does not say without them."""
-    known = set(check(folder, QUICK))
-    with tempfile.TemporaryDirectory(prefix="hall-collection-") as place:
-        likeness = Path(place) / "content"
-        shutil.copytree(folder, likeness, symlinks=True, copy_function=_linked)
-        for name, data in files.items():
-            _replace(_file(likeness, name), data)
-        found = check(likeness, QUICK)
-    return [str(problem) for problem in found if problem not in known]
-
-
-def _linked(source: str, target: str) -> str:
-    """A second name for the file, or a copy where the two places are on different disks."""
-    try:
-        os.link(source, target, follow_symlinks=False)
-    except OSError:
-        shutil.copy2(source, target, follow_symlinks=False)
-    return target
-
-
-def _replace(path: Path, data: bytes) -> None:
-    """Put the whole file in place in one step, with its rights."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".tmp")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        shutil.copymode(path, name)
-        os.replace(name, path)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(name)
-        raise

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from hall_app.content.folder import Exhibit
 from hall_app.content.schema.values import Bilingual
@@ -18,11 +19,11 @@ Changes = dict[str, tuple["Change", ...]]
 
 @dataclass(frozen=True)
 class Change:
-    """A text that becomes another one. value: both languages, a plain text, or None where it goes."""
+    """A value that becomes another one: both languages, a plain value or list, or None where there is none."""
 
     path: Path
-    before: Bilingual | str | None
-    value: Bilingual | str | None
+    before: Any
+    value: Any
 
     def __str__(self) -> str:
         told = [

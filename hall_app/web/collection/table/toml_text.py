@@ -1,4 +1,4 @@
-"""An exhibit.toml with some texts changed: comments, order and spelling of all the rest stay.
+"""An exhibit.toml with some values changed: comments, order and spelling of all the rest stay.
 
 tomlkit writes it, and is not believed: what it wrote is read again by another reader and compared with what was meant
 (of 0.15 it is known that keys written with dots and split lists of tables may come out elsewhere).
@@ -63,7 +63,7 @@ def _apply(container: Any, change: Change, new_table: Any, new_pair: Any) -> Non
         container = container[part]
     if change.value is None:
         del container[last]
-    elif isinstance(change.value, str):
+    elif not isinstance(change.value, Bilingual):
         container[last] = change.value
     elif last in container:
         for language in LANGUAGES:

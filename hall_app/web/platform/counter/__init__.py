@@ -5,32 +5,39 @@ often one may try; fields: forms as HTML; counter: pages and acts put at their a
 what both counters let in by.
 """
 
-from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
+from hall_app.web.platform.counter.asking import Asking, Brought, Download, Guest, Moved, Page, Shown
 from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
-from hall_app.web.platform.counter.counter import Act, Answer, Counter, View
+from hall_app.web.platform.counter.counter import STATUS, Act, Answer, Counter, View
 from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
+from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of
 from hall_app.web.platform.counter.pace import RATES, Pace
 from hall_app.web.platform.counter.signing_in import address_field, sign_in_fields, signed_in
 
 __all__ = [
     "OFFICE",
+    "PLAIN",
     "RATES",
+    "STATUS",
     "VISITOR",
     "Act",
     "Answer",
     "Asking",
+    "Brought",
     "Counter",
     "Download",
     "Field",
+    "Form",
     "Guest",
     "Moved",
     "Pace",
     "Page",
     "Shown",
+    "Takes",
     "View",
     "address_field",
     "button",
     "form",
+    "form_of",
     "sign_in_fields",
     "signed_in",
     "told_day",

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO
 from urllib.parse import quote, urlencode
 
 from hall_app.house.people import Person, Session
 
-__all__ = ["Asking", "Download", "Guest", "Moved", "Page", "Shown", "own_path"]
+__all__ = ["Asking", "Brought", "Download", "Guest", "Moved", "Page", "Shown", "own_path"]
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,16 @@ class Guest:
     person: Person
     session: Session
     token: str
+
+
+@dataclass(frozen=True)
+class Brought:
+    """A file that came with a form. name: as it was called, not to be believed; size: [bytes]."""
+
+    field: str
+    name: str
+    file: BinaryIO
+    size: int
 
 
 @dataclass(frozen=True)
@@ -36,6 +48,7 @@ class Asking:
     names: Mapping[str, str] = field(default_factory=dict)
     query: Mapping[str, str] = field(default_factory=dict)
     form: Mapping[str, str] = field(default_factory=dict)
+    files: tuple[Brought, ...] = ()
     guest: Guest | None = None
     refusal: str = ""
 
@@ -62,12 +75,13 @@ class Asking:
 
 @dataclass(frozen=True)
 class Page:
-    """A page of the frame. main: its HTML; here: key of the navigation; query: of its address."""
+    """A page of the frame. main: its HTML; here: key of the navigation; query: of its address; script: of /static."""
 
     title: str
     main: str
     here: str = ""
     query: Mapping[str, str] = field(default_factory=dict)
+    script: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,11 +103,12 @@ class Moved:
 
 @dataclass(frozen=True)
 class Download:
-    """A file to keep."""
+    """A file to keep; inline: one that a page shows, which runs nothing."""
 
-    data: bytes
+    data: bytes | Path
     name: str
     kind: str
+    inline: bool = False
 
 
 def own_path(text: str) -> str:

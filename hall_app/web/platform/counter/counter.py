@@ -6,11 +6,12 @@ import logging
 from collections.abc import Callable
 from dataclasses import replace
 from html import escape
-from typing import TYPE_CHECKING
+from pathlib import Path
+from urllib.parse import quote
 
 from fastapi import FastAPI, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.responses import HTMLResponse, RedirectResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 
 from hall_app.house.house import House
 from hall_app.house.people import People, PeopleError
@@ -19,14 +20,20 @@ from hall_app.web.pages.catalogue import shown_language
 from hall_app.web.pages.frame import Frame
 from hall_app.web.platform.counter.asking import Asking, Download, Guest, Moved, Page, Shown
 from hall_app.web.platform.counter.cookies import Kind, give_token, seal_key, with_seal_key
-from hall_app.web.platform.counter.guard import SEAL, check_form, check_origin, form_of, seal_of
+from hall_app.web.platform.counter.guard import (
+    PLAIN,
+    SEAL,
+    Form,
+    Takes,
+    check_form,
+    check_origin,
+    form_of,
+    seal_of,
+)
 from hall_app.web.platform.counter.pace import Pace
 from survey.errors import StoreError
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-__all__ = ["Act", "Answer", "Counter", "View"]
+__all__ = ["STATUS", "Act", "Answer", "Counter", "View"]
 
 Answer = Shown | Moved | Download
 View = Callable[[Asking], Answer]
@@ -36,10 +43,30 @@ Act = Callable[[Asking], Answer]
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "media-src 'self'; "
     "form-action 'self'; frame-ancestors 'none'; base-uri 'none'",
     "X-Frame-Options": "DENY",
 }
-_STATUS = {"too-often": 429, "form": 403, "not-allowed": 403, "form-size": 413}
+# Of a page that runs a script: it asks this hall.
+_ASKING = " connect-src 'self'"
+# Of a file that somebody brought: nothing in it runs, whatever it says it is.
+_SEALED = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "default-src 'none'; sandbox; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+}
+STATUS = {
+    "too-often": 429,
+    "form": 403,
+    "not-allowed": 403,
+    "form-size": 413,
+    "text-size": 413,
+    "file-size": 413,
+    "file-pixels": 413,
+    "quota": 413,
+    "changed": 409,
+    "undo-changed": 409,
+}
 _REFUSED = ("请再试一次", "Please try again")
 _NOWHERE = ("没有这一页", "There is no such page")
 _LOST = (
@@ -63,16 +90,25 @@ class Counter:
 
         self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
 
-    def act(self, path: str, act: Act, again: View) -> None:
+    def act(self, path: str, act: Act, again: View, takes: Takes = PLAIN) -> None:
         """Answer POST by `act`; what is refused shows the page `again`, with the reason."""
 
         async def asked(request: Request) -> Response:
+            form: Form | None = None
             try:
                 check_origin(request)
-                fields = await form_of(request)
+                # Nobody's megabytes are read but those of who is signed in.
+                if takes.largest > PLAIN.largest and await run_in_threadpool(self.guest, request) is None:
+                    return await run_in_threadpool(self._answer, request, None, again, again)
+                form = await form_of(request, takes)
+                return await run_in_threadpool(self._answer, request, form, act, again)
             except PeopleError as error:
-                fields = error
-            return await run_in_threadpool(self._answer, request, fields, act, again)
+                return await run_in_threadpool(self._answer, request, error, act, again)
+            except StoreError:
+                return await run_in_threadpool(self._answer, request, None, again, again)
+            finally:
+                if form is not None:
+                    form.close()
 
         self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
 
@@ -82,18 +118,16 @@ class Counter:
         found = self.people.sessions.find(token, office=self.kind.office) if token else None
         return Guest(*found, token) if found else None
 
-    def asking(self, request: Request, fields: Mapping[str, str]) -> Asking:
+    def asking(self, request: Request, form: Form | None = None) -> Asking:
         """What a program asks, without a page. Raises StoreError."""
-        return self._asking(request, fields, seal_key(request))
+        return self._asking(request, form or Form({}), seal_key(request))
 
     def check(self, request: Request, asking: Asking, seal: str) -> None:
         """Raises PeopleError for what a page of ours did not send."""
         check_origin(request)
         check_form(seal, asking.seal)
 
-    def _answer(
-        self, request: Request, given: Mapping[str, str] | PeopleError | None, act: Act, again: View
-    ) -> Response:
+    def _answer(self, request: Request, given: Form | PeopleError | None, act: Act, again: View) -> Response:
         key = seal_key(request)
         try:
             asking = self._asking(request, given, key)
@@ -101,10 +135,10 @@ class Counter:
                 if isinstance(given, PeopleError):
                     raise given
                 if given is not None:
-                    check_form(given.get(SEAL, ""), asking.seal)
+                    check_form(given.fields.get(SEAL, ""), asking.seal)
                 answer = act(asking)
             except PeopleError as error:
-                status = 404 if given is None and error.missing else _STATUS.get(error.key, 400)
+                status = 404 if given is None and error.missing else STATUS.get(error.key, 400)
                 answer = self._refused(replace(asking, refusal=error.text(asking.lang)), status, again)
         except StoreError as error:
             _log.warning("%s", error)
@@ -116,9 +150,10 @@ class Counter:
         with_seal_key(response, request, key)
         return response
 
-    def _asking(self, request: Request, given: Mapping[str, str] | PeopleError | None, key: str) -> Asking:
+    def _asking(self, request: Request, given: Form | PeopleError | None, key: str) -> Asking:
         guest = self.guest(request)
-        fields = {} if given is None or isinstance(given, PeopleError) else given
+        form = given if isinstance(given, Form) else Form({})
+        fields = form.fields
         lang = self._language(request, fields.get("lang", ""), guest)
         return Asking(
             path=request.url.path,
@@ -129,6 +164,7 @@ class Counter:
             names={name: str(value) for name, value in request.path_params.items()},
             query={name: value[:500] for name, value in request.query_params.items()},
             form=fields,
+            files=form.files,
             guest=guest,
         )
 
@@ -157,12 +193,18 @@ class Counter:
                 give_token(response, request, self.kind, answer.token)
             return response
         if isinstance(answer, Download):
-            given = {"Content-Disposition": f'attachment; filename="{answer.name}"'}
-            return Response(answer.data, media_type=answer.kind, headers=_HEADERS | given)
+            how = "inline" if answer.inline else "attachment"
+            given = _SEALED | {"Content-Disposition": f"{how}; filename*=utf-8''{quote(answer.name)}"}
+            if isinstance(answer.data, Path):
+                return FileResponse(answer.data, media_type=answer.kind, headers=given)
+            return Response(answer.data, media_type=answer.kind, headers=given)
         page = answer.page
         frame = Frame(self.house.content.hall, asking.lang, page.here, answer.path or asking.path, page.query)
-        text = frame.page(page.title, page.main, styles=("reading", "forms"))
-        return HTMLResponse(text, answer.status, headers=_HEADERS)
+        text = frame.page(page.title, page.main, styles=("reading", "forms"), script=page.script)
+        headers = dict(_HEADERS)
+        if page.script:
+            headers["Content-Security-Policy"] += f";{_ASKING}"
+        return HTMLResponse(text, answer.status, headers=headers)
 
 
 def _home(path: str) -> str:

@@ -55,7 +55,9 @@ class Field:
             )
             return f'<select id="{key}" name="{name}"{more}>{listed}</select>'
         if self.kind == "textarea":
-            return f'<textarea id="{key}" name="{name}" rows="4"{more}>{escape(value)}</textarea>'
+            rows = "" if "rows" in self.given else ' rows="4"'
+            # A browser leaves out a line break that comes first.
+            return f'<textarea id="{key}" name="{name}"{rows}{more}>\n{escape(value)}</textarea>'
         kept = "" if self.kind == "password" else f' value="{escape(value)}"'
         return f'<input type="{self.kind}" id="{key}" name="{name}"{kept}{more}>'
 

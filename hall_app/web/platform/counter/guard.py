@@ -3,18 +3,46 @@
 from __future__ import annotations
 
 import hmac
+from collections.abc import AsyncGenerator
+from dataclasses import dataclass
 from hashlib import sha256
 from urllib.parse import parse_qsl, urlsplit
 
+from starlette.datastructures import UploadFile
+from starlette.formparsers import MultiPartException, MultiPartParser
 from starlette.requests import Request
 
 from hall_app.house.people import PeopleError
+from hall_app.web.platform.counter.asking import Brought
 
-__all__ = ["SEAL", "check_form", "check_origin", "form_of", "seal_of"]
+__all__ = ["PLAIN", "SEAL", "Form", "Takes", "check_form", "check_origin", "form_of", "seal_of"]
 
 SEAL = "seal"  # the hidden field
-LARGEST = 20_000  # [bytes] of a form
 _FIELDS = 200
+_MULTIPART = "multipart/form-data"
+
+
+@dataclass(frozen=True)
+class Takes:
+    """largest: [bytes] of a form, its files included; files: how many it may bring."""
+
+    largest: int = 20_000
+    files: int = 0
+
+
+@dataclass(frozen=True)
+class Form:
+    """What came: of fields that stand twice the values in a row, parted by blanks."""
+
+    fields: dict[str, str]
+    files: tuple[Brought, ...] = ()
+
+    def close(self) -> None:
+        for one in self.files:
+            one.file.close()
+
+
+PLAIN = Takes()
 
 
 def seal_of(key: str, token: str) -> str:
@@ -25,23 +53,58 @@ def seal_of(key: str, token: str) -> str:
     return hmac.new(key.encode(), f"form {token}".encode(), sha256).hexdigest()[:40]
 
 
-async def form_of(request: Request) -> dict[str, str]:
-    """The fields of a plain form; of those that stand twice the values in a row, parted by blanks.
-
-    Raises PeopleError.
-    """
+async def form_of(request: Request, takes: Takes = PLAIN) -> Form:
+    """Raises PeopleError for what is too large, and for what is no form."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if takes.files and kind == _MULTIPART:
+        return await _with_files(request, takes)
     if kind != "application/x-www-form-urlencoded":
         raise PeopleError("form-size")
     body = bytearray()
-    async for part in request.stream():
+    async for part in _bounded(request, takes):
         body += part
-        if len(body) > LARGEST:
-            raise PeopleError("form-size")
     try:
         pairs = parse_qsl(body.decode("utf-8"), keep_blank_values=True, max_num_fields=_FIELDS)
     except ValueError:
         raise PeopleError("form-size") from None
+    return Form(_fields(pairs))
+
+
+async def _with_files(request: Request, takes: Takes) -> Form:
+    """Files lie on the disk, beyond a megabyte, until the form is closed."""
+    parser = MultiPartParser(
+        request.headers,
+        _bounded(request, takes),
+        max_files=takes.files,
+        max_fields=_FIELDS,
+        max_part_size=takes.largest,
+    )
+    try:
+        items = (await parser.parse()).multi_items()
+    except (MultiPartException, ValueError, KeyError):  # of the library that it stands on
+        raise PeopleError("form-size") from None
+    plain = [(name, value) for name, value in items if isinstance(value, str)]
+    brought = [
+        Brought(name, value.filename or "", value.file, value.size or 0)
+        for name, value in items
+        if isinstance(value, UploadFile)
+    ]
+    form = Form(_fields(plain), tuple(brought))
+    if any("\ud800" <= c <= "\udfff" for value in form.fields.values() for c in value):
+        raise PeopleError("form-size")
+    return form
+
+
+async def _bounded(request: Request, takes: Takes) -> AsyncGenerator[bytes, None]:
+    size = 0
+    async for part in request.stream():
+        size += len(part)
+        if size > takes.largest:
+            raise PeopleError("form-size")
+        yield part
+
+
+def _fields(pairs: list[tuple[str, str]]) -> dict[str, str]:
     fields: dict[str, str] = {}
     for name, value in pairs:
         fields[name] = f"{fields[name]} {value}" if name in fields else value

@@ -76,7 +76,8 @@ class Shelf:
         back = f"/catalogue?lang={asking.lang}#exhibit-{escape(key)}"
         main = f"""<header><h1>{title}</h1></header>{notice(asking)}<div class="desk">
 <ul class="rows"><li>{self._picture(key)}<span>{self._ways(asking, key)}</span></li></ul>{sent}
-<p class="doors"><a href="{back}">{word("回到目录", "Back to the catalogue")}</a>
+<p class="doors"><a href="/?exhibit={escape(key)}&amp;lang={asking.lang}">{word("回到展厅", "Back to the hall")}</a>
+<a href="{back}">{word("回到目录", "Back to the catalogue")}</a>
 <a href="{asking.address("/me")}#favourites">{word("我的收藏", "My favourites")}</a></p></div>"""
         return Shown(Page(title, main, "me", {"exhibit": key}), path="/me/keep")
 

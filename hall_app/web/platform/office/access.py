@@ -14,15 +14,26 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse, Response
 
 from hall_app.house.people import ACTS, PeopleError
-from hall_app.web.platform.counter import Act, Answer, Asking, Counter, Moved, View
+from hall_app.web.platform.counter import (
+    PLAIN,
+    STATUS,
+    Act,
+    Answer,
+    Asking,
+    Counter,
+    Form,
+    Moved,
+    Takes,
+    View,
+    form_of,
+)
 from hall_app.web.platform.office.deeds import Deed, Reading
 from survey.errors import StoreError
 
 __all__ = ["Access"]
 
-LARGEST = 20_000  # [bytes] of a request to the API
 SEAL = "X-Seal"  # header of the API: what /api/office/me tells
-_STATUS = {"not-allowed": 403, "form": 403, "form-size": 413, "too-often": 429, "signed-out": 401}
+_STATUS = {**STATUS, "signed-out": 401}
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
@@ -53,8 +64,8 @@ class Access:
             )
 
         page = self._staff(one.act, one.page)
-        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page)
-        self._program("POST", one.path, one.act, one.do)
+        self._counter.act(f"/office/{one.path}", self._staff(one.act, done), page, one.takes)
+        self._program("POST", one.path, one.act, one.do, one.takes)
 
     def _staff(self, act: str, view: View) -> Act:
         def asked(asking: Asking) -> Answer:
@@ -76,39 +87,71 @@ class Access:
             self._people.refuse(asking.person.id, act, asking.path)
             raise PeopleError("not-allowed")
 
-    def _program(self, method: str, path: str, act: str, of: Any) -> None:
+    def _program(self, method: str, path: str, act: str, of: Any, takes: Takes = PLAIN) -> None:
         async def asked(request: Request) -> Response:
-            body = b""
-            if method == "POST":
-                async for part in request.stream():
-                    body += part
-                    if len(body) > LARGEST:
-                        return _told(PeopleError("form-size"), "en")
-            return await run_in_threadpool(self._answer, request, body, act, of)
+            form = Form({})
+            refused = await run_in_threadpool(self._refusal, request, act)
+            if refused is not None:
+                return refused
+            try:
+                if method == "POST":
+                    form = await _brought(request, takes)
+                return await run_in_threadpool(self._answer, request, form, of)
+            except PeopleError as error:
+                return _told(error, _language(request))
+            finally:
+                form.close()
 
         self._app.add_api_route(f"/api/office/{path}", asked, methods=[method], include_in_schema=False)
 
-    def _answer(self, request: Request, body: bytes, act: str, of: Any) -> Response:
-        lang = "zh" if request.query_params.get("lang") == "zh" else "en"
+    def _refusal(self, request: Request, act: str) -> Response | None:
+        """Before anything of what is sent is read."""
         try:
-            asking = self._counter.asking(request, {})
+            asking = self._counter.asking(request)
             if asking.guest is None:
-                return _told(PeopleError("signed-out"), lang)
+                return _told(PeopleError("signed-out"), _language(request))
             if act:
                 self._check(asking, act)
             if request.method == "POST":
                 self._counter.check(request, asking, request.headers.get(SEAL, ""))
-                asking = self._counter.asking(request, _fields(request, body))
-            return JSONResponse(of(asking), headers=_HEADERS)
         except PeopleError as error:
-            return _told(error, lang, 404 if request.method == "GET" and error.missing else None)
+            return _told(error, _language(request))
         except StoreError as error:
-            return JSONResponse({"error": "store", "text": str(error)}, 503, headers=_HEADERS)
+            return _lost(error)
+        return None
+
+    def _answer(self, request: Request, form: Form, of: Any) -> Response:
+        try:
+            return JSONResponse(of(self._counter.asking(request, form)), headers=_HEADERS)
+        except PeopleError as error:
+            return _told(error, _language(request), 404 if error.missing else None)
+        except StoreError as error:
+            return _lost(error)
 
 
-def _fields(request: Request, body: bytes) -> dict[str, str]:
-    """A JSON object of plain values as the fields of a form. Raises PeopleError."""
+async def _brought(request: Request, takes: Takes) -> Form:
+    """Files as a form brings them, anything else as JSON. Raises PeopleError."""
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if takes.files and kind == "multipart/form-data":
+        return await form_of(request, takes)
+    body = bytearray()
+    async for part in request.stream():
+        body += part
+        if len(body) > takes.largest:
+            raise PeopleError("form-size")
+    return Form(_fields(kind, bytes(body)))
+
+
+def _language(request: Request) -> str:
+    return "zh" if request.query_params.get("lang") == "zh" else "en"
+
+
+def _lost(error: StoreError) -> Response:
+    return JSONResponse({"error": "store", "text": str(error)}, 503, headers=_HEADERS)
+
+
+def _fields(kind: str, body: bytes) -> dict[str, str]:
+    """A JSON object of plain values as the fields of a form. Raises PeopleError."""
     try:
         given = json.loads(body.decode() or "{}") if kind == "application/json" else None
     except (ValueError, RecursionError):
@@ -129,4 +172,6 @@ def _fields(request: Request, body: bytes) -> dict[str, str]:
 
 def _told(error: PeopleError, lang: str, status: int | None = None) -> JSONResponse:
     told = {"error": error.key, "text": error.text(lang)}
+    # Of what somebody else changed meanwhile, both versions.
+    told |= {name: str(error.figures[name]) for name in ("now", "yours", "tag") if name in error.figures}
     return JSONResponse(told, status or _STATUS.get(error.key, 400), headers=_HEADERS)

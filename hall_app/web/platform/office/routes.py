@@ -8,10 +8,14 @@ from fastapi import FastAPI
 
 from hall_app.web.platform.counter import Asking, Counter
 from hall_app.web.platform.office.access import Access
+from hall_app.web.platform.office.backups import backup_deeds, backup_readings
+from hall_app.web.platform.office.collection import collection_rooms
+from hall_app.web.platform.office.description import description
 from hall_app.web.platform.office.entering import Reception
 from hall_app.web.platform.office.opinions import opinion_deeds, opinion_readings
 from hall_app.web.platform.office.people import people_deeds, people_readings
 from hall_app.web.platform.office.programme import programme_deeds, programme_readings
+from hall_app.web.platform.office.questionnaires import questionnaire_readings
 
 __all__ = ["add_office"]
 
@@ -23,9 +27,27 @@ def add_office(app: FastAPI, counter: Counter) -> None:
     counter.act("/office/sign-in", reception.sign_in, reception.sign_in_page)
     counter.act("/office/sign-out", reception.sign_out, reception.page)
     access.own("me", _me)
-    for reading in (*people_readings(counter), *programme_readings(counter), *opinion_readings(counter)):
+    collection, changing = collection_rooms(counter)
+    readings = (
+        *collection,
+        *people_readings(counter),
+        *programme_readings(counter),
+        *questionnaire_readings(counter),
+        *opinion_readings(counter),
+        *backup_readings(counter),
+    )
+    deeds = (
+        *changing,
+        *people_deeds(counter),
+        *programme_deeds(counter),
+        *opinion_deeds(counter),
+        *backup_deeds(counter),
+    )
+    document = description(readings, deeds)
+    access.own("openapi.json", lambda _: document)
+    for reading in readings:
         access.reading(reading)
-    for deed in (*people_deeds(counter), *programme_deeds(counter), *opinion_deeds(counter)):
+    for deed in deeds:
         access.deed(deed)
 
 

@@ -11,19 +11,29 @@ __all__ = ["office_page", "rows"]
 
 # path, act of the table of roles that it takes, name in both languages
 PARTS: tuple[tuple[str, str, str, str], ...] = (
+    ("collection", "draft", "藏品", "Collection"),
     ("events", "events", "活动与参观", "Activities and visits"),
+    ("questionnaires", "questionnaires", "问卷", "Questionnaires"),
     ("suggestions", "answers", "意见与建议", "Suggestions"),
     ("tokens", "tokens", "令牌", "Tokens"),
     ("people", "people", "人员与角色", "People and roles"),
     ("audit", "audit", "审计记录", "Audit"),
+    ("backups", "backup", "备份", "Backup"),
 )
 _DONE = ("已保存。", "It is saved.")
 
 
 def office_page(
-    asking: Asking, title: str, inside: str, *, path: str, lead: str = "", query: dict[str, str] | None = None
+    asking: Asking,
+    title: str,
+    inside: str,
+    *,
+    path: str,
+    lead: str = "",
+    query: dict[str, str] | None = None,
+    script: str = "",
 ) -> Shown:
-    """title: not escaped yet; inside: HTML; path: below /office, of the page in the other language."""
+    """title: not escaped yet; inside: HTML; path: below /office, of the other language's page; script: of /static."""
     word = asking.word
     ways = [("", word("办公室", "Office"))]
     ways += [(f"/{part}", word(zh, en)) for part, act, zh, en in PARTS if asking.person.may(act)]
@@ -37,7 +47,7 @@ def office_page(
     top = f'<p class="lead">{lead}</p>' if lead else ""
     main = f"""<header class="who"><div><h1>{escape(title)}</h1>{top}</div>{out}</header>
 <nav class="rooms" aria-label="{word("办公室", "Office")}">{listed}</nav>{told}{inside}"""
-    return Shown(Page(title, main, "", query or {}), path=f"/office{'/' if path else ''}{path}")
+    return Shown(Page(title, main, "", query or {}, script), path=f"/office{'/' if path else ''}{path}")
 
 
 def rows(caption: str, heads: Iterable[str], lines: Iterable[Iterable[str]]) -> str:

@@ -1,6 +1,7 @@
 """Lines of a drawing with the names around them, before anyone says what they are.
 
-`svg` reads a tree that `svg_tree` has made safe, `dxf` what ezdxf reads; both give a `stroke` its `words`.
+`svg` names lines of drawings that `sim_core.validation.svg` reads, `dxf` what ezdxf reads; both give a `stroke` its
+`words`.
 """
 
 from sim_core.mesh.sheets.strokes.dxf import dxf_strokes

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-__all__ = ["MOST_VISITED", "Drawn", "Stroke", "visited"]
+from sim_core.validation.svg import MOST_VISITED
 
-MOST_VISITED = 200_000  # elements, those of blocks and uses each time they are drawn
+__all__ = ["Drawn", "Stroke", "visited"]
 
 
 @dataclass(frozen=True)

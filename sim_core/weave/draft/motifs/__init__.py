@@ -1,7 +1,7 @@
 """Motifs: figures that repeat, drawn in millimetres by small programs, and cut to the sett of a loom.
 
-`strokes` is what one draws with, `programs` the figures, `motif` the value and its cut, `layout` puts several into one
-repeat, `motif_file` is their TOML.
+`strokes` is what one draws with, `programs` the figures, `motif` the value and its cut, `drawing` reads
+them from SVG, `layout` puts several into one repeat, `motif_file` is their TOML.
 """
 
 from sim_core.weave.draft.motifs.layout import Part

@@ -29,7 +29,7 @@ class Part:
     (see `motif_of_program`), "" for one number all over; at: where a corner of the motif's own repeat lies (None: in
     the rectangle's lower left one); numbers: what the motif's numbers become, its ground first (empty: as they are, and
     what lies below is seen in the ground); turned: whether the motif is turned to the left by a right angle, so that
-    what runs along the warp runs along the weft.
+    what runs along the warp runs along the weft; areas: of a drawing, see `Recipe`.
     """
 
     within: Box
@@ -38,12 +38,14 @@ class Part:
     at: tuple[float, float] | None = None
     numbers: tuple[int, ...] = ()
     turned: bool = False
+    areas: tuple[tuple[int, str], ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "within", tuple(float(side) for side in self.within))
         object.__setattr__(self, "parameters", tuple((str(k), float(v)) for k, v in self.parameters))
         object.__setattr__(self, "at", None if self.at is None else (float(self.at[0]), float(self.at[1])))
         object.__setattr__(self, "numbers", tuple(int(number) for number in self.numbers))
+        object.__setattr__(self, "areas", tuple((int(number), str(text)) for number, text in self.areas))
 
 
 def laid_out(name: str, size: tuple[float, float], parts: Sequence[tuple[Part, Motif | None]]) -> Motif:

@@ -1,4 +1,4 @@
-"""Motif files (TOML): a program by name and its parameters, or a layout of several, all in millimetres.
+"""Motif files (TOML): a program by name and its parameters, a drawing, or a layout of several, all in millimetres.
 
 Mistakes are named by file and key.
 """
@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sim_core.errors import SimCoreError, WeaveError
 from sim_core.validation.files import read_toml, shown
+from sim_core.weave.draft.motifs.drawing import Area, areas_of, read_drawing
 from sim_core.weave.draft.motifs.layout import Part, laid_out
 from sim_core.weave.draft.motifs.motif import MOST_COLOURS, Motif
 from sim_core.weave.draft.motifs.programs import PROGRAMS
@@ -24,8 +25,10 @@ __all__ = ["Recipe", "motif_of_program", "read_motif", "recipe_of"]
 
 MM = 1e-3  # [m]
 LAYOUT = "layout"  # the program of motif files with [[part]] tables
+DRAWING = "drawing"  # of those that name a drawing
 Number = Annotated[float, Field(gt=0, le=4000)]
 Side = Annotated[float, Field(ge=0.1, le=4000)]
+Colour = Annotated[str, Field(pattern="^#[0-9a-fA-F]{6}$")]
 Place = Annotated[float, Field(ge=-4000, le=4000)]
 
 
@@ -54,6 +57,8 @@ class _MotifFile(BaseModel):
     title: _Title | None = None
     source: str | None = None
     program: str | None = None
+    svg: Annotated[str, Field(pattern=r"\.svg$", max_length=200)] | None = None
+    colours: Annotated[dict[Colour, Annotated[int, Field(ge=0, lt=MOST_COLOURS)]], Field(max_length=64)] = {}
     parameters: dict[str, Number] = {}
     repeat: tuple[Side, Side] | None = None
     part: Annotated[list[_PartTable], Field(max_length=64)] = []
@@ -61,12 +66,13 @@ class _MotifFile(BaseModel):
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a motif file says: a program with its parameters [mm], or the program `layout` (width, height) and its
-    parts."""
+    """What a motif file says: a program with its parameters [mm], or the programs `layout` and `drawing` (width and
+    height) with their parts or areas."""
 
     program: str
     parameters: tuple[tuple[str, float], ...]
     parts: tuple[Part, ...] = ()
+    areas: tuple[Area, ...] = ()
 
     def motif(self, name: str) -> Motif:
         """What it draws; raises WeaveError."""
@@ -75,7 +81,10 @@ class Recipe:
 
 @lru_cache(maxsize=32)
 def _drawn(recipe: Recipe) -> Motif:
-    return motif_of_program(recipe.program, recipe.program, dict(recipe.parameters), recipe.parts)
+    size = dict(recipe.parameters)
+    if recipe.program == DRAWING:
+        return Motif(DRAWING, (MM * size["width"], MM * size["height"]), areas_of(recipe.areas))
+    return motif_of_program(recipe.program, recipe.program, size, recipe.parts)
 
 
 def read_motif(path: Path, changes: Mapping[str, float] | None = None) -> Motif:
@@ -112,8 +121,19 @@ def _checked(path: Path) -> _MotifFile:
 
 
 def _recipe(file: _MotifFile, folder: Path, changes: dict[str, float]) -> Recipe:
-    if (file.program is None) == (not file.part):
-        raise WeaveError("program: give a program, or [[part]] tables and their repeat – one of both")
+    if (file.program is not None) + (file.svg is not None) + bool(file.part) != 1:
+        raise WeaveError("program: give a program, or svg, or [[part]] tables and their repeat – one of them")
+    if file.colours and file.svg is None:
+        raise WeaveError("colours: of a drawing – name it by svg, or leave them out")
+    if file.svg is not None:
+        if file.parameters:
+            raise WeaveError("parameters: a drawing has none – write its repeat = [width, height]")
+        if not file.colours:
+            raise WeaveError(
+                'colours: missing – give every colour of the drawing a number, { "#c02020" = 1 }'
+            )
+        (width, height), areas = read_drawing(folder / file.svg, file.colours, file.repeat, changes)
+        return Recipe(DRAWING, (("height", height), ("width", width)), areas=areas)
     if file.program is not None:
         if file.repeat:
             raise WeaveError("repeat: of [[part]] tables – a program has its own; leave it out")
@@ -146,7 +166,9 @@ def _part(number: int, table: _PartTable, folder: Path, repeat: tuple[float, flo
         inner.motif(file.name)
     except SimCoreError as error:
         raise WeaveError(f"{key}.motif: {error}") from error
-    return Part(within, inner.program, inner.parameters, table.at, tuple(table.numbers), table.turned)
+    return Part(
+        within, inner.program, inner.parameters, table.at, tuple(table.numbers), table.turned, inner.areas
+    )
 
 
 def motif_of_program(
@@ -163,7 +185,10 @@ def motif_of_program(
 
     if program == LAYOUT and parts:
         size = parameters or {}
-        inner = [Recipe(p.program, p.parameters).motif(p.program) if p.program else None for p in parts]
+        inner = [
+            Recipe(p.program, p.parameters, areas=p.areas).motif(p.program) if p.program else None
+            for p in parts
+        ]
         return laid_out(name, (size["width"], size["height"]), list(zip(parts, inner, strict=True)))
     if program not in PROGRAMS:
         raise WeaveError(f"program: {shown(program)} – there are {', '.join(PROGRAMS)}")

@@ -17,7 +17,7 @@ from sim_core.weave.model import Weave
 from sim_core.weave.yarns.geometry import YarnGeometry
 from sim_core.weave.yarns.jam import check_jam
 from sim_core.weave.yarns.particles.closest_pairs import curve_overlap
-from sim_core.weave.yarns.particles.figures import rest_of_figure
+from sim_core.weave.yarns.particles.figures import Wanted, rest_of_figure
 from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
 from sim_core.weave.yarns.particles.scale import Scale, crimp_of
 from sim_core.weave.yarns.shifts import MANY, draft_shift, turns_of
@@ -34,6 +34,9 @@ ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
 FIGURE = 500  # crossings from which it is a figure, unless it is a satin or a twill
+FINEST = (
+    16  # particles a crossing up to which a figure that turns too steeply for fewer is begun again with more
+)
 BEGIN = 100  # steps after which a figure that is not at rest is relaxed another way
 FIGURE_STEPS = 8000  # and after which pins have the rest of the steps, from the start
 YARN_FRICTION = 0.3
@@ -100,7 +103,8 @@ def relax_particles(
     the net force on a particle, relative to the largest crossing force.  start: stage A of this weave, made if absent.
     watch: (2,) float64, steps done and residual of the last one, written as it goes for another thread to show.
     Above 10,000 crossings satins and twills are relaxed by one pick and one end, of which all others are shifts.
-    Figures (see is_figure) are relaxed by rest_of_figure first, and by pins where that does not bring them to rest.
+    Figures (see is_figure) are relaxed by rest_of_figure first, and by pins where that does not bring them to rest;
+    those that turn more steeply than `per` particles can show get half as many more, up to 16: see the cell's `per`.
     Raises WeaveError for a jammed sett, NotAtRest where the cell does not come to rest within `most` steps.
     """
     from sim_core.weave.yarns.beams import relax
@@ -124,9 +128,19 @@ def relax_particles(
     yarns = start_again()
     done = _pinned(yarns, tolerance, min(most, BEGIN) if figure else most)
     if figure and not _rests(done, tolerance):
-        done = rest_of_figure(
-            yarns, done, tolerance=tolerance, overlap=PROMISED, most=min(most, FIGURE_STEPS)
-        )
+        finer = min(3 * per // 2, FINEST)
+        done = rest_of_figure(yarns, done, Wanted(tolerance, PROMISED, min(most, FIGURE_STEPS), finer > per))
+        if done.coarse:
+            cell = relax_particles(
+                weave,
+                per=finer,
+                friction=friction,
+                tolerance=tolerance,
+                start=start,
+                most=most - done.steps,
+                watch=watch,
+            )
+            return replace(cell, steps=cell.steps + done.steps)
         if not _rests(done, tolerance) and done.steps < most:  # long floats may rest by pins alone
             yarns, before = start_again(), done.steps
             done = _pinned(yarns, tolerance, most - before)

@@ -7,6 +7,7 @@ other than their particles do, the particles of that crossing keep farther by as
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
@@ -16,7 +17,7 @@ from sim_core.weave.yarns.particles.common_waves import CommonWaves
 from sim_core.weave.yarns.particles.forces import side_forces
 from sim_core.weave.yarns.particles.nesterov import Outcome, Yarns
 
-__all__ = ["STATIC", "rest_of_figure"]
+__all__ = ["STATIC", "Wanted", "rest_of_figure"]
 
 SOFT = 20.0  # stiffness of the contact, x largest crossing force
 TURN = 30  # steps between two looks at the curves
@@ -27,15 +28,31 @@ WIDE = 100  # crossings, beyond which a repeat needs them at all
 STICK = 6  # turns between two times when yarns that have come to creep stick
 SLID = 0.03  # of D, away from where they stuck
 STATIC = 0.2  # by how much static friction exceeds sliding friction
+COARSE = (
+    50  # turns after which curves that overlap however far their particles keep are told to need more of them
+)
 CREEP = 60  # turns after which what still creeps is held harder
 HARDER = 1.2  # times as hard each time that it may stick
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
 
 
-def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: float, most: int) -> Outcome:
-    """Bring yarns that the plain way did not bring to rest to it, or to `most` steps; begun: how that way ended.
+@dataclass(frozen=True)
+class Wanted:
+    """When a figure is at rest: tolerance: of the residual; overlap: of curves [D], and of the gap of two that press.
 
-    overlap: of curves [D] that is allowed, and of the gap of two that press. Long floats of a loose sett would slide on
+    most: steps; finer: whether the figure may be begun again with more particles."""
+
+    tolerance: float
+    overlap: float
+    most: int
+    finer: bool = False
+
+
+def rest_of_figure(yarns: Yarns, begun: Outcome, wanted: Wanted) -> Outcome:
+    """Bring yarns that the plain way did not bring to rest to it, or to the most steps; begun: how that way ended.
+
+    Yarns that turn more steeply than their particles can show overlap between them, however far those keep: where more
+    may be had, the outcome is `coarse` then. Long floats of a loose sett would slide on
     for ever and draw together into ropes: what still creeps after 1,800 steps is held by static friction that grows.
     """
     picks, ends = yarns.lift.shape
@@ -50,6 +67,7 @@ def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: f
     waves = CommonWaves.of((picks, ends), yarns.per, yarns.units, stiff)
     steps, turn, done, deepest = begun.steps, 0, begun, begun.overlap
     stuck, static = None, 0.0
+    most = wanted.most
     while steps < most:
         if turn and turn % STICK == 0:
             static = STATIC * HARDER ** max(0, (turn - CREEP) // STICK)
@@ -58,8 +76,10 @@ def rest_of_figure(yarns: Yarns, begun: Outcome, *, tolerance: float, overlap: f
         steps += done.steps
         _measure(gaps, yarns)
         deepest = max(_deepest(gaps, yarns.pressing), _of_neighbours(yarns))
-        if done.residual <= tolerance and deepest <= overlap:
-            return Outcome(done.residual, deepest, done.energy, steps, stiff, static)
+        if done.residual <= wanted.tolerance and deepest <= wanted.overlap:
+            break
+        if wanted.finer and turn >= COARSE and (gaps[apart >= FARTHEST] < -wanted.overlap).any():
+            return Outcome(done.residual, deepest, done.energy, steps, stiff, static, coarse=True)
         if steps < most:  # else what is told of the yarns must be of where they end
             apart = np.clip(apart - gaps, 0.0, FARTHEST)
             _of_neighbours(yarns, renew=True)

@@ -26,7 +26,7 @@ SIDE = 0.3  # stiffness of the contact of neighbours, relative to that at crossi
 @dataclass(frozen=True)
 class Outcome:
     """How yarns ended: largest net force / largest crossing force, overlap [D], energy, steps, contact's stiffness, and
-    by how much static friction exceeded sliding friction in the end."""
+    by how much static friction exceeded sliding friction in the end; coarse: whether they need more particles."""
 
     residual: float
     overlap: float
@@ -34,6 +34,7 @@ class Outcome:
     steps: int
     stiff: float
     static: float = 0.0
+    coarse: bool = False
 
 
 class Yarns(NamedTuple):

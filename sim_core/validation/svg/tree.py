@@ -15,16 +15,24 @@ from xml.etree import ElementTree
 import numpy as np
 
 from sim_core.errors import FileProblem
-from sim_core.mesh.sheets.strokes.stroke import MOST_VISITED
 from sim_core.validation.files import read_bytes
 
-__all__ = ["LENGTHS", "NUMBER", "check_bounds", "flatten_viewports", "left_out_of", "svg_root"]
+__all__ = [
+    "LENGTHS",
+    "MOST_VISITED",
+    "NUMBER",
+    "check_bounds",
+    "flatten_viewports",
+    "left_out_of",
+    "svg_root",
+]
 
 WHAT = "a pattern drawn as SVG"
 DECLARED = re.compile(rb"^\s*<\?xml[^>]*?encoding\s*=\s*[\"']([A-Za-z0-9._-]{1,40})[\"'][^>]*\?>")
 BARE = re.compile(r"&(?!#?\w+;)")  # FreeSewing writes what a text says as it is, "&" too
 PAINTING = {"mask", "pattern", "marker", "filter", "linearGradient", "radialGradient", "clipPath"}
 MOST_GROWN = 1_000_000  # characters that entities stand for
+MOST_VISITED = 200_000  # elements, those of blocks and uses each time they are drawn
 MOST_DEEP = 200
 UNREAD = ("text", "image", "foreignObject")
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -44,16 +52,16 @@ PLACED = ("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "transf
 Size = tuple[float, float]
 
 
-def svg_root(path: Path) -> ElementTree.Element:
-    """The root of an SVG file; raises FileProblem."""
-    text = _decoded(path, read_bytes(path, WHAT))
+def svg_root(path: Path, what: str = WHAT) -> ElementTree.Element:
+    """The root of an SVG file, of which one wants `what`; raises FileProblem."""
+    text = _decoded(path, read_bytes(path, what))
     _check_entities(path, text)
     try:
         root = ElementTree.fromstring(BARE.sub("&amp;", text))
     except (ElementTree.ParseError, ValueError) as error:
-        raise FileProblem(f"{path}: not valid SVG ({error}) – give {WHAT}") from error
+        raise FileProblem(f"{path}: not valid SVG ({error}) – give {what}") from error
     if (tag := str(root.tag).rsplit("}", 1)[-1]) != "svg":
-        raise FileProblem(f"{path}: its root is <{tag[:40]}> – give {WHAT}")
+        raise FileProblem(f"{path}: its root is <{tag[:40]}> – give {what}")
     for parent in list(root.iter()):
         for child in [c for c in parent if str(c.tag).rsplit("}", 1)[-1] in PAINTING]:
             parent.remove(child)

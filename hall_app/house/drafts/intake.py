@@ -1,0 +1,182 @@
+"""What is brought from outside: known by what it holds and never by its name, limited, pictures drawn anew."""
+
+from __future__ import annotations
+
+import io
+import re
+import tempfile
+import unicodedata
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import BinaryIO
+
+from hall_app.content.models.glb import GlbError, read_glb
+from hall_app.house.people import PeopleError
+
+__all__ = ["USES", "Taken", "take_in"]
+
+MB = 1_000_000
+_LARGEST = {"picture": 40 * MB, "model": 15 * MB, "scan": 200 * MB, "film": 10 * MB, "sound": 10 * MB}
+_PIXELS = 60_000_000  # of a picture that is decoded
+_EDGE = 3000  # [pixels] of a picture's longer side, as it is kept
+_LINE_ART = 1_500_000  # [bytes] up to which a PNG stays one
+_NAMES = {"picture": "图片", "model": "模型", "scan": "扫描", "film": "影片", "sound": "声音"}
+
+# What a file may be used for, and the kinds that serve.
+USES: Mapping[str, tuple[str, ...]] = {
+    "picture": ("picture",),
+    "hall": ("model",),
+    "close": ("model",),
+    "scan": ("model", "scan"),
+    "film": ("film",),
+    "sound": ("sound", "film"),
+}
+_FORMATS = ("JPEG", "PNG", "WEBP", "TIFF")
+_ARCHIVES = (
+    b"PK\x03\x04",
+    b"PK\x05\x06",
+    b"\x1f\x8b",
+    b"7z\xbc\xaf",
+    b"Rar!",
+    b"BZh",
+    b"\xfd7zXZ",
+    b"\x28\xb5\x2f\xfd",
+)
+_OBJ = re.compile(rb"(#.*|(v|vt|vn|vp|f|l|p|o|g|s|mtllib|usemtl)( .*)?|)\r?")
+
+
+@dataclass(frozen=True)
+class Taken:
+    """kind: of USES' values; name: safe, with the ending of what it holds; told: what is known of it, for the page."""
+
+    kind: str
+    name: str
+    data: bytes
+    told: str
+
+
+def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
+    """Read what was brought for one of USES. name: as it was called, for messages and the stem. Raises PeopleError."""
+    shown = "".join(c for c in name if c.isprintable())[-80:] or "?"
+    file.seek(0)
+    kind, ending = _kind(shown, file.read(4096), use)
+    if kind not in USES.get(use, ()):
+        raise PeopleError("file-use", name=shown, kind=kind)
+    kind = use if use in ("scan", "sound") else kind
+    if size > _LARGEST[kind]:
+        raise PeopleError("file-size", name=shown, kind=kind, most=_LARGEST[kind] // MB)
+    file.seek(0)
+    data = file.read(_LARGEST[kind] + 1)
+    told = ""
+    if kind == "picture":
+        data, ending, told = _picture(shown, data)
+    elif ending == ".glb":
+        told = _model(shown, data)
+    return Taken(kind, _safe(name, kind) + ending, data, told)
+
+
+def _kind(shown: str, head: bytes, use: str) -> tuple[str, str]:
+    """(kind, ending) by the first bytes. Raises PeopleError."""
+    if head.startswith(b"glTF"):
+        return "model", ".glb"
+    if head.startswith((b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n", b"II*\0", b"MM\0*")):
+        return "picture", ""
+    if head.startswith(b"RIFF"):
+        if head[8:12] == b"WEBP":
+            return "picture", ""
+        if head[8:12] == b"WAVE":
+            return "sound", ".wav"
+    if head.startswith(b"\x1a\x45\xdf\xa3"):
+        return "film", ".webm"
+    if head[4:8] == b"ftyp":
+        return ("sound", ".m4a") if head[8:11] == b"M4A" else ("film", ".mp4")
+    if head.startswith(b"OggS"):
+        return "sound", ".ogg"
+    if head.startswith(b"ID3") or (len(head) > 1 and head[0] == 0xFF and head[1] & 0xE6 == 0xE2):
+        return "sound", ".mp3"
+    if head.startswith((b"ply\n", b"ply\r")):
+        return "scan", ".ply"
+    if head.startswith(_ARCHIVES):
+        raise PeopleError("file-archive", name=shown)
+    if b"<svg" in head.lower():
+        raise PeopleError("file-svg", name=shown)
+    lines = head.split(b"\n")[:-1] if len(head) == 4096 else head.split(b"\n")
+    if use == "scan" and any(line.startswith(b"v ") for line in lines) and all(map(_OBJ.fullmatch, lines)):
+        return "scan", ".obj"
+    raise PeopleError("file-kind", name=shown)
+
+
+def _picture(shown: str, data: bytes) -> tuple[bytes, str, str]:
+    """Drawn anew: nothing of the file's own bytes is kept. Raises PeopleError."""
+    from PIL import Image, ImageOps
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(io.BytesIO(data), formats=_FORMATS) as source:
+                if source.width * source.height > _PIXELS:
+                    raise PeopleError("file-pixels", name=shown, most=_PIXELS // 1_000_000)
+                line_art = source.format == "PNG"
+                source.load()
+                picture = _in_srgb(ImageOps.exif_transpose(source))
+        picture.thumbnail((_EDGE, _EDGE))
+        sheer = picture.mode == "RGBA"
+        drawn, ending = io.BytesIO(), ".png"
+        if line_art:
+            picture.save(drawn, "PNG", optimize=True)
+        if not line_art or drawn.tell() > _LINE_ART:
+            drawn, ending = io.BytesIO(), ".webp" if sheer else ".jpg"
+            picture.save(drawn, "WEBP" if sheer else "JPEG", quality=88)
+    except PeopleError:
+        raise
+    except (Image.DecompressionBombWarning, Image.DecompressionBombError):
+        raise PeopleError("file-pixels", name=shown, most=_PIXELS // 1_000_000) from None
+    except Exception as error:  # a decoder of foreign files may fail in any way
+        raise PeopleError("file-broken", name=shown, why=_first(error)) from None
+    return drawn.getvalue(), ending, f"{picture.width} × {picture.height}"
+
+
+def _in_srgb(source):
+    """Colours as every browser shows them, without the file's own profile."""
+    from PIL import Image, ImageCms
+
+    mode = "RGBA" if source.mode in ("RGBA", "LA", "PA") or "transparency" in source.info else "RGB"
+    profile, picture = source.info.get("icc_profile"), source.convert(mode)
+    if profile and source.mode in ("RGB", "RGBA"):
+        try:
+            own = ImageCms.ImageCmsProfile(io.BytesIO(profile))
+            srgb = ImageCms.createProfile("sRGB")
+            picture = ImageCms.profileToProfile(picture, own, srgb, outputMode=mode) or picture
+        except (ImageCms.PyCMSError, OSError, ValueError):
+            pass  # a profile that nobody can read says nothing
+    plain = Image.new(mode, picture.size)
+    plain.paste(picture)
+    return plain
+
+
+def _model(shown: str, data: bytes) -> str:
+    """Raises PeopleError for a GLB that the hall cannot draw, or that holds more than it says."""
+    if int.from_bytes(data[8:12], "little") != len(data):
+        raise PeopleError("file-broken", name=shown, why="its length is not what its head says")
+    with tempfile.NamedTemporaryFile(suffix=".glb") as file:
+        file.write(data)
+        file.flush()
+        try:
+            info = read_glb(Path(file.name))
+        except GlbError as error:
+            raise PeopleError("file-broken", name=shown, why=str(error)) from None
+    size = " × ".join(f"{high - low:.2f}" for low, high in zip(info.low, info.high, strict=True))
+    return f"{info.triangles} △ · {size} m · {len(data) / MB:.2f} MB"
+
+
+def _safe(name: str, kind: str) -> str:
+    """A stem of a-z, 0-9 and hyphens."""
+    stem = PurePosixPath(name.replace("\\", "/").replace("\0", "")).name.partition(".")[0]
+    plain = unicodedata.normalize("NFKD", stem).encode("ascii", "ignore").decode().lower()
+    return re.sub("[^a-z0-9]+", "-", plain).strip("-")[:40].strip("-") or kind
+
+
+def _first(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0][:120]

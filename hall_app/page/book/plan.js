@@ -1,0 +1,57 @@
+// The plan in the office: the exhibit is moved on the drawing, and the numbers beside it say where it is.
+
+const plan = document.getElementById("plan");
+const own = document.getElementById("own");
+const field = (name) => document.getElementById(`place-place.${name}`);
+const [x, z, facing] = ["x", "z", "facing"].map(field);
+const STEP = 0.05; // [m]
+
+const number = (input) => Number.parseFloat(input.value) || 0;
+const rounded = (value) => String(Math.round(value / STEP) * STEP).replace(/(\.\d\d)\d+$/, "$1");
+
+function draw() {
+  own.setAttribute("transform", `translate(${number(x)} ${number(z)}) rotate(${-number(facing)})`);
+}
+
+/** Where on the floor a pointer is [m]. */
+function spot(event) {
+  const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(plan.getScreenCTM().inverse());
+  return [at.x, at.y];
+}
+
+function drag() {
+  let held = null; // from the pointer to the exhibit's middle [m]
+  own.addEventListener("pointerdown", (event) => {
+    const [px, pz] = spot(event);
+    held = [number(x) - px, number(z) - pz];
+    own.setPointerCapture(event.pointerId);
+    event.preventDefault();
+  });
+  own.addEventListener("pointermove", (event) => {
+    if (!held) return;
+    const [px, pz] = spot(event);
+    x.value = rounded(px + held[0]);
+    z.value = rounded(pz + held[1]);
+    draw();
+  });
+  for (const end of ["pointerup", "pointercancel"]) own.addEventListener(end, () => (held = null));
+}
+
+/** Until the walk through the hall is done: then the page says what came of it. */
+function listen(told) {
+  const again = async () => {
+    const answer = await fetch(told.dataset.ask, { credentials: "same-origin" }).catch(() => null);
+    const found = answer?.ok ? await answer.json() : null;
+    if (found && found.reached !== null) window.location.reload();
+    else setTimeout(again, 1500);
+  };
+  setTimeout(again, 1500);
+}
+
+if (plan && own && x && z && facing) {
+  for (const input of [x, z, facing]) input.addEventListener("input", draw);
+  own.classList.add("is-free");
+  drag();
+}
+const told = document.getElementById("reached");
+if (told?.dataset.ask) listen(told);

@@ -1,0 +1,126 @@
+"""What the pages of the collection work with: drafts, their examination, publication; an exhibit.toml changed."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable, Mapping
+from html import escape
+from typing import Any
+
+from hall_app.content.files import TEXTS
+from hall_app.content.problems import Problem
+from hall_app.house.drafts import Drafts, Examination, Publication, Shelf
+from hall_app.house.people import PeopleError
+from hall_app.web.collection.table import Change, EditError, edited
+from hall_app.web.platform.counter import Asking, Counter
+
+__all__ = ["TOML", "Desk", "listed_problems", "refusal"]
+
+TOML = "exhibit.toml"
+
+
+class Desk:
+    """One for all pages: what is remembered of an examination serves the next."""
+
+    def __init__(self, counter: Counter) -> None:
+        self.house, self.people = counter.house, counter.people
+        folder, data = self.house.content.folder, self.house.data
+        self.drafts = Drafts(folder, data, Shelf(data / "shelf", self.house.quota))
+        self.examination = Examination(folder)
+        self.publication = Publication(self.drafts, self.examination, self.people)
+
+    def key(self, asking: Asking) -> str:
+        """The exhibit that is asked for. Raises PeopleError."""
+        key = asking.names["key"]
+        try:
+            known = self.drafts.known(key)
+        except PeopleError:
+            known = False
+        if not known:
+            raise PeopleError("no-exhibit")
+        return key
+
+    def table(self, key: str) -> dict[str, Any]:
+        """Its exhibit.toml as it is to be, empty where it is no TOML."""
+        try:
+            return tomllib.loads(self.drafts.text(key, TOML))
+        except tomllib.TOMLDecodeError:
+            return {}
+
+    def title(self, key: str, lang: str) -> str:
+        found = self.table(key).get("title")
+        text = found.get(lang) if isinstance(found, dict) else None
+        return text if isinstance(text, str) and text.strip() else key
+
+    def problems(self, key: str) -> list[Problem]:
+        """What the draft would bring about and, without one, what the open hall says of the exhibit."""
+        if self.drafts.of(key) is not None:
+            return self.examination.problems(self.drafts.changes(key))
+        return [one for one in self.house.own_problems if one.file.startswith(f"exhibits/{key}/")]
+
+    def change(
+        self,
+        asking: Asking,
+        key: str,
+        changes: Iterable[Change],
+        *,
+        files: Mapping[str, bytes | None] | None = None,
+        tag: str | None = None,
+    ) -> None:
+        """Write changes of exhibit.toml, and files beside it, into the draft. tag: that the form was made with.
+
+        Raises PeopleError, where the hall's file was changed beneath the draft as well.
+        """
+        changes, brought = tuple(changes), dict(files or {})
+        with self.drafts.lock:
+            if TOML in self.drafts.stale(key):
+                raise PeopleError("changed", name=TOML)
+            if changes:
+                try:
+                    text = edited(self.drafts.text(key, TOML), changes)
+                except (EditError, tomllib.TOMLDecodeError) as error:
+                    why = f"{TOML}: {error} – change it in its editor below"
+                    raise PeopleError("content-file", why=why) from error
+                brought[TOML] = self.drafts.encoded(key, TOML, text)
+            self._write(asking, key, brought, {} if tag is None else {TOML: tag})
+
+    def write_text(self, asking: Asking, key: str, name: str, text: str, tag: str | None) -> None:
+        """A whole text file into the draft. Raises PeopleError, also for an exhibit.toml that is no TOML."""
+        data = self.drafts.encoded(key, name, text)
+        if name == TOML:
+            try:
+                tomllib.loads(data.decode("utf-8-sig"))
+            except tomllib.TOMLDecodeError as error:
+                raise PeopleError("content-file", why=f"{TOML}: {error}") from None
+        self._write(asking, key, {name: data}, {} if tag is None else {name: tag})
+
+    def _write(
+        self, asking: Asking, key: str, files: Mapping[str, bytes | None], tags: Mapping[str, str]
+    ) -> None:
+        self.people.note(asking.person.id, "draft", key)
+        try:
+            self.drafts.set(asking.person.id, key, files, tags)
+        except OSError as error:
+            raise PeopleError("content-write", why=error.strerror or str(error)) from error
+
+
+def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:
+    """Under a heading of their own; "" for none."""
+    lines = "".join(f"<li>{escape(str(one))}</li>" for one in found)
+    title = asking.word("展厅检查指出", "The hall's check says")
+    return f'<div class="faults"><p><b>{title}</b></p><ul>{lines}</ul></div>' if lines else ""
+
+
+def refusal(asking: Asking, *forms: str) -> str:
+    """The refusal, where it stands beside none of these forms."""
+    beside = asking.form.get("of", "") in forms
+    return (
+        f'<p class="refused" role="alert">{escape(asking.refusal)}</p>'
+        if asking.refusal and not beside
+        else ""
+    )
+
+
+def language_of(name: str) -> str:
+    """Of a text file, "" for another."""
+    return next((language for language, file in TEXTS.items() if file == name), "")

@@ -1,0 +1,260 @@
+"""Pictures, models, scans, sound and film of an exhibit: brought, shown, taken out."""
+
+from __future__ import annotations
+
+import posixpath
+import threading
+from collections.abc import Mapping
+from html import escape
+from typing import Any
+
+from hall_app.content.files import BAKED, replace_file, whole_digest
+from hall_app.content.views.scene import media_type
+from hall_app.house.drafts import TEXT_FILES, USES, Taken, beside, portrait, take_in
+from hall_app.house.people import PeopleError
+from hall_app.web.collection.table import Change
+from hall_app.web.pages.frame import part
+from hall_app.web.platform.counter import Asking, Download, Field, Shown, button, form
+from hall_app.web.platform.office.collection.desk import Desk
+from hall_app.web.platform.office.collection.keys import changes_of, fields_of, media_keys
+from hall_app.web.platform.office.table import office_page
+
+__all__ = ["MOST_FILES", "Uploads", "drawn_model", "file_address", "media_part", "shown_medium"]
+
+MOST_FILES = 12  # at once
+_DRAWING = threading.Lock()
+_ASKED = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
+_MEDIA = {"picture": "picture", "film": "video", "sound": "audio"}  # use -> kind in exhibit.toml
+
+
+class Uploads:
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def bring(self, asking: Asking) -> dict[str, Any]:
+        """Into the draft, and named in exhibit.toml for its use."""
+        desk, key, use = self._desk, self._desk.key(asking), asking.form.get("use", "picture")
+        brought = [one for one in asking.files if one.name or one.size]
+        if not brought or use not in USES:
+            raise PeopleError("no-upload")
+        taken = [take_in(one.name, one.file, one.size, use) for one in brought]
+        with desk.drafts.lock:
+            names = desk.drafts.files(key)
+            table = desk.table(key)
+            files: dict[str, bytes | None] = {}
+            changes: list[Change] = []
+            media = table.get("media")
+            count = len(media) if isinstance(media, list) else 0
+            for one in taken:
+                name = _free(one, {*names, *files})
+                files[name] = one.data
+                if use in _MEDIA:
+                    changes += [Change(("media", count, "kind"), None, _MEDIA[use])]
+                    changes += [Change(("media", count, "file"), None, name)]
+                    typed = {
+                        f"media[{count + 1}].{part}": asking.form.get(part, "")
+                        for part in ("alt.zh", "alt.en", "caption.zh", "caption.en")
+                    }
+                    changes += changes_of(typed, media_keys(count), {})
+                    count += 1
+                else:
+                    changes += _as_model(table, use, name)
+            desk.change(asking, key, changes, files=files)
+        return {"id": key, "files": {name: one.told for name, one in zip(files, taken, strict=True)}}
+
+    def remove(self, asking: Asking) -> dict[str, Any]:
+        """A file out of the draft, and the medium that shows it."""
+        desk, key, name = self._desk, self._desk.key(asking), asking.form.get("file", "")
+        if name in TEXT_FILES or name not in desk.drafts.files(key):
+            raise PeopleError("no-file")
+        media = desk.table(key).get("media")
+        listed = media if isinstance(media, list) else []
+        shows = [
+            number
+            for number, one in enumerate(listed)
+            if isinstance(one, dict) and (one.get("file") == name or one.get("files") == [name])
+        ]
+        changes = [Change(("media", number), None, None) for number in reversed(shows)]
+        if shows and len(shows) == len(listed):
+            changes = [Change(("media",), None, None)]
+        desk.change(asking, key, changes, files={name: None})
+        return {"id": key, "file": name}
+
+    def facts(self, asking: Asking) -> dict[str, Any]:
+        name, path = self._asked(asking)
+        return {"name": name, "size": path.stat().st_size, "type": media_type(name)}
+
+    def shown(self, asking: Asking) -> Download:
+        """The file itself, as it is to be; nothing in it runs, and it is a page of no kind."""
+        name, path = self._asked(asking)
+        return Download(path, posixpath.basename(name), media_type(name), inline=True)
+
+    def picture(self, asking: Asking) -> Download:
+        """A model drawn, kept for the next who asks; one at a time, since that takes seconds."""
+        name, path = self._asked(asking)
+        if not name.endswith(".glb"):
+            raise PeopleError("no-file")
+        kept = self._desk.house.data / "portraits" / f"{whole_digest(path)}.jpg"
+        if not kept.is_file():
+            if not _ASKED.acquire(blocking=False):
+                raise PeopleError("too-often", seconds=10)
+            try:
+                with _DRAWING:
+                    if not kept.is_file() and (drawn := beside(portrait, path)) is not None:
+                        replace_file(kept, drawn)
+            finally:
+                _ASKED.release()
+            if not kept.is_file():
+                raise PeopleError("file-broken", name=name, why="it cannot be drawn")
+        return Download(kept, f"{posixpath.basename(name)}.jpg", "image/jpeg", inline=True)
+
+    def _asked(self, asking: Asking):
+        key, name = self._desk.key(asking), asking.query.get("name", "")
+        if name in TEXT_FILES or not (name in self._desk.drafts.files(key) or name.startswith(BAKED)):
+            raise PeopleError("no-file")
+        if media_type(name) == "application/octet-stream" and not name.endswith((".glb", ".ply", ".obj")):
+            raise PeopleError("no-file")
+        return name, self._desk.drafts.path(key, posixpath.normpath(name))
+
+    def page(self, asking: Asking) -> Shown:
+        """The form by itself, where it is refused."""
+        desk, key = self._desk, self._desk.key(asking)
+        back = asking.word("回到展品", "Back to the exhibit")
+        way = f'<p class="doors"><a href="{asking.address(f"/office/collection/{key}")}">{back}</a></p>'
+        inside = _upload_form(asking, key) + way
+        return office_page(asking, desk.title(key, asking.lang), inside, path=f"collection/{key}")
+
+
+def _free(one: Taken, names: set[str]) -> str:
+    """A name that no other file has: a new picture never takes an old one's place."""
+    folder = "scan" if one.kind == "scan" else "media"
+    stem, _, ending = one.name.rpartition(".")
+    number = 1
+    while (name := f"{folder}/{stem}{f'-{number}' if number > 1 else ''}.{ending}") in names:
+        number += 1
+    return name
+
+
+def _as_model(table: Mapping[str, Any], use: str, name: str) -> list[Change]:
+    """What makes an exhibit's own file its model, in place of what it was made of."""
+    if use == "scan":
+        gone = [one for one in ("models", "outfit", "show") if one in table and one != "show"]
+        return [Change((one,), None, None) for one in gone] + [Change(("scan",), None, name)]
+    gone = [one for one in ("outfit", "scan", "scanned", "show") if one in table]
+    return [Change((one,), None, None) for one in gone] + [Change(("models", use), None, name)]
+
+
+def file_address(asking: Asking, key: str, name: str) -> str:
+    """Where the office shows a file of an exhibit."""
+    return escape(asking.address(f"/office/collection/{key}/file", name=name))
+
+
+def _upload_form(asking: Asking, key: str) -> str:
+    word = asking.word
+    uses = {
+        "picture": word("图片（可多选）", "Pictures, several at once"),
+        "hall": word("展厅模型（GLB）", "Model in the hall (GLB)"),
+        "close": word("近观模型（GLB）", "Model of the close-up (GLB)"),
+        "scan": word("扫描（GLB、PLY、OBJ）", "Scan (GLB, PLY, OBJ)"),
+        "film": word("影片（WebM、MP4）", "Film (WebM, MP4)"),
+        "sound": word("声音（Ogg、MP3、WAV…）", "Sound (Ogg, MP3, WAV …)"),
+    }
+    hint = word(
+        "按内容辨认；图片重新编码，去除附带信息。SVG 与压缩包不收。",
+        "Known by what they hold; pictures are drawn anew, without what a camera wrote into them. No SVG, no archives.",
+    )
+    fields = (
+        Field("use", word("用途", "Use"), "select", choices=uses),
+        Field("file", word("文件", "Files"), "file", hint=hint, given={"multiple": "multiple"}),
+        *(
+            Field(
+                f"alt.{lang}",
+                word(f"画面描述（{zh}）", f"What it shows ({en})"),
+                needed=False,
+                given={"lang": lang},
+            )
+            for lang, zh, en in (("zh", "中文", "Chinese"), ("en", "英文", "English"))
+        ),
+    )
+    sent = form(
+        asking,
+        "upload",
+        f"/office/collection/{key}/upload",
+        fields,
+        word("上传到草稿", "Upload to the draft"),
+    )
+    return sent.replace('<form method="post"', '<form method="post" enctype="multipart/form-data"', 1)
+
+
+def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], tag: str) -> str:
+    """What the exhibit shows and sounds, with its words, and a way to bring more."""
+    word, parts = asking.word, []
+    media = table.get("media")
+    for number, one in enumerate(media if isinstance(media, list) else []):
+        if not isinstance(one, dict):
+            continue
+        names = [one["file"]] if one.get("file") else list(one.get("files") or ())
+        at = f"/office/collection/{key}"
+        keys = media_keys(number) if one.get("kind") != "picture" else media_keys(number)[:2]
+        words = form(
+            asking, f"medium-{number}", f"{at}/fields", fields_of(asking, keys, table), word("保存", "Save"),
+            hidden={"tag": tag}, style="pairs",
+        )  # fmt: skip
+        own = bool(names) and names[0] in desk.drafts.files(key)
+        goes = (
+            button(
+                asking,
+                "remove",
+                f"{at}/remove",
+                word("移除", "Remove"),
+                about=str(names[0]),
+                hidden={"file": names[0]},
+            )
+            if own and len(names) == 1
+            else ""
+        )
+        told = one.get("caption") or one.get("alt")
+        words_of = str(told.get(asking.lang, "")) if isinstance(told, dict) else ""
+        named = f'<code class="quiet">{escape(", ".join(map(str, names)))}</code>'
+        title = f"<b>{escape(words_of or str(number + 1))}</b> · {named}"
+        parts.append(
+            f"<li>{shown_medium(asking, key, one, names)}"
+            f"<details><summary>{title}</summary>{words}{goes}</details></li>"
+        )
+    title = word("图片、影片、声音与模型", "Pictures, films, sounds, models")
+    models = table.get("models")
+    own = (
+        [name for name in (models or {}).values() if name in desk.drafts.files(key)]
+        if isinstance(models, dict)
+        else []
+    )
+    drawn = "".join(f"<figure>{drawn_model(asking, key, name)}</figure>" for name in own)
+    parts += [f'<li class="drawn">{drawn}</li>'] if drawn else []
+    listed = f'<ul class="media">{"".join(parts)}</ul>' if parts else ""
+    return part("media", title, f'{listed}<div class="desk">{_upload_form(asking, key)}</div>')
+
+
+def drawn_model(asking: Asking, key: str, name: str) -> str:
+    """A model as a picture of it."""
+    at = escape(asking.address(f"/office/collection/{key}/picture", name=name))
+    told = asking.word("模型的形体", "Shape of the model")
+    return f'''<img src="{at}" alt="{told} {escape(name)}" loading="lazy" width="480" height="600">
+<figcaption><code>{escape(name)}</code></figcaption>'''
+
+
+def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[Any]) -> str:
+    """A medium as HTML, from the draft's own files."""
+    if not names or not all(isinstance(name, str) for name in names):
+        return '<span class="blank"></span>'
+    alt = one.get("alt")
+    words = escape(str(alt.get(asking.lang, ""))) if isinstance(alt, dict) else ""
+    if one.get("kind") == "picture":
+        return f'<img src="{file_address(asking, key, names[0])}" alt="{words}" loading="lazy">'
+    sources = "".join(
+        f'<source src="{file_address(asking, key, name)}" type="{media_type(name, one.get("kind", ""))}">'
+        for name in names
+    )
+    label = words or escape(names[0])
+    if one.get("kind") == "video":
+        return f'<video controls preload="none" aria-label="{label}">{sources}</video>'
+    return f'<audio controls preload="none" aria-label="{label}">{sources}</audio>'

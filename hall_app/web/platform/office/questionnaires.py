@@ -1,0 +1,157 @@
+"""The questionnaires for the researcher: how many answered, the analysis, the answers as files."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from typing import Any
+
+from hall_app.house.people import PeopleError
+from hall_app.web.platform.counter import Asking, Counter, Download, Shown
+from hall_app.web.platform.office.deeds import Reading
+from hall_app.web.platform.office.table import office_page, rows
+from survey.errors import AnswerError
+
+__all__ = ["questionnaire_readings"]
+
+_FILES = {
+    "csv": ("text/csv", "CSV"),
+    "xlsx": ("application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", "Excel"),
+    "sav": ("application/octet-stream", "SPSS"),
+    "json": ("application/json", "JSON"),
+    "codebook": ("text/csv", ""),
+    "r": ("text/plain", "R"),
+}
+_ONE = "questionnaires/{key}"
+
+
+def questionnaire_readings(counter: Counter) -> tuple[Reading, ...]:
+    rooms = _Rooms(counter)
+    kinds = {"kind": " or ".join(_FILES)}
+    return (
+        Reading("questionnaires", "questionnaires", rooms.all, rooms.page),
+        Reading(f"{_ONE}/analysis", "analysis", rooms.analysis, rooms.analysis_page),
+        Reading(f"{_ONE}/export", "export", rooms.export, rooms.file, kinds),
+    )
+
+
+class _Rooms:
+    def __init__(self, counter: Counter) -> None:
+        self._house, self._people = counter.house, counter.people
+
+    def all(self, asking: Asking) -> list[dict[str, Any]]:
+        return self._house.survey_standing()
+
+    def _made(self, asking: Asking, act: str, task: str) -> tuple[str, bytes]:
+        """First that it is wanted is written down, then it is made. Raises PeopleError, StoreError."""
+        key, make = asking.names["key"], self._house.survey_made
+        if make is None or key not in {one["id"] for one in self.all(asking)}:
+            raise PeopleError("no-questionnaire")
+        self._people.note(asking.person.id, act, f"{key} {task}")
+        try:
+            return make(key, task)
+        except AnswerError as error:
+            raise PeopleError("survey-refused", why=str(error)) from None
+
+    def analysis(self, asking: Asking) -> dict[str, Any]:
+        return json.loads(self._made(asking, "analysis", "analysis")[1])
+
+    def export(self, asking: Asking) -> dict[str, Any]:
+        """Where the file is: programs fetch it there, with the same session."""
+        if asking.names["key"] not in {one["id"] for one in self.all(asking)}:
+            raise PeopleError("no-questionnaire")
+        at = f"/office/questionnaires/{asking.names['key']}/export?kind="
+        return {"files": {kind: f"{at}{kind}" for kind in _FILES}}
+
+    def file(self, asking: Asking) -> Download:
+        kind = asking.query.get("kind", "csv")
+        if kind not in _FILES:
+            raise PeopleError("no-file")
+        name, data = self._made(asking, "export", kind)
+        return Download(data, name, _FILES[kind][0])
+
+    def page(self, asking: Asking) -> Shown:
+        word, person = asking.word, asking.person
+        lines = []
+        for one in self.all(asking):
+            at = f"/office/questionnaires/{one['id']}"
+            ways = []
+            if person.may("analysis") and one["answers"]:
+                ways.append((asking.address(f"{at}/analysis"), word("分析", "Analysis")))
+            if person.may("export"):
+                ways += [
+                    (asking.address(f"{at}/export", kind=kind), name or word("编码本", "Codebook"))
+                    for kind, (_, name) in _FILES.items()
+                ]
+            links = " ".join(f'<a href="{escape(where)}">{escape(name)}</a>' for where, name in ways)
+            earlier = "; ".join(
+                f"v{number}: {count}"
+                for number, count in sorted(one["versions"].items())
+                if number != one["version"]
+            )
+            lines.append(
+                (
+                    f'<a href="/questionnaires/{escape(one["id"])}?lang={asking.lang}">'
+                    f"{escape(one['title'][asking.lang])}</a>",
+                    str(one["version"]),
+                    f"<b>{one['answers']}</b>" + (f" ({escape(earlier)})" if earlier else ""),
+                    str(one["items"]),
+                    word("开放", "open") if one["asked"] else word("不提问", "asks nothing"),
+                    f'<span class="doors-in">{links}</span>',
+                )
+            )
+        heads = (
+            word("问卷", "Questionnaire"),
+            word("版本", "Version"),
+            word("答卷", "Answers"),
+            word("题目", "Items"),
+            word("状态", "State"),
+            word("分析与导出", "Analysis, files"),
+        )
+        title = word("问卷", "Questionnaires")
+        told = word(
+            "导出与分析都记入日志。答卷不含姓名；文本仍可能透露个人，请妥善保存。",
+            "Files and analyses are noted in the journal. Answers name nobody; texts may tell of one: keep them well.",
+        )
+        none = f"<p>{word('还没有问卷。', 'There is none yet.')}</p>"
+        return office_page(
+            asking, title, rows(title, heads, lines) if lines else none, path="questionnaires", lead=told
+        )
+
+    def analysis_page(self, asking: Asking) -> Shown:
+        word, key = asking.word, asking.names["key"]
+        titles = {one["id"]: one["title"][asking.lang] for one in self.all(asking)}
+        found = self.analysis(asking)
+        name = f"{titles[key]} · {word('分析', 'Analysis')}"
+        facts = (
+            (word("答卷", "Answers"), found.get("n")),
+            ("KMO", found.get("kmo")),
+            ("Cronbach α", found.get("alpha")),
+            ("McDonald ω", found.get("omega")),
+        )
+        listed = "".join(f"<dt>{label}</dt><dd>{_figure(value)}</dd>" for label, value in facts)
+        items = found.get("items") or []
+        deleted, total = found.get("alpha_if_deleted") or {}, found.get("item_total") or {}
+        lines = [(escape(item), _figure(total.get(item)), _figure(deleted.get(item))) for item in items]
+        heads = (word("题目", "Item"), word("题总相关", "Item–total"), word("删除后 α", "α if deleted"))
+        notes = "".join(f"<li>{escape(_note(one))}</li>" for one in found.get("warnings") or ())
+        warned = f'<ul class="names">{notes}</ul>' if notes else ""
+        more = word(
+            "完整分析：survey analyse，或 /api/office/questionnaires/…/analysis。",
+            "All of it: survey analyse, or /api/office/questionnaires/…/analysis.",
+        )
+        back = f'<a href="{asking.address("/office/questionnaires")}">{word("返回", "Back")}</a>'
+        inside = f"""<dl class="how">{listed}</dl>{rows(name, heads, lines)}{warned}
+<p class="quiet">{more}</p><p class="doors">{back}</p>"""
+        return office_page(asking, name, inside, path=f"questionnaires/{key}/analysis")
+
+
+def _figure(value: Any) -> str:
+    """A number as papers print it, a dash for none."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return "–"
+    return str(value) if isinstance(value, int) else f"{value:.3f}"
+
+
+def _note(one: Any) -> str:
+    return str(one.get("text") or one.get("message") or one) if isinstance(one, dict) else str(one)

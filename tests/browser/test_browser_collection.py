@@ -1,0 +1,152 @@
+"""A curator's day in a browser: an exhibit of his own, from files to the hall and back; pages clean and whole."""
+
+import json
+import urllib.request
+
+import pytest
+from bench.axe import violations
+from bench.browser import soon
+from full_matrix import by_day
+from plain_hall import write_plain_hall
+from read_pages import read_whole
+from running_hall import running_hall
+from test_browser_me import SMALL, page_of, press_to
+from test_browser_office import clerk
+
+from hall_app.house.people import Role
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+SHOWN_WITHIN = 5.0  # [s] of being published: what a curator is promised
+PLACED = "document.getElementById('place-place.x').value"
+
+
+@pytest.fixture(scope="module")
+def hall(tmp_path_factory):
+    """One of its own: what is published here is seen by nobody else's test."""
+    work = tmp_path_factory.mktemp("collection")
+    with running_hall(write_plain_hall(work / "content"), work) as running:
+        yield running
+
+
+def exhibits(hall) -> dict[str, str]:
+    with urllib.request.urlopen(f"{hall.url}/api/scene") as answer:
+        return {one["id"]: one["title"]["en"] for one in json.load(answer)["exhibits"]}
+
+
+def until_shown(hall, page, key: str, title: str | None) -> None:
+    """What the hall shows under that name, within what is promised; None: nothing."""
+    soon(page, lambda: exhibits(hall).get(key) == title, patience=SHOWN_WITHIN)
+
+
+def test_a_curator_s_day(hall, chromium, tmp_path):
+    from PIL import Image
+
+    Image.new("RGB", (1600, 900), "#31506b").save(tmp_path / "Front view.jpg")
+    Image.new("RGB", (900, 900), "#7a4b2e").save(tmp_path / "back.png")
+    page = page_of(chromium, clerk(hall, Role.CURATOR)[0], 1280)
+    page.set_default_timeout(120_000)  # a walk through the hall takes a while where others work
+    page.goto(f"{hall.url}/office/collection?lang=en")
+    page.fill("#exhibit-id", "blue-box")
+    page.fill("[id='exhibit-title.zh']", "蓝匣")
+    page.fill("[id='exhibit-title.en']", "Blue box")
+    page.get_by_role("button", name="Begin a draft").click()
+    page.get_by_role("heading", name="Blue box").wait_for()
+
+    def upload(use: str, *files, **words: str) -> None:
+        page.select_option("#upload-use", use)
+        page.set_input_files("#upload-file", [str(file) for file in files])
+        for name, text in words.items():
+            page.fill(f"[id='upload-alt.{name}']", text)
+        page.get_by_role("button", name="Upload to the draft").click()
+        page.get_by_role("status").wait_for()
+
+    upload("hall", hall.content / "exhibits/box/box.glb")
+    upload("picture", tmp_path / "Front view.jpg", tmp_path / "back.png", zh="一只蓝匣", en="A blue box")
+    shown = page.locator(".media > li > img")
+    assert shown.count() == 2
+    widths = "[...document.querySelectorAll('.media > li > img')].map((one) => one.naturalWidth)"
+    soon(page, lambda: page.evaluate(widths) == [1600, 900])
+    page.locator(".drawn img").scroll_into_view_if_needed()
+    drawn = "document.querySelector('.drawn img').naturalWidth"
+    soon(page, lambda: page.evaluate(drawn) == 480, patience=120)
+    page.get_by_role("link", name="Place on the plan").click()
+    page.get_by_role("img", name="Plan").wait_for()
+    drag(page)
+    page.get_by_role("button", name="Save to the draft").click()
+    page.locator("#reached[data-state=yes]").wait_for(timeout=120_000)
+    assert -3 < float(page.evaluate(PLACED)) < -2
+    assert violations(page) == []
+    page.get_by_role("link", name="Back to the exhibit").click()
+    page.get_by_role("link", name="Preview").click()
+    page.get_by_role("article").get_by_role("heading", name="Blue box").wait_for()
+    assert page.locator("article img").count() == 3
+    assert page.locator(".faults").count() == 0
+    assert "blue-box" not in exhibits(hall), "a draft is not in the hall"
+    page.get_by_role("button", name="Publish").click()
+    page.get_by_role("status").wait_for(timeout=120_000)
+    until_shown(hall, page, "blue-box", "Blue box")
+
+    page.goto(f"{hall.url}/office/collection/box?lang=en")
+    press_to(page, "Save")  # the first form's, by key alone
+    page.focus("[id='words-title.en']")
+    page.keyboard.press("Control+A")
+    page.keyboard.type("A box renamed")
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name="A box renamed", level=1).wait_for()
+    page.get_by_role("button", name="Publish").click()
+    page.get_by_text("there is no draft").wait_for(timeout=120_000)
+    until_shown(hall, page, "box", "A box renamed")
+    page.get_by_role("link", name="History").click()
+    page.get_by_role("button", name="Undo this change").click()
+    page.get_by_text("Undone").wait_for(timeout=120_000)
+    until_shown(hall, page, "box", "Plain box")
+    page.goto(f"{hall.url}/office/collection/blue-box/history?lang=en")
+    page.get_by_role("button", name="Undo this change").click()
+    page.get_by_text("Undone").wait_for(timeout=120_000)
+    until_shown(hall, page, "blue-box", None)
+    page.context.close()
+
+
+def drag(page) -> None:
+    """The exhibit on the plan, four metres to the left of where a new one stands."""
+    own, before = page.locator("#own").bounding_box(), float(page.evaluate(PLACED))
+    scale = page.evaluate("document.getElementById('plan').getScreenCTM().a")
+    x, y = own["x"] + own["width"] / 2, own["y"] + own["height"] / 3
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - (before + 2.5) * scale, y, steps=8)
+    page.mouse.up()
+    assert abs(float(page.evaluate(PLACED)) + 2.5) < 0.2
+
+
+@pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))
+@pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
+def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
+    clerks, _ = clerk(hall, Role.ADMINISTRATOR)
+    seal = json.loads(clerks.ask("GET", "/api/office/me").body)["seal"]
+    told = {"Content-Type": "application/json", "Origin": hall.url, "X-Seal": seal}
+    draft = json.dumps(
+        {"title.en": "A drafted box", "record.colour.zh": "红", "record.colour.en": "red"}
+    ).encode()
+    assert clerks.ask("POST", "/api/office/collection/box/fields", draft, told).status == 200
+    assert clerks.ask("POST", "/api/office/backups", b"{}", told).status == 200
+    assert (
+        clerks.get("/office/collection/box/picture?name=box.glb").status == 200
+    )  # drawn before the pages ask
+    page = page_of(chromium, clerks, width)
+    box = "/collection/box"
+    parts = (
+        "/collection",
+        box,
+        f"{box}/text?file=exhibit.toml",
+        f"{box}/preview",
+        f"{box}/place",
+        f"{box}/history",
+    )
+    for path in (*parts, "/bakes", "/questionnaires", "/backups"):
+        mark = "&" if "?" in path else "?"
+        read_whole(page, f"{hall.url}/office{path}{mark}lang={lang}", width, SMALL)
+        assert page.evaluate("document.activeElement.id") == "main", path
+    clerks.ask("POST", "/api/office/collection/box/drop", b"{}", told)
+    page.context.close()

@@ -1,0 +1,300 @@
+"""The collection in the office: drafts by forms and whole texts, uploads, publication, conflict, history, undo."""
+
+from __future__ import annotations
+
+import io
+import json
+import tomllib
+import uuid
+
+import pytest
+from content_house import EXHIBIT, add_exhibit
+from office_clerk import Clerk, clerk
+from PIL import Image
+
+from hall_app.check import check
+from hall_app.content import load
+from hall_app.house.people import Role
+
+TOML = "exhibit.toml"
+
+
+@pytest.fixture
+def curator(counter) -> Clerk:
+    return clerk(counter, counter.people, Role.CURATOR)
+
+
+@pytest.fixture
+def chest(counter):
+    """An exhibit of its own, with a comment, that goes afterwards; its folder."""
+    key = f"c{uuid.uuid4().hex[:10]}"
+    place = EXHIBIT.replace("x = 0.0", "x = 0.0 # by hand").replace("z = -1.0", "z = 2.0")
+    home = add_exhibit(counter.content, key, "# The chest. 箱\n" + place)
+    yield home
+    import shutil
+
+    shutil.rmtree(home, ignore_errors=True)
+
+
+def png(size=(40, 30), colour="#7a4b2e", kind="PNG") -> bytes:
+    data = io.BytesIO()
+    Image.new("RGB", size, colour).save(data, kind)
+    return data.getvalue()
+
+
+def tag(one: Clerk, key: str, name: str = TOML) -> str:
+    return one.told(f"collection/{key}/text?file={name}")["tag"]
+
+
+def publish(one: Clerk, key: str) -> None:
+    one.told(f"collection/{key}/publish", {})
+
+
+def test_a_form_changes_what_was_typed_and_not_a_byte_more(curator, chest):
+    key, before = chest.name, (chest / TOML).read_text("utf-8")
+    page = curator.get(f"/office/collection/{key}?lang=en")
+    done = curator.send(
+        page, "form-words", **{"title.en": 'A "red" chest', "caption.zh": "一句", "caption.en": "One"}
+    )
+    assert done.status == 200
+    assert (chest / TOML).read_text("utf-8") == before, "a draft is not in the hall"
+    publish(curator, key)
+    after = (chest / TOML).read_text("utf-8")
+    assert tomllib.loads(after)["title"]["en"] == 'A "red" chest'
+    added = [line for line in after.splitlines() if line not in before.splitlines()]
+    assert len(added) == 2
+    assert "# by hand" in after
+    assert load(chest.parents[1]).exhibit(key).file.caption.en == "One"
+
+
+def test_every_section_of_the_form_is_saved_as_it_stands(curator, chest):
+    """Saving what nobody changed changes nothing: no draft comes of it."""
+    key = chest.name
+    page = curator.get(f"/office/collection/{key}")
+    for name in ("words", "shown", "record", "stands"):
+        assert curator.send(page, f"form-{name}").status == 200
+    for language in ("zh", "en"):
+        assert curator.send(page, f"form-text-{language}").status == 200
+    assert curator.told(f"collection/{key}")["draft"] is None
+
+
+def test_texts_are_written_whole_and_read_back(curator, chest):
+    key = chest.name
+    page = curator.get(f"/office/collection/{key}?lang=en")
+    curator.send(page, "form-text-en", text="# A chest\r\n\r\nOf *camphor* wood & more.")
+    assert (
+        curator.told(f"collection/{key}/text?file=text.en.md")["text"]
+        == "# A chest\n\nOf *camphor* wood & more."
+    )
+    publish(curator, key)
+    assert (chest / "text.en.md").read_bytes() == b"# A chest\n\nOf *camphor* wood & more."
+    preview = curator.get(f"/office/collection/{key}/preview?lang=en").text
+    assert "<em>camphor</em>" in preview
+    assert "wood &amp; more" in preview
+
+
+def test_what_two_change_at_once_is_told_with_both_versions(counter, curator, chest):
+    key, other = chest.name, clerk(counter, counter.people, Role.EDITOR)
+    mine = tag(curator, key, "text.en.md")
+    other.told(f"collection/{key}/text", {"file": "text.en.md", "text": "theirs", "tag": mine})
+    answer = curator.api(f"collection/{key}/text", {"file": "text.en.md", "text": "ours", "tag": mine})
+    assert answer.status == 409
+    told = json.loads(answer.body)
+    assert (told["error"], told["now"], told["yours"]) == ("changed", "theirs", "ours")
+    page = curator.send(
+        f"/office/collection/{key}/text?file=text.en.md&lang=en", "form-text", text="ours", tag=mine
+    )
+    assert page.status == 409
+    assert "\nours</textarea>" in page.text
+    assert "theirs" in page.text
+    # The page that shows both may write over it, knowingly.
+    assert curator.send(page, "form-text").status == 200
+    assert curator.told(f"collection/{key}/text?file=text.en.md")["text"] == "ours"
+
+
+def test_a_file_changed_by_hand_beneath_a_draft_is_not_overwritten(curator, chest):
+    key = chest.name
+    curator.told(f"collection/{key}/fields", {"title.en": "Of the office"})
+    by_hand = (chest / TOML).read_text("utf-8").replace("Chest", "By hand")
+    (chest / TOML).write_text(by_hand, "utf-8")
+    assert curator.told(f"collection/{key}")["stale"] == [TOML]
+    for act, given in (("publish", {}), ("fields", {"title.en": "Again"})):
+        assert curator.api(f"collection/{key}/{act}", given).status == 409
+    assert (chest / TOML).read_text("utf-8") == by_hand
+    both = curator.get(f"/office/collection/{key}/text?file={TOML}&lang=en")
+    assert "By hand" in both.text
+    assert "Of the office" in both.text
+    merged = by_hand.replace("By hand", "Of both")
+    curator.send(both, "form-text", text=merged)
+    publish(curator, key)
+    assert (chest / TOML).read_text("utf-8") == merged
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"title.en": ""}, "title"),
+        ({"body.radius": "wide"}, "body.radius"),
+        ({"body.radius": "-1"}, None),
+        ({"place.x": "90"}, None),
+        ({"thumbnail": "../../hall.toml"}, None),
+        ({"models.hall": "media/nothing.glb"}, None),
+    ],
+)
+def test_what_the_check_refuses_is_not_published(curator, chest, given, said):
+    key, before = chest.name, (chest / TOML).read_bytes()
+    answer = curator.api(f"collection/{key}/fields", given)
+    if said:
+        assert answer.status == 400
+        assert said in answer.text
+        return
+    assert answer.status == 200
+    told = curator.api(f"collection/{key}/publish", {})
+    assert told.status == 400
+    assert json.loads(told.body)["error"] == "content-check"
+    assert (chest / TOML).read_bytes() == before
+    assert curator.told(f"collection/{key}")["problems"], "the page names them before anybody publishes"
+
+
+def test_what_is_no_toml_is_refused_at_once(curator, chest):
+    answer = curator.api(f"collection/{chest.name}/text", {"file": TOML, "text": "title = "})
+    assert answer.status == 400
+    assert "exhibit.toml" in answer.text
+
+
+def test_pictures_are_drawn_anew_named_and_shown(counter, curator, chest):
+    key = chest.name
+    jpeg = png(kind="JPEG") + b"<script>alert(1)</script>"
+    told = curator.bring(
+        key,
+        [("../Röbe №1.PNG", png()), ("b.jpg", jpeg)],
+        use="picture",
+        **{"alt.zh": "袍", "alt.en": "A robe"},
+    )
+    assert told.status == 200, told.text
+    names = list(json.loads(told.body)["files"])
+    assert names == ["media/robe-no1.png", "media/b.jpg"]
+    shown = curator.get(f"/office/collection/{key}/file?name={names[1]}")
+    assert shown.headers["Content-Type"] == "image/jpeg"
+    assert b"script" not in shown.body
+    assert "sandbox" in shown.headers["Content-Security-Policy"]
+    publish(curator, key)
+    found = load(counter.content).exhibit(key).file.media[-2:]
+    assert [one.file for one in found] == names
+    assert found[0].alt.en == "A robe"
+    assert not [one for one in check(counter.content) if key in one.file]
+    curator.told(f"collection/{key}/remove", {"file": names[0]})
+    publish(curator, key)
+    assert not (chest / names[0]).exists()
+    assert names[0] not in (chest / TOML).read_text("utf-8")
+
+
+@pytest.mark.slow
+def test_a_model_is_drawn_for_who_brought_it(counter, curator, chest):
+    box = (chest / "media/chest.glb").read_bytes()
+    assert curator.bring(chest.name, [("close.glb", box)], use="close").status == 200
+    page = curator.get(f"/office/collection/{chest.name}/preview?lang=en").text
+    assert f"/office/collection/{chest.name}/picture" in page
+    drawn = curator.get(f"/office/collection/{chest.name}/picture?name=media/close.glb")
+    assert drawn.headers["Content-Type"] == "image/jpeg"
+    pixels = Image.open(io.BytesIO(drawn.body)).convert("L")
+    low, high = pixels.crop((200, 250, 280, 350)).getextrema()
+    assert pixels.size == (480, 600)
+    assert high > low, "there is something in the middle of it"
+    assert curator.ask("GET", f"/office/collection/{chest.name}/picture?name=media/front.jpg").status == 404
+
+
+def test_history_tells_differences_and_undo_takes_them_back(curator, chest):
+    key, before = chest.name, (chest / TOML).read_bytes()
+    for title in ("First", "Second"):
+        curator.told(f"collection/{key}/fields", {"title.en": title})
+        publish(curator, key)
+    second, first = curator.told(f"collection/{key}/history")
+    page = curator.get(f"/office/collection/{key}/history?lang=en").text
+    assert "Second" in page
+    assert curator.api(f"collection/{key}/undo", {"revision": first["id"]}).status == 409
+    for one in (second, first):
+        curator.told(f"collection/{key}/undo", {"revision": one["id"]})
+    assert (chest / TOML).read_bytes() == before
+    assert [one["act"] for one in curator.told(f"collection/{key}/history")] == ["undo"] * 2 + ["publish"] * 2
+
+
+def test_a_new_exhibit_from_draft_to_hall_and_back(counter, curator):
+    key = f"n{uuid.uuid4().hex[:10]}"
+    page = curator.send(
+        "/office/collection?lang=en", "form-exhibit", id=key, **{"title.zh": '"新"袍', "title.en": "New robe"}
+    )
+    assert "New robe" in page.text
+    assert curator.api(f"collection/{key}/publish", {}).status == 400, "it has no model yet"
+    box = (counter.content / "exhibits/chest/media/chest.glb").read_bytes()
+    assert curator.bring(key, [("Robe.glb", box)], use="hall").status == 200
+    curator.told(f"collection/{key}/place", {"place.x": "-3", "place.z": "3", "place.facing": "90"})
+    assert curator.told(f"collection/{key}/preview")["whole"]
+    publish(curator, key)
+    found = load(counter.content).exhibit(key)
+    assert (found.file.models.hall, found.file.place.facing) == ("media/robe.glb", 90.0)
+    (one,) = curator.told(f"collection/{key}/history")
+    curator.told(f"collection/{key}/undo", {"revision": one["id"]})
+    assert not found.folder.exists()
+    for name in ("hall", "../x", "Ab", "", "a" * 61, "chest"):
+        answer = curator.api("collection", {"id": name, "title.zh": "一", "title.en": "one"})
+        assert answer.status == 400, name
+
+
+def test_a_place_that_shuts_others_off_is_told_before_it_is_published(counter, curator, chest):
+    key = chest.name
+    wall = {"body.shape": "box", "body.radius": "", "body.size": "9.6 0.4", "place.x": "0", "place.z": "1.6"}
+    curator.told(f"collection/{key}/fields", wall)
+    answer = curator.api(f"collection/{key}/publish", {})
+    assert answer.status == 400
+    assert "cannot be reached on foot" in answer.text
+    told = curator.told(f"collection/{key}/place")
+    assert told["reached"] is False
+    assert "cannot be reached" in curator.get(f"/office/collection/{key}/place?lang=en").text
+
+
+def test_an_editor_drafts_and_does_not_publish(counter, chest):
+    one = clerk(counter, counter.people, Role.EDITOR)
+    one.told(f"collection/{chest.name}/fields", {"title.en": "Drafted"})
+    page = one.get(f"/office/collection/{chest.name}?lang=en").text
+    assert "/publish" not in page
+    assert "/preview" in page
+    one.told(f"collection/{chest.name}/drop", {})
+    assert one.told(f"collection/{chest.name}")["draft"] is None
+
+
+def test_drafts_have_a_quota(counter, curator, chest, monkeypatch):
+    noise = io.BytesIO()
+    Image.effect_noise((900, 900), 90).convert("RGB").save(noise, "PNG")
+    from hall_app.house.drafts import Shelf
+
+    monkeypatch.setattr(Shelf, "size", lambda self: 49_999_000)
+    answer = curator.bring(chest.name, [("noise.png", noise.getvalue())], use="picture")
+    assert answer.status == 413
+    assert json.loads(answer.body)["error"] == "quota"
+
+
+def test_every_plain_key_of_the_schema_has_words():
+    from hall_app.web.platform.office.collection import WORDS, keys_of
+
+    keys = keys_of(
+        "title", "caption", "licence", "thumbnail", "questionnaire", "size_range", "body", "record", "place"
+    )
+    assert len(keys) > 20
+    assert {key.name for key in keys} <= WORDS.keys()
+    assert all(zh and en for zh, en in WORDS.values())
+
+
+def test_no_path_leads_out_of_the_exhibit(curator, chest):
+    for name in (
+        "../../hall.toml",
+        "baked/../exhibit.toml",
+        "baked/../../../hall.toml",
+        "media/../exhibit.toml",
+        "",
+        "/etc/passwd",
+    ):
+        assert curator.ask("GET", f"/office/collection/{chest.name}/file?name={name}").status == 404, name
+        assert curator.api(f"collection/{chest.name}/text?file={name}").status == 404
+    for key in ("..", "hall", "%2e%2e", "a/b"):
+        assert curator.ask("GET", f"/office/collection/{key}").status == 404

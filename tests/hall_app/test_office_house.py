@@ -1,0 +1,121 @@
+"""Backups, questionnaires and bakes from the office."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from office_clerk import clerk
+
+from hall_app.content import load
+from hall_app.house.baking import Bake, BakingQueue
+from hall_app.house.people import People, Role
+from hall_app.house.safekeeping import check_archive
+
+
+@pytest.fixture
+def administrator(counter):
+    return clerk(counter, counter.people, Role.ADMINISTRATOR)
+
+
+def test_a_backup_is_made_fetched_and_restored_beside(counter, administrator, tmp_path):
+    one = administrator
+    assert "There is none yet" in one.get("/office/backups?lang=en").text
+    page = one.send("/office/backups?lang=en", "form-make")
+    assert page.status == 200
+    (told,) = one.told("backups")
+    fetched = one.ask("GET", f"/office/backups/{told['name']}/file")
+    assert fetched.headers["Content-Type"] == "application/zip"
+    assert fetched.headers["Cache-Control"] == "no-store"
+    file = tmp_path / "fetched.zip"
+    file.write_bytes(fetched.body)
+    assert check_archive(file).people == len(counter.people.accounts.all(most=10_000))
+    assert len(fetched.body) == told["size"]
+    wrong = one.send(page, "form-restore-0", name="something else")
+    assert wrong.status == 400
+    assert not (counter.data / "restored").exists()
+    done = one.send(page, "form-restore-0", name=told["name"])
+    assert "hall serve --content" in done.text
+    home = counter.data / "restored" / told["name"].removesuffix(".zip")
+    assert load(home / "content").exhibit("chest") is not None
+    people = People(home / "data")
+    try:
+        assert people.accounts.of(one.person).roles == {Role.ADMINISTRATOR}
+    finally:
+        people.close()
+    acts = [entry["subject"] for entry in one.told("audit") if entry["act"] == "backup"]
+    assert any(subject.startswith("fetch ") for subject in acts)
+    one.told(f"backups/{told['name']}/remove", {})
+    assert one.told("backups") == []
+
+
+@pytest.mark.parametrize("name", ["..", "hall.zip", "..%2f..%2fpeople.sqlite", "people.sqlite"])
+def test_nothing_but_backups_is_handed_out(administrator, name):
+    assert administrator.ask("GET", f"/office/backups/{name}/file").status == 404
+    assert administrator.api(f"backups/{name}/file").status == 404
+
+
+def test_answers_are_counted_and_handed_out(counter):
+    one = clerk(counter, counter.people, Role.RESEARCHER)
+    (told,) = one.told("questionnaires")
+    assert (told["id"], told["answers"]) == ("garment", 0)
+    page = one.get("/office/questionnaires?lang=en").text
+    assert "/office/questionnaires/garment/export" in page
+    csv = one.ask("GET", "/office/questionnaires/garment/export?kind=codebook")
+    assert csv.status == 200
+    assert "attachment" in csv.headers["Content-Disposition"]
+    assert csv.body
+    refused = one.api("questionnaires/garment/analysis")
+    assert refused.status == 400, "nobody has answered yet"
+    assert json.loads(refused.body)["error"] == "survey-refused"
+    assert one.api("questionnaires/nothing/analysis").status == 404
+    assert one.ask("GET", "/office/questionnaires/garment/export?kind=exe").status == 404
+
+
+class Slow:
+    """A bake that never ends by itself."""
+
+    def poll(self) -> None:
+        return None
+
+    def line(self) -> str:
+        return " 40% cloth <b>"
+
+    def outcome(self) -> str:
+        return ""
+
+    def end(self) -> None:
+        self.ended = True
+
+
+def test_a_bake_is_told_stopped_and_tried_again(counter):
+    import asyncio
+
+    one, builds = clerk(counter, counter.people, Role.CURATOR), []
+
+    def begin(bake: Bake) -> Slow:
+        builds.append(Slow())
+        return builds[-1]
+
+    queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake("room", "2", patient=True))
+    counter.house.queue = queue
+    try:
+        asyncio.run(queue.want(wanted))
+        assert [bake["state"] for bake in one.told("bakes")] == ["running", "waiting"]
+        page = one.get("/office/bakes?lang=en")
+        assert "40% cloth &lt;b&gt;" in page.text
+        one.send(page, "/office/bakes/chest/stop")
+        assert [bake.name for bake in queue.stopped()] == ["chest"]
+        asyncio.run(queue.want(wanted))
+        assert builds[0].ended
+        assert {bake["name"]: bake["state"] for bake in one.told("bakes")} == {
+            "room": "running",
+            "chest": "failed",
+        }
+        one.told("bakes/chest/again", {})
+        queue.stopped()
+        asyncio.run(queue.want(wanted))
+        assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
+        assert one.api("bakes/nothing/stop", {}).status == 400
+    finally:
+        counter.house.queue = None
