@@ -21,7 +21,7 @@ _WELL_LIT = 0.8  # quantile of pale walls that WALL means: some of them are in d
 _PALE = 0.45  # mean reflectance from which a wall counts as pale
 SHOULDER = 0.88  # linear brightness from which highlights are rolled off
 _SCALE = 2.0  # the file holds light / 2
-_QUALITY = 90  # of JPEG
+_QUALITY = 86  # of JPEG
 _KNEE = 1.1  # light from which it is rolled off too, as the file ends at _SCALE
 
 Singles = NDArray[np.float32]

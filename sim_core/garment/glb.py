@@ -39,7 +39,7 @@ LACQUER = (0.28, 0.165, 0.145)  # sRGB #482A25
 LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
-MOST_PIXELS = 4096  # of a texture on any device
+MOST_PIXELS = 2048  # a side, of the textures that every telephone has
 CELL_QUALITY, FIGURE_QUALITY = 82, 88  # JPEG
 
 
