@@ -13,6 +13,7 @@ from hall_app.content.schema import PlanFile
 from hall_app.room import raise_room
 from hall_app.room.lighting import charts_of
 from hall_app.room.parts import boards_of, signs_of
+from hall_app.room.patch import Frame
 from hall_app.room.structure import Regions, beams_of
 from hall_app.room.surface import MATERIALS, Sheet
 
@@ -261,6 +262,24 @@ def test_materials_are_few_and_lamps_glow(shipped):
     assert used <= set(MATERIALS)
     assert len(used) <= 18  # as many draw calls
     assert {name for name in used if MATERIALS[name].glow} == {"laylight", "paper", "lantern"}
+
+
+def test_every_label_is_seen_and_hides_no_exhibit(content):
+    """None stands at another's place, nor between its exhibit and who looks at it from the front."""
+    boards = boards_of(content.plan, Regions(content.plan), content.hall.title, content.exhibits)
+    labels = [board for board in boards if board.writing.kind == "label"]
+    at = np.array([board.frame.at for board in labels])
+    apart = np.linalg.norm(at[:, None] - at, axis=2) + 9 * np.eye(len(at))
+    assert apart.min() > 0.6
+    for exhibit, board in zip(content.exhibits, labels, strict=True):
+        place = exhibit.file.place
+        if not board.post:
+            continue
+        aside, _, before = Frame.on_floor((place.x, place.z), place.facing).axes @ (
+            board.frame.at - [place.x, board.frame.at[1], place.z]
+        )
+        assert aside > 0.4 or before < 0.0, exhibit.id
+        assert np.hypot(aside, before) < 2.5, exhibit.id
 
 
 def test_a_label_hides_the_end_of_its_post(content):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ Floats = NDArray[np.float64]
 _LABEL, _SMALL = (0.52, 0.17), (0.36, 0.13)  # [m]
 _POST = 0.92  # [m] height of a label's middle above the floor or the booth it stands on
 _POST_RADIUS = 0.011  # [m]
+_ASKEW = 20.0  # [deg] from its booth's front, beyond which an exhibit faces across it
 _PIXELS = {"label": 1000, "plaque": 330, "banner": 330, "board": 340}  # per metre
 
 
@@ -43,7 +45,9 @@ def boards_of(plan: PlanFile, regions: Regions, title: Bilingual, exhibits: Iter
     """Everything that is written in the hall."""
     boards = [_hung(sign, title) for sign in plan.sign]
     boards += [board for bay in plan.bay if (board := _over_the_door(bay, plan, regions))]
-    return boards + [_label(exhibit, plan) for exhibit in exhibits]
+    shown = tuple(exhibits)
+    crowd = Counter(exhibit.file.place.on for exhibit in shown)
+    return boards + [_label(exhibit, plan, alone=crowd[exhibit.file.place.on] == 1) for exhibit in shown]
 
 
 def _writing(kind, zh: str, en: str, size: Sequence[float]) -> Writing:
@@ -59,7 +63,8 @@ def _hung(sign: Sign, title: Bilingual) -> Board:
     return Board(_writing(sign.kind, zh, en, sign.size), frame, sign.size, tilt)
 
 
-def _label(exhibit: Exhibit, plan: PlanFile) -> Board:
+def _label(exhibit: Exhibit, plan: PlanFile, *, alone: bool) -> Board:
+    """alone: whether nothing else stands on the exhibit's booth."""
     place, title = exhibit.file.place, exhibit.file.title
     solid = next((solid for solid in plan.solid if solid.id == place.on), None)
     if solid is not None and solid.round is not None:
@@ -68,9 +73,8 @@ def _label(exhibit: Exhibit, plan: PlanFile) -> Board:
         frame = frame.moved(y=max(solid.height - 0.22, 0.3), z=0.80 * radius + 0.035)
         return Board(_writing("label", title.zh, title.en, _SMALL), frame, _SMALL, 20.0)
     if solid is not None and solid.size is not None and solid.at is not None:
-        wide, deep = solid.size
-        frame = Frame.on_floor(solid.at, solid.facing, solid.height + _POST)
-        frame = frame.moved(x=wide / 2 - 0.36, z=deep / 2 - 0.14)
+        frame = _on_booth(exhibit, Frame.on_floor(solid.at, solid.facing), solid.size, alone=alone)
+        frame = frame.moved(y=solid.height + _POST)
     else:
         foot = place.y if place.y is not None else (solid.height if solid else 0.0)
         frame = Frame.on_floor((place.x, place.z), place.facing, foot + _POST)
@@ -81,6 +85,23 @@ def _label(exhibit: Exhibit, plan: PlanFile) -> Board:
             reach = (body.radius or 0.3) - 0.04
             frame = frame.moved(x=0.57 * reach, z=0.82 * reach)
     return Board(_writing("label", title.zh, title.en, _LABEL), frame, _LABEL, 42.0, _POST)
+
+
+def _on_booth(exhibit: Exhibit, booth: Frame, size: tuple[float, float], *, alone: bool) -> Frame:
+    """Where a label's post stands on a booth, its floor at y = 0: at the right end of its front; of several exhibits
+    to the right of each; and where one faces across the booth, at the corner to its right, where it hides nothing."""
+    (wide, deep), place, body = size, exhibit.file.place, exhibit.file.body
+    across = (place.facing - booth.facing + 180.0) % 360.0 - 180.0
+    if abs(across) > _ASKEW:
+        corners = booth([(x * (wide / 2 - 0.2), 0.0, z * (deep / 2 - 0.2)) for x in (-1, 1) for z in (-1, 1)])
+        right = Frame.on_floor((place.x, place.z), place.facing).axes[0]
+        return Frame(corners[np.argmax(corners @ right)], place.facing)
+    end = wide / 2 - 0.36
+    if not alone:
+        stands = float((np.array([place.x, 0.0, place.z]) - booth.at) @ booth.axes[0])
+        reach = body.size[0] / 2 if body.size is not None else body.radius or 0.3
+        end = min(end, stands + reach + 0.2)
+    return booth.moved(x=end, z=deep / 2 - 0.14)
 
 
 def _over_the_door(bay: Bay, plan: PlanFile, regions: Regions) -> Board | None:
