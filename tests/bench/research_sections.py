@@ -14,7 +14,7 @@ GARMENTS = {
     "beizi": ("褙子", "beizi"),
     "song-daxiushan": ("大袖衫", "robe of large sleeves"),
     "ming-yuanling": ("圆领袍", "round-collared robe"),
-    "ming-pifeng": ("披风与马面裙", "coat over a mamian skirt"),
+    "ming-mamian": ("马面裙", "mamian skirt"),
     "walking": ("行走的褙子", "coat that walks"),
     "zhiju": ("直裾", "robe on a T-bar"),
     "pibo-figure": ("披帛与袍", "pibo over a robe"),
