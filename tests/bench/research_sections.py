@@ -13,7 +13,6 @@ FIGURES = ROOT / "docs" / "figures"
 GARMENTS = {
     "beizi": ("褙子", "beizi"),
     "song-daxiushan": ("大袖衫", "robe of large sleeves"),
-    "ming-yuanling": ("圆领袍", "round-collared robe"),
     "ming-mamian": ("马面裙", "mamian skirt"),
     "walking": ("行走的褙子", "coat that walks"),
     "zhiju": ("直裾", "robe on a T-bar"),
