@@ -53,7 +53,6 @@ WORN = {
     "gathered": (Worn("scarf", "overbar"),),
     "folded": (Worn("scarf", "folded"),),
     "spread": (Worn("robe", "flat", seams=True, sewn=True, spread=True),),
-    "belted": (ROBE, Worn("belt", "wrapped", small=True)),
     "layered": (ROBE, Worn("pibo", "alongpath", seams=True, half=True)),
 }
 UNDER = {f"robe_{name}": value for name, value in (CLOTH | SEWN | MODELS).items()}
@@ -76,16 +75,6 @@ ASKED = {
     "gathered": HUNG,
     "folded": HUNG,
     "spread": DRESSED + THINNED,
-    "belted": [
-        *INSIDE,
-        *STRAIN,
-        *REST,
-        TRIANGLES[1],
-        ("self_intersections", 0, 1),
-        *THINNED,
-        *[(f"robe_{name}", good, bad) for name, good, bad in DRESSED + HALVES],
-        ("robe_hall_hausdorff_p99", 3.9e-3, 4.1e-3),
-    ],
     "layered": [
         *INSIDE,
         *STRAIN,

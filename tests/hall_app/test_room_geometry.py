@@ -13,7 +13,6 @@ from hall_app.content.schema import PlanFile
 from hall_app.room import raise_room
 from hall_app.room.lighting import charts_of
 from hall_app.room.parts import boards_of, signs_of
-from hall_app.room.patch import Frame
 from hall_app.room.structure import Regions, beams_of
 from hall_app.room.surface import MATERIALS, Sheet
 
@@ -275,9 +274,9 @@ def test_every_label_is_seen_and_hides_no_exhibit(content):
         place = exhibit.file.place
         if not board.post:
             continue
-        aside, _, before = Frame.on_floor((place.x, place.z), place.facing).axes @ (
-            board.frame.at - [place.x, board.frame.at[1], place.z]
-        )
+        turn = np.radians(place.facing)
+        x, z = board.frame.at[0] - place.x, board.frame.at[2] - place.z
+        aside, before = x * np.cos(turn) - z * np.sin(turn), x * np.sin(turn) + z * np.cos(turn)
         assert aside > 0.4 or before < 0.0, exhibit.id
         assert np.hypot(aside, before) < 2.5, exhibit.id
 

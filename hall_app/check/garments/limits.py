@@ -6,21 +6,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from hall_app.content.bakes.steps import PATIENCE, PATIENCE_WHOLE
 
 __all__ = ["Limit", "Worn", "limits_of", "writer"]
 
 ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
-SMALL = 0.25  # [m2] of cloth; a belt has less, and is no finer for that
 
 
 @dataclass(frozen=True)
 class Worn:
     """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
-    whether one half was dressed against its mirror image, whether others are worn over it, whether it hangs on a
-    T-bar, where robes are placed as they are on a wearer, and whether it is as small as a belt."""
+    whether one half was dressed against its mirror image, whether others are worn over it, and whether it hangs on a
+    T-bar, where robes are placed as they are on a wearer."""
 
     name: str
     way: str
@@ -29,7 +26,6 @@ class Worn:
     half: bool = False
     beneath: bool = False
     spread: bool = False
-    small: bool = False
 
     @staticmethod
     def of(garment: Any, *, beneath: bool) -> Worn:
@@ -37,8 +33,7 @@ class Worn:
         kinds = {seam["kind"] for seam in garment.cut["seams"]}
         whole, way = garment.provenance["whole"], str(garment.provenance["way"])
         spread = way not in ON_STAND and "stand" in garment.provenance
-        small = _area(garment.pattern, garment.pattern_faces) < SMALL
-        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, small)
+        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread)
 
     @property
     def on_stand(self) -> bool:
@@ -90,8 +85,7 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = F
     if worn.half:
         found.append(Limit("asymmetry_m", 0.010))
     if not worn.on_stand and not worn.beneath:
-        found += [] if worn.small else [Limit("triangles", least=11_000)]
-        found.append(Limit("hall_all_triangles", 6_000))
+        found += [Limit("triangles", least=11_000), Limit("hall_all_triangles", 6_000)]
     found += [Limit("hall_hausdorff_mean"), Limit("hall_hausdorff_p99", deviation)]
     found += [Limit("hall_hausdorff_max")]
     if not worn.beneath:
@@ -99,13 +93,6 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = F
         found += [Limit("drape_s"), Limit("drape_cpu_s", patience * layers)]
     before = f"{worn.name}_" if worn.beneath else ""
     return [Limit(before + limit.name, limit.most, limit.least) for limit in found]
-
-
-def _area(pattern: np.ndarray, faces: np.ndarray) -> float:
-    """Of faces (F, 3) on a flat pattern (P, 2) [m], in m2."""
-    a, b, c = (pattern[faces[:, k]] for k in range(3))
-    u, v = b - a, c - a
-    return float(0.5 * np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum())
 
 
 def _crossings(worn: Worn) -> int:

@@ -5,7 +5,15 @@ polylines of what is drawn.
 """
 
 from sim_core.validation.svg.shapes import PIXEL, curves_of, drawing_of, polylines
-from sim_core.validation.svg.tree import LENGTHS, MOST_VISITED, NUMBER, check_bounds, left_out_of, svg_root
+from sim_core.validation.svg.tree import (
+    LENGTHS,
+    MOST_VISITED,
+    NUMBER,
+    check_bounds,
+    left_out_of,
+    svg_root,
+    told,
+)
 
 __all__ = [
     "LENGTHS",
@@ -18,4 +26,5 @@ __all__ = [
     "left_out_of",
     "polylines",
     "svg_root",
+    "told",
 ]

@@ -8,6 +8,8 @@ groups, since svgelements 1.9.6 moves a nested `<svg>` twice and draws a `<symbo
 import codecs
 import re
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from copy import deepcopy
 from pathlib import Path
 from xml.etree import ElementTree
@@ -49,6 +51,8 @@ LENGTHS = {
 }
 ALIGNED = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 PLACED = ("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "transform")
+# What reading a damaged drawing may end in.
+BROKEN = (ValueError, IndexError, KeyError, TypeError, AttributeError, ArithmeticError)
 Size = tuple[float, float]
 
 
@@ -66,6 +70,19 @@ def svg_root(path: Path, what: str = WHAT) -> ElementTree.Element:
         for child in [c for c in parent if str(c.tag).rsplit("}", 1)[-1] in PAINTING]:
             parent.remove(child)
     return root
+
+
+@contextmanager
+def told(path: Path, remedy: str, *further: type[Exception], longest: int = 120) -> Iterator[None]:
+    """What goes wrong in the block with a drawing is a FileProblem: one line of `longest` characters, and the remedy
+    where it names none. further: what else may be raised."""
+    try:
+        yield
+    except RecursionError as error:
+        raise FileProblem(f"{path}: groups nested too deep – take shapes out of their groups") from error
+    except (*BROKEN, *further) as error:
+        reason = " ".join(str(error).split())[:longest] or type(error).__name__
+        raise FileProblem(f"{path}: {reason}{'' if '–' in reason else f' – {remedy}'}") from error
 
 
 def _decoded(path: Path, given: bytes) -> str:

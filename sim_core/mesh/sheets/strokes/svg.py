@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.errors import FileProblem
 from sim_core.mesh.sheets.strokes.stroke import Drawn, Stroke
 from sim_core.mesh.sheets.strokes.words import speaks, spoken
 from sim_core.validation.svg import (
@@ -23,6 +22,7 @@ from sim_core.validation.svg import (
     left_out_of,
     polylines,
     svg_root,
+    told,
 )
 
 __all__ = ["svg_strokes"]
@@ -46,17 +46,11 @@ def svg_strokes(path: Path, metres: float | None = None) -> Drawn:
     """
     root = svg_root(path)
     left_out = left_out_of(root)
-    try:
+    with told(path, "give paths, polygons, rectangles or circles"):
         check_bounds(root)
         drawing, guessed = drawing_of(root, metres)
         with np.errstate(all="ignore"):  # what leaves the range is told by whoever sorts the lines
             found = list(_strokes(drawing))
-    except RecursionError as error:
-        raise FileProblem(f"{path}: groups nested too deep – take shapes out of their groups") from error
-    except (ValueError, IndexError, KeyError, TypeError, AttributeError, ArithmeticError) as error:
-        reason = " ".join(str(error).split())[:120] or type(error).__name__
-        remedy = "" if "–" in reason else " – give paths, polygons, rectangles or circles"
-        raise FileProblem(f"{path}: {reason}{remedy}") from error
     return Drawn(found, left_out, notes=(PIXELS,) if guessed else ())
 
 

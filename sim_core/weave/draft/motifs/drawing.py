@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sim_core.errors import FileProblem, WeaveError
+from sim_core.errors import WeaveError
 from sim_core.validation.svg import (
     LENGTHS,
     NUMBER,
@@ -23,6 +23,7 @@ from sim_core.validation.svg import (
     left_out_of,
     polylines,
     svg_root,
+    told,
 )
 
 __all__ = ["Area", "Drawing", "areas_of", "read_drawing"]
@@ -59,7 +60,7 @@ def read_drawing(
     from shapely.errors import ShapelyError
 
     root = svg_root(path, WHAT)
-    try:
+    with told(path, REMEDY, ShapelyError, longest=240):
         check_bounds(root)
         for what in left_out_of(root):
             if not what.startswith("hidden"):
@@ -69,19 +70,6 @@ def read_drawing(
         drawing, _ = drawing_of(root, PIXEL)  # a user unit is a unit then
         with np.errstate(all="ignore"):
             return size, tuple(_areas(drawing, frame, size, {key.lower(): n for key, n in colours.items()}))
-    except RecursionError as error:
-        raise FileProblem(f"{path}: groups nested too deep – take shapes out of their groups") from error
-    except (
-        ValueError,
-        IndexError,
-        KeyError,
-        TypeError,
-        AttributeError,
-        ArithmeticError,
-        ShapelyError,
-    ) as error:
-        reason = " ".join(str(error).split())[:240] or type(error).__name__
-        raise FileProblem(f"{path}: {reason}{'' if '–' in reason else f' – {REMEDY}'}") from error
 
 
 def _changed(size: tuple[float, ...], changes: Mapping[str, float]) -> Size:

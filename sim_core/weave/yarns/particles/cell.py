@@ -34,9 +34,7 @@ ROUGH = (50.0, 10.0, 3.0)  # x tolerance: rest enough to find the first pins
 SOFT = 40.0  # first stiffness of the contact, x largest crossing force
 MOST_STEPS = 80_000
 FIGURE = 500  # crossings from which it is a figure, unless it is a satin or a twill
-FINEST = (
-    16  # particles a crossing up to which a figure that turns too steeply for fewer is begun again with more
-)
+FINEST = 16  # particles a crossing, up to which a figure that is too steep for fewer begins again with more
 BEGIN = 100  # steps after which a figure that is not at rest is relaxed another way
 FIGURE_STEPS = 8000  # and after which pins have the rest of the steps, from the start
 YARN_FRICTION = 0.3

@@ -28,9 +28,7 @@ WIDE = 100  # crossings, beyond which a repeat needs them at all
 STICK = 6  # turns between two times when yarns that have come to creep stick
 SLID = 0.03  # of D, away from where they stuck
 STATIC = 0.2  # by how much static friction exceeds sliding friction
-COARSE = (
-    50  # turns after which curves that overlap however far their particles keep are told to need more of them
-)
+COARSE = 50  # turns after which curves that overlap, however far their particles keep, need more of them
 CREEP = 60  # turns after which what still creeps is held harder
 HARDER = 1.2  # times as hard each time that it may stick
 PRESSED = 1e-3  # x largest crossing force, from which a crossing is held to touch
