@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import event_loop
 import pytest
 from office_clerk import clerk
 
@@ -91,8 +92,6 @@ class Slow:
 
 
 def test_a_bake_is_told_stopped_and_tried_again(counter):
-    import asyncio
-
     one, builds = clerk(counter, counter.people, Role.CURATOR), []
 
     def begin(bake: Bake) -> Slow:
@@ -102,13 +101,13 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
     queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake("room", "2", patient=True))
     counter.house.queue = queue
     try:
-        asyncio.run(queue.want(wanted))
+        event_loop.run(queue.want(wanted))
         assert [bake["state"] for bake in one.told("bakes")] == ["running", "waiting"]
         page = one.get("/office/bakes?lang=en")
         assert "40% cloth &lt;b&gt;" in page.text
         one.send(page, "/office/bakes/chest/stop")
         assert [bake.name for bake in queue.stopped()] == ["chest"]
-        asyncio.run(queue.want(wanted))
+        event_loop.run(queue.want(wanted))
         assert builds[0].ended
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")} == {
             "room": "running",
@@ -116,7 +115,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         }
         one.told("bakes/chest/again", {})
         queue.stopped()
-        asyncio.run(queue.want(wanted))
+        event_loop.run(queue.want(wanted))
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
         assert one.api("bakes/nothing/stop", {}).status == 400
     finally:
