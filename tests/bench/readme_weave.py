@@ -83,6 +83,9 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     for row in found["density"]:
         value = f"{row['g_m2']:.1f} against {row['catalogue']:g} g/m² ({row['error']:+.1%})"
         made.append((f"areal density, {row['cloth']}", "± 5 %", value))
+    for row in found.get("thickness", ()):
+        value = f"{row['um']:.0f} against {row['published']:g} µm ({row['error']:+.1%})"
+        made.append((f"thickness, {row['cloth']}", "± 20 %", value))
     return made
 
 

@@ -1,5 +1,6 @@
 """Figures of stage B, large repeats, map sets, WIF fuzz, cited densities and TexGen, for bench_weave."""
 
+import json
 import statistics
 import subprocess
 import sys
@@ -84,7 +85,15 @@ def timed(run: Callable[[], Found], times: int = 3) -> tuple[float, Found]:
 def measure(*, quick: bool, large: bool, peers: Path | None) -> dict:
     """All figures; `large` adds 400 x 400 by stage B."""
     relax_particles(cloth(plain(), 4))
-    found: dict = {"plain": [], "per": [], "residual": [], "skew": [], "size": [], "density": []}
+    found: dict = {
+        "plain": [],
+        "per": [],
+        "residual": [],
+        "skew": [],
+        "size": [],
+        "density": [],
+        "thickness": [],
+    }
     for per in (8, 16):
         for spacing in (8, 4, 3, 2, 1.76):
             seconds, cell = timed(lambda s=spacing, p=per: relax_particles(cloth(plain(), s), per=p))
@@ -128,6 +137,13 @@ def measure(*, quick: bool, large: bool, peers: Path | None) -> dict:
         weave = Weave(name, draft, yarns[0], yarns[1], ends, picks)
         got = measured(weave, solve(weave, particles=True))["areal_density"] * 1e3
         found["density"].append({"cloth": name, "g_m2": got, "catalogue": wanted, "error": got / wanted - 1})
+    for path in sorted((Path(__file__).parent / "cited").glob("*.toml")):
+        told = beside_source(path)
+        weight, thick = told["areal_density"], told["thickness"]
+        found["density"].append({"cloth": path.stem, "g_m2": weight["ours"] * 1e3,
+                                 "catalogue": weight["value"] * 1e3, "error": weight["off"]})  # fmt: skip
+        found["thickness"].append({"cloth": path.stem, "um": thick["ours"] * 1e6,
+                                   "published": thick["value"] * 1e6, "error": thick["off"]})  # fmt: skip
     weave = cloth(satin(8, 3), 3 * 2**0.5, 2.0)
     geometry = solve(weave, particles=True)
     surface_maps(weave, geometry, pixels=64)
@@ -142,6 +158,13 @@ def measure(*, quick: bool, large: bool, peers: Path | None) -> dict:
     found["fuzz"] = fuzz(1000 if quick else 20_000)
     found["texgen"] = texgen(peers)
     return found
+
+
+def beside_source(path: Path) -> dict:
+    """What `simcore weave` tells of a cited cloth beside its source."""
+    code = "import sys; from sim_core.cli import main; sys.exit(main(sys.argv[1:]))"
+    words = [sys.executable, "-c", code, "weave", str(path), "--relax", "--json"]
+    return json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)["published"]
 
 
 def fuzz(count: int) -> dict:

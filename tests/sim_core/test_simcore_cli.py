@@ -158,6 +158,16 @@ def test_weave_writes_maps_yarns_wif_and_summary(tmp_path, capsys, relax):
     assert again["floats"] == summary["floats"]
 
 
+@pytest.mark.parametrize("name", ["glass-7628", "polyester-190-31"])
+@pytest.mark.parametrize("stage", [[], ["--relax"]])
+def test_weight_and_thickness_of_cloths_that_are_told_whole(name, stage, capsys):
+    """Of which sett, yarn, weight and thickness can be read together: within 5 and 20 per cent, nothing fitted."""
+    assert cli.main(["weave", str(REPO / f"tests/bench/cited/{name}.toml"), *stage, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["published"]
+    assert abs(told["areal_density"]["off"]) <= 0.05
+    assert abs(told["thickness"]["off"]) <= 0.20
+
+
 def test_weave_tells_what_is_published_beside_what_it_reckons(tmp_path, capsys):
     """Inside the range that a source tells nothing is off; what it does not tell has no source."""
     text = (REPO / "assets/weaves/gauze.toml").read_text("utf-8")
