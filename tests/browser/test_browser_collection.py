@@ -175,6 +175,8 @@ def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
         f"{box}/place",
         f"{box}/history",
     )
+    page.goto(f"{hall.url}/office{box}/place?lang={lang}")  # which shows itself again once the walk is done
+    page.locator("#reached:not([data-state=wait])").wait_for(timeout=240_000)
     for path in (*parts, "/bakes", "/questionnaires", "/backups"):
         mark = "&" if "?" in path else "?"
         read_whole(page, f"{hall.url}/office{path}{mark}lang={lang}", width, SMALL)

@@ -92,8 +92,8 @@ def _fewer(
     vertices: np.ndarray, faces: np.ndarray, colours: np.ndarray, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """At most so many triangles: corners that share a cell become one, in cells as fine as that allows."""
-    kept = np.isfinite(vertices).all(axis=1)
-    faces = faces[kept[faces].all(axis=1)]
+    kept = np.asarray(np.isfinite(vertices).all(axis=1))
+    faces = faces[np.asarray(kept[faces].all(axis=1))]
     vertices = np.where(kept[:, None], vertices, 0.0)
     used = np.unique(faces)
     low = vertices[used].min(axis=0) if len(used) else np.zeros(3)

@@ -161,9 +161,10 @@ for (const figure of document.querySelectorAll("figure[data-shape]")) {
   Object.assign(begin, { type: "button", className: "plain", textContent: words.turn });
   told.className = "quiet";
   told.setAttribute("role", "status");
-  figure.append(begin, told);
+  figure.append(begin);
   begin.addEventListener("click", async () => {
     begin.disabled = true;
+    begin.after(told);
     told.textContent = words.coming;
     try {
       const answer = await fetch(figure.dataset.shape, { credentials: "same-origin" });
