@@ -15,8 +15,7 @@ from content_house import EXHIBIT, add_exhibit
 from office_clerk import Clerk, clerk
 from PIL import Image
 
-from hall_app.house.drafts import LARGEST
-from hall_app.house.drafts.shape import MOST
+from hall_app.house.drafts import LARGEST, MOST_TURNED
 from hall_app.house.people import Role
 
 
@@ -95,7 +94,7 @@ def test_a_dense_scan_is_turned_with_few_triangles(curator, chest):
     sent = curator.get(f"/office/collection/{chest.name}/shape?name=scan/dense.ply").body
     positions, _, _, faces, of = told_shape(sent)
     assert of == 327_680
-    assert MOST / 3 < len(faces) <= MOST
+    assert MOST_TURNED / 3 < len(faces) <= MOST_TURNED
     assert np.linalg.norm(positions, axis=1) == pytest.approx(0.5, abs=0.005)
     a, b, c = (positions[faces[:, k]].astype(float) for k in range(3))
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2

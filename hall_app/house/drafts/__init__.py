@@ -11,11 +11,12 @@ from hall_app.house.drafts.examination import Examination
 from hall_app.house.drafts.intake import LARGEST, USES, Taken, take_in
 from hall_app.house.drafts.portrait import portrait
 from hall_app.house.drafts.publication import Publication
-from hall_app.house.drafts.shape import shape
+from hall_app.house.drafts.shape import MOST_TURNED, shape
 from hall_app.house.drafts.shelf import QUOTA, Shelf
 
 __all__ = [
     "LARGEST",
+    "MOST_TURNED",
     "LONGEST_ID",
     "QUOTA",
     "TEXT_FILES",

@@ -13,9 +13,9 @@ import numpy as np
 if TYPE_CHECKING:
     from sim_core.mesh.scan import Scan
 
-__all__ = ["MOST", "few", "mesh_of", "shape"]
+__all__ = ["MOST_TURNED", "few", "mesh_of", "shape"]
 
-MOST = 60_000  # triangles that are sent
+MOST_TURNED = 60_000  # triangles that are sent
 _FINEST = 384  # cells along the longest side, of those that corners are drawn together in
 _GREY = 190
 _PLACES = np.array([1, 1 << 20, 1 << 40])  # three small whole numbers as one
@@ -63,8 +63,8 @@ def mesh_of(path: Path, ending: str) -> Scan:
 
 
 def few(scan: Scan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Corners (V, 3), triangles (F, 3), MOST at most, and the corners' colours (V, 3) sRGB 0..255."""
-    return _fewer(scan.vertices, scan.faces, _colours(scan), MOST)
+    """Corners (V, 3), triangles (F, 3), MOST_TURNED at most, and the corners' colours (V, 3) sRGB 0..255."""
+    return _fewer(scan.vertices, scan.faces, _colours(scan), MOST_TURNED)
 
 
 def _colours(scan: Scan) -> np.ndarray:

@@ -4,6 +4,8 @@ const STEP = Math.PI / 12; // of a key or a button [radians]
 const DRAG = 0.01; // [radians/pixel]
 const FIELD = 28 * (Math.PI / 180); // as the picture is drawn [radians]
 const HEAD = 16; // [bytes]
+const AGAIN = 30; // times that a busy hall is asked
+const PAUSE = 2000; // [ms] between two
 
 const VERTEX = `#version 300 es
 uniform mat4 view; uniform mat3 turn;
@@ -155,6 +157,15 @@ function show(figure, shape, words) {
   return canvas;
 }
 
+/** The hall draws one at a time and lets few wait: who is one too many asks again. */
+async function asked(address) {
+  for (let tries = 0; ; tries += 1) {
+    const answer = await fetch(address, { credentials: "same-origin" });
+    if (answer.status !== 429 || tries === AGAIN) return answer;
+    await new Promise((wait) => setTimeout(wait, PAUSE));
+  }
+}
+
 for (const figure of document.querySelectorAll("figure[data-shape]")) {
   const words = JSON.parse(figure.dataset.words);
   const [begin, told] = [document.createElement("button"), document.createElement("p")];
@@ -167,7 +178,7 @@ for (const figure of document.querySelectorAll("figure[data-shape]")) {
     begin.after(told);
     told.textContent = words.coming;
     try {
-      const answer = await fetch(figure.dataset.shape, { credentials: "same-origin" });
+      const answer = await asked(figure.dataset.shape);
       if (!answer.ok) throw new Error(String(answer.status));
       const shape = read(await answer.arrayBuffer());
       const canvas = show(figure, shape, words);
