@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from survey.store import Receipt, Store
     from survey.web import Mounted, mount
     from survey.web.api import router
-    from survey.web.form import Clip, form_router
+    from survey.web.form import Clip, Ways, form_router
 
 __all__ = [
     "Analysis",
@@ -37,6 +37,7 @@ __all__ = [
     "Store",
     "StoreError",
     "SurveyError",
+    "Ways",
     "analyse",
     "content_folder",
     "form_router",
@@ -59,6 +60,7 @@ _HOME = {
     "StoreError": "survey.errors",
     "SurveyError": "survey.errors",
     "Clip": "survey.web.form",
+    "Ways": "survey.web.form",
     "form_router": "survey.web.form",
     "Mounted": "survey.web",
     "mount": "survey.web",

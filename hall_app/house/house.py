@@ -8,7 +8,7 @@ import zlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from hall_app.content.bakes.models import ExhibitModels
 from hall_app.content.floor.walkable import walking_floor
@@ -30,6 +30,9 @@ from hall_app.show.stage import Actor, Stage
 from hall_app.visit.places import Places
 from hall_app.visit.visitors import Visitor, Visitors
 from hall_app.walk import Floor, Grid, Pose, WalkSession
+
+if TYPE_CHECKING:
+    from survey import Mounted
 
 __all__ = ["House"]
 
@@ -58,6 +61,7 @@ class House:
     survey_made: Callable[..., tuple[str, bytes]] | None = (
         None  # an export or the analysis: survey's Mounted.made
     )
+    survey_answers: Mounted | None = None  # what withdrawal codes lead to; None: nothing is asked here
     survey_asks: Callable[[str], bool] = bool  # whether the questionnaire of that id has anything to ask here
 
     def __post_init__(self) -> None:

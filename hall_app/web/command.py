@@ -132,12 +132,18 @@ def _end(number: int, frame: object) -> None:
     raise KeyboardInterrupt
 
 
+def _back_to(language: str, exhibit: str | None) -> str:
+    """Where the thanks of a questionnaire lead: into the hall, to the exhibit it was asked at."""
+    return f"/?lang={language}" + (f"&exhibit={exhibit}" if exhibit else "")
+
+
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
     from hall_app.house.house import House
     from hall_app.house.people import People
     from hall_app.house.safekeeping import Holdings
     from hall_app.web.app import create_app
-    from survey import mount
+    from hall_app.web.platform import KEEP_CODE
+    from survey import Ways, mount
     from survey.web import Running
 
     people = People(arguments.accounts or arguments.data)
@@ -164,13 +170,14 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
         problems=[],
         clip_of=lambda key: _film(house, key),
         offers=OFFERS,
-        home=lambda language, exhibit: f"/?lang={language}" + (f"&exhibit={exhibit}" if exhibit else ""),
+        ways=Ways(home=_back_to, keep=KEEP_CODE),
         running=Running(proxies=tuple(arguments.proxy)),
     )
     house.survey_problems, house.survey_asks = lambda: survey.problems, survey.asks
     house.survey_results = survey.results
     house.survey_suggestions, house.survey_tokens = survey.suggestions, lambda: survey.store.tokens
     house.survey_standing, house.survey_made = survey.standing, survey.made
+    house.survey_answers = survey
     house.holdings = Holdings(content.folder, arguments.accounts or arguments.data, arguments.data)
     house.quota = int(arguments.quota * 1e9)
     for problem in survey.problems:

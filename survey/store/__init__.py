@@ -5,7 +5,7 @@ From below: `database`, `answers` as they are read, `commit` as they are written
 schema's history.
 """
 
-from survey.store.answers import Archive, Stored
+from survey.store.answers import Archive, Given, Stored
 from survey.store.audit import Audit
 from survey.store.commit import Receipt
 from survey.store.erasure import Overdue
@@ -18,6 +18,7 @@ __all__ = [
     "TOKEN_DAYS",
     "Archive",
     "Audit",
+    "Given",
     "Overdue",
     "Public",
     "Receipt",

@@ -13,7 +13,7 @@ from sqlalchemy import Connection, Engine, func, select, update
 
 from survey.errors import AnswerError, SurveyError
 from survey.questionnaire import Answer, Questionnaire
-from survey.store.answers import Stored, given_answer, standing, stored_rows
+from survey.store.answers import Given, Stored, given_answer, given_of, standing, stored_rows
 from survey.store.audit import Audit, note
 from survey.store.commit import Entry, Receipt, Writer, commit_batch, freeze_version
 from survey.store.database import (
@@ -156,6 +156,11 @@ class Store:
         version, items = found
         asked = self.frozen(questionnaire, version)
         return None if asked is None else asked.asked(items)
+
+    def of_codes(self, codes: Sequence[str]) -> dict[str, Given]:
+        """What was answered under each of these ids; what is no answer's is left out."""
+        with self._read() as connection:
+            return given_of(connection, codes)
 
     def withdraw(self, questionnaire: str, submission: str) -> bool:
         """As take_back(), waiting PATIENCE for its last bytes to be gone. False when there is no such answer."""

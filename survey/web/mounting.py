@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import wait
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from survey.errors import Problem, QuestionnaireError, StoreError
-from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder
-from survey.store import Store
+from survey.errors import AnswerError, Problem, QuestionnaireError, StoreError
+from survey.questionnaire import Offers, Questionnaire, QuestionnaireFolder, submission_id
+from survey.store import PATIENCE as ERASED_WITHIN
+from survey.store import Given, Store
 from survey.web.privacy import Record, Running, read_controller, record_of
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
 
     from survey.web.api import Jobs
-    from survey.web.form import ClipOf, Home
+    from survey.web.form import ClipOf, Ways
 
 __all__ = ["Mounted", "mount"]
 
@@ -143,6 +145,25 @@ class Mounted:
             )
         return found
 
+    def of_codes(self, codes: Sequence[str]) -> dict[str, Given]:
+        """What was answered under these withdrawal codes; what is no code is left out. Raises StoreError."""
+        return self.store.of_codes(codes)
+
+    def take_back(self, code: str) -> bool:
+        """Withdraw the answer of a code. False: it is deleted, and its traces will be gone from the files shortly.
+
+        Raises AnswerError: 404 no such answer, 409 fixed for evaluation; StoreError.
+        """
+        known = submission_id(code)
+        given = self.store.of_codes([known]).get(known)
+        gone = self.store.take_back(given.questionnaire, known) if given is not None else None
+        if gone is None:
+            raise AnswerError(
+                "id", "no such answer", "check the code that was shown after sending", status=404
+            )
+        wait([gone], ERASED_WITHIN)
+        return gone.done() and gone.result()
+
     def made(self, key: str, task: str, settings: Mapping[str, Any] | None = None) -> tuple[str, bytes]:
         """An export ("csv", "xlsx", "sav", "json", "codebook", "r") or the "analysis" of a questionnaire as it is now:
         the file's name and what it holds, made by a process of its own and noted in the survey's journal.
@@ -179,7 +200,7 @@ def mount(
     running: Running | None = None,
     clip_of: ClipOf | None = None,
     offers: Offers = None,
-    home: Home | None = None,
+    ways: Ways | None = None,
 ) -> Mounted:
     """Add the API (/api/v1/…), the form page (/questionnaires/…) and the record of processing (/privacy) to an app.
 
@@ -189,7 +210,7 @@ def mount(
     running: how the app is started: new answers that one address may give in a minute, None: the usual; proxies whose
     word on visitors' addresses it believes, for the record alone.
     clip_of: the film of an exhibit, shown beside items on motion. offers: which of questionnaire.NEEDS the place has;
-    what needs another is not asked, None: everything is. home: where a visitor goes on from the thanks page.
+    what needs another is not asked, None: everything is. ways: where a visitor goes on from the thanks.
     """
     from survey.web.api import Jobs, Limit, router
     from survey.web.form import form_router
@@ -210,7 +231,7 @@ def mount(
         raise QuestionnaireError(found)
     asked = Published(questionnaires, mounted.store)
     app.include_router(router(mounted.store, asked, limit, offers, mounted.jobs))
-    app.include_router(form_router(asked, clip_of, offers=offers, home=home, privacy=True))
+    app.include_router(form_router(asked, clip_of, offers=offers, ways=ways, privacy=True))
     app.include_router(privacy_router(mounted.record))
     return mounted
 

@@ -39,6 +39,36 @@ def until_shown(hall, page, key: str, title: str | None) -> None:
     soon(page, lambda: exhibits(hall).get(key) == title, patience=SHOWN_WITHIN)
 
 
+# Pixels of the canvas as text, by which one view is told from another.
+PIXELS = "document.querySelector('.drawn canvas').toDataURL()"
+
+
+def turned_by_hand(page) -> None:
+    """The model that was brought, in three dimensions: by key, by button, by mouse; clean to axe."""
+    begin = page.get_by_role("button", name="Turn it")
+    begin.focus()
+    page.keyboard.press("Enter")
+    canvas = page.get_by_role("application", name="arrow keys turn it")
+    canvas.wait_for(timeout=120_000)
+    assert page.evaluate("document.activeElement.tagName") == "CANVAS", "keys reach it at once"
+    views = [page.evaluate(PIXELS)]
+    for key in ("ArrowLeft", "ArrowUp", "+"):
+        page.keyboard.press(key)
+        views.append(page.evaluate(PIXELS))
+    page.get_by_role("button", name="Turn right").click()
+    views.append(page.evaluate(PIXELS))
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 50, box["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 130, box["y"] + 60)
+    page.mouse.up()
+    views.append(page.evaluate(PIXELS))
+    assert len(set(views)) == len(views), "each shows it from elsewhere"
+    assert violations(page) == []
+    touched = "[...document.querySelectorAll('.turning button')].map((one) => one.getBoundingClientRect())"
+    assert page.evaluate(f"{touched}.every((box) => box.width >= 44 && box.height >= 44)")
+
+
 def test_a_curator_s_day(hall, chromium, tmp_path):
     from PIL import Image
 
@@ -70,6 +100,7 @@ def test_a_curator_s_day(hall, chromium, tmp_path):
     page.locator(".drawn img").scroll_into_view_if_needed()
     drawn = "document.querySelector('.drawn img').naturalWidth"
     soon(page, lambda: page.evaluate(drawn) == 480, patience=120)
+    turned_by_hand(page)
     page.get_by_role("link", name="Place on the plan").click()
     page.get_by_role("img", name="Plan").wait_for()
     drag(page)
@@ -144,6 +175,8 @@ def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
         f"{box}/place",
         f"{box}/history",
     )
+    page.goto(f"{hall.url}/office{box}/place?lang={lang}")  # which shows itself again once the walk is done
+    page.locator("#reached:not([data-state=wait])").wait_for(timeout=240_000)
     for path in (*parts, "/bakes", "/questionnaires", "/backups"):
         mark = "&" if "?" in path else "?"
         read_whole(page, f"{hall.url}/office{path}{mark}lang={lang}", width, SMALL)

@@ -1,6 +1,8 @@
 """The user centre in a browser: clean to axe, whole on a phone, done by key alone."""
 
 import itertools
+import json
+import uuid
 
 import pytest
 from bench.axe import violations
@@ -13,8 +15,11 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 PASSWORD = "a robe of blue ramie"
 NUMBERS = itertools.count()
-OUTSIDE = ("/me", "/me/register", "/me/open", "/me/privacy")
-INSIDE = ("/me", "/me/second-factor", "/me/delete", "/me/keep?exhibit={exhibit}", "/me/keep?exhibit=nothing")
+OUTSIDE = ("/me", "/me/register", "/me/open", "/me/privacy", "/me/answers/new")
+INSIDE = (
+    *("/me", "/me/second-factor", "/me/delete", "/me/answers/new"),
+    *("/me/keep?exhibit={exhibit}", "/me/keep?exhibit=nothing"),
+)
 TOUCHED = (
     "main :is(button, select, .tick label), main input:not([type=hidden], [type=checkbox]), .site a, .doors a"
 )
@@ -30,6 +35,21 @@ def member(hall) -> tuple[Visitor, str]:
     visitor, address = Visitor(hall.url), f"reader{next(NUMBERS)}@example.org"
     visitor.send("/me/register", "form-register", address=address, password=PASSWORD, again=PASSWORD)
     return visitor, address
+
+
+def answered(visitor: Visitor) -> str:
+    """A questionnaire was sent; its code."""
+    asked = json.loads(visitor.get("/api/v1/questionnaires/garment").text)
+    items = [item["id"] for module in asked["modules"] for item in module["items"]]
+    code = str(uuid.uuid4())
+    told = {"id": code, "version": asked["version"], "language": "zh", "consent": True}
+    visitor.ask(
+        "POST",
+        "/api/v1/questionnaires/garment/submissions",
+        json.dumps(told | {"scores": dict.fromkeys(items, 4)}).encode(),
+        {"Content-Type": "application/json"},
+    )
+    return code
 
 
 def page_of(chromium, visitor: Visitor, width: int):
@@ -50,6 +70,7 @@ def test_pages_are_clean_and_fit(plain_hall, chromium, lang, width, signed_in):
     if signed_in:
         visitor.send(f"/me/keep?exhibit={found}", "form-keep")
         visitor.send("/me", "/me/visits")
+        visitor.send("/me/answers/new", "form-keep-code", code=answered(visitor), consent="on")
     for path in INSIDE if signed_in else OUTSIDE:
         mark = "&" if "?" in path else "?"
         address = f"{plain_hall.url}{path.format(exhibit=found)}{mark}lang={lang}"
@@ -108,6 +129,46 @@ def test_signing_up_and_out_by_key_alone(plain_hall, chromium):
     page.keyboard.press("Enter")
     page.get_by_role("heading", name="Sign in").wait_for()
     assert refused == [], "nothing that a page does is against its own policy"
+    page.context.close()
+
+
+def test_a_withdrawal_code_is_kept_and_used_by_key_alone(plain_hall, chromium):
+    """From the thanks of a questionnaire into the account, which asks first, and back out with the answers."""
+    page = page_of(chromium, member(plain_hall)[0], 1000)
+    page.goto(f"{plain_hall.url}/questionnaires/garment?lang=en")
+    for item in page.locator(".item").all():
+        item.locator("input").nth(3).focus()
+        page.keyboard.press("Space")
+    page.focus("#consent")
+    page.keyboard.press("Space")
+    press_to(page, "Send my answers")
+    page.keyboard.press("Enter")
+    page.get_by_role("heading", name="Thank you").wait_for()
+    assert violations(page) == []
+    code = page.locator("#code").inner_text()
+    press_to(page, "Keep it in my account")
+    with page.expect_popup() as opened:
+        page.keyboard.press("Enter")
+    beside = opened.value
+    beside.get_by_role("heading", name="Keep a withdrawal code in the account").wait_for()
+    assert code not in beside.url, "no history learns the code"
+    assert beside.input_value("#keep-code-code") == code
+    assert not beside.is_checked("#keep-code-consent")
+    assert violations(beside) == []
+    press_to(beside, "Keep the code")
+    beside.keyboard.press("Enter")
+    beside.get_by_role("alert").get_by_text("Tick the box first").wait_for()
+    beside.focus("#keep-code-consent")
+    beside.keyboard.press("Space")
+    press_to(beside, "Keep the code")
+    beside.keyboard.press("Enter")
+    beside.get_by_role("status").get_by_text("The account keeps the code").wait_for()
+    assert beside.get_by_text(code).is_visible()
+    assert violations(beside) == []
+    press_to(beside, "Withdraw my answers")
+    beside.keyboard.press("Enter")
+    beside.get_by_role("status").get_by_text("Withdrawn.").wait_for()
+    assert beside.get_by_text(code).count() == 0
     page.context.close()
 
 

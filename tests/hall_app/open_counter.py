@@ -60,6 +60,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
         survey_tokens=lambda: survey.store.tokens,
         survey_standing=survey.standing,
         survey_made=survey.made,
+        survey_answers=survey,
         holdings=Holdings(content, data, data),
     )
     counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, suggestions)

@@ -93,7 +93,16 @@ def test_a_cookie_tells_no_script_and_no_other_site(plain_hall):
 
 
 @pytest.mark.parametrize(
-    "path", ["/me", "/me/register", "/me/open", "/me/second-factor", "/me/delete", "/me/keep?exhibit=chest"]
+    "path",
+    [
+        "/me",
+        "/me/register",
+        "/me/open",
+        "/me/second-factor",
+        "/me/delete",
+        "/me/keep?exhibit=chest",
+        "/me/answers/new",
+    ],
 )
 def test_pages_with_forms_are_kept_nowhere_and_run_nothing(plain_hall, path):
     for visitor in (Visitor(plain_hall.url), member(plain_hall)[0]):
@@ -121,6 +130,9 @@ ACTS = {
     "/me/delete": {"password": PASSWORD},
     "/me/visits": {"on": "on"},
     "/me/drop": {"exhibit": "chest"},
+    "/me/answers/keep": {"code": "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e", "consent": "on"},
+    "/me/answers/withdraw": {"code": "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"},
+    "/me/answers/forget": {"code": "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"},
 }
 
 
@@ -317,7 +329,7 @@ def test_an_account_is_no_condition(plain_hall):
 @pytest.mark.parametrize("lang", ["zh", "en"])
 def test_pages_are_in_one_language(plain_hall, lang):
     visitor, _ = member(plain_hall, lang)
-    for path in ("/me", "/me/second-factor", "/me/delete", "/me/open", "/me/register"):
+    for path in ("/me", "/me/second-factor", "/me/delete", "/me/open", "/me/register", "/me/answers/new"):
         answer = visitor.get(f"{path}?lang={lang}")
         main = answer.text.partition("<main")[2].partition("</main>")[0]
         words = re.sub(r"<[^>]*>", " ", main)

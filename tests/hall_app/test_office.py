@@ -27,7 +27,12 @@ EVENT = {
 # Every address of the office below its two doors, by the act that it takes. GET: to read, POST: to do.
 READ = {
     "draft": ["collection", "collection/{key}", "collection/{key}/text", "collection/{key}/history"],
-    "preview": ["collection/{key}/file", "collection/{key}/picture", "collection/{key}/preview"],
+    "preview": [
+        "collection/{key}/file",
+        "collection/{key}/picture",
+        "collection/{key}/shape",
+        "collection/{key}/preview",
+    ],
     "place": ["collection/{key}/place"],
     "bake": ["bakes"],
     "questionnaires": ["questionnaires"],

@@ -420,11 +420,37 @@ def test_two_stores_may_share_a_database_server_and_an_older_schema_is_brought_u
         for found, where in ((inspect(made), space), (inspect(stepwise), "steps" if space else None))
     ]
     assert shapes[0] == shapes[1]
-    with made.connect() as connection:
-        prefix = "people." if space else ""
-        assert connection.execute(text(f"SELECT version_num FROM {prefix}alembic_version")).scalar() == HEAD
+    for found, prefix in ((made, "people." if space else ""), (stepwise, "steps." if space else "")):
+        with found.connect() as connection:
+            newest = connection.execute(text(f"SELECT version_num FROM {prefix}alembic_version")).scalar()
+            assert newest == HEAD, "the newest of the steps is the one a new house is told to have"
     made.dispose()
     stepwise.dispose()
+
+
+@pytest.mark.parametrize(
+    "had", [(), ("revision",)], ids=["before revisions", "with the table under the older name"]
+)
+def test_a_house_of_an_older_schema_is_brought_up_and_keeps_its_people(database, had):
+    first = People(database)
+    person = first.accounts.sign_up(ADDRESS, PASSWORD)
+    first.close()
+    engine = create_engine(
+        database if isinstance(database, str) else f"sqlite:///{database / 'people.sqlite'}"
+    )
+    space = "people." if isinstance(database, str) else ""
+    with engine.begin() as connection:
+        for table in {"answer_code", "revision"} - {*had}:
+            connection.execute(text(f"DROP TABLE {space}{table}"))
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0003'"))
+    engine.dispose()
+    again = People(database)
+    assert again.accounts.of(person.id).address == ADDRESS
+    code = "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
+    again.answer_codes.keep(person.id, code)
+    assert [one.code for one in again.answer_codes.of(person.id)] == [code]
+    assert again.revisions.of("gown") == ()
+    again.close()
 
 
 def test_answers_and_people_in_one_postgres_database_do_not_meet(postgres):

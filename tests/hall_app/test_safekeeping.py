@@ -28,9 +28,9 @@ SOON = (datetime.now(UTC) + timedelta(days=3)).replace(microsecond=0)
 PLAN = Plan("activity", "缂丝", "Tapestry", SOON, SOON + timedelta(hours=1), places=1, party=1)
 
 
-def answer() -> Answer:
+def answer(code: str = "") -> Answer:
     scores = dict.fromkeys(ASKED.item_ids, 4)
-    told = {"id": str(uuid.uuid4()), "version": ASKED.version, "language": "zh", "consent": True}
+    told = {"id": code or str(uuid.uuid4()), "version": ASKED.version, "language": "zh", "consent": True}
     return Answer.of(ASKED, told | {"scores": scores, "suggestions": {}})
 
 
@@ -63,21 +63,25 @@ def house(database, tmp_path) -> Holdings:
         admin = people.accounts.make("console", "admin@example.org", name="Anna")
         people.roles.set("console", admin.id, frozenset({Role.ADMINISTRATOR}))
         people.keepsakes.keep(one.id, "gown")
+        people.keepsakes.set_keeping(two.id, on=True)
+        people.keepsakes.note_look(two.id, "gown")
         (occasion,) = people.occasions.plan(admin.id, PLAN)
         for person in (one, two):
             people.bookings.book(person.id, occasion, 1, person.id)
         people.followups.set(admin.id, "a.culture", "done", "larger letters")
-        for _ in range(2):
-            store.submit(ASKED, answer())
+        for code in (str(uuid.uuid4()), str(uuid.uuid4())):
+            store.submit(ASKED, answer(code))
+        people.answer_codes.keep(two.id, code)
+        store.audit.note("export", "two answers")
+        store.tokens.make("for the paper")
     return Holdings(write_content(tmp_path / "content"), database, database)
 
 
-@pytest.fixture
-def elsewhere(database, tmp_path, request) -> Holdings:
-    """Where nothing is yet, in a database of the same kind."""
-    other = (
-        tmp_path / "other" / "data" if isinstance(database, Path) else request.getfixturevalue("postgres")()
-    )
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
+def elsewhere(tmp_path, request) -> Holdings:
+    """Where nothing is yet, in a database of the same kind as the house's and of the other."""
+    data = tmp_path / "other" / "data"
+    other = data if request.param == "sqlite" else request.getfixturevalue("postgres")()
     return Holdings(tmp_path / "other" / "content", other, other)
 
 
@@ -89,10 +93,14 @@ def told(house: Holdings) -> dict[str, object]:
         return {
             "persons": sorted(persons, key=lambda one: one.address),
             "favourites": [people.keepsakes.favourites(one.id) for one in persons],
+            "visits": [people.keepsakes.looks(one.id) for one in persons],
+            "codes": [people.answer_codes.of(one.id) for one in persons],
             "occasions": occasions,
             "bookings": [people.bookings.for_occasion(one.id) for one in occasions],
             "followups": people.followups.all(),
             "answers": sorted(store.rows(ASKED), key=str),
+            "tokens": store.tokens.all(),
+            "audit": [entry for entry in store.audit.entries() if entry.action not in ("backup", "restore")],
             "journal": [entry for entry in people.journal.entries() if entry.act != "backup"],
             "content": files_in(house.content),
         }
@@ -113,6 +121,9 @@ def test_all_of_it_comes_back(house, elsewhere, tmp_path):
         assert "restored" in " ".join(e.subject for e in people.journal.entries() if e.act == "backup")
         store.submit(ASKED, answer())
         assert len(store.rows(ASKED)) == 3
+        (kept,) = people.answer_codes.of(people.accounts.find(address="two@example.org").id)
+        assert store.withdraw(ASKED.id, kept.code), "a code leads to its answers there, too"
+        assert len(store.rows(ASKED)) == 2
 
 
 def test_what_was_revoked_since_is_not_good_again(tmp_path):

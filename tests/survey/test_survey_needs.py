@@ -22,6 +22,7 @@ from survey.errors import QuestionnaireError
 from survey.export import exported
 from survey.questionnaire import NEEDS, read_questionnaire
 from survey.scores import load_scores, read_scores
+from survey.web.form import Ways
 
 USER = read_questionnaire(ASSETS / "questionnaires" / "platform-user.toml")
 HALL = [f"hall_{side.id}" for side in USER.dimensions]
@@ -298,7 +299,7 @@ def test_an_analysis_of_stored_answers_names_the_same(tmp_path, capsys):
 
 def test_the_thanks_lead_back_to_where_the_visitor_came_from(tmp_path):
     client, mounted = place(
-        tmp_path, None, home=lambda language, exhibit: f"/?lang={language}&exhibit={exhibit}"
+        tmp_path, None, ways=Ways(home=lambda language, exhibit: f"/?lang={language}&exhibit={exhibit}")
     )
     with client:
         page = client.get("/questionnaires/garment?lang=en&exhibit=pibo").text

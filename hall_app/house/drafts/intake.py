@@ -15,10 +15,16 @@ from typing import BinaryIO
 from hall_app.content.models.glb import GlbError, read_glb
 from hall_app.house.people import PeopleError
 
-__all__ = ["USES", "Taken", "take_in"]
+__all__ = ["LARGEST", "USES", "Taken", "take_in"]
 
 MB = 1_000_000
-_LARGEST = {"picture": 40 * MB, "model": 15 * MB, "scan": 200 * MB, "film": 10 * MB, "sound": 10 * MB}
+LARGEST: Mapping[str, int] = {
+    "picture": 40 * MB,
+    "model": 15 * MB,
+    "scan": 200 * MB,
+    "film": 10 * MB,
+    "sound": 10 * MB,
+}
 _PIXELS = 60_000_000  # of a picture that is decoded
 _EDGE = 3000  # [pixels] of a picture's longer side, as it is kept
 _LINE_ART = 1_500_000  # [bytes] up to which a PNG stays one
@@ -65,10 +71,10 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
     if kind not in USES.get(use, ()):
         raise PeopleError("file-use", name=shown, kind=kind)
     kind = use if use in ("scan", "sound") else kind
-    if size > _LARGEST[kind]:
-        raise PeopleError("file-size", name=shown, kind=kind, most=_LARGEST[kind] // MB)
+    if size > LARGEST[kind]:
+        raise PeopleError("file-size", name=shown, kind=kind, most=LARGEST[kind] // MB)
     file.seek(0)
-    data = file.read(_LARGEST[kind] + 1)
+    data = file.read(LARGEST[kind] + 1)
     told = ""
     if kind == "picture":
         data, ending, told = _picture(shown, data)

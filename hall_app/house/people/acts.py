@@ -71,6 +71,7 @@ OWN_ACTS: Mapping[str, tuple[str, str]] = {  # zh, en
     "use code": ("使用一次性代码", "Use a one-time code"),
     "favourites": ("收藏", "Favourites"),
     "visits": ("参观记录", "Visits"),
+    "answer codes": ("答卷撤回码", "Withdrawal codes of answers"),
     "book": ("预约", "Book"),
     "cancel booking": ("取消预约", "Cancel a booking"),
     "take copy": ("导出本人资料", "Take a copy of one's data"),

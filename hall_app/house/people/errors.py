@@ -70,6 +70,31 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "收藏已满（{most} 件），请先移除一些。",
         "There are {most} favourites, which is all there is room for: take some out first.",
     ),
+    "answer-code": (
+        "这不是撤回码，请照抄提交问卷后所示的一串，形如 0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e。",
+        "This is no withdrawal code: copy the one that was shown after sending, such as "
+        "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e.",
+    ),
+    "answer-consent": (
+        "请先勾选同意：保存撤回码会把您的账户与这份回答连在一起。",
+        "Tick the box first: a code that is kept links your account to these answers.",
+    ),
+    "no-answer": (
+        "没有这个撤回码的回答，请核对撤回码。",
+        "There are no answers of this code: check how it is written.",
+    ),
+    "answer-withdrawn": (
+        "这份回答已被撤回，无需再保存撤回码。",
+        "These answers were withdrawn already: there is no code left to keep.",
+    ),
+    "answer-frozen": (
+        "这份回答已定稿用于评估，不能再撤回；您可以让账户忘记撤回码。",
+        "These answers have been fixed for evaluation and can no longer be withdrawn; the account can forget the code.",
+    ),
+    "codes-full": (
+        "账户已保存 {most} 个撤回码，请先忘记一些。",
+        "The account keeps {most} codes, which is all there is room for: have it forget some first.",
+    ),
     "no-occasion": (
         "没有这个场次，或已开始、已取消，请另选一场。",
         "There is no such date, or it has begun or been called off: choose another.",

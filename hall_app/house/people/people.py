@@ -7,6 +7,7 @@ from pathlib import Path
 from hall_app.house.people.database import PEOPLE_FILE, Ledger
 from hall_app.house.people.records import (
     Accounts,
+    AnswerCodes,
     Bookings,
     FollowUps,
     Journal,
@@ -33,6 +34,7 @@ class People:
         self.sessions = Sessions(self._ledger)
         self.roles = Roles(self._ledger)
         self.keepsakes = Keepsakes(self._ledger)
+        self.answer_codes = AnswerCodes(self._ledger)
         self.occasions = Occasions(self._ledger)
         self.bookings = Bookings(self._ledger)
         self.followups = FollowUps(self._ledger)
@@ -60,6 +62,7 @@ class People:
                 "favourites": kept.favourites(person.id),
                 "visits": kept.looks(person.id),
                 "bookings": self.bookings.of(person.id),
+                "answers": self.answer_codes.of(person.id),
                 "journal": self.journal.about(person.id),
             },
         )

@@ -30,7 +30,7 @@ _EPILOG = """\
 examples:
   hall backup 2026-11-28.zip
   hall restore 2026-11-28.zip --content my-hall --data my-data        then: hall serve with the same two
-  hall restore 2026-11-28.zip --accounts postgresql+psycopg://…       accounts into PostgreSQL
+  hall restore 2026-11-28.zip --accounts postgresql+psycopg://… --db postgresql+psycopg://…     files into PostgreSQL
   hall restore 2026-11-28.zip --check                                 only look whether the file is whole
 
 Exit status: 0 done, 1 it failed (the message says why), 2 wrong arguments."""

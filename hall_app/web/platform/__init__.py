@@ -4,7 +4,8 @@ counter: what all pages with forms have in common; me: signing in, and the user 
 programme: activities and visits, booked; office: what the staff have.
 """
 
+from hall_app.web.platform.me import KEEP_CODE
 from hall_app.web.platform.programme import programme_entries
 from hall_app.web.platform.routes import NoteLook, add_platform
 
-__all__ = ["NoteLook", "add_platform", "programme_entries"]
+__all__ = ["KEEP_CODE", "NoteLook", "add_platform", "programme_entries"]

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from survey.store.answers.archive import Archive
-from survey.store.answers.rows import WITHDRAWN, Stored, given_answer, standing, stored_rows
+from survey.store.answers.rows import WITHDRAWN, Given, Stored, given_answer, given_of, standing, stored_rows
 
 if TYPE_CHECKING:
     from survey.store.answers.columns import (
@@ -28,9 +28,11 @@ __all__ = [
     "WITHDRAWN",
     "Archive",
     "Columns",
+    "Given",
     "Heads",
     "Stored",
     "given_answer",
+    "given_of",
     "read_columns",
     "read_heads",
     "read_texts",

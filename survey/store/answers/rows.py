@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Literal
 
 from sqlalchemy import ColumnElement, Connection, Table, select
 
@@ -11,7 +13,7 @@ from survey.errors import AnswerError
 from survey.questionnaire import Answer, Language, Questionnaire
 from survey.store.database import in_utc, tables
 
-__all__ = ["WITHDRAWN", "Stored", "given_answer", "standing", "stored_rows"]
+__all__ = ["WITHDRAWN", "Given", "Stored", "given_of", "given_answer", "standing", "stored_rows"]
 
 WITHDRAWN = ("this answer was withdrawn", "make a fresh id to answer anew")
 
@@ -22,6 +24,28 @@ class Stored:
 
     answer: Answer
     received: datetime
+
+
+@dataclass(frozen=True)
+class Given:
+    """An answer as its code leads to it: to which questionnaire, and whether it can still be withdrawn ("standing")."""
+
+    questionnaire: str
+    state: Literal["standing", "frozen", "withdrawn"]
+
+
+def given_of(connection: Connection, codes: Iterable[str]) -> dict[str, Given]:
+    """Code -> its answer; what is no code of an answer is left out."""
+    table = tables.submission
+    query = select(table.c.id, table.c.questionnaire, table.c.withdrawn, table.c.frozen)
+    found = connection.execute(query.where(table.c.id.in_(set(codes))))
+    return {
+        row.id: Given(
+            row.questionnaire,
+            "withdrawn" if row.withdrawn is not None else "standing" if row.frozen is None else "frozen",
+        )
+        for row in found
+    }
 
 
 def standing(questionnaire: str, version: int) -> tuple[ColumnElement[bool], ...]:

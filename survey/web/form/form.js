@@ -310,6 +310,7 @@ function finish(note) {
   document.querySelector(".intro").hidden = true;
   byId("switch").hidden = true; // it loads the page anew, and the code would be gone
   byId("code").textContent = code;
+  if (byId("keep-code")) byId("keep-code").value = code;
   byId("thanks-note").textContent = note ?? "";
   byId("thanks-note").hidden = !note;
   byId("thanks").hidden = false;

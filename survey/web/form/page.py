@@ -6,6 +6,7 @@ import hashlib
 import json
 import tomllib
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
 from pathlib import Path
@@ -14,9 +15,19 @@ from typing import Literal
 from survey.questionnaire import TEXT_LIMIT, Item, Language, Module, Questionnaire, Text
 from survey.web.form.clip import Clip, clip_html
 
-__all__ = ["ASSETS", "Home", "document", "form_page", "heading", "list_page", "notice_page", "words"]
+__all__ = ["ASSETS", "Home", "Ways", "document", "form_page", "heading", "list_page", "notice_page", "words"]
 
 Home = Callable[[Language, str | None], str]  # language and exhibit -> address of where the visitor came from
+
+
+@dataclass(frozen=True)
+class Ways:
+    """Where a visitor goes on from the thanks. home: back to where he came from; keep: address of a page that offers
+    to keep the withdrawal code, to which it is posted as `code` (with `lang`) by who asks for that. None: nowhere."""
+
+    home: Home | None = None
+    keep: str | None = None
+
 
 FOLDER = Path(__file__).parent
 ASSETS = {"form.css": "text/css; charset=utf-8", "form.js": "text/javascript; charset=utf-8"}
@@ -46,11 +57,12 @@ def form_page(
     clip: Clip | None = None,
     preview: bool = False,
     home: str | None = None,
+    keep: str | None = None,
     privacy: bool = False,
 ) -> str:
     """The page of one questionnaire; `exhibit` is kept with the answer, `clip` stands beside items on motion.
 
-    home: address to which the thanks lead back, None: nowhere. privacy: whether there is a privacy page to name.
+    home, keep: addresses as in Ways. privacy: whether there is a privacy page to name.
     preview: everything as visitors see it, but nothing is kept or sent.
     """
     say = words(language)
@@ -74,7 +86,7 @@ def form_page(
 <p class="small">{escape(say["saved"])}</p></div>
 </form>
 <div id="state" class="notice" role="status" tabindex="-1" hidden></div>
-{_thanks(say, home)}
+{_thanks(say, language, home, keep)}
 {_withdraw(say)}
 <script type="application/json" id="settings">{_settings(questionnaire, language, exhibit, preview)}</script>"""
     return document(questionnaire.title.in_language(language), language, body, script=True)
@@ -221,14 +233,24 @@ def _consent(questionnaire: Questionnaire, language: Language, privacy: bool) ->
 """
 
 
-def _thanks(say: dict[str, str], home: str | None) -> str:
+def _thanks(say: dict[str, str], language: Language, home: str | None, keep: str | None) -> str:
     back = f'<a id="home" class="primary" href="{escape(home)}">{escape(say["home"])}</a>' if home else ""
     return f"""<section id="thanks" class="thanks" hidden>
 <h2 tabindex="-1" id="thanks-title">{escape(say["thanks"])}</h2>
 <p id="thanks-note" class="notice quiet" hidden></p><p>{escape(say["thanks_text"])}</p>
 <p class="code"><span class="small">{escape(say["code"])}</span><output id="code"></output>
 <button type="button" id="copy" class="plain">{escape(say["copy"])}</button></p>
-<p class="ways">{back}<button type="button" id="again" class="plain">{escape(say["again"])}</button></p></section>
+{_keep(say, language, keep) if keep else ""}<p class="ways">{back}
+<button type="button" id="again" class="plain">{escape(say["again"])}</button></p></section>
+"""
+
+
+def _keep(say: dict[str, str], language: Language, address: str) -> str:
+    """Hands the code on by itself, in a window beside: an address would leave it in the browser's history."""
+    return f"""<form method="post" action="{escape(address)}" target="_blank" rel="noopener" class="keep">
+<input type="hidden" name="code" id="keep-code"><input type="hidden" name="lang" value="{language}">
+<p class="small" id="keep-text">{escape(say["keep_text"])}</p>
+<button class="plain" aria-describedby="keep-text">{escape(say["keep"])}</button></form>
 """
 
 

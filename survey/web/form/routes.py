@@ -12,7 +12,7 @@ from fastapi.routing import APIRoute
 from survey.errors import StoreError
 from survey.questionnaire import LANGUAGES, Language, Offers, Questionnaire, is_slug
 from survey.web.form.clip import ClipOf
-from survey.web.form.page import ASSETS, FOLDER, Home, form_page, list_page, notice_page
+from survey.web.form.page import ASSETS, FOLDER, Ways, form_page, list_page, notice_page
 
 __all__ = ["HEADERS", "PageRoute", "Preferred", "Wanted", "chosen_language", "form_router"]
 
@@ -60,15 +60,16 @@ def form_router(
     clip_of: ClipOf | None = None,
     *,
     offers: Offers = None,
-    home: Home | None = None,
+    ways: Ways | None = None,
     privacy: bool = False,
 ) -> APIRouter:
     """GET /questionnaires, /questionnaires/{id} and the script and style they use.
 
     clip_of: the host's film of an exhibit, shown beside items on motion. `?preview` sends and keeps nothing.
-    offers: what the place has, None: everything is asked. home: where the thanks page leads back to. privacy:
+    offers: what the place has, None: everything is asked. ways: where the thanks lead. privacy:
     whether there is a page on it, which the consent then names.
     """
+    on = ways or Ways()
     routes = APIRouter(include_in_schema=False, route_class=PageRoute)
 
     @routes.get("/questionnaires")
@@ -89,9 +90,16 @@ def form_router(
         known = exhibit if exhibit is not None and is_slug(exhibit) else None
         clip = clip_of(known) if clip_of is not None and known is not None else None
         preview = "preview" in request.query_params
-        back = home(language, known) if home is not None else None
+        back = on.home(language, known) if on.home is not None else None
         page = form_page(
-            questionnaire, language, known, clip=clip, preview=preview, home=back, privacy=privacy
+            questionnaire,
+            language,
+            known,
+            clip=clip,
+            preview=preview,
+            home=back,
+            keep=on.keep,
+            privacy=privacy,
         )
         return HTMLResponse(page, headers=HEADERS)
 

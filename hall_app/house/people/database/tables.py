@@ -1,6 +1,7 @@
 """The tables of people: who has an account, who is signed in, who is what, who did what.
 
-They stand apart from the answers: a copy of the answers names nobody, and no key leads from one to the other.
+They stand apart from the answers: a copy of the answers names nobody, and nothing leads from a person to an answer but
+the codes in `answer_code`, which he asked to have kept.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from sqlalchemy import (
 )
 
 __all__ = [
+    "answer_code",
     "audit",
     "booking",
     "code",
@@ -103,6 +105,15 @@ look = Table(
     Column("user", ForeignKey("user.id"), primary_key=True),
     Column("exhibit", String(64), primary_key=True),
     Column("day", Date, primary_key=True),
+)
+
+# The withdrawal code of an answer; only of who asked in so many words that the account keep it, since it links the two.
+answer_code = Table(
+    "answer_code",
+    metadata,
+    Column("user", ForeignKey("user.id"), primary_key=True),
+    Column("code", String(36), primary_key=True),
+    Column("made", DateTime(timezone=True), nullable=False),
 )
 
 # What has places: an activity, or a slot of a day for visits. `taken` counts the places that are booked; `turns` is the

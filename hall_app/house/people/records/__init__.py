@@ -1,6 +1,7 @@
 """What is kept of people and how it changes: accounts, sessions, roles, the journal, a person's own copy."""
 
 from hall_app.house.people.records.accounts import CODE_DAYS, RECOVERY_CODES, Accounts
+from hall_app.house.people.records.answer_codes import MOST_CODES, AnswerCodes, KeptCode, checked_code
 from hall_app.house.people.records.bookings import Booking, Bookings
 from hall_app.house.people.records.copy import own_copy
 from hall_app.house.people.records.followups import FOLLOWED, FollowUp, FollowUps
@@ -15,10 +16,12 @@ from hall_app.house.people.records.sessions import OFFICE_HOURS, VISITOR_DAYS, S
 __all__ = [
     "CODE_DAYS",
     "FOLLOWED",
+    "MOST_CODES",
     "OFFICE_HOURS",
     "RECOVERY_CODES",
     "VISITOR_DAYS",
     "Accounts",
+    "AnswerCodes",
     "Booking",
     "Bookings",
     "Entry",
@@ -27,6 +30,7 @@ __all__ = [
     "FollowUps",
     "Journal",
     "Keepsakes",
+    "KeptCode",
     "Look",
     "Occasion",
     "Occasions",
@@ -38,5 +42,6 @@ __all__ = [
     "Session",
     "Sessions",
     "checked_address",
+    "checked_code",
     "own_copy",
 ]

@@ -190,7 +190,14 @@ class Accounts:
         self._prove(person.id, "delete account", password)
         with self._ledger.change(person.id, "delete account", person.id) as connection:
             release(connection, person.id)
-            for table in (tables.code, tables.session, tables.role, tables.favourite, tables.look):
+            for table in (
+                tables.code,
+                tables.session,
+                tables.role,
+                tables.favourite,
+                tables.look,
+                tables.answer_code,
+            ):
                 connection.execute(delete(table).where(table.c.user == person.id))
             connection.execute(delete(tables.user).where(tables.user.c.id == person.id))
             if person.roles:

@@ -90,6 +90,22 @@ class Counter:
 
         self._app.add_api_route(path, asked, methods=["GET"], include_in_schema=False)
 
+    def handed(self, path: str, view: View) -> None:
+        """Answer POST of a page that is none of the counter's by one to look at: nothing is done, so no seal is asked.
+
+        What is handed over so stands in no address: neither a browser's history nor another page learns of it.
+        """
+
+        async def asked(request: Request) -> Response:
+            given: Form | PeopleError
+            try:
+                given = await form_of(request)
+            except PeopleError as error:
+                given = error
+            return await run_in_threadpool(self._answer, request, given, view, view, sealed=False)
+
+        self._app.add_api_route(path, asked, methods=["POST"], include_in_schema=False)
+
     def act(self, path: str, act: Act, again: View, takes: Takes = PLAIN) -> None:
         """Answer POST by `act`; what is refused shows the page `again`, with the reason."""
 
@@ -127,14 +143,22 @@ class Counter:
         check_origin(request)
         check_form(seal, asking.seal)
 
-    def _answer(self, request: Request, given: Form | PeopleError | None, act: Act, again: View) -> Response:
+    def _answer(
+        self,
+        request: Request,
+        given: Form | PeopleError | None,
+        act: Act,
+        again: View,
+        *,
+        sealed: bool = True,
+    ) -> Response:
         key = seal_key(request)
         try:
             asking = self._asking(request, given, key)
             try:
                 if isinstance(given, PeopleError):
                     raise given
-                if given is not None:
+                if given is not None and sealed:
                     check_form(given.fields.get(SEAL, ""), asking.seal)
                 answer = act(asking)
             except PeopleError as error:

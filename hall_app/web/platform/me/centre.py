@@ -6,6 +6,7 @@ from html import escape
 
 from hall_app.web.pages.frame import part
 from hall_app.web.platform.counter import Asking, Counter, Field, Moved, Page, Shown, button, form, told_time
+from hall_app.web.platform.me.answers import AnswerShelf
 from hall_app.web.platform.me.keepsakes import Shelf
 from hall_app.web.platform.me.notices import notice
 from hall_app.web.platform.me.safety import password_form
@@ -18,7 +19,7 @@ class Centre:
     """The page of who is signed in."""
 
     def __init__(self, counter: Counter) -> None:
-        self._people, self._shelf = counter.people, Shelf(counter)
+        self._people, self._shelf, self._answers = counter.people, Shelf(counter), AnswerShelf(counter)
 
     def page(self, asking: Asking) -> Shown:
         word, person = asking.word, asking.person
@@ -40,6 +41,7 @@ class Centre:
             ("reservations", word("预约", "Reservations"), reservations(asking, self._people)),
             ("favourites", word("收藏", "Favourites"), self._shelf.favourites(asking)),
             ("visits", word("参观记录", "Visits"), self._shelf.visits(asking)),
+            ("answers", word("问卷回答", "Your answers"), self._answers.section(asking)),
         )
 
     def _account(self, asking: Asking) -> tuple[tuple[str, str, str], ...]:
@@ -148,9 +150,9 @@ def _second_factor(asking: Asking) -> str:
 def _data(asking: Asking) -> str:
     word = asking.word
     told = word(
-        "导出的压缩包含本馆保存的关于您的全部资料。问卷答卷不与账户相连，不在其中。",
-        "The archive holds all that the house keeps about you. Answers to questionnaires are tied to no account and "
-        "are not in it.",
+        "导出的压缩包含本馆保存的关于您的全部资料，包括您让账户保管的撤回码。问卷的回答本身不在账户里，不在其中。",
+        "The archive holds all that the house keeps about you, withdrawal codes that you had kept among it. Answers "
+        "to questionnaires do not lie in the account and are not in it.",
     )
     copy = button(asking, "copy", "/me/copy", word("导出全部资料（ZIP）", "Take a copy (ZIP)"), hidden={})
     away = f'<a href="{asking.address("/me/delete")}">{word("删除账户", "Delete the account")}</a>'

@@ -26,6 +26,20 @@ _DONE = {  # key: zh, en
         "参观记录已全部删除，今后不再保存。",
         "All kept visits are deleted, and no more will be kept.",
     ),
+    "code-kept": (
+        "账户已保管这个撤回码，从此与那份回答相连。",
+        "The account keeps the code, and leads to these answers from now on.",
+    ),
+    "code-forgotten": (
+        "账户已忘记这个撤回码；回答仍在，不再与账户相连。",
+        "The account has forgotten the code; the answers stay, and nothing leads to them from here.",
+    ),
+    "withdrawn": ("已撤回，评分与建议已删除。", "Withdrawn. The ratings and suggestions are deleted."),
+    "withdrawn-soon": (
+        "已撤回，评分与建议已删除；数据库文件中的残留数据将很快清除。",
+        "Withdrawn. The ratings and suggestions are deleted; their last traces in the database's files will be gone "
+        "shortly.",
+    ),
     "deleted": (
         "账户与全部资料已删除。",
         "The account is deleted, with all that was kept of you.",

@@ -20,6 +20,7 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "邮箱、您自填的称呼、所用语言；密码只存 argon2id 散列值，开启两步验证时存其密钥。",
                 "登录会话的起止时间；不记录浏览器，也不记录网络地址。",
                 "您的收藏与预约（人数、团体名称）；参观记录只在您开启后保存，且只记日期。",
+                "问卷的撤回码：只在您要求时由账户保管；它把账户与那份回答连在一起。",
                 "操作记录：何时做了何事，只以随机编号指代人，不含邮箱。",
             ),
         ),
@@ -32,6 +33,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "address.",
                 "Favourites, and reservations with their number of people and the name of a group; visits only where "
                 "you turn that on, and by the day.",
+                "The withdrawal code of answers only where you ask that the account keep it; it links the account to "
+                "those answers.",
                 "A journal of what was done and when, in which a random number stands for you and never your address.",
             ),
         ),
@@ -43,7 +46,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             (
                 "管理员：邮箱、称呼、角色与操作记录；策展人：预约者的称呼（未填时为邮箱）、团体与人数。",
                 "收藏与参观记录只有您自己看得到。资料不交给任何人，页面不含第三方内容，不做统计跟踪。",
-                "问卷答卷与账户分开存放，两者之间没有关联。",
+                "问卷答卷与账户分开存放；除您让账户保管的撤回码之外，两者之间没有关联。撤回码不在办公室的任何页面上，"
+                "但能读取数据库的人看得到。",
             ),
         ),
         (
@@ -53,7 +57,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "address where none is given), group and number.",
                 "Favourites and visits are seen by you alone. Nothing is handed on; pages hold nothing of third "
                 "parties and follow nobody.",
-                "Answers to questionnaires lie apart from accounts, and nothing leads from one to the other.",
+                "Answers to questionnaires lie apart from accounts, and nothing leads from one to the other but the "
+                "codes that you asked to have kept. No page of the office shows these; who can read the database can.",
             ),
         ),
     ),
@@ -62,8 +67,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
         (
             "保存多久",
             (
-                "直到您删除账户：邮箱、称呼、密码、收藏、参观记录与预约当即删除，预约的名额让给候补者；"
-                "操作记录留下的编号不再指向任何人。",
+                "直到您删除账户：邮箱、称呼、密码、收藏、参观记录、撤回码与预约当即删除，预约的名额让给候补者；"
+                "操作记录留下的编号不再指向任何人。问卷的回答留下，不再与您相连；要删除，请先撤回。",
                 "登录会话 {days} 天，办公室会话 {hours} 小时，一次性代码 {codes} 天。",
                 "删除之前所做的备份由本馆另行保管与销毁。",
             ),
@@ -71,8 +76,10 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
         (
             "For how long",
             (
-                "Until you delete the account: address, name, password, favourites, visits and reservations go "
-                "at once, your places to who waits; the number left in the journal leads to nobody.",
+                "Until you delete the account: address, name, password, favourites, visits, kept "
+                "withdrawal codes and reservations go at once, your places to who waits; the number left in the "
+                "journal leads to nobody. Answers to questionnaires stay and are nobody's: withdraw first what "
+                "should go.",
                 "Sessions last {days} days, those of the office {hours} hours, one-time codes {codes} days.",
                 "Backups made before are kept and destroyed by the house.",
             ),
@@ -85,7 +92,7 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
             (
                 "hall-me（登录后）、hall-office（工作人员登录后）、hall-form（打开表单时，确认表单来自您的浏览器）、"
                 "hall-place（在展厅内，关闭浏览器即失效）。脚本读不到它们，别无其他。",
-                "展厅的设置与位置、问卷草稿与撤回码只留在您的浏览器里。",
+                "展厅的设置与位置、问卷草稿只留在您的浏览器里；撤回码也是，除非您让账户保管。",
             ),
         ),
         (
@@ -94,8 +101,8 @@ _PARTS: tuple[tuple[str, tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]
                 "hall-me once you sign in, hall-office for staff, hall-form where there is a form, which ties it "
                 "to your browser, and hall-place in the hall, until the browser is closed. No script reads them, and "
                 "there are no others.",
-                "Settings of the hall and where you stood, drafts and withdrawal codes of answers stay "
-                "in your browser.",
+                "Settings of the hall, where you stood and drafts of answers stay in your browser, and so do "
+                "withdrawal codes unless you ask the account to keep one.",
             ),
         ),
     ),

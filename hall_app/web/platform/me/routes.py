@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hall_app.web.platform.counter import Act, Asking, Counter, Moved, Shown, View
+from hall_app.web.platform.me.answers import KEEP_CODE, AnswerShelf
 from hall_app.web.platform.me.centre import Centre
 from hall_app.web.platform.me.entering import Entrance
 from hall_app.web.platform.me.keepsakes import Shelf
@@ -15,7 +16,7 @@ __all__ = ["add_me"]
 def add_me(counter: Counter) -> None:
     """Add /me and what is below it."""
     entrance, centre = Entrance(counter), Centre(counter)
-    shelf, safety = Shelf(counter), Safety(counter)
+    shelf, safety, answers = Shelf(counter), Safety(counter), AnswerShelf(counter)
 
     def me(asking: Asking) -> Shown | Moved:
         return centre.page(asking) if asking.guest else entrance.sign_in_page(asking)
@@ -45,6 +46,11 @@ def add_me(counter: Counter) -> None:
     own("keep", shelf.keep, _signed_in(shelf.keep_page))
     own("drop", shelf.drop)
     own("visits", shelf.set_keeping)
+    counter.page(KEEP_CODE, answers.offer)
+    counter.handed(KEEP_CODE, answers.offer)
+    own("answers/keep", answers.keep, answers.offer)
+    own("answers/forget", answers.forget)
+    own("answers/withdraw", answers.withdraw)
 
 
 def _signed_in(act: Act) -> Act:

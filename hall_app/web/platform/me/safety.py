@@ -115,6 +115,15 @@ class Safety:
             "The account, favourites, visits and reservations go at once and cannot be brought back. Take a copy first "
             "of what you want to keep.",
         )
+        kept = len(self._people.answer_codes.of(asking.person.id))
+        codes = word(
+            f"账户保管的 {kept} 个撤回码一并删除；那些回答仍会留下，不再与任何人相连，本馆也无法再替您撤回。"
+            "要删除回答，请先撤回。",
+            f"Withdrawal codes that the account keeps go with it ({kept}). Those answers stay, are nobody's from then "
+            "on, and the house cannot withdraw them for you any more: withdraw first what should go.",
+        )
+        way = f'<a href="{asking.address("/me")}#answers">{word("我的问卷回答", "My answers")}</a>'
+        told = f'<p>{codes}</p><p class="doors">{way}</p>' if kept else ""
         sent = form(
             asking,
             "delete",
@@ -123,7 +132,7 @@ class Safety:
             word("永久删除", "Delete for good"),
             style="grave",
         )
-        main = f"""<header><h1>{title}</h1><p class="lead">{lead}</p></header><div class="desk">{sent}
+        main = f"""<header><h1>{title}</h1><p class="lead">{lead}</p></header><div class="desk">{told}{sent}
 <p class="doors"><a href="{asking.address("/me")}">{word("保留账户", "Keep the account")}</a></p></div>"""
         return Shown(Page(title, main, "me"), path="/me/delete")
 

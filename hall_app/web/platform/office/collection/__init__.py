@@ -44,6 +44,13 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         Reading(
             f"{_ONE}/picture", "preview", uploads.facts, uploads.picture, {"name": "of a GLB of the exhibit"}
         ),
+        Reading(
+            f"{_ONE}/shape",
+            "preview",
+            uploads.facts,
+            uploads.turned,
+            {"name": "of a GLB or scan of the exhibit; its page is a file of triangles"},
+        ),
         Reading(f"{_ONE}/preview", "preview", previews.told, previews.page),
         Reading(f"{_ONE}/place", "place", places.where, places.page),
         Reading(f"{_ONE}/history", "draft", history.all, history.page),

@@ -12,7 +12,7 @@ from hall_app.house.people import PeopleError
 from hall_app.web.pages.frame import part
 from hall_app.web.platform.counter import Asking, Field, Shown, button, form
 from hall_app.web.platform.office.collection.desk import TOML, Desk, language_of, listed_problems, refusal
-from hall_app.web.platform.office.collection.files import media_part
+from hall_app.web.platform.office.collection.files import TURN, media_part
 from hall_app.web.platform.office.collection.keys import Key, changes_of, fields_of, keys_of, media_keys
 from hall_app.web.platform.office.table import office_page
 
@@ -112,7 +112,12 @@ class Exhibits:
 {keyed("stands", word("形体与模型", "Body and models"), _STANDS)}
 {self._files(asking, key)}"""
         return office_page(
-            asking, desk.title(key, asking.lang), inside, path=f"collection/{key}", lead=escape(key)
+            asking,
+            desk.title(key, asking.lang),
+            inside,
+            path=f"collection/{key}",
+            lead=escape(key),
+            script=TURN,
         )
 
     def _text_form(self, asking: Asking, key: str, name: str) -> str:

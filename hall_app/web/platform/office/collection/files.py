@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import posixpath
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from hall_app.content.files import BAKED, replace_file, whole_digest
 from hall_app.content.views.scene import media_type
-from hall_app.house.drafts import TEXT_FILES, USES, Taken, beside, portrait, take_in
+from hall_app.house.drafts import LARGEST, TEXT_FILES, USES, Taken, beside, portrait, shape, take_in
 from hall_app.house.people import PeopleError
 from hall_app.web.collection.table import Change
 from hall_app.web.pages.frame import part
@@ -19,9 +21,11 @@ from hall_app.web.platform.office.collection.desk import Desk
 from hall_app.web.platform.office.collection.keys import changes_of, fields_of, media_keys
 from hall_app.web.platform.office.table import office_page
 
-__all__ = ["MOST_FILES", "Uploads", "drawn_model", "file_address", "media_part", "shown_medium"]
+__all__ = ["MOST_FILES", "TURN", "Uploads", "drawn_model", "file_address", "media_part", "shown_medium"]
 
 MOST_FILES = 12  # at once
+TURN = "book/turn.js"  # the script of pages that show models
+_SOLID = (".glb", ".ply", ".obj")
 _DRAWING = threading.Lock()
 _ASKED = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
 _MEDIA = {"picture": "picture", "film": "video", "sound": "audio"}  # use -> kind in exhibit.toml
@@ -90,29 +94,41 @@ class Uploads:
         return Download(path, posixpath.basename(name), media_type(name), inline=True)
 
     def picture(self, asking: Asking) -> Download:
-        """A model drawn, kept for the next who asks; one at a time, since that takes seconds."""
+        """A model or scan drawn."""
         name, path = self._asked(asking)
-        if not name.endswith(".glb"):
+        kept = self._made(name, path, ".jpg", portrait)
+        return Download(kept, f"{posixpath.basename(name)}.jpg", "image/jpeg", inline=True)
+
+    def turned(self, asking: Asking) -> Download:
+        """The same as triangles, which a page turns."""
+        name, path = self._asked(asking)
+        kept = self._made(name, path, ".shape", shape)
+        return Download(kept, f"{posixpath.basename(name)}.shape", "application/octet-stream")
+
+    def _made(self, name: str, path: Path, kind: str, make: Callable[[Path, str], bytes]) -> Path:
+        """Kept for the next who asks; made one at a time, since that takes seconds. Raises PeopleError."""
+        ending = posixpath.splitext(name)[1]
+        if ending not in _SOLID:
             raise PeopleError("no-file")
-        kept = self._desk.house.data / "portraits" / f"{whole_digest(path)}.jpg"
+        kept = self._desk.house.data / "portraits" / f"{whole_digest(path)}{kind}"
         if not kept.is_file():
             if not _ASKED.acquire(blocking=False):
                 raise PeopleError("too-often", seconds=10)
             try:
                 with _DRAWING:
-                    if not kept.is_file() and (drawn := beside(portrait, path)) is not None:
-                        replace_file(kept, drawn)
+                    if not kept.is_file() and (made := beside(make, path, ending)) is not None:
+                        replace_file(kept, made)
             finally:
                 _ASKED.release()
             if not kept.is_file():
                 raise PeopleError("file-broken", name=name, why="it cannot be drawn")
-        return Download(kept, f"{posixpath.basename(name)}.jpg", "image/jpeg", inline=True)
+        return kept
 
     def _asked(self, asking: Asking):
         key, name = self._desk.key(asking), asking.query.get("name", "")
         if name in TEXT_FILES or not (name in self._desk.drafts.files(key) or name.startswith(BAKED)):
             raise PeopleError("no-file")
-        if media_type(name) == "application/octet-stream" and not name.endswith((".glb", ".ply", ".obj")):
+        if media_type(name) == "application/octet-stream" and not name.endswith(_SOLID):
             raise PeopleError("no-file")
         return name, self._desk.drafts.path(key, posixpath.normpath(name))
 
@@ -159,9 +175,21 @@ def _upload_form(asking: Asking, key: str) -> str:
         "film": word("影片（WebM、MP4）", "Film (WebM, MP4)"),
         "sound": word("声音（Ogg、MP3、WAV…）", "Sound (Ogg, MP3, WAV …)"),
     }
+    most = {kind: size // 1_000_000 for kind, size in LARGEST.items()}
     hint = word(
-        "按内容辨认；图片重新编码，去除附带信息。SVG 与压缩包不收。",
-        "Known by what they hold; pictures are drawn anew, without what a camera wrote into them. No SVG, no archives.",
+        "按内容辨认；图片重新编码，去除附带信息。SVG 与压缩包不收。"
+        f"上限：图片 {most['picture']} MB、模型 {most['model']} MB、"
+        f"扫描 {most['scan']} MB、影片 {most['film']} MB、声音 {most['sound']} MB。",
+        "Known by what they hold; pictures are drawn anew, without what a camera wrote into them. No SVG, no archives. "
+        f"At most: pictures {most['picture']} MB, models {most['model']} MB, scans {most['scan']} MB, "
+        f"films {most['film']} MB, sound {most['sound']} MB.",
+    )
+    large = word(
+        f"扫描超过 {most['scan']} MB，或附有贴图、.mtl 文件的：请直接放入内容文件夹 exhibits/{key}/scan/，"
+        f'并在 exhibit.toml 中写 scan = "scan/文件名"；本页随即显示。可至 1 GB、五百万个三角形。',
+        f"A scan of more than {most['scan']} MB, or one with pictures or a .mtl file beside it: put it into the "
+        f"content folder by hand, in exhibits/{key}/scan/, and write "
+        'scan = "scan/NAME" into exhibit.toml. It is shown here then. 1 GB and five million triangles at most.',
     )
     fields = (
         Field("use", word("用途", "Use"), "select", choices=uses),
@@ -183,7 +211,8 @@ def _upload_form(asking: Asking, key: str) -> str:
         fields,
         word("上传到草稿", "Upload to the draft"),
     )
-    return sent.replace('<form method="post"', '<form method="post" enctype="multipart/form-data"', 1)
+    sent = sent.replace('<form method="post"', '<form method="post" enctype="multipart/form-data"', 1)
+    return f'{sent}<p class="quiet">{escape(large)}</p>'
 
 
 def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], tag: str) -> str:
@@ -222,24 +251,40 @@ def media_part(desk: Desk, asking: Asking, key: str, table: Mapping[str, Any], t
             f"<details><summary>{title}</summary>{words}{goes}</details></li>"
         )
     title = word("图片、影片、声音与模型", "Pictures, films, sounds, models")
-    models = table.get("models")
-    own = (
-        [name for name in (models or {}).values() if name in desk.drafts.files(key)]
-        if isinstance(models, dict)
-        else []
-    )
-    drawn = "".join(f"<figure>{drawn_model(asking, key, name)}</figure>" for name in own)
+    models, scan = table.get("models"), table.get("scan")
+    named = [*(models.values() if isinstance(models, dict) else ()), scan]
+    own = [one for one in named if isinstance(one, str) and one in desk.drafts.files(key)]
+    drawn = "".join(drawn_model(asking, key, name) for name in own)
     parts += [f'<li class="drawn">{drawn}</li>'] if drawn else []
     listed = f'<ul class="media">{"".join(parts)}</ul>' if parts else ""
     return part("media", title, f'{listed}<div class="desk">{_upload_form(asking, key)}</div>')
 
 
-def drawn_model(asking: Asking, key: str, name: str) -> str:
-    """A model as a picture of it."""
-    at = escape(asking.address(f"/office/collection/{key}/picture", name=name))
-    told = asking.word("模型的形体", "Shape of the model")
-    return f'''<img src="{at}" alt="{told} {escape(name)}" loading="lazy" width="480" height="600">
-<figcaption><code>{escape(name)}</code></figcaption>'''
+def drawn_model(asking: Asking, key: str, name: str, told: str = "") -> str:
+    """A model or scan as a picture of it, which the script TURN lets one turn. told: HTML of what is known of it."""
+    at, word = f"/office/collection/{key}", asking.word
+    picture = escape(asking.address(f"{at}/picture", name=name))
+    alt = f"{word('模型的形体', 'Shape of the model')} {escape(name)}"
+    words = {
+        "turn": word("转动查看", "Turn it"),
+        "coming": word("正在准备 …", "Getting it ready …"),
+        "failed": word("现在无法转动，请稍后再试。", "It cannot be turned just now: try again in a while."),
+        "fewer": word(
+            "预览用 {shown} 个三角形，文件有 {of} 个",
+            "{shown} triangles for the preview, of {of} in the file",
+        ),
+        "keys": word("方向键转动，+ 与 − 远近", "arrow keys turn it, + and − bring it closer or farther"),
+        "left": word("向左转", "Turn left"),
+        "right": word("向右转", "Turn right"),
+        "up": word("从上方看", "From above"),
+        "down": word("从下方看", "From below"),
+        "closer": word("近些", "Closer"),
+        "farther": word("远些", "Farther"),
+    }
+    return f'''<figure data-shape="{escape(asking.address(f"{at}/shape", name=name))}"
+ data-words="{escape(json.dumps(words, ensure_ascii=False))}">
+<img src="{picture}" alt="{alt}" loading="lazy" width="480" height="600">
+<figcaption><code>{escape(name)}</code>{told}</figcaption></figure>'''
 
 
 def shown_medium(asking: Asking, key: str, one: Mapping[str, Any], names: list[Any]) -> str:

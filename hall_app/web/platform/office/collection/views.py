@@ -15,7 +15,7 @@ from hall_app.content.views.markdown import html_of
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Shown, form
 from hall_app.web.platform.office.collection.desk import Desk, listed_problems, refusal
-from hall_app.web.platform.office.collection.files import drawn_model, file_address, shown_medium
+from hall_app.web.platform.office.collection.files import TURN, drawn_model, file_address, shown_medium
 from hall_app.web.platform.office.collection.words import WORDS
 from hall_app.web.platform.office.table import office_page
 
@@ -64,7 +64,7 @@ class Previews:
         else:
             shown = _shown(asking, desk, exhibit)
         inside = f'{refusal(asking)}<div class="state"><div class="deeds">{deeds}</div>{wrong}</div>{shown}'
-        return office_page(asking, title, inside, path=f"collection/{key}/preview")
+        return office_page(asking, title, inside, path=f"collection/{key}/preview", script=TURN)
 
 
 def _shown(asking: Asking, desk: Desk, exhibit: Exhibit) -> str:
@@ -104,6 +104,7 @@ def _models(asking: Asking, desk: Desk, exhibit: Exhibit) -> str:
             continue
         size = " × ".join(f"{high - low:.2f}" for low, high in zip(info.low, info.high, strict=True))
         triangles = asking.word(f"{info.triangles} 个三角形", f"{info.triangles} triangles")
-        shown = drawn_model(asking, exhibit.id, name)
-        lines.append(f'<figure>{shown}<p class="quiet">{triangles} · {size} m</p></figure>')
+        lines.append(drawn_model(asking, exhibit.id, name, f'<p class="quiet">{triangles} · {size} m</p>'))
+    if (scan := exhibit.file.scan) is not None:
+        lines.append(drawn_model(asking, exhibit.id, scan))
     return f'<div class="gallery">{"".join(lines)}</div>' if lines else ""

@@ -1,4 +1,4 @@
-"""What was published of the collection, and undone."""
+"""What was published of the collection, and undone. A house made under the name 0003 may have the table already."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -16,8 +16,9 @@ def upgrade() -> None:
         sa.Column("who", sa.String(16), nullable=False),
         sa.Column("act", sa.String(8), nullable=False),
         sa.Column("files", sa.Text, nullable=False),
+        if_not_exists=True,
     )
-    op.create_index("revision_by_exhibit", "revision", ["exhibit"])
+    op.create_index("revision_by_exhibit", "revision", ["exhibit"], if_not_exists=True)
 
 
 def downgrade() -> None:
