@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.build.encoding import SOUND_RATE, encode_film, film_possible
+    from hall_app.build.film import Look, Part, Piece, filming
+    from hall_app.build.look import Wardrobe
     from hall_app.build.motion import play, write_motion
     from hall_app.build.outfit import bake_outfit, budget, refuse_disorder
     from hall_app.build.points import limb_bones, sensed, write_points
@@ -18,12 +20,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SOUND_RATE",
+    "Look",
+    "Part",
+    "Piece",
     "TrailLostError",
     "Trails",
+    "Wardrobe",
     "bake_outfit",
     "budget",
     "encode_film",
     "film_possible",
+    "filming",
     "limb_bones",
     "play",
     "refuse_disorder",
@@ -33,13 +40,18 @@ __all__ = [
 ]
 
 _HOME = {
+    "Look": "film",
+    "Part": "film",
+    "Piece": "film",
     "SOUND_RATE": "encoding",
     "TrailLostError": "trails",
     "Trails": "trails",
+    "Wardrobe": "look",
     "bake_outfit": "outfit",
     "budget": "outfit",
     "encode_film": "encoding",
     "film_possible": "encoding",
+    "filming": "film",
     "play": "motion",
     "refuse_disorder": "outfit",
     "limb_bones": "points",

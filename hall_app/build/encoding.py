@@ -18,6 +18,7 @@ __all__ = ["FilmUnavailableError", "encode_film", "film_possible"]
 Picture = NDArray[np.uint8]
 
 SOUND_RATE = RATE  # [Hz] 48,000, the one Opus has
+BIT_RATE = 40_000  # [bit/s] of the sound, mono: plucked strings sound as they do at twice as much
 
 
 @dataclass(frozen=True)
@@ -30,14 +31,15 @@ class _Codecs:
     container: dict[str, str]
 
 
+# Beside crf 34 and 24 no difference is seen on a dress 720 pixels wide, and a patterned robe takes half the bytes.
 _CODECS = {
     ".webm": _Codecs(
         "libvpx-vp9",
         "libopus",
-        {"crf": "34", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"},
+        {"crf": "40", "b": "0", "cpu-used": "4", "row-mt": "1", "deadline": "good"},
         {},
     ),
-    ".mp4": _Codecs("libx264", "aac", {"crf": "24", "preset": "medium"}, {"movflags": "+faststart"}),
+    ".mp4": _Codecs("libx264", "aac", {"crf": "27", "preset": "medium"}, {"movflags": "+faststart"}),
 }
 
 
@@ -78,6 +80,8 @@ def encode_film(
             container.add_stream(codecs.sound, rate=SOUND_RATE, layout="mono") if sound is not None else None
         )
         video.options = codecs.options
+        if audio is not None:
+            audio.bit_rate = BIT_RATE
         _write_pictures(container, video, frames, count)
         if sound is not None:
             mux_sound(container, audio, codecs.sound, _fitted(sound, count / rate)[:, None])

@@ -26,6 +26,7 @@ TOGETHER = 8  # pictures that follow each other, between whose first and last th
 STILLS = {"front": 18.0, "side": 74.0, "back": 196.0}  # [deg] about +y from the front
 
 Picture = NDArray[np.uint8]
+Moved = Sequence[NDArray[np.floating] | None]
 
 
 @dataclass(frozen=True)
@@ -53,19 +54,24 @@ class Piece:
 
 @dataclass(frozen=True)
 class Look:
-    """All that a picture shows, what moves first; height seen [m]."""
+    """All that a picture shows, what moves first; height seen [m].
+
+    Where each of the first pieces is now is told picture by picture: its vertices, or None before it is put on.
+    """
 
     pieces: tuple[Piece, ...]
     height: float
 
 
-def _surfaces(look: Look, moved: Sequence[NDArray[np.floating]] = ()) -> list[Any]:
-    """What is drawn; moved: vertices of the first pieces."""
+def _surfaces(look: Look, moved: Moved = ()) -> list[Any]:
+    """What is drawn; moved: of the first pieces."""
     from sim_core.picture import Surface
 
     drawn = []
     for number, piece in enumerate(look.pieces):
         vertices = moved[number] if number < len(moved) else piece.vertices
+        if vertices is None:
+            continue
         raised = np.asarray(vertices, float) + [0.0, piece.lift, 0.0]
         for part in piece.parts:
             through = 0.3 if part.alpha < 1 else 0.0
@@ -101,18 +107,20 @@ class Film:
         self._encoding: Future[None] | None = None
         folder.mkdir(parents=True, exist_ok=True)
 
-    def shoot(self, moved: Sequence[NDArray[np.floating]], angle: float = STILLS["front"]) -> None:
+    def shoot(self, moved: Moved, angle: float = STILLS["front"]) -> None:
         """The next picture; what an interrupted build left is kept.
 
-        moved: vertices of the look's first pieces as they are now.
+        moved: vertices of the look's first pieces as they are now, None for what is not worn yet.
         """
+        if self._waiting and _worn(self._waiting[0].moved) != _worn(moved):
+            self._draw()  # light changes evenly only between pictures of the same things
         path = self._folder / f"{self._count:05d}.png"
         self._count += 1
-        self._waiting.append(_Picture(tuple(np.array(x) for x in moved), angle, path))
+        self._waiting.append(_Picture(tuple(None if x is None else np.array(x) for x in moved), angle, path))
         if len(self._waiting) == TOGETHER:
             self._draw()
 
-    def walk_round(self, moved: Sequence[NDArray[np.floating]]) -> None:
+    def walk_round(self, moved: Moved) -> None:
         """Once round the finished garment, slowly beginning and ending."""
         self._draw()
         shares = np.arange(1, ROUND + 1) / ROUND
@@ -158,9 +166,19 @@ class Film:
 class _Picture:
     """One picture of a film: vertices of what moves, from where it is seen [deg], and its file."""
 
-    moved: tuple[NDArray[np.floating], ...]
+    moved: tuple[NDArray[np.floating] | None, ...]
     angle: float
     path: Path
+
+
+def _worn(moved: Moved) -> list[bool]:
+    return [vertices is not None for vertices in moved]
+
+
+def _same(moved: Moved, other: Moved) -> bool:
+    """Whether what moves is in the same place in two pictures of the same things."""
+    pairs = zip(moved, other, strict=True)
+    return all(here is None or there is None or np.array_equal(here, there) for here, there in pairs)
 
 
 def _encode(path: Path, folder: Path, count: int, sound: NDArray[np.float32] | None) -> None:
@@ -182,7 +200,7 @@ def _shoot(look: Look, pictures: Sequence[_Picture]) -> None:
     if all(picture.path.is_file() for picture in pictures):
         return
     scenes = [_surfaces(look, picture.moved) for picture in pictures]
-    still = all(map(np.array_equal, pictures[0].moved, pictures[-1].moved))
+    still = _same(pictures[0].moved, pictures[-1].moved)
     first = lighting(scenes[0])
     last = first if still else lighting(scenes[-1])
     for number, (picture, surfaces) in enumerate(zip(pictures, scenes, strict=True)):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from hall_app.build.film import Look, Part, Piece
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 
 if TYPE_CHECKING:
     from sim_core.body import Mannequin
@@ -45,15 +46,24 @@ class Wardrobe:
             (of(layer), {panel: of(layer, panel) for panel in layer.weaves}) for layer in self.outfit.layers
         )
 
-    def film(self) -> Look:
-        """What the film shows, what moves first: the outermost layer as it is cut, those beneath, the wearer.
+    @cached_property
+    def filmed(self) -> int:
+        """The layer with which the film begins: the garment one comes to see, whose accessories follow."""
+        cloths = [layer.cloth for layer in self.outfit.layers]
+        return garment_at([cloth_area(cloth.vertices, cloth.faces) for cloth in cloths])
 
-        Vertices of the cloth are those of its pattern, as frames of a dressing give them.
+    def film(self) -> Look:
+        """What the film shows, what moves first: layers, the outermost first, and the wearer.
+
+        Layers from `filmed` on are as they are cut, since they are seen as they are sewn. Vertices of the cloth are
+        those of its pattern, as frames of a dressing give them.
         """
-        pieces, last = [], len(self.outfit.layers) - 1
+        pieces = []
         for number, layer in enumerate(self.outfit.layers):
             cloth = layer.cloth
-            weld = cloth.joined if number == last else cloth.closed  # what is beneath has been sewn already
+            weld = (
+                cloth.joined if number >= self.filmed else cloth.closed
+            )  # beneath, all has been sewn already
             _, first, index = np.unique(weld, return_index=True, return_inverse=True)
             faces = first[index.reshape(-1)][cloth.faces].astype(np.int32)
             places = (cloth.vertices - np.array(layer.panel_origins())[cloth.panel_of])[cloth.faces]

@@ -17,6 +17,7 @@ from hall_app.build.film import Film, filming, stills
 from hall_app.build.look import Wardrobe
 from hall_app.build.motion import play, write_motion
 from hall_app.build.trails import TrailLostError, Trails
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.key import dressing_key
 from hall_app.content.bakes.record import FILES, publish, seal, text_of
 from hall_app.content.bakes.steps import Step, beneath_budget, budget, chosen_steps, hall_budget, study_of
@@ -49,7 +50,7 @@ def bake_outfit(
     """Bake the exhibit's outfit into `target` and return the record that is kept beside it.
 
     work: where an interrupted bake left its state and where this one leaves its own; gone after success.
-    film: whether to film how the outermost layer is dressed, which needs PyAV.
+    film: whether to film how the garment is dressed, and what is worn over it, which needs PyAV.
     former: an earlier bake, whose garments, film and pictures serve again where only how they are shown has changed.
     Raises what reading, meshing, weaving and dressing raise, each naming file and remedy.
     """
@@ -164,7 +165,7 @@ def _dress(
 
     with filming(look, work / "film") if film else nullcontext() as taken:
         garments = _dressed(
-            wardrobe.outfit, work / "dress", taken, lambda share, label: progress(0.6 * share, label)
+            wardrobe, work / "dress", taken, lambda share, label: progress(0.6 * share, label)
         )
         lap("drape")
         refuse_disorder(garments)
@@ -198,11 +199,12 @@ def refuse_disorder(garments: Sequence[Garment]) -> None:
             )
 
 
-def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress) -> tuple[Garment, ...]:
-    """Dress the outfit, each frame of its outermost layer filmed; goes on from `state` where that is whole."""
+def _dressed(wardrobe: Wardrobe, state: Path, taken: Film | None, progress: Progress) -> tuple[Garment, ...]:
+    """Dress the outfit, each frame filmed from `wardrobe.filmed` on; goes on from `state` where that is whole."""
     from sim_core.cloth import Checkpoint
     from sim_core.garment import dress
 
+    outfit = wardrobe.outfit
     state.mkdir(parents=True, exist_ok=True)
     kept = Checkpoint(state / "state.npz", keep=True)  # until models, film and pictures are written, too
     if taken is None:
@@ -212,9 +214,13 @@ def _dressed(outfit: Outfit, state: Path, taken: Film | None, progress: Progress
     def shoot(frame: Frame, trails: Trails) -> None:
         if frame.layer < last:
             trails.hear(frame)
+        if frame.layer < wardrobe.filmed:
             return
+        if not all(map(trails.heard_now, range(wardrobe.filmed, frame.layer))):
+            raise TrailLostError("an earlier run filmed its first layer")
         body = [] if outfit.wearer is None else [outfit.wearer.posed(frame.pose)]
-        taken.shoot([frame.positions, *trails.beneath(last, frame.pose), *body])
+        bare = [None] * (last - frame.layer)
+        taken.shoot([*bare, frame.positions, *trails.beneath(frame.layer, frame.pose), *body])
 
     for _ in range(2):
         trails = Trails(state)
@@ -250,6 +256,7 @@ def _record(
     """What the hall tells of this bake; every number comes from a measurement."""
     errors: dict[str, float] = {}
     stages: dict[str, float] = {}
+    shown = garment_at([cloth_area(garment.pattern, garment.pattern_faces) for garment in garments])
     for number, (garment, light) in enumerate(zip(garments, levels, strict=True), 1):
         before = "" if number == len(garments) else f"{garment.name}_"
         errors |= {f"{before}{name}": value for name, value in _figures(garment, light).items()}
@@ -259,6 +266,7 @@ def _record(
         "key": key,
         "digest": garments[-1].digest(),
         "layers": [_layer(garment) for garment in garments],
+        "shown": garments[shown].name,
         "errors": errors,
         "seconds": seconds,
         "stages": stages,

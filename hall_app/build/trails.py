@@ -26,13 +26,19 @@ class Trails:
         self._folder = folder
         self._heard: dict[int, list[tuple[np.ndarray, NDArray[np.floating]]]] = {}
         self._noted: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        self._now: set[int] = set()
 
     def hear(self, frame: Frame) -> None:
         """Notes one frame; of frames in one pose the last counts."""
+        self._now.add(frame.layer)
         pose, own = frame.pose.quaternions(), self._heard.setdefault(frame.layer, [])
         if own and np.array_equal(own[-1][0], pose):
             own.pop()
         own.append((pose, np.asarray(frame.positions, np.float32)))
+
+    def heard_now(self, layer: int) -> bool:
+        """Whether this run heard that layer's frames, not an earlier one alone."""
+        return layer in self._now
 
     def beneath(self, layer: int, pose: Pose) -> list[np.ndarray]:
         """Positions (P, 3) float32 [m] of the layers under `layer` when the wearer was nearest to `pose`, last first.

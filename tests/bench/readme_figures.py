@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 import mesh_figures
-from research_sections import GARMENTS
+from research_sections import GARMENTS, bake
 
 ROOT = Path(__file__).parents[2]
 FIGURES = ROOT / "docs" / "figures"
@@ -151,7 +151,7 @@ INSIDE = ("vertices", "midpoints", "centroids", "edges")  # what may lie in the 
 
 
 def garment(exhibit: str, name: str) -> list[tuple[str, str, str]]:
-    record = json.loads((ROOT / f"assets/exhibits/{exhibit}/baked/bake.json").read_text("utf-8"))
+    record = bake(exhibit)
     errors, seconds, command = record["errors"], record["seconds"], "`hall build -f`"
     stages = record["stages"]
     inside = " / ".join(str(errors[f"inside_{what}"]) for what in INSIDE)

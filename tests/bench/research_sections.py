@@ -13,7 +13,9 @@ FIGURES = ROOT / "docs" / "figures"
 GARMENTS = {
     "beizi": ("褙子", "beizi"),
     "song-daxiushan": ("大袖衫", "robe of large sleeves"),
-    "ming-mamian": ("马面裙", "mamian skirt"),
+    "tang-ruqun": ("齐胸襦裙", "skirt tied above the breast"),
+    "ming-mamian": ("袄与马面裙", "coat over a mamian skirt"),
+    "ming-yuanling": ("圆领袍", "round-collared robe"),
     "walking": ("行走的褙子", "coat that walks"),
     "zhiju": ("直裾", "robe on a T-bar"),
     "pibo-figure": ("披帛与袍", "pibo over a robe"),
@@ -61,7 +63,11 @@ def both(zh: str, en: str) -> Words:
 
 
 def bake(exhibit: str) -> dict:
-    return json.loads((ROOT / f"assets/exhibits/{exhibit}/baked/bake.json").read_text("utf-8"))
+    """The record of a bake, its errors those of the garment that is shown, not of its belt."""
+    record = json.loads((ROOT / f"assets/exhibits/{exhibit}/baked/bake.json").read_text("utf-8"))
+    before, errors = f"{record.get('shown')}_", record["errors"]
+    own = {name.removeprefix(before): value for name, value in errors.items() if name.startswith(before)}
+    return record | {"errors": own or errors}
 
 
 def walking() -> Rows:

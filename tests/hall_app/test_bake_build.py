@@ -7,20 +7,27 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from coarse_bake import LAYERED, build, build_command, coarse, last_line
 from content_house import edit
+from PIL import Image
 
 from hall_app.build import (
     SOUND_RATE,
+    Look,
+    Part,
+    Piece,
     TrailLostError,
     Trails,
+    Wardrobe,
     budget,
     encode_film,
     film_possible,
+    filming,
     refuse_disorder,
 )
 from hall_app.check import check
@@ -30,7 +37,7 @@ from hall_app.content.bakes import bake_folder, bake_key, layer_files, read_reco
 from hall_app.content.models import open_glb, read_glb
 from sim_core.body import Pose
 from sim_core.errors import SimCoreError
-from sim_core.garment import Frame, Garment
+from sim_core.garment import Frame, Garment, load_outfit
 
 ASSETS = Path(__file__).parents[2] / "assets"
 
@@ -194,6 +201,46 @@ def test_the_film_shows_the_outermost_layer_over_what_is_worn_beneath(coarse_lay
     assert {"drape.webm", "drape.mp4"} <= {
         path.name for path in (folder / f"exhibits/{LAYERED}/baked").iterdir()
     }
+
+
+def test_a_film_begins_with_the_garment_and_its_belt_follows():
+    for name, begins in (("ming-yuanling", 0), ("han-gown", 1), ("ming-mamian", 1)):
+        outfit = load_outfit(ASSETS / f"outfits/{name}.toml", ASSETS)
+        assert Wardrobe(outfit).filmed == begins, name
+
+
+def test_what_is_not_worn_yet_is_not_in_the_picture(tmp_path):
+    corners = np.array([[-0.3, 0.2, 0.0], [0.3, 0.2, 0.0], [0.0, 0.9, 0.0]])
+    sheet = Piece(corners, (Part(np.array([[0, 1, 2]], np.int32), (0.9, 0.1, 0.1)),))
+    clothed = replace(sheet, vertices=corners + [0.0, 0.0, 0.05])
+    with filming(Look((clothed, sheet), 1.0), tmp_path) as film:
+        film.shoot([None, corners])
+        film.shoot([corners + [0.0, 5.0, 0.0], corners])  # worn, and out of sight
+        film.shoot([corners + [0.0, 0.0, 0.05], corners])
+        film.walk_round([clothed.vertices, corners])
+        film.wait(lambda share: None)
+    bare, away, worn = (np.asarray(Image.open(tmp_path / f"{k:05d}.png")).astype(int) for k in range(3))
+    assert np.abs(bare - worn).max() > 20
+    assert np.abs(bare - away).mean() < 1.0
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")
+def test_the_film_of_a_belted_dress_shows_every_frame_of_both(tmp_path):
+    import av
+
+    folder = coarse(tmp_path)
+    outfit = folder / f"outfits/{LAYERED}.toml"
+    bodice = (ASSETS / "outfits/ming-mamian.toml").read_text("utf-8").split("[[layer]]")[1]
+    belt = (ASSETS / "outfits/ming-yuanling.toml").read_text("utf-8").split("[[layer]]")[-1]
+    head = outfit.read_text("utf-8").split("[[layer]]")[0]
+    outfit.write_text("[[layer]]".join([head, bodice.replace("0.022", "0.05"), belt]), "utf-8")
+    last_line(build(folder, exhibit=LAYERED, film=True))
+    baked = folder / f"exhibits/{LAYERED}/baked"
+    shown = [Garment.load(baked / name).provenance["simulated"] for name in layer_files(2)]
+    with av.open(str(baked / "drape.mp4")) as film:
+        pictures = sum(1 for _ in film.decode(video=0))
+    assert pictures == round(25 * sum(shown)) + 75  # and once round
 
 
 def test_pattern_sheets_are_drawn_for_all_or_for_one(folder):

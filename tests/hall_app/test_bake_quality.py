@@ -53,9 +53,10 @@ WORN = {
     "gathered": (Worn("scarf", "overbar"),),
     "folded": (Worn("scarf", "folded"),),
     "spread": (Worn("robe", "flat", seams=True, sewn=True, spread=True),),
+    "belted": (replace(ROBE, cloth=3.3), Worn("belt", "wrapped", cloth=0.06)),
     "layered": (ROBE, Worn("pibo", "alongpath", seams=True, half=True)),
 }
-UNDER = {f"robe_{name}": value for name, value in (CLOTH | SEWN | MODELS).items()}
+UNDER = {f"robe_{name}": value for name, value in (CLOTH | SEWN | MODELS | SIZES).items()}
 GOOD = CLOTH | SEWN | SIZES | MODELS | UNDER
 
 # What the project asks of each garment: (figure, the worst that is good, the best that is not).
@@ -75,6 +76,17 @@ ASKED = {
     "gathered": HUNG,
     "folded": HUNG,
     "spread": DRESSED + THINNED,
+    "belted": [
+        *INSIDE,
+        *STRAIN,
+        *REST,
+        ("triangles", 200, 199),  # as many on its cloth as the robe has
+        TRIANGLES[1],
+        ("self_intersections", 0, 1),
+        *THINNED,
+        *[(f"robe_{name}", good, bad) for name, good, bad in [*DRESSED, *HALVES, TRIANGLES[0]]],
+        ("robe_hall_hausdorff_p99", 3.9e-3, 4.1e-3),
+    ],
     "layered": [
         *INSIDE,
         *STRAIN,
@@ -109,6 +121,11 @@ def judged(name: str, figures: dict[str, float] | None = None, /, **changes: Any
 def test_every_limit_is_kept_by_good_figures(name: str):
     assert [line for line in judged(name).values() if not line.kept] == []
     assert set(judged(name)) >= {figure for figure, _, _ in ASKED[name]}
+
+
+def test_what_a_belt_goes_round_is_as_fine_as_what_is_worn_outermost():
+    assert "robe_triangles" not in judged("layered"), "what lies beneath a garment is seen at its edges"
+    assert judged("belted")["robe_triangles"].limit == "at least 11000"
 
 
 def test_halves_are_compared_only_where_one_was_dressed():
@@ -291,7 +308,8 @@ def test_a_bake_measured_again_is_what_its_record_says(
 ):
     again, record = measured_again(baked(scarf), 1), coarse_scarf[1]
     assert again.digests == (record["digest"],)
-    assert again.worn == (Worn("pibo", "overbar"),)
+    assert again.worn == (Worn("pibo", "overbar", cloth=again.worn[0].cloth),)
+    assert again.worn[0].cloth == pytest.approx(2.4 * 0.4, rel=0.02)
     assert again.faults == ()
     lines = {line.name: line for line in garment_lines(load(scarf))}
     assert not [line for line in lines.values() if "bake.json says" in line.limit]

@@ -202,6 +202,15 @@ def test_baked_media_may_lie_elsewhere(tmp_path: Path):
     assert [line["value"]["en"] for line in shown["measured"]] == ["2.13 %", "0.40 mm", "41.2 s"]
 
 
+def test_measured_is_the_garment_that_is_shown_not_its_belt(tmp_path: Path):
+    told = {"errors": {"vertices": 217, "yuanling_vertices": 6389, "mass_kg": 0.006}, "shown": "yuanling"}
+    for shown, values in (("yuanling", ["6\u2009389"]), ("belt", ["217", "6.0 g"])):
+        (tmp_path / "bake.json").write_text(json.dumps(told | {"shown": shown}))
+        exhibit = exhibit_json(load(ASSETS), "pibo", baked=tmp_path)
+        assert exhibit is not None
+        assert [line["value"]["en"] for line in exhibit["measured"]] == values
+
+
 @pytest.mark.parametrize(
     "text",
     ["", "[]", "{", '{"errors": [1], "seconds": "long"}', '{"errors": {"vertices": "y", "mass_kg": true}}'],

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.steps import PATIENCE, PATIENCE_WHOLE
 
 __all__ = ["Limit", "Worn", "limits_of", "writer"]
 
 ON_STAND, ALONG_PATH = ("overbar", "folded"), "alongpath"
+TRIANGLES = 11_000  # that the garment one comes to see has at least
 
 
 @dataclass(frozen=True)
 class Worn:
     """What a garment is: its name, the way it was placed, whether it has seams, whether some were sewn on the wearer,
-    whether one half was dressed against its mirror image, whether others are worn over it, and whether it hangs on a
-    T-bar, where robes are placed as they are on a wearer."""
+    whether one half was dressed against its mirror image, whether others are worn over it, whether it hangs on a T-bar,
+    where robes are placed as they are on a wearer, and how much cloth it is of [m2]."""
 
     name: str
     way: str
@@ -26,6 +29,7 @@ class Worn:
     half: bool = False
     beneath: bool = False
     spread: bool = False
+    cloth: float = 1.0
 
     @staticmethod
     def of(garment: Any, *, beneath: bool) -> Worn:
@@ -33,7 +37,8 @@ class Worn:
         kinds = {seam["kind"] for seam in garment.cut["seams"]}
         whole, way = garment.provenance["whole"], str(garment.provenance["way"])
         spread = way not in ON_STAND and "stand" in garment.provenance
-        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread)
+        cloth = cloth_area(garment.pattern, garment.pattern_faces)
+        return Worn(garment.name, way, bool(kinds), "sewn" in kinds, not whole, beneath, spread, cloth)
 
     @property
     def on_stand(self) -> bool:
@@ -63,13 +68,16 @@ class Limit:
         return f"at least {write(self.least)}" if self.least is not None else ""
 
 
-def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = False) -> list[Limit]:
+def limits_of(
+    worn: Worn, deviation: float, outfit: Sequence[Worn] = (), *, moving: bool = False
+) -> list[Limit]:
     """The limits asked of a garment, in the order in which they are told.
 
-    deviation: how far (p99) its model in the hall may be from the close one [m]; layers: of the outfit; moving: whether
-    it goes through a motion, of whose frames the worst is told. Figures of what is worn beneath bear its name:
-    robe_area_strain_max.
+    deviation: how far (p99) its model in the hall may be from the close one [m]; outfit: all layers from the skin
+    outwards, this one alone if none are given; moving: whether it goes through a motion, of whose frames the worst is
+    told. Figures of what is worn beneath bear its name: robe_area_strain_max.
     """
+    outfit = outfit or (worn,)
     found = [Limit(f"inside_{what}", 0) for what in ("vertices", "midpoints", "centroids", "edges")]
     if worn.sewn:
         found.append(Limit("seam_gap_sewn_m", 1e-3))
@@ -84,15 +92,26 @@ def limits_of(worn: Worn, deviation: float, layers: int = 1, *, moving: bool = F
         found += [Limit("moving_hall_hausdorff_p99", deviation)]
     if worn.half:
         found.append(Limit("asymmetry_m", 0.010))
+    if (least := _least_triangles(worn, outfit)) is not None:
+        found.append(Limit("triangles", least=least))
     if not worn.on_stand and not worn.beneath:
-        found += [Limit("triangles", least=11_000), Limit("hall_all_triangles", 6_000)]
+        found.append(Limit("hall_all_triangles", 6_000))
     found += [Limit("hall_hausdorff_mean"), Limit("hall_hausdorff_p99", deviation)]
     found += [Limit("hall_hausdorff_max")]
     if not worn.beneath:
         patience = PATIENCE_WHOLE if worn.sewn and not worn.half else PATIENCE
-        found += [Limit("drape_s"), Limit("drape_cpu_s", patience * layers)]
+        found += [Limit("drape_s"), Limit("drape_cpu_s", patience * len(outfit))]
     before = f"{worn.name}_" if worn.beneath else ""
     return [Limit(before + limit.name, limit.most, limit.least) for limit in found]
+
+
+def _least_triangles(worn: Worn, outfit: Sequence[Worn]) -> int | None:
+    """Triangles asked of a garment on a wearer: of the one that one comes to see, and for their cloth as many of the
+    accessories over it, so that none is coarser. None of what lies beneath."""
+    at = garment_at([each.cloth for each in outfit])
+    if worn.on_stand or worn in outfit[:at]:
+        return None
+    return math.ceil(TRIANGLES * min(1.0, worn.cloth / outfit[at].cloth))
 
 
 def _crossings(worn: Worn) -> int:

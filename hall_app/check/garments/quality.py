@@ -86,11 +86,12 @@ def _of(content: Content, exhibit: Exhibit) -> list[Line]:
 def figure_lines(exhibit: str, show: Show, record: Numbers, again: Measured) -> list[Line]:
     """Each limit of the layers, the outermost first, against the record's figure; that is believed only where measuring
     again agrees."""
-    told, lines, layers = _told(record), [], len(again.worn)
+    told, lines = _told(record), []
     files = record.get(FILES)
     moving = isinstance(files, dict) and MOTION.removeprefix(BAKED) in files
     asked = [
-        limits_of(worn, _deviation(worn, show, moving), layers, moving=moving) for worn in again.worn[::-1]
+        limits_of(worn, _deviation(worn, show, moving), again.worn, moving=moving)
+        for worn in again.worn[::-1]
     ]
     for limit in [limit for limits in asked for limit in limits]:
         value, found = told.get(limit.name), again.figures.get(limit.name)

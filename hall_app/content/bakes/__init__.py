@@ -1,10 +1,10 @@
 """Baked garments as they lie in folders.
 
 inputs: what an outfit names; key: of inputs; steps: of the meshes; record: digests of the files; store:
-where a bake lies; models: what an
-exhibit is drawn with.
+where a bake lies; models: what an exhibit is drawn with; accessories: which layer one comes to see.
 """
 
+from hall_app.content.bakes.accessories import cloth_area, garment_at
 from hall_app.content.bakes.inputs import outfit_files, outfit_problems, scan_files
 from hall_app.content.bakes.key import BAKE_VERSION, KEY_DIGITS, bake_key
 from hall_app.content.bakes.models import ExhibitModels, models_of
@@ -36,7 +36,9 @@ __all__ = [
     "baked_here",
     "budget",
     "chosen_steps",
+    "cloth_area",
     "data_bake",
+    "garment_at",
     "key_now",
     "layer_files",
     "models_of",

@@ -81,11 +81,14 @@ SECONDS: dict[str, tuple[str, str]] = {
 
 
 def measured_lines(bake: dict[str, Any]) -> list[dict[str, Any]]:
-    """Lines {label{zh,en}, value{zh,en}} of a bake.json {errors: {name: number}, seconds: {name: number}}.
+    """Lines {label{zh,en}, value{zh,en}} of a bake.json {errors: {name: number}, seconds: {name: number}, shown, …}.
 
-    Errors come first; what is absent or no number is passed over.
+    Errors come first, those of the garment that is shown, not of its belt; what is absent or no number is passed over.
     """
     errors, seconds = _numbers(bake.get("errors")), _numbers(bake.get("seconds"))
+    before = f"{bake.get('shown')}_"
+    own = {name.removeprefix(before): value for name, value in errors.items() if name.startswith(before)}
+    errors = own or errors
     lines = [_line(zh, en, write(errors[name])) for name, (zh, en, write) in ERRORS.items() if name in errors]
     return lines + [
         _line(zh, en, _seconds(seconds[name])) for name, (zh, en) in SECONDS.items() if name in seconds
