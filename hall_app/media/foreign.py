@@ -32,7 +32,7 @@ class Fineness:
     smooth: int
 
 
-FINENESS = {"hall": Fineness(26, 160, 32, 2), "close": Fineness(96, 400, 96, 6)}
+FINENESS = {"hall": Fineness(26, 160, 32, 2), "close": Fineness(96, 400, 80, 4)}
 
 
 def write_mirror(folder: Path) -> None:
@@ -80,7 +80,7 @@ def _mirror(fineness: Fineness) -> Any:
     import trimesh
 
     rings, sectors = fineness.rings, fineness.sectors
-    front, back = _polar(max(4, rings // 6), sectors), _polar(rings, sectors)
+    front, back = _polar(max(4, rings // 24), sectors), _polar(rings, sectors)  # the face is plain
     height = back_height(*back)
     face = 0.0030 - 0.0035 * (front[0] / RADIUS) ** 2  # slightly convex: it shows the whole head
     grids = [

@@ -50,7 +50,7 @@ An outfit file:
   edge = 0.013                        # mesh step in metres; below 0.009 it is sewn and posed at 0.015 first
   start = "t"                         # pose the wearer begins in (wrapped, along_path), which a pose step leaves
   [layer.place]
-  way = "flat"                        # flat, wrapped, over_bar, along_path or folded; each has keys of its own
+  way = "flat"                        # flat, wrapped, upright, over_bar, along_path, folded; each has its keys
   [[layer.step]]                      # only where the usual steps do not do
   do = "sew"                          # sew, weld, pin, release, close, pose, settle, rest
   seconds = 0.9                       # gravity, damping, friction, speed, still, touch, label

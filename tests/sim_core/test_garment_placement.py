@@ -1,4 +1,4 @@
-"""Each way of placing, proved by a small outfit of its own: wrapped round, folded over a bar, along a path."""
+"""Each way of placing, proved by a small outfit of its own: wrapped, folded over a bar, along a path, upright."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -249,6 +249,51 @@ def test_a_skirt_lies_beneath_a_robe_that_is_dressed_flat(tmp_path: Path) -> Non
     assert clear(skirt)
     assert clear(over)
     assert over.provenance["errors"]["rest_p99_m"] < 1e-4
+
+
+UPRIGHT = 'way = "upright"\nrise = 0.03\nfront = 0.16\nback = 0.11'
+
+
+def trousers() -> str:
+    """The shipped pattern on a coarse mesh."""
+    return (ASSETS / "patterns/ku.toml").read_text("utf-8").replace("edge = 0.02", "edge = 0.03")
+
+
+@pytest.mark.slow
+def test_trousers_stand_before_and_behind_the_legs_and_are_sewn_about_each(
+    tmp_path: Path, woman: Mannequin
+) -> None:
+    sewing = (
+        '[[layer.step]]\ndo = "pin"\nat = ["middle"]\n'
+        '[[layer.step]]\ndo = "sew"\nseconds = 0.88\ngravity = [0.0, 0.0]\ndamping = 6.0\nfriction = 0.0\n'
+        '[[layer.step]]\ndo = "sew"\nseconds = 0.16\ngravity = [0.0, 0.0]\ndamping = 8.0\nfriction = 0.0\n'
+        '[[layer.step]]\ndo = "weld"\n'
+    )
+    (worn,) = of(tmp_path, trousers(), UPRIGHT, WEARER, sewing + PINNED + STEPS)
+    facts = worn.provenance["errors"]
+    assert clear(worn)
+    assert facts["self_intersections"] == 0
+    assert facts["seam_gap_m"] == 0.0
+    x, marks = worn.positions, woman.landmarks(pose_named("display"))
+    assert x[:, 1].max() == pytest.approx(marks["waist"][1] + 0.03, abs=0.02)
+    assert 0.05 < x[:, 1].min() < 0.2  # to the ankles
+    height = float(marks["knee_l"][1]) + 0.1
+    legs = worn.faces[(np.abs(x[worn.faces, 1] - height) < 0.05).all(1)]
+    sides = [legs[(x[legs, 0].mean(1) * side) > 0] for side in (1.0, -1.0)]
+    for side, name in zip(sides, ("knee_l", "knee_r"), strict=True):  # each goes all the way round its leg
+        away = x[side].mean(1) - [marks[name][0], height, marks[name][2]]
+        angle = np.sort(np.arctan2(away[:, 0], away[:, 2]))
+        assert np.diff(angle, append=angle[0] + 2 * np.pi).max() < 1.0
+
+
+def test_an_upright_panel_is_before_the_body_or_behind_it(tmp_path: Path) -> None:
+    across = trousers().replace(
+        '{ name = "waist_middle", at = [0, 0] }', '{ name = "waist_middle", at = [0, -20] }', 1
+    )
+    with pytest.raises(SimCoreError, match="panel 'front' reaches from y = -0.020 .* cut it in two"):
+        of(tmp_path, across, UPRIGHT, WEARER, "")
+    with pytest.raises(SimCoreError, match="1.20 m long, 0.1.* more than there is from 'waist' to the floor"):
+        of(tmp_path, trousers().replace("length = 975", "length = 1200"), UPRIGHT, WEARER, "")
 
 
 def test_a_skirt_narrower_than_the_hips_is_refused(tmp_path: Path) -> None:

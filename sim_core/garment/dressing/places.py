@@ -34,13 +34,22 @@ class Places:
     sheet: SewnSheet
 
     def vertices(self, what: Spot | str) -> tuple[int, ...]:
-        """Vertices of the sheet that a pin holds: the nearest to its place and their neighbours, or a whole edge."""
+        """Vertices of the sheet that a pin holds: the nearest to its place and their neighbours, the
+        whole top edge, or its points on the middle, x = 0."""
         if what == "top":
-            top = self.cloth.vertices[:, 1] < self.cloth.vertices[:, 1].min() + 1e-6
-            return tuple(int(k) for k in np.unique(self.sheet.number[top]))
-        points = [self._nape()] if what == "nape" else self._nearest(what)
+            return tuple(int(k) for k in np.unique(self.sheet.number[self._top()]))
+        if what == "middle":
+            points = np.unique(self.sheet.number[self._top() & (np.abs(self.cloth.vertices[:, 0]) < 1e-6)])
+        else:
+            points = [self._nape()] if what == "nape" else self._nearest(what)
         near = np.isin(self._edges, points).any(1)
         return tuple(int(k) for k in np.unique([*self._edges[near].ravel(), *points]) if k < self.sheet.real)
+
+    def _top(self) -> np.ndarray:
+        """Which (P,) pattern vertices are of the top edge: of panels before and behind the body the fold, y = 0."""
+        down = self.cloth.vertices[:, 1]
+        down = np.abs(down) if down.min() < 0 < down.max() else down
+        return down < down.min() + 1e-6
 
     def pairs(self, course: Course) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (K, 2) that are drawn together in a run, and how far apart (K,) [m] they end."""

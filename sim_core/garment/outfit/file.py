@@ -29,7 +29,7 @@ from sim_core.garment.outfit.tables import (
 )
 from sim_core.garment.pattern import Pattern
 from sim_core.garment.pattern.tables import CutProblem, read_spot
-from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Wrapped
+from sim_core.garment.placement import AlongPath, Flat, Folded, Knot, OverBar, Placement, Upright, Wrapped
 from sim_core.validation.files import read_toml, shown
 from sim_core.weave import Loom, Weave
 
@@ -49,6 +49,7 @@ WAYS: dict[str, type[Placement]] = {
     "along_path": AlongPath,
     "wrapped": Wrapped,
     "folded": Folded,
+    "upright": Upright,
 }
 
 
@@ -191,7 +192,7 @@ class _Reader:
 
     def _begun(self, key: str, start: PoseTable, way: str, program: Program) -> Program:
         """The program from another pose on than is usual for its way of placing."""
-        if way not in ("wrapped", "along_path"):
+        if way not in ("wrapped", "upright", "along_path"):
             raise self._wrong(key, f"{way} has its own begin – leave it out")
         if not any(step.do == "pose" for step in program.steps):
             raise self._wrong(key, 'no step leaves that pose – add a step with do = "pose", or leave it out')
@@ -330,7 +331,7 @@ def _programs() -> Mapping[str, ProgramTable]:
 def _ways(stand: Stand | None) -> tuple[tuple[str, ...], str]:
     """Ways of placing cloth on a wearer or a stand, the usual one first, and what that is called."""
     if stand is None:
-        return ("flat", "wrapped", "along_path"), "a wearer"
+        return ("flat", "wrapped", "upright", "along_path"), "a wearer"
     return (("flat",), "a T-bar") if isinstance(stand, TBar) else (("over_bar", "folded"), "a stand")
 
 

@@ -65,7 +65,7 @@ class Step:
     friction: float | None = None
     speed: float | None = None
     still: float | None = None
-    spots: tuple[Spot | Literal["nape", "top"], ...] = ()
+    spots: tuple[Spot | Literal["nape", "top", "middle"], ...] = ()
     ties: tuple[str, ...] = ()
     belt: Belt | None = None
     pose: Pose | None = None

@@ -73,8 +73,8 @@ class StepTable(Table):
     still: Number | None = Field(
         None, gt=0, le=1, description="[m] a frame (p99) at which the step ends early"
     )
-    at: list[Literal["nape", "top"] | SpotTable] = Field(
-        [], description="what is pinned: nape, top or places"
+    at: list[Literal["nape", "top", "middle"] | SpotTable] = Field(
+        [], description="what is pinned: nape, top, its middle or places"
     )
     ties: list[str] = Field([], description="which ties are closed; none named: all")
     belt: BeltTable | None = Field(None, description="a belt that is drawn to its length")
@@ -155,6 +155,14 @@ class WrappedTable(Table):
     gap: Number = Field(0.006, gt=0, le=0.2, description="[m] between layers of the wrap")
 
 
+class UprightTable(Table):
+    way: Literal["upright"]
+    mark: str = Field("waist", description="landmark of the wearer at whose height the top lies")
+    rise: Number = Field(0.0, ge=-1, le=1, description="[m] of the top above it")
+    front: Number = Field(0.17, gt=0, le=1, description="[m] of the front sheet before the middle")
+    back: Number = Field(0.13, gt=0, le=1, description="[m] of the back sheet behind it")
+
+
 class FoldedTable(Table):
     way: Literal["folded"]
     front: Length = Field(description="[m] of cloth in front of the bar")
@@ -164,7 +172,8 @@ class FoldedTable(Table):
 
 
 Place = Annotated[
-    FlatTable | OverBarTable | AlongPathTable | WrappedTable | FoldedTable, Field(discriminator="way")
+    FlatTable | OverBarTable | AlongPathTable | WrappedTable | FoldedTable | UprightTable,
+    Field(discriminator="way"),
 ]
 
 
@@ -184,7 +193,8 @@ class LayerTable(Table):
     seed: int = Field(0, strict=True, ge=0, le=2**32 - 1, description="of the folds' irregularity")
     place: Place | None = Field(None, description="how it lies before it is dressed; flat when left out")
     start: PoseTable | None = Field(
-        None, description="pose its wearer begins in, of wrapped and along_path; left out: the outfit's"
+        None,
+        description="pose its wearer begins in, of wrapped, upright and along_path; left out: the outfit's",
     )
     step: list[StepTable] = Field(
         [], max_length=200, description="dressing steps; else those of its way of placing"
