@@ -40,7 +40,7 @@ LINEN = (0.84, 0.80, 0.73)  # sRGB
 SHOE = (0.145, 0.15, 0.20)  # sRGB
 SLUB_SIZE = 0.06  # [m] of cloth per tile of the hall's relief
 MOST_PIXELS = 2048  # a side, of the textures that every telephone has
-CELL_QUALITY, FIGURE_QUALITY, SLUB_QUALITY = 82, 88, 75  # JPEG
+CELL_QUALITY, FIGURE_QUALITY = 82, 88  # JPEG
 
 
 @dataclass(frozen=True)
@@ -305,7 +305,7 @@ def _cloth_hall(glb: GlbFile, dye: Colour | None, maps: MapsLike, textures: dict
     cover, mean = coverage(maps), mean_colour(maps)
     material = _silk(dyed(dye, mean), round(cover, 4) if cover < SHEER else 1.0, "silk_hall")
     tile = [1e-3 / SLUB_SIZE, 1e-3 / SLUB_SIZE]
-    normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile, quality=SLUB_QUALITY))
+    normal = _once(textures, "normal", lambda: glb.texture(_slub_normal(256), tile))
     material["normalTexture"] = {**normal, "scale": 0.5}
     own = textures.setdefault(f"of {id(maps)}", {})
     picture, factor = seen_afar(maps, dye)
