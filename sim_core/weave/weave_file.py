@@ -113,12 +113,13 @@ class _Damask(_Motif):
     longest: int = Field(0, ge=0, le=MOST)
 
     def draft(self, folder: Path) -> Draft | Figure:
-        from sim_core.weave.draft.generators import damask
+        from sim_core.weave.draft.generators import check_limit, damask
         from sim_core.weave.draft.notation import draft_of_words
 
         named = [self.figured] if isinstance(self.figured, str) else self.figured or []
         if isinstance(self.motif, str) and not named:
             raise WeaveError('draft.figure: missing – name the weave of the figure, such as "satin:5/2:weft"')
+        check_limit("draft.longest", self.longest, [draft_of_words(words) for words in (self.ground, *named)])
         made = self.figure(folder, "damask", words=(self.ground, *named), longest=self.longest)
         if made:
             return made

@@ -1,6 +1,7 @@
 """Figured silks at the scale of garments: a motif file and a few small weaves become thousands of ends, and one map."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -150,6 +151,23 @@ def test_what_a_weave_file_says_of_a_motif_wrongly_is_named(tmp_path, lines):
     with pytest.raises(kind, match=said) as told:
         Weave.load(tmp_path / "x.toml")
     assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("name", ["anhuaduan", "lian-duan"])
+def test_a_float_limit_below_the_floats_of_its_own_weaves_is_refused(tmp_path, name):
+    """Rows written out and a motif file: binding would make another weave of the satin, all over the cloth."""
+    text = (FOLDER / f"{name}.toml").read_text("utf-8").replace("../motifs", str(FOLDER.parent / "motifs"))
+    path = tmp_path / "x.toml"
+    path.write_text(re.sub(r"longest = \d", "longest = 4", text), "utf-8")
+    assert max(f.longest for f in float_statistics(Weave.load(path).draft)) == 4
+    path.write_text(re.sub(r"longest = \d", "longest = 3", text), "utf-8")
+    with pytest.raises(WeaveError) as told:
+        Weave.load(path)
+    assert str(told.value) == (
+        f"{path}: draft.longest: 3 – satin:5/2 itself floats over 4 crossings; give at least 4, or 0 for no limit"
+    )
+    with pytest.raises(WeaveError, match="longest: 3 – satin:5/2 itself"):  # of a recipe that was stored
+        Figure("damask", "vines", words=("satin:5/2", "plain"), longest=3)
 
 
 def test_a_compound_has_a_series_for_every_number():
