@@ -8,10 +8,19 @@ import numpy as np
 import pytest
 
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, facts_of, lit_cloth, measured, parameters_of, solve, summary_of
+from sim_core.weave import (
+    Weave,
+    facts_of,
+    lit_cloth,
+    measured,
+    parameters_of,
+    solve,
+    summary_of,
+)
 from sim_core.weave.draft import Figure, float_statistics
 from sim_core.weave.files import source_of
 from sim_core.weave.maps import FiguredMaps, drawn_maps, figured_maps
+from sim_core.weave.summary import summary_text
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 FIGURED = ["cloud-jin", "cup-luo", "flower-zhuanghua", "lian-duan", "lozenge-qi", "roundel-ling"]
@@ -151,6 +160,26 @@ def test_what_a_weave_file_says_of_a_motif_wrongly_is_named(tmp_path, lines):
     with pytest.raises(kind, match=said) as told:
         Weave.load(tmp_path / "x.toml")
     assert "\n" not in str(told.value)
+
+
+LONGEST = {
+    "zhuanghua": {"warp": 4, "weft": 4, "extra": 6},
+    "flower-zhuanghua": {"warp": 4, "weft": 4, "extra": 6},
+    "luo": {"warp": None, "weft": None},
+    "cup-luo": {"warp": None, "weft": None},
+    "jin": {"warp": 3, "weft": None},
+    "twill": {"warp": 3, "weft": 3},
+}
+
+
+@pytest.mark.parametrize("name", LONGEST)
+def test_floats_are_those_a_weaver_counts(name):
+    """Those of a brocade's satin, of extra wefts between binding ends (every sixth, none at a rim); none of a leno."""
+    told = facts_of(source_of(str(FOLDER / f"{name}.toml")))
+    assert {side: one["longest"] for side, one in told["floats"].items()} == LONGEST[name]
+    words = summary_text(name, told)
+    assert ("no floats of warp and weft" in words) == name.endswith("luo")
+    assert ("6 extra" in words) == name.endswith("zhuanghua")
 
 
 @pytest.mark.parametrize("name", ["anhuaduan", "lian-duan"])
