@@ -100,9 +100,11 @@ def craft_floats(draft: Draft) -> dict[str, FloatLengths | None]:
     if kinds is None or not (extra := kinds == EXTRA).any():
         warp, weft = float_statistics(draft.repeat())
         return {"warp": warp, "weft": weft}
-    there = np.ones_like(draft.lift) if channels.region is None else channels.region >= 0
+    region = np.zeros(draft.lift.shape, int) if channels.region is None else channels.region
+    # Each colour has a bobbin of its own: where two meet, one float ends and another begins.
+    shown = [((region == one) & ~draft.lift)[extra] for one in np.unique(region[extra]) if one >= 0]
     warp, weft = float_statistics(Draft("ground", draft.lift[~extra]).repeat())
-    return {"warp": warp, "weft": weft, "extra": _where((there & ~draft.lift)[extra])}
+    return {"warp": warp, "weft": weft, "extra": _where(np.concatenate(shown)) if shown else None}
 
 
 def _where(shown: np.ndarray) -> FloatLengths | None:
