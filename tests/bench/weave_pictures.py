@@ -8,12 +8,13 @@ The JPEG's comment is a mark of the files that the picture was drawn from; a tes
 
 import hashlib
 import sys
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 from PIL import Image
 from weave_sheet import FAR, FOLDER, LIGHTS, NEAR, swatch
 
-from hall_app.content.bakes.inputs import motif_files
 from sim_core.weave import Weave, solve
 from sim_core.weave.maps import FiguredMaps, drawn_maps, surface_maps
 
@@ -38,9 +39,21 @@ def picture_of(file: Path) -> Image.Image:
 def mark_of(file: Path) -> str:
     """Digest of a weave file and of the motif files and drawings that it names."""
     hashed = hashlib.sha256()
-    for path in (file, *(file.parent / name for name in motif_files(file.parent, file.name))):
+    for path in dict.fromkeys(_named(file)):
         hashed.update(path.read_bytes())
     return f"drawn from {hashed.hexdigest()[:16]}"
+
+
+def _named(file: Path) -> Iterator[Path]:
+    """A weave or motif file, and the motif files and drawings that it names, in their order."""
+    yield file
+    if file.suffix != ".toml":
+        return
+    table = tomllib.loads(file.read_text("utf-8"))
+    tables = [table.get("draft", {}), *table.get("part", [])]
+    for name in [table.get("svg"), *(one.get("motif") for one in tables)]:
+        if isinstance(name, str):
+            yield from _named((file.parent / name).resolve())
 
 
 def marked(picture: Path, mark: str) -> None:
