@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim_core.cli import main
 from sim_core.errors import WeaveError
 from sim_core.weave import (
     Weave,
@@ -20,7 +21,6 @@ from sim_core.weave import (
 from sim_core.weave.draft import Figure, float_statistics
 from sim_core.weave.files import source_of
 from sim_core.weave.maps import FiguredMaps, drawn_maps, figured_maps
-from sim_core.weave.summary import summary_text
 
 FOLDER = Path(__file__).parents[2] / "assets" / "weaves"
 FIGURED = ["cloud-jin", "cup-luo", "flower-zhuanghua", "lian-duan", "lozenge-qi", "roundel-ling"]
@@ -177,9 +177,11 @@ def test_floats_are_those_a_weaver_counts(name):
     """Those of a brocade's satin, of extra wefts between binding ends (every sixth, none at a rim); none of a leno."""
     told = facts_of(source_of(str(FOLDER / f"{name}.toml")))
     assert {side: one["longest"] for side, one in told["floats"].items()} == LONGEST[name]
-    words = summary_text(name, told)
-    assert ("no floats of warp and weft" in words) == name.endswith("luo")
-    assert ("6 extra" in words) == name.endswith("zhuanghua")
+
+
+def test_floats_that_are_none_are_told_as_such(capsys):
+    assert main(["weave", str(FOLDER / "luo.toml")]) == 0
+    assert "no floats of warp and weft, hangs together" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["anhuaduan", "lian-duan"])
