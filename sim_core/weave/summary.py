@@ -46,6 +46,7 @@ TAKE_UP = (
 def facts_of(source: Source) -> dict:
     """What a draft tells without physics: the first keys of the command's JSON.
 
+    `floats` as a weaver counts them (`craft_floats`), null where none are meant, `extra` of brocading wefts.
     `repeat` is the smallest that makes up the whole draft. Of a file of another program also its size and period (a
     repeat of which the last may be cut off), what does not interlace (numbers from 1), its colours, the drawdown of up
     to 65,536 crossings (one text a pick, 1 = warp on top), and what the reader had to replace.
@@ -55,8 +56,8 @@ def facts_of(source: Source) -> dict:
         "repeat": {"ends": facts.ends, "picks": facts.picks},
         "face": facts.face,
         "floats": {
-            side: {"longest": floats.longest, "mean": floats.mean}
-            for side, floats in (("warp", facts.warp), ("weft", facts.weft))
+            side: {"longest": floats and floats.longest, "mean": floats and floats.mean}
+            for side, floats in source.floats.items()
         },
         "interlacings": facts.interlacings,
         "integral": facts.integral,
@@ -222,10 +223,10 @@ def _entries(parameters: ClothParameters) -> dict:
 
 def summary_text(name: str, summary: dict) -> str:
     """The summary for people, a line a topic."""
-    repeat, floats = summary["repeat"], summary["floats"]
+    repeat = summary["repeat"]
     lines = [
-        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, longest float "
-        f"{floats['warp']['longest']} warp {floats['weft']['longest']} weft, "
+        f"{name}: {repeat['ends']} ends x {repeat['picks']} picks, {summary['face']} face, "
+        f"{_float_words(summary['floats'])}, "
         f"{'hangs together' if summary['integral'] else 'FALLS APART'}"
     ]
     lines += _draft_lines(summary)
@@ -254,6 +255,14 @@ def summary_text(name: str, summary: dict) -> str:
         drawn = summary["drawn"]
         lines.append(f"  drawn: {listed(drawn) if len(drawn) < 5 else f'{drawn[0]} to {drawn[-1]}'}")
     return "\n".join(lines)
+
+
+def _float_words(floats: dict) -> str:
+    """The longest floats, and of which yarns none are told."""
+    told = [f"{one['longest']} {side}" for side, one in floats.items() if one["longest"] is not None]
+    without = [side for side, one in floats.items() if one["longest"] is None]
+    words = [f"longest float {' '.join(told)}"] if told else []
+    return ", ".join([*words, f"no floats of {' and '.join(without)}"] if without else words)
 
 
 def _test_lines(summary: dict) -> list[str]:

@@ -113,12 +113,13 @@ class _Damask(_Motif):
     longest: int = Field(0, ge=0, le=MOST)
 
     def draft(self, folder: Path) -> Draft | Figure:
-        from sim_core.weave.draft.generators import damask
+        from sim_core.weave.draft.generators import check_limit, damask
         from sim_core.weave.draft.notation import draft_of_words
 
         named = [self.figured] if isinstance(self.figured, str) else self.figured or []
         if isinstance(self.motif, str) and not named:
             raise WeaveError('draft.figure: missing – name the weave of the figure, such as "satin:5/2:weft"')
+        check_limit("draft.longest", self.longest, [draft_of_words(words) for words in (self.ground, *named)])
         made = self.figure(folder, "damask", words=(self.ground, *named), longest=self.longest)
         if made:
             return made
@@ -336,15 +337,30 @@ def _check_stripes(file: _WeaveFile) -> None:
             )
 
 
+REMEDIES = {
+    "finite_number": "write an ordinary number, neither nan nor inf",
+    "float_type": "write a number, without quotation marks",
+    "greater_than": "write a number above 0",
+}
+
+
 def _first(error: ValidationError) -> str:
-    """One line for the first mistake pydantic found, and how many more there are."""
-    found = error.errors(include_url=False, include_context=False)
-    first = found[0]
-    key = ".".join(str(part) for part in first["loc"]) or "file"
+    """One line for the first mistake pydantic found; a key that may be several things is told as one mistake."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    parts = [str(part) for part in first["loc"]]
+    key = (
+        ".".join(part for part in parts if "[" not in part and part not in ("float", "constrained-float"))
+        or "file"
+    )
+    given = shown(first["input"])
     if first["type"] == "missing":
-        text = f"{key}: missing – add it"
-    elif first["type"] == "extra_forbidden":
-        text = f"{key}: unknown key – check the spelling or remove it"
-    else:
-        text = f"{key}: {shown(first['input'])}: {first['msg']}"
-    return text if len(found) == 1 else f"{text} (and {len(found) - 1} more)"
+        return f"{key}: missing – add it"
+    if first["type"] == "extra_forbidden":
+        return f"{key}: unknown key – check the spelling or remove it"
+    if "colour" in parts[-1] or "_colours" in key:
+        return f'{key}: {given} is no colour – write six hexadecimal digits, such as "#e6d3b3"'
+    if parts[0] == "draft" and "motif" in parts:
+        return f'{key}: {given} is no motif – name a file that ends in .toml, or write rows of "." and digits'
+    if parts[0] == "published" and first["type"] != "finite_number":
+        return f"{key}: {given} is no value of a source – write a number above 0, or [least, most]"
+    return f"{key}: {given}: {first['msg']} – {REMEDIES.get(first['type'], 'correct the value (see assets/weaves)')}"

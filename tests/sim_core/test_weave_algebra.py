@@ -17,6 +17,7 @@ from sim_core.weave.draft import (
     float_statistics,
     four_end_gauze,
     gauze,
+    generators,  # its rounds are counted
     hangs_together,
     harness,
     herringbone,
@@ -208,6 +209,16 @@ def test_a_float_limit_that_cannot_be_kept_is_named():
         limit_floats(np.ones((4, 4)), 0)
     with pytest.raises(WeaveError, match="2 ends"):
         limit_floats(np.ones((1, 4)), 2)
+
+
+def test_a_limit_that_binding_cannot_reach_is_given_up_soon(monkeypatch):
+    """Floats of one crossing are plain weave; binding a satin down to it breaks and makes as many, for ever."""
+    rounds = []
+    counted = generators._long_runs
+    monkeypatch.setattr(generators, "_long_runs", lambda *given: rounds.append(1) or counted(*given))
+    with pytest.raises(WeaveError, match="at most 1 cannot be kept – allow longer ones"):
+        limit_floats(np.tile(satin(5, 2).lift, (20, 21)), 1)
+    assert len(rounds) <= 20  # of 820 before
 
 
 def test_irregular_satin_of_six_touches_nowhere_and_derivatives_close():

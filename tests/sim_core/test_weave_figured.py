@@ -1,13 +1,23 @@
 """Figured silks at the scale of garments: a motif file and a few small weaves become thousands of ends, and one map."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sim_core.cli import main
 from sim_core.errors import WeaveError
-from sim_core.weave import Weave, facts_of, lit_cloth, measured, parameters_of, solve, summary_of
+from sim_core.weave import (
+    Weave,
+    facts_of,
+    lit_cloth,
+    measured,
+    parameters_of,
+    solve,
+    summary_of,
+)
 from sim_core.weave.draft import Figure, float_statistics
 from sim_core.weave.files import source_of
 from sim_core.weave.maps import FiguredMaps, drawn_maps, figured_maps
@@ -150,6 +160,45 @@ def test_what_a_weave_file_says_of_a_motif_wrongly_is_named(tmp_path, lines):
     with pytest.raises(kind, match=said) as told:
         Weave.load(tmp_path / "x.toml")
     assert "\n" not in str(told.value)
+
+
+LONGEST = {
+    "zhuanghua": {"warp": 4, "weft": 4, "extra": 6},
+    "flower-zhuanghua": {"warp": 4, "weft": 4, "extra": 6},
+    "luo": {"warp": None, "weft": None},
+    "cup-luo": {"warp": None, "weft": None},
+    "jin": {"warp": 3, "weft": None},
+    "twill": {"warp": 3, "weft": 3},
+}
+
+
+@pytest.mark.parametrize("name", LONGEST)
+def test_floats_are_those_a_weaver_counts(name):
+    """Those of a brocade's satin, of extra wefts between binding ends (every sixth, none at a rim); none of a leno."""
+    told = facts_of(source_of(str(FOLDER / f"{name}.toml")))
+    assert {side: one["longest"] for side, one in told["floats"].items()} == LONGEST[name]
+
+
+def test_floats_that_are_none_are_told_as_such(capsys):
+    assert main(["weave", str(FOLDER / "luo.toml")]) == 0
+    assert "no floats of warp and weft, hangs together" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", ["anhuaduan", "lian-duan"])
+def test_a_float_limit_below_the_floats_of_its_own_weaves_is_refused(tmp_path, name):
+    """Rows written out and a motif file: binding would make another weave of the satin, all over the cloth."""
+    text = (FOLDER / f"{name}.toml").read_text("utf-8").replace("../motifs", str(FOLDER.parent / "motifs"))
+    path = tmp_path / "x.toml"
+    path.write_text(re.sub(r"longest = \d", "longest = 4", text), "utf-8")
+    assert max(f.longest for f in float_statistics(Weave.load(path).draft)) == 4
+    path.write_text(re.sub(r"longest = \d", "longest = 3", text), "utf-8")
+    with pytest.raises(WeaveError) as told:
+        Weave.load(path)
+    assert str(told.value) == (
+        f"{path}: draft.longest: 3 – satin:5/2 itself floats over 4 crossings; give at least 4, or 0 for no limit"
+    )
+    with pytest.raises(WeaveError, match="longest: 3 – satin:5/2 itself"):  # of a recipe that was stored
+        Figure("damask", "vines", words=("satin:5/2", "plain"), longest=3)
 
 
 def test_a_compound_has_a_series_for_every_number():

@@ -59,6 +59,14 @@ MISTAKES = {
     "flattening": GAUZE.replace("flattening = 1.25 ", "flattening = 0.5 ", 1),
     "published.source: missing": GAUZE.replace("[draft]", "[published]\nareal_density = 0.0154\n\n[draft]"),
     "published.openness": GAUZE.replace("[draft]", '[published]\nsource = "x"\nopenness = [0.5]\n\n[draft]'),
+    r"draft\.damask\.motif: 'vines' is no motif – name a file that ends in .toml": GAUZE.replace(
+        'kind = "plain"', 'kind = "damask"\nmotif = "vines"'
+    ),
+    r"published\.openness: -1.0 is no value of a source – write a number above 0, or \[least, most\]$": GAUZE.replace(
+        "[draft]", '[published]\nsource = "x"\nopenness = -1.0\n\n[draft]'
+    ),
+    "ends_per_m: nan: .* – write an ordinary number": GAUZE.replace("6200.0", "nan"),
+    "warp.colour: 'blue' is no colour – write six hexadecimal digits": GAUZE.replace('"#e9dcc0"', '"blue"'),
     "rows differ": GAUZE.replace('kind = "plain"', 'kind = "lift"\nlift = ["10", "010"]'),
 }
 

@@ -39,9 +39,15 @@ def facts_of(source: Source) -> str:
     picks, ends = factors.periods
     return (
         f"{factors.ends:,} ends x {factors.picks:,} picks · {harness.tieup.shape[0]:,} shafts, {how} · repeat "
-        f"{_often(ends, factors.ends)} x {_often(picks, factors.picks)} · longest float {facts.warp.longest} warp, "
-        f"{facts.weft.longest} weft · " + ("hangs together" if facts.integral else "falls apart")
+        f"{_often(ends, factors.ends)} x {_often(picks, factors.picks)}{_longest(source)} · "
+        + ("hangs together" if facts.integral else "falls apart")
     )
+
+
+def _longest(source: Source) -> str:
+    """The longest floats of the sides that have any."""
+    told = [f"{one.longest} {side}" for side, one in source.floats.items() if one]
+    return f" · longest float {', '.join(told)}" if told else ""
 
 
 def _often(period: int, count: int) -> str:

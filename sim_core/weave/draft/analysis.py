@@ -6,12 +6,21 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from sim_core.weave.draft.draft import Draft
+from sim_core.weave.draft.draft import KINDS, Draft
 from sim_core.weave.draft.factors import Factors
 
+EXTRA = KINDS.index("extra")
 Sides = tuple[np.ndarray, np.ndarray]  # counts of the floats of each length on face and back
 
-__all__ = ["FloatLengths", "Summary", "float_statistics", "hangs_together", "summary", "summary_of_factors"]
+__all__ = [
+    "FloatLengths",
+    "Summary",
+    "craft_floats",
+    "float_statistics",
+    "hangs_together",
+    "summary",
+    "summary_of_factors",
+]
 
 
 @dataclass(frozen=True)
@@ -70,6 +79,39 @@ def _counted(small: Factors) -> Summary:
 def float_statistics(draft: Draft) -> tuple[FloatLengths, FloatLengths]:
     """Floats of the warp and of the weft. A float is a maximal cyclic run of equal entries along one yarn."""
     return _floats(Factors.of_lift(draft.lift).float_counts())
+
+
+def craft_floats(draft: Draft) -> dict[str, FloatLengths | None]:
+    """Floats as a weaver counts them, of "warp" and "weft", and "extra" of brocading wefts; None: no float is meant.
+
+    Brocade: those of the ground without its extra picks, and those of extra wefts on the face between their bindings.
+    Compound: of the series that shows, on the face; the other yarns lie between face and back and float nowhere. Leno
+    ends cross one another: how long they lie over the picks says nothing of what holds them.
+    """
+    channels = draft.channels
+    if channels.layer is not None:
+        shown = (channels.layer == 0) & (draft.lift if channels.end_series is not None else ~draft.lift)
+        if channels.end_series is not None:
+            return {"warp": _where(shown.T), "weft": None}
+        return {"warp": None, "weft": _where(shown)}
+    if channels.order is not None:
+        return {"warp": None, "weft": None}
+    kinds = channels.pick_kind
+    if kinds is None or not (extra := kinds == EXTRA).any():
+        warp, weft = float_statistics(draft.repeat())
+        return {"warp": warp, "weft": weft}
+    region = np.zeros(draft.lift.shape, int) if channels.region is None else channels.region
+    # Each colour has a bobbin of its own: where two meet, one float ends and another begins.
+    shown = [((region == one) & ~draft.lift)[extra] for one in np.unique(region[extra]) if one >= 0]
+    warp, weft = float_statistics(Draft("ground", draft.lift[~extra]).repeat())
+    return {"warp": warp, "weft": weft, "extra": _where(np.concatenate(shown)) if shown else None}
+
+
+def _where(shown: np.ndarray) -> FloatLengths | None:
+    """Floats on the face of yarns (yarns, crossings) where they show; None where none does."""
+    (face, _), _ = Factors.of_lift(shown.T).float_counts()
+    pairs = tuple((int(n), int(face[n])) for n in np.flatnonzero(face))
+    return FloatLengths(pairs, ()) if pairs else None
 
 
 def _floats(counts: tuple[Sides, Sides]) -> tuple[FloatLengths, FloatLengths]:

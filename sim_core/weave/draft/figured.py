@@ -16,7 +16,7 @@ import numpy as np
 
 from sim_core.errors import WeaveError
 from sim_core.weave.draft.draft import Channels, Draft
-from sim_core.weave.draft.generators import limit_floats, woven
+from sim_core.weave.draft.generators import check_limit, limit_floats, woven
 from sim_core.weave.draft.motifs import Motif, Part, Recipe, cut
 from sim_core.weave.draft.notation import draft_of_words
 from sim_core.weave.draft.structures import (
@@ -42,7 +42,8 @@ class Figure:
     longest: floats of a damask that get a binding point; 0 leaves them.  series: yarns of a compound unit.
     every: of how many ends one binds the extra wefts of a brocade.  parts: of a layout, see `Part`.  areas: of a
     drawing, see `Recipe`.
-    Raises WeaveError where the motif cannot be drawn, or has more numbers than a compound has series.
+    Raises WeaveError where the motif cannot be drawn, has more numbers than a compound has series, or a weave of a
+    damask floats over more crossings than `longest`.
     """
 
     kind: FigureKind
@@ -65,6 +66,8 @@ class Figure:
         object.__setattr__(self, "areas", tuple((int(number), str(text)) for number, text in self.areas))
         if self.kind == "damask" and len(self.words) < 2:
             raise WeaveError("figure: a damask needs two weaves – name its ground and its figure")
+        if self.kind == "damask":
+            check_limit("longest", self.longest, [draft_of_words(words) for words in self.words])
         colours = self.motif.colours
         if self.kind.endswith("compound") and colours > self.series:
             raise WeaveError(

@@ -6,10 +6,14 @@ from math import lcm
 import numpy as np
 
 from sim_core.errors import WeaveError
+from sim_core.weave.draft.analysis import float_statistics
 from sim_core.weave.draft.draft import Channels, Draft, check_size, plain, satin, twill
+
+PATIENCE = 4  # rounds without fewer overlong floats after which a limit is given up; what can be kept takes about five
 
 __all__ = [
     "basket",
+    "check_limit",
     "damask",
     "diamond",
     "herringbone",
@@ -113,21 +117,40 @@ def woven(repeat: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     return repeat[np.ix_(picks, ends)]
 
 
+def check_limit(key: str, longest: int, drafts: Sequence[Draft]) -> None:
+    """Raise WeaveError where one of the weaves floats over more crossings than `longest` by itself; 0: no limit.
+
+    Binding such floats would make another weave of it all over the cloth, not mend the rim of a figure.
+    """
+    for draft in drafts:
+        own = max(side.longest for side in float_statistics(draft))
+        if 0 < longest < own:
+            raise WeaveError(
+                f"{key}: {longest} – {draft.name} itself floats over {own} crossings; give at least {own}, or 0 for no "
+                "limit"
+            )
+
+
 def limit_floats(lift: np.ndarray, longest: int, *, name: str = "draft") -> np.ndarray:
     """Add binding points until no cyclic float, along ends or picks, on either face, exceeds `longest` crossings.
 
     A binding point is set where it breaks the long float and makes the shortest new float across it. Returns a new
-    (picks, ends) bool array; raises WeaveError where the limit is below 1 or cannot be kept.
+    (picks, ends) bool array; raises WeaveError where the limit is below 1 or cannot be kept: where binding makes as
+    many long floats as it breaks, for a few rounds, or has turned as many crossings as there are.
     """
     if longest < 1:
         raise WeaveError(f"{name}: a float limit of {longest} – give at least 1")
     lift = np.array(lift, bool)
     if min(lift.shape) == 1:
         raise WeaveError(f"{name}: one row cannot be bound – give at least 2 ends and picks")
-    for _ in range(4 * sum(lift.shape)):
+    least, since, bound = np.inf, 0, 0
+    while since < PATIENCE and bound < lift.size:
         found = _long_runs(lift, longest)
         if not found:
             return lift
+        excess = sum(length - longest for *_, length in found)
+        least, since = min(least, excess), since + 1 if excess >= least else 0
+        bound += len(found)
         for axis, line, start, length in found:
             _bind(lift, axis, line, start, length, longest)
     raise WeaveError(f"{name}: floats of at most {longest} cannot be kept – allow longer ones")

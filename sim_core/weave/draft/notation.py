@@ -34,8 +34,10 @@ def draft_of_words(words: str) -> Draft:
     else:
         found = re.fullmatch(r"(\d{1,4})/(\d{1,4})", numbers, re.ASCII)
         if not found:
+            what = "two whole numbers of 1 to 4 digits" if numbers else "numbers are missing"
             raise WeaveError(
-                f"{words[:60]!r}: numbers are missing – give {name}:{'2/1' if name == 'twill' else '8/3'}"
+                f"{words[:60]!r}: {what + ' are meant' if numbers else what} – give {name}:"
+                f"{'2/1' if name == 'twill' else '8/3'}"
             )
         first, second = int(found[1]), int(found[2])
         draft = twill(first, second) if name == "twill" else satin_by_pick(first, second)

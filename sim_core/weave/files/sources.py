@@ -13,7 +13,7 @@ import numpy as np
 
 from sim_core.errors import FileProblem, WeaveError
 from sim_core.weave.draft.algebra import Harness, harness
-from sim_core.weave.draft.analysis import Summary, summary, summary_of_factors
+from sim_core.weave.draft.analysis import FloatLengths, Summary, craft_floats, summary, summary_of_factors
 from sim_core.weave.draft.draft import Draft
 from sim_core.weave.draft.factors import Factors
 from sim_core.weave.draft.generators import damask
@@ -73,6 +73,13 @@ class Source:
         if self.made is not None:
             return summary(_structure(self.made[0].draft))
         return summary_of_factors(self.factors)
+
+    @cached_property
+    def floats(self) -> dict[str, FloatLengths | None]:
+        """Floats of warp, weft and extra wefts as a weaver counts them; None where none are meant."""
+        if self.made is not None:
+            return craft_floats(self.made[0].draft)
+        return {"warp": self.facts.warp, "weft": self.facts.weft}
 
     @cached_property
     def weave(self) -> tuple[Weave, str]:
