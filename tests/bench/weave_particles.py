@@ -40,9 +40,6 @@ Found = TypeVar("Found")
 # taken as 2), catalogue g/m2. Sources: tests/sim_core/test_weave_surface.py; both silk and flax pongees are of the same
 # dictionary of silk cloths (thread 17652) as "derived from plain weave": reeded four a dent, taken as hopsack 2/2. The
 # first of them contradicts itself: its tex and sett give 62 % silk and 120 g/m2 without crimp, it says 51 % and 152.
-# The robe and the cup lozenge luo of Mawangdui: freedefine.cn/wenzhan/33446.html (a secondary source): 58 x 40 per cm,
-# 10.2-11.3 den, 15.4 g/m2; 88-92 x 26-30 per cm of 20/22 den woven raw and dyed in the piece (taken as degummed, net of
-# four ends), 30-37 g/m2. Of its crêpes it tells thickness (.07-.10 mm) and ends, but neither picks nor denier.
 CITED = {
     "silk and flax pongee 2": (basket(2, 2), 4130, 2450, 25.0e-6, 25.0e-6, 2.0, 166.0),
     "silk and flax pongee 1": (basket(2, 2), 5600, 2750, 13.4e-6, 16.4e-6, 2.0, 152.0),
