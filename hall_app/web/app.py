@@ -74,6 +74,7 @@ def create_app(
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/openapi.json",
+        responses={"4XX": {"description": "refused, and why"}, 503: {"description": "full, or about to end"}},
         lifespan=lifespan or _still,
     )
 
@@ -275,7 +276,11 @@ def _add_api(app: FastAPI, house: House, answers: Answers, note_look: NoteLook) 
 
     words = Answers()
 
-    @app.get("/grid.bin")
+    @app.get(
+        "/grid.bin",
+        response_class=Response,
+        responses={200: {"content": {"application/octet-stream": {}}}},
+    )
     async def grid(request: Request) -> Response:
         """Clearance samples, int16 little endian; their frame is in /api/scene."""
         samples = house.grid

@@ -1,9 +1,11 @@
-"""The office's API keeps to its own description."""
+"""The APIs of the office and of the open hall keep to their own descriptions."""
 
 from __future__ import annotations
 
 import pytest
-from office_conformity import conform
+from office_conformity import conform, conform_open
+from plain_hall import write_plain_hall
+from running_hall import running_hall
 
 
 def holds(counter, tmp_path, examples: int) -> None:
@@ -21,3 +23,23 @@ def test_the_office_s_api_keeps_to_its_description(counter, tmp_path):
 @pytest.mark.slow
 def test_the_office_s_api_keeps_to_its_description_at_length(counter, tmp_path):
     holds(counter, tmp_path, 60)
+
+
+def open_holds(work, examples: int) -> None:
+    """Of what anyone may ask, the survey's answers included; a hall of its own, since answers are stored."""
+    pytest.importorskip("schemathesis", reason="not installed (extra 'test')", exc_type=ImportError)
+    with running_hall(write_plain_hall(work / "content"), work / "run") as hall:
+        status, said = conform_open(hall.url, work / "asked", examples)
+        assert "Traceback" not in hall.said()
+    assert status == 0, said[-6000:]
+    assert " generated" in said
+
+
+def test_the_open_hall_s_api_keeps_to_its_description(tmp_path):
+    open_holds(tmp_path, 2)
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_the_open_hall_s_api_keeps_to_its_description_at_length(tmp_path):
+    open_holds(tmp_path, 60)
