@@ -99,7 +99,7 @@ def test_no_questionnaire_offers_it_where_there_are_no_accounts():
     [
         ("0000", "no withdrawal code"),
         (str(uuid.UUID(int=0)), "no withdrawal code"),
-        (str(uuid.uuid4()), "no answers"),
+        ("f8295b3e-ace8-4d90-bd25-fc1f2e6684a2", "no answers"),
     ],
 )
 def test_what_is_no_code_of_an_answer_is_not_kept(counter, code, said):
