@@ -22,6 +22,7 @@ __all__ = ["room_glb"]
 
 Floats = NDArray[np.float64]
 _TEXTURE_QUALITY, _SHEET_QUALITY = 88, 84
+_SHADED_SHEET_QUALITY = 78  # where corners carry colours, too: both kinds of room keep within the same bytes
 _UNLIT, _WEBP = "KHR_materials_unlit", "EXT_texture_webp"
 # Even light from above and a little from the front left, for a room whose light is not baked.
 _TOP, _SIDE, _UNDER, _SWING = 1.0, 0.86, 0.66, 0.08
@@ -31,6 +32,7 @@ def room_glb(room: Room, light: LightMap | None = None) -> bytes:
     """The GLB of the room; without `light` it is shaded by the surfaces' directions alone."""
     glb = GlbFile()
     corners = None if light is None else _corners(room, light)
+    quality = _SHADED_SHEET_QUALITY if light is None else _SHEET_QUALITY
     rng = np.random.default_rng(3)
     offsets = rng.random((len(room.patches), 2))
     for name in MATERIALS:
@@ -46,7 +48,7 @@ def room_glb(room: Room, light: LightMap | None = None) -> bytes:
             f"hall_{name}",
             np.concatenate([patch.vertices for patch in patches]),
             faces,
-            _material(glb, name, room, double_sided=any(patch.two_sided for patch in patches)),
+            _material(glb, name, room, patches, quality),
             uv,
             colours=_shade(patches) if light is None and not MATERIALS[name].glow else None,
             uv1=np.concatenate([corners[k] for k in chosen]) if corners is not None and lit else None,
@@ -65,12 +67,13 @@ def _uv(patch: Patch, offset: Floats) -> Floats:
     return patch.flat[:, order] / MATERIALS[patch.material].tile + offset
 
 
-def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int:
+def _material(glb: GlbFile, name: str, room: Room, patches: list[Patch], quality: int) -> int:
+    """quality: of the picture of signs."""
     material = MATERIALS[name]
     look: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
     if material.texture == "signs":
         look["baseColorTexture"] = glb.picture(
-            _encoded(room.sheet.picture, "WEBP", quality=_SHEET_QUALITY, method=6), "image/webp"
+            _encoded(room.sheet.picture, "WEBP", quality=quality, method=6), "image/webp"
         )
     elif material.texture is not None:
         look["baseColorTexture"] = glb.picture(_tile(material.texture, material.colour), "image/jpeg")
@@ -79,7 +82,7 @@ def _material(glb: GlbFile, name: str, room: Room, *, double_sided: bool) -> int
     return glb.material(
         {
             "name": f"hall_{name}",
-            "doubleSided": double_sided,
+            "doubleSided": any(patch.two_sided for patch in patches),
             "pbrMetallicRoughness": look,
             "extensions": {_UNLIT: {}},
         }
