@@ -40,6 +40,17 @@ class Ground:
             raise SimCoreError(f"place: no landmark {name!r} – landmarks: {known}")
         return self.marks[name]
 
+    def top(self, mark: str, rise: float, length: float, name: str) -> float:
+        """Height [m] from which cloth of a `length` [m] hangs, `rise` above a landmark; raises SimCoreError naming the
+        pattern where it reaches the floor."""
+        top = float(self.mark(mark)[1]) + rise
+        if top < length:
+            raise SimCoreError(
+                f"pattern {name}: {length:.2f} m long, {length - top:.2f} m more than there is from {mark!r} to the "
+                "floor – cut it shorter or raise it"
+            )
+        return top
+
     def bar(self) -> Stand:
         """The stand; raises SimCoreError where there is a wearer instead."""
         if self.stand is None:

@@ -48,13 +48,7 @@ class Upright:
                     "upright it is before the body (y > 0) or behind it (y < 0): cut it in two"
                 )
             behind[own] = low < -1e-6
-        top = float(ground.mark(self.mark)[1]) + self.rise
-        lowest = top - float(np.abs(y).max())
-        if lowest < 0.0:
-            raise SimCoreError(
-                f"pattern {pattern.name}: {np.abs(y).max():.2f} m long, {-lowest:.2f} m more than there is from "
-                f"{self.mark!r} to the floor – cut it shorter or raise it"
-            )
+        top = ground.top(self.mark, self.rise, self.hanging(cloth), pattern.name)
         return np.stack(
             [cloth.vertices[:, 0], top - np.abs(y), np.where(behind, -self.back, self.front)], axis=1
         )

@@ -41,13 +41,8 @@ class Wrapped:
     def start(self, pattern: Pattern, cloth: Cloth, ground: Ground, rng: np.random.Generator) -> np.ndarray:
         """Positions (P, 3) [m] of the pattern vertices. Raises SimCoreError where the cloth does not go round."""
         low, high = cloth.vertices.min(0), cloth.vertices.max(0)
-        top = float(ground.mark(self.mark)[1]) + self.rise
-        lowest = top - float(high[1] - low[1])
-        if lowest < 0.0:
-            raise SimCoreError(
-                f"pattern {pattern.name}: {high[1] - low[1]:.2f} m long, {-lowest:.2f} m more than there is from "
-                f"{self.mark!r} to the floor – cut it shorter or raise it"
-            )
+        top = ground.top(self.mark, self.rise, self.hanging(cloth), pattern.name)
+        lowest = top - self.hanging(cloth)
         begin, end = (cloth.closed[np.abs(cloth.vertices[:, 0] - x) < 1e-6] for x in (low[0], high[0]))
         closed = len(np.intersect1d(begin, end)) > 0  # sewn to itself: a tube
         room = ground.clearance + 0.002
