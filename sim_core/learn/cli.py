@@ -65,6 +65,8 @@ faces; mean and 95th percentile over frames), normals, strain.
   biharmonic    the smoothest fine sheet with the coarse surface's means
   local_frames  that, and what frames of training add to it in closed form
   mfsr, mesh_conv, paper, ours    networks, of --weights; all but ours need torch
+  physics, physics_70, _50, _35    the engine at its quickest, led as the fine film is, on all its vertices or so many
+                of a hundred and the smoothest sheet through them; only where named, over the frames of --floor
 
 A frame counts where its floor is a third or less of every error there; half of every sequence has to (--floor says over
 how many frames that is measured).
@@ -169,7 +171,10 @@ def add_parser(subparsers: Any) -> None:
     train.add_argument("--row", choices=NETWORKS, default="ours", help="the network (ours)")
     train.add_argument("--device", choices=DEVICES, default="auto", help="(auto: a GPU where there is one)")
     evaluate.add_argument(
-        "--rows", type=_rows, metavar="NAMES", help=f"of {','.join(ROWS)} (all; networks with --weights)"
+        "--rows",
+        type=_rows,
+        metavar="NAMES",
+        help=f"of {','.join(ROWS)} (all but physics; networks with --weights)",
     )
     evaluate.add_argument(
         "--weights",

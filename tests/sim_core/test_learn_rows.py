@@ -26,7 +26,15 @@ from sim_core.learn.data import (
     recipes,
     split,
 )
-from sim_core.learn.rows import Biharmonic, Linear, LocalFrames, counting, measured, reference
+from sim_core.learn.rows import (
+    Biharmonic,
+    Linear,
+    LocalFrames,
+    counting,
+    led_physics,
+    measured,
+    reference,
+)
 
 
 def small(case: int, frames: int = 8) -> Recipe:
@@ -114,6 +122,11 @@ def test_the_command_compares_rows(tmp_path: Path, capsys: pytest.CaptureFixture
     rows = json.loads(capsys.readouterr().out)["rows"]
     assert rows["coarse"]["hausdorff_mm"] > 0.95 * rows["linear"]["hausdorff_mm"]  # its corners reach farther
     assert rows["coarse"]["total_ms"] < rows["linear"]["total_ms"]
+    words[-1] = "reference,physics_50"
+    assert main([*words, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert list(told["rows"]) == ["reference", "physics_50"]
+    assert "gate" not in told  # nothing is claimed
     assert main(["learn", "evaluate", "flag", "--data", str(tmp_path)]) == 1
     assert "holds hanging – give the folder of flag" in capsys.readouterr().err
     with pytest.raises(SystemExit):
@@ -152,6 +165,17 @@ def test_frames_count_whose_floor_is_a_third_of_every_error() -> None:
     assert counting(floor, [plain, smooth]) == {name: (1, 1)}
     claimed = replace(smooth, frames={name: (replace(base, vertex=2.9 * base.vertex),)})
     assert counting(floor, [plain, claimed]) == {name: (0, 1)}
+
+
+def test_quicker_physics_on_the_same_mesh_is_near_the_reference_and_on_fewer_vertices_less_so() -> None:
+    takes = [hanging(1)]
+    whole, half = led_physics(takes, 1.0, 5), led_physics(takes, 0.5, 5)
+    (near,), (far,) = whole.frames["hanging-01"], half.frames["hanging-01"]
+    assert 0.0 < near.vertex < 0.2 * far.vertex
+    assert whole.milliseconds > 0.0
+    moved = replace(takes[0], film=replace(takes[0].film, coarse=takes[0].film.coarse + np.float32(1e-3)))
+    with pytest.raises(SimCoreError, match="hanging-01: its coarse film comes out otherwise on this machine"):
+        led_physics([moved], 1.0, 5)
 
 
 def test_the_command_reconstructs_and_says_whether_the_gate_is_passed(

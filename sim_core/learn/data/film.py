@@ -52,14 +52,16 @@ def coarse_film(recipe: Recipe) -> tuple[np.ndarray, float]:
     return np.stack(frames), 1000.0 * float(np.median(np.diff(ends)))
 
 
-def fine_film(recipe: Recipe, coarse: np.ndarray, told: Told | None = None) -> tuple[np.ndarray, float]:
+def fine_film(
+    recipe: Recipe, coarse: np.ndarray, told: Told | None = None, *, pace: Pace | None = None
+) -> tuple[np.ndarray, float]:
     """The fine sheet led by a coarse film (T + 1, C, 3) [m], begin and run-in included: its frames (T', V, 3) float32
-    after the run-in, and ms a frame."""
+    after the run-in, and ms a frame; pace: another than its recipe's."""
     own, sheet = recipe.on(recipe.fine, SLOW), recipe.on(recipe.coarse).sheet
     air = own.air
     if air is not None:
         own = replace(own, air=replace(air, gusts=0.0).blowing(_slowed(air.at(0.0))))
-    led = _live(own, recipe.paces[1], (0.0, -GRAVITY / SLOW**2, 0.0), CALM / SLOW)
+    led = _live(own, pace or recipe.paces[1], (0.0, -GRAVITY / SLOW**2, 0.0), CALM / SLOW)
     lead = Lead.of(linear(sheet.rest, sheet.faces, own.sheet.rest), own.sheet.mass)
     loose = np.setdiff1d(np.arange(len(own.sheet.rest)), own.pins)
     frames, ends = [], [time.process_time()]
