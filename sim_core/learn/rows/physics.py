@@ -20,7 +20,7 @@ __all__ = ["QUICK", "led_physics"]
 QUICK = Pace("single", 0.95)  # as fast as the engine goes
 CUT = 1e-3  # weights of a row that are less of its greatest are left out
 AFTER = 1  # frames beyond those that are measured: the last of a film is led otherwise than others
-SAME = 1e-6  # [m] that two runs of a coarse film may differ by, as they are kept
+SAME = 1e-4  # [m] that a coarse film may differ by from what was kept of it in 16 bits
 
 
 def led_physics(takes: Sequence[Take], share: float, frames: int, told: Told | None = None) -> Measured:
