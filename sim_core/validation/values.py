@@ -167,6 +167,9 @@ def index_range(name: str, index: np.ndarray, count: int) -> None:
 
 def vertex_indices(name: str, value: object, count: int = MOST) -> tuple[int, ...]:
     """Vertices by their numbers, 0 to count - 1."""
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iu" and value.ndim == 1:
+        index_range(name, value, count)  # thousands at once, in every frame
+        return tuple(value.tolist())
     try:
         found = tuple(value)  # type: ignore[arg-type]
     except TypeError:

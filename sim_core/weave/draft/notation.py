@@ -14,6 +14,7 @@ from sim_core.weave.draft.draft import MOST_MOTIF, Draft, plain, satin, twill
 __all__ = ["PICTURES", "draft_of_words", "motif_of", "satin_by_pick"]
 
 WORDS = "plain, twill:2/1, satin:8/3 (suffixes :S, :weft), a .wif, .dtx, .json or .toml file, or a picture of a motif"
+EXAMPLES = {"twill": "2/1", "satin": "8/3"}
 PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp"}
 
 
@@ -34,11 +35,8 @@ def draft_of_words(words: str) -> Draft:
     else:
         found = re.fullmatch(r"(\d{1,4})/(\d{1,4})", numbers, re.ASCII)
         if not found:
-            what = "two whole numbers of 1 to 4 digits" if numbers else "numbers are missing"
-            raise WeaveError(
-                f"{words[:60]!r}: {what + ' are meant' if numbers else what} – give {name}:"
-                f"{'2/1' if name == 'twill' else '8/3'}"
-            )
+            what = "two whole numbers of 1 to 4 digits are meant" if numbers else "numbers are missing"
+            raise WeaveError(f"{words[:60]!r}: {what} – give {name}:{EXAMPLES[name]}")
         first, second = int(found[1]), int(found[2])
         draft = twill(first, second) if name == "twill" else satin_by_pick(first, second)
     if "weft" in rest and draft.face != "warp":
