@@ -31,11 +31,21 @@ KEY = re.compile(r"(?P<key>[a-z][\w.]*): (?P<what>.+)", re.DOTALL)  # as the eng
 
 def bake_problems(content: Content) -> list[Problem]:
     """Outfits that cannot be dressed, not baked, baked from older inputs, or whose baked files are missing."""
-    faults = _inputs(content)
+    states: dict[str, list[Problem]] = {}
+
+    def state(exhibit: Exhibit) -> list[Problem]:
+        if exhibit.id not in states:
+            states[exhibit.id] = bake_state(content, exhibit)
+        return states[exhibit.id]
+
+    def dressed(outfit: str) -> bool:
+        return any(exhibit.file.outfit == outfit and not state(exhibit) for exhibit in content.exhibits)
+
+    faults = _inputs(content, dressed)
     found = list(faults.values())
     for exhibit in content.exhibits:
         if exhibit.file.outfit and not faults.keys() & _inputs_of(content.folder, exhibit.file.outfit):
-            found += bake_state(content, exhibit)
+            found += state(exhibit)
     return found
 
 
@@ -44,8 +54,11 @@ def _inputs_of(folder: Path, outfit: str) -> set[str]:
     return {outfit, *(path for _, path in outfit_files(folder, outfit))}
 
 
-def _inputs(content: Content) -> dict[str, Problem]:
-    """Path -> what is wrong with it, of every outfit, pattern, weave and figure, whether an exhibit names it or not."""
+def _inputs(content: Content, dressed: Callable[[str], bool]) -> dict[str, Problem]:
+    """Path -> what is wrong with it, of every outfit, pattern, weave and figure, whether an exhibit names it or not.
+
+    dressed(outfit): whether a bake of it as it is now lies ready. Then it is not fitted once more, which takes seconds.
+    """
     folder, readers = content.folder, _readers(content.folder)
     worn = {exhibit.file.outfit for exhibit in content.exhibits if exhibit.file.outfit}
     worn |= {path for path, _ in _lying(folder, OUTFITS, ".toml")}
@@ -61,7 +74,8 @@ def _inputs(content: Content) -> dict[str, Problem]:
     faults |= {path: _fault(folder, path, readers[kind]) for path, kind in sorted(named.items())}
     faulty = {path for path, fault in faults.items() if fault is not None}
     for outfit in sorted(worn - faulty):
-        if not faulty & _inputs_of(folder, outfit):  # a file it names says itself what is wrong
+        # Where a file it names is faulty, that says itself what is wrong.
+        if not faulty & _inputs_of(folder, outfit) and not dressed(outfit):
             faults[outfit] = _fault(folder, outfit, readers[OUTFITS])
     return {path: fault for path, fault in faults.items() if fault is not None}
 
