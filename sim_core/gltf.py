@@ -103,6 +103,7 @@ class GlbFile:
     materials: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)
     animations: list[dict[str, Any]] = field(default_factory=list)
+    copies: list[dict[str, Any]] = field(default_factory=list)
 
     def _view(self, data: bytes, target: int | None = None) -> int:
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
@@ -195,6 +196,10 @@ class GlbFile:
         primitive = {"attributes": attributes, "indices": index, "material": material}
         self.meshes.append({"name": name, "primitives": [primitive]})
 
+    def copy(self, name: str, mesh: int, shift: np.ndarray) -> None:
+        """Adds a node with a mesh that is there already, shifted (3,) [m]."""
+        self.copies.append({"name": name, "mesh": mesh, "translation": [float(x) for x in shift]})
+
     def move(self, mesh: int, ways: np.ndarray) -> None:
         """Gives a mesh morph targets: ways (K, V, 3) [m] of its vertices."""
         targets = [{"POSITION": self._accessor(way.astype("<f4"), "VEC3", FLOAT, VERTICES)} for way in ways]
@@ -216,12 +221,12 @@ class GlbFile:
     def bytes(self, name: str, extensions: list[str], generator: str = "sim_core.garment") -> bytes:
         """The finished file; `name` is the scene's, `extensions` are those its materials use."""
         self.blob.extend(b"\0" * (-len(self.blob) % 4))
-        numbers = range(len(self.meshes))
+        nodes = [{"name": mesh["name"], "mesh": k} for k, mesh in enumerate(self.meshes)] + self.copies
         document: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": generator},
             "scene": 0,
-            "scenes": [{"name": name, "nodes": list(numbers)}],
-            "nodes": [{"name": self.meshes[k]["name"], "mesh": k} for k in numbers],
+            "scenes": [{"name": name, "nodes": list(range(len(nodes)))}],
+            "nodes": nodes,
             "meshes": self.meshes,
             "materials": self.materials,
             "accessors": self.accessors,

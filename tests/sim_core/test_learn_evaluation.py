@@ -105,3 +105,28 @@ def test_evaluation_refuses():
         frame_errors(level(), level(), FACES, REST, over=[])
     with pytest.raises(SimCoreError, match="^over: index 5000"):
         frame_errors(level(), level(), FACES, REST, over=[5000])
+
+
+def test_what_the_cloth_lies_on_stands_under_each_mesh() -> None:
+    from sim_core.gltf import glb_parts, node_matrix
+    from sim_core.learn.evaluation import Side, side_by_side_clip
+
+    corners, faces = np.array([[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]]), np.array([[0, 1, 2]])
+    frames = np.stack([corners, corners - [0.0, 0.1, 0.0]]).astype(np.float32)
+    sides = [Side(name, "#336699", frames, faces) for name in ("coarse", "learned", "fine")]
+    pot = np.array([[-0.5, 0.2, 0.0], [0.5, 0.2, 0.0], [0.0, 0.8, 0.0]])
+    model, clip = side_by_side_clip(sides, 25.0, solid=(pot, faces))
+    parts = glb_parts(model)
+    nodes = {node["name"]: node for node in parts.document["nodes"]}
+
+    def places(name: str) -> np.ndarray:
+        mesh = parts.document["meshes"][nodes[name]["mesh"]]
+        own = parts.numbers(mesh["primitives"][0]["attributes"]["POSITION"])
+        return own + node_matrix(nodes[name])[:3, 3]
+
+    assert clip.names == ("coarse", "learned", "fine")  # what stands is not moved
+    assert len(parts.document["meshes"]) == 4  # and kept once
+    for number, side in enumerate(sides, 1):
+        shift = clip.positions(0, side.name) - corners
+        assert np.abs(places(f"solid-{number}") - pot - shift[0]).max() < 1e-4
+    assert places("solid-1")[:, 1].min() == pytest.approx(0.0)

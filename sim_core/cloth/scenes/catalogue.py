@@ -16,7 +16,7 @@ from sim_core.cloth.contact.solids import Capsule, Cylinder, Solid
 from sim_core.cloth.run.drape_run import Drape, drape
 from sim_core.cloth.scenes.limb import limb_film
 from sim_core.cloth.scenes.regular_sheets import disc, equilateral_sheet, sheet_of
-from sim_core.cloth.scenes.teapot import teapot_solid
+from sim_core.cloth.scenes.teapot import teapot_mesh, teapot_solid
 from sim_core.cloth.sheet.material import Material
 from sim_core.cloth.sheet.sheet import Sheet
 from sim_core.cloth.step.air import Air
@@ -50,6 +50,19 @@ class Scene:
     air: Air | None = None
     courant: float = COURANT
     shown: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def solid(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Vertices (S, 3), or (T, S, 3) after each frame, [m] and faces of what the cloth lies on; None: of nothing."""
+        if self.name == "teapot":
+            return teapot_mesh()
+        if isinstance(self.collider, Cylinder):
+            from trimesh.creation import cylinder
+
+            ends = [self.collider.start, self.collider.end]
+            body = cylinder(self.collider.radius, segment=ends, sections=96)
+            return np.asarray(body.vertices), np.asarray(body.faces, np.int32)
+        return self.shown
 
     def lasting(self, frames: int) -> Scene:
         """The same scene for so many frames of 1/25 s, in its first phase."""

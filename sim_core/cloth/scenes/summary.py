@@ -93,24 +93,8 @@ def write(args: argparse.Namespace, made: Scene, film: list[np.ndarray], setting
             film,
             made.sheet.faces,
             around=np.concatenate(film[:: max(1, len(film) // 20)]),
-            solid=_solid(made),
+            solid=made.solid,
         )
-
-
-def _solid(made: Scene) -> tuple[np.ndarray, np.ndarray] | None:
-    """Vertices and faces of what the cloth lies on, as a film shows it; None where it lies on nothing."""
-    from sim_core.cloth.contact.solids import Cylinder
-
-    if made.name == "teapot":
-        from sim_core.cloth.scenes.teapot import teapot_mesh
-
-        return teapot_mesh()
-    if isinstance(made.collider, Cylinder):
-        from trimesh.creation import cylinder
-
-        body = cylinder(made.collider.radius, segment=[made.collider.start, made.collider.end], sections=96)
-        return np.asarray(body.vertices), np.asarray(body.faces, np.int32)
-    return made.shown
 
 
 def tell(args: argparse.Namespace, summary: dict[str, Any]) -> None:

@@ -66,7 +66,7 @@ def _scene(
 
     if frame is not None and frame > len(film.fine):
         raise SimCoreError(f"--frame: {frame} – {recipe.name} has {len(film.fine)}")
-    pair, made = Pair.of(recipe), []
+    pair, made, solid = Pair.of(recipe), [], recipe.on(recipe.coarse).solid
     for number, row in enumerate(rows):
         frames = []
         for k, (fine, _) in enumerate(followed(row, pair, film.coarse[:frame])):
@@ -81,6 +81,7 @@ def _scene(
             f"{recipe.scene}: coarse, {len(pair.coarse.rest):,} vertices",
             film.coarse[which],
             pair.coarse.faces,
+            solid=solid,
         )
     ]
     errors = {}
@@ -92,6 +93,6 @@ def _scene(
             "hausdorff_mm": round(1e3 * found.hausdorff, 3),
         }
         words = f"{row.name}, {len(fine):,}: mean {1e3 * found.vertex:.2g}, Hausdorff {1e3 * found.hausdorff:.2g} mm"
-        shown.append(Shown(words, place, pair.fine.faces, np.linalg.norm(place - fine, axis=1)))
-    shown.append(Shown(f"fine, {len(fine):,} vertices", fine, pair.fine.faces))
+        shown.append(Shown(words, place, pair.fine.faces, np.linalg.norm(place - fine, axis=1), solid))
+    shown.append(Shown(f"fine, {len(fine):,} vertices", fine, pair.fine.faces, solid=solid))
     return shown, {"sequence": recipe.name, "frame": which + 1, "errors": errors}

@@ -79,7 +79,8 @@ def _written(args: argparse.Namespace, row: Row, recipe: Recipe, film: Film) -> 
     now, net = floor(recipe, TIMED), 1000.0 * float(np.median(spent))
     times = {"coarse": now.coarse_ms, "learned": now.coarse_ms + net, "fine": now.fine_ms}
     sides = [Side(name, colour, shown[name], faces[name]) for name, _, _, colour in (COARSE, LEARNED, FINE)]
-    model, clip = side_by_side_clip(sides, RATE, stands=usual(shown["learned"], shown["fine"]))
+    stands, solid = usual(shown["learned"], shown["fine"]), recipe.on(recipe.coarse).solid
+    model, clip = side_by_side_clip(sides, RATE, stands=stands, solid=solid)
     told(1.0, "")
     with written_whole(args.out / "comparison.glb") as stream:
         stream.write(model)

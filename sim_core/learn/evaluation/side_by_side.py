@@ -16,19 +16,22 @@ __all__ = ["Shown", "draw_side_by_side"]
 
 VIEW = np.array([0.42, 0.38, 0.82])  # from the cloth to who looks at it, y up
 LIGHT = np.array([-0.35, 0.75, 0.56])
-PLAIN = (0.80, 0.78, 0.74)
+PLAIN, SOLID = (0.80, 0.78, 0.74), (0.45, 0.38, 0.33)
+BEHIND = 0.01  # [m] that what the cloth lies on is taken to be farther off: both are drawn face by face
 DIM = 0.45  # share of a colour that a face keeps which the light only grazes
 CROWDED = 4000  # faces, from where on a mesh is drawn without its edges
 
 
 @dataclass(frozen=True)
 class Shown:
-    """A mesh: positions (V, 3) [m], faces (F, 3), words to stand above it; errors (V,) [m] that colour it, if any."""
+    """A mesh: positions (V, 3) [m], faces (F, 3), words to stand above it; errors (V,) [m] that colour it, if any;
+    solid: vertices and faces of what it lies on, if anything."""
 
     words: str
     positions: np.ndarray
     faces: np.ndarray
     errors: np.ndarray | None = None
+    solid: tuple[np.ndarray, np.ndarray] | None = None
 
 
 def draw_side_by_side(path: Path, rows: Sequence[Sequence[Shown]]) -> None:
@@ -63,7 +66,8 @@ def _row(figure: Any, cells: Any, row: Sequence[Shown]) -> None:
     scale = ScalarMappable(Normalize(0.0, max(worst, 1e-6)), "viridis")
     right = _unit(np.cross([0.0, 1.0, 0.0], VIEW))
     axes = np.stack([right, _unit(np.cross(VIEW, right)), _unit(VIEW)])
-    everything = np.concatenate([shown.positions for shown in row]) @ axes.T
+    solids = [shown.solid[0] for shown in row if shown.solid is not None]
+    everything = np.concatenate([*(shown.positions for shown in row), *solids]) @ axes.T
     low, high = everything.min(0), everything.max(0)
     for cell, shown in zip(cells, row, strict=False):
         _mesh(cell, shown, axes, scale)
@@ -81,18 +85,24 @@ def _mesh(cell: Any, shown: Shown, axes: np.ndarray, scale: Any) -> None:
     from matplotlib.collections import PolyCollection
 
     corners = np.asarray(shown.positions, float)[shown.faces]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    bright = DIM + (1.0 - DIM) * np.abs(normal @ _unit(LIGHT))
     colours = np.tile(PLAIN, (len(corners), 1))
     if shown.errors is not None:
         colours = scale.to_rgba(1e3 * shown.errors[shown.faces].mean(1))[:, :3]
-    colours = colours * bright[:, None]
+    edges, behind = np.full(len(corners), len(corners) < CROWDED), np.zeros(len(corners))
+    if shown.solid is not None:
+        below = np.asarray(shown.solid[0], float)[shown.solid[1]]
+        corners = np.concatenate([corners, below])
+        colours = np.concatenate([colours, np.tile(SOLID, (len(below), 1))])
+        edges = np.concatenate([edges, np.zeros(len(below), bool)])
+        behind = np.concatenate([behind, np.full(len(below), BEHIND)])
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    colours = colours * (DIM + (1.0 - DIM) * np.abs(normal @ _unit(LIGHT)))[:, None]
     seen = corners @ axes.T
-    order = np.argsort(seen[:, :, 2].mean(1))
-    edges = "#00000055" if len(corners) < CROWDED else "face"
+    order = np.argsort(seen[:, :, 2].mean(1) - behind)
+    lines = np.where(edges[:, None], 0.7 * colours, colours)
     drawn = PolyCollection(
-        list(seen[order, :, :2]), facecolors=colours[order], edgecolors=edges, linewidths=0.25
+        list(seen[order, :, :2]), facecolors=colours[order], edgecolors=lines[order], linewidths=0.25
     )
     cell.add_collection(drawn)
 
