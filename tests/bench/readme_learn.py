@@ -54,25 +54,40 @@ def scene_table(scene: str, one: dict[str, Any]) -> list[str]:
         f"{data['fine_vertices'][0]:,} vertices; coarse physics {data['coarse_ms']:.1f} ms a frame, fine "
         f"{data['fine_ms']:.0f} ms; {one['cores']} cores ({one['machine']}), each command on one",
         "",
-        "| row | mean [mm] | Hausdorff [mm] | p95 [mm] | normals | network [ms] | whole [ms] |",
-        "|-|-|-|-|-|-|-|",
+        "| row | mean [mm] | Hausdorff [mm] | p95 [mm] | normals | strain | crossings | network [ms] | whole [ms] |",
+        "|-|-|-|-|-|-|-|-|-|",
     ]
     for name, title in NAMES.items():
         rows = one["rows"].get(name)
         if rows:
             lines.append(
                 f"| {title} | {spread(rows, 'mean_mm', 3)} | {spread(rows, 'hausdorff_mm', 2)} | "
-                f"{spread(rows, 'p95_mm', 2)} | {spread(rows, 'normal_deg', 2)}° | {spread(rows, 'net_ms', 1)} | "
-                f"{spread(rows, 'total_ms', 1)} |"
+                f"{spread(rows, 'p95_mm', 2)} | {spread(rows, 'normal_deg', 2)}° | {spread(rows, 'strain', 3)} | "
+                f"{crossings(rows[0])} | {spread(rows, 'net_ms', 1)} | {spread(rows, 'total_ms', 1)} |"
             )
     published = zip(PUBLISHED_ROWS, PUBLISHED[scene], strict=True)
     told = ", ".join(f"{name} {far:g} and {seconds:g} s" for name, (far, seconds) in published)
     return [
         *lines,
         "",
+        *([gate(one["gate"]), ""] if "gate" in one else []),
         f"The paper's own figures for a scene of this name (other data, other machine): {told}.",
         "",
     ]
+
+
+def crossings(row: dict[str, Any]) -> str:
+    """Pairs of faces that cross, a frame, and of the fine film."""
+    return f"{row['intersections']:g} ({row['reference_intersections']:g})"
+
+
+def gate(found: dict[str, Any]) -> str:
+    """Of how many frames the reference is good for every row."""
+    words = {True: "passed", False: "not passed", None: "not decided"}[found["passed"]]
+    each = ", ".join(
+        f"{name} {one['counting']} of {one['whole']}" for name, one in found["sequences"].items()
+    )
+    return f"Gate {words}. Frames whose floor is a third or less of every row's error: {each}."
 
 
 def times_as_long(milliseconds: float, whole: float) -> str:
