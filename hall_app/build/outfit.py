@@ -68,9 +68,11 @@ def bake_outfit(
     moving: dict[str, float] = {}
 
     def models(garments: Sequence[Garment]) -> None:
-        for garment, name in zip(garments, layer_files(len(garments)), strict=True):
-            if not (out / name).exists():  # one that was kept is the file it was, to the byte
-                garment.save(out / name)
+        *beneath, outermost_file = layer_files(len(garments))
+        for garment, name in zip(garments, beneath, strict=False):
+            garment.save(out / name, beside=(outermost_file, garments[-1]))  # both lie on the figure
+        if not (out / outermost_file).exists():  # one that was kept is the file it was, to the byte
+            garments[-1].save(out / outermost_file)
         played = play(wardrobe.outfit, garments, lambda share, label: progress(0.6 + 0.07 * share, label))
         outermost = hall_budget(show.nearest, show.hall_error_px, moving=played is not None)
         levels.extend(wardrobe.write_models(garments, out, (beneath_budget(show), outermost), played))

@@ -59,7 +59,7 @@ def mirror_glb(fineness: Fineness) -> bytes:
 
 
 def with_short_indices(data: bytes) -> bytes:
-    """A GLB whose indices have 16 bits where its vertices are few enough; trimesh writes 32 always, a fifth of the file."""
+    """A GLB whose indices have 16 bits where its vertices are few enough: trimesh writes 32, a fifth of a file."""
     (size,) = struct.unpack_from("<I", data, 12)
     document = json.loads(data[20 : 20 + size])
     binary, views = data[28 + size :], document["bufferViews"]

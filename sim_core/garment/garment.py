@@ -132,8 +132,14 @@ class Garment:
             places[own] = self.pattern[own] - origins[number]
         return places
 
-    def save(self, path: Path) -> None:
-        """Writes one .npz: the arrays and a JSON header (text) under `header`; raises FileProblem where it cannot."""
+    def save(self, path: Path, beside: tuple[str, Garment] | None = None) -> None:
+        """Writes one .npz: the arrays and a JSON header (text) under `header`; raises FileProblem where it cannot.
+
+        beside: a garment that is written under such a name in the same folder. What both lie on is read from there.
+        """
+        lent = {}
+        if beside is not None and self.settled and beside[1].settled:
+            lent = self.settled.lent_by(beside[1].settled, beside[0])
         header = {
             "format": FORMAT,
             "name": self.name,
@@ -146,17 +152,17 @@ class Garment:
             "weaves": self.weaves,
             "material": self.material,
             "provenance": self.provenance,
-            "settled": self.settled and self.settled.to_header(),
+            "settled": self.settled and self.settled.to_header(lent),
         }
         text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), np.uint8)
         arrays = {name: getattr(self, name) for name in _ARRAYS}
-        arrays |= self.settled.arrays() if self.settled else {}
+        arrays |= self.settled.arrays(lent) if self.settled else {}
         with written_whole(Path(path)) as stream:
             np.savez_compressed(stream, header=text, **arrays)
 
     @staticmethod
     def load(path: Path) -> Garment:
-        """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file."""
+        """Reads what `save` wrote; raises FileProblem on a missing, damaged or foreign file, it or one beside it."""
         path = Path(path)
         what, remedy = "a garment file", "bake the garment again"
         try:
@@ -169,10 +175,13 @@ class Garment:
             raise FileProblem(f"{path}: written in another format – bake the garment again")
         try:
             told = header["settled"]
-            names = Settled.names(told) if told else ()
+            names = Settled.names(told) if told else {"": {}}
         except (KeyError, TypeError, ValueError) as error:
             raise FileProblem(f"{path}: damaged ({error}) – bake the garment again") from error
-        data = read_npz(path, (*_ARRAYS, *names), what, remedy)
+        data = read_npz(path, (*_ARRAYS, *names.pop("").values()), what, remedy)
+        for file, lent in names.items():
+            found = read_npz(path.with_name(file), lent.values(), what, remedy)
+            data |= {own: found[theirs] for own, theirs in lent.items()}
         try:
             return Garment(
                 name=str(header["name"]),

@@ -6,8 +6,10 @@ still goes on hanging still: cloth at rest is at rest between these forces and n
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,14 @@ from sim_core.body.stand import stand_of
 from sim_core.cloth import Contact, Holds, Phase
 
 __all__ = ["Settled"]
+
+
+@dataclass(frozen=True)
+class Lent:
+    """A surface that lies in a garment file beside this one: its name, and the number of the surface there."""
+
+    file: str
+    number: int
 
 
 @dataclass(frozen=True)
@@ -38,8 +48,8 @@ class Settled:
         steady = {"gravity": (gravity, gravity), "sewing": (sewing, sewing)}
         return replace(self.last, seconds=seconds, label=label, rest=None, body=None, **steady)
 
-    def to_header(self) -> dict[str, Any]:
-        """What JSON can hold of it; `arrays` are the rest."""
+    def to_header(self, lent: Mapping[int, Lent] = MappingProxyType({})) -> dict[str, Any]:
+        """What JSON can hold of it; `arrays` are the rest. lent: surfaces that another file holds."""
         return {
             "contact": asdict(self.contact),
             "last": asdict(self.last),
@@ -51,27 +61,41 @@ class Settled:
             "floor": self.beneath.floor,
             "surfaces": [
                 {"thicker": s.thicker, "hulls": len(s.hulls), "hulls_thicker": s.hulls_thicker}
-                for s in self.beneath.surfaces
+                | (asdict(lent[k]) if k in lent else {})
+                for k, s in enumerate(self.beneath.surfaces)
             ],
         }
 
-    def arrays(self) -> dict[str, np.ndarray]:
-        """The arrays of a file, by name."""
+    def arrays(self, lent: Collection[int] = ()) -> dict[str, np.ndarray]:
+        """The arrays of a file, by name. lent: surfaces that another file holds."""
         out = {f"holds_{name}": getattr(self.holds, name) for name in _HOLDS}
         for k, surface in enumerate(self.beneath.surfaces):
-            out[f"surface{k}_vertices"], out[f"surface{k}_faces"] = surface.vertices, surface.faces
-            for j, hull in enumerate(surface.hulls):
-                out[f"surface{k}_hull{j}"] = hull
+            if k not in lent:
+                out |= zip(_names(k, len(surface.hulls)), _arrays_of(surface), strict=True)
         return out
 
+    def lent_by(self, other: Settled, file: str) -> dict[int, Lent]:
+        """Which of its surfaces lie in a file of `other`, to the bit."""
+        found: dict[int, Lent] = {}
+        for k, own in enumerate(self.beneath.surfaces):
+            for number, theirs in enumerate(other.beneath.surfaces):
+                pairs = zip(_arrays_of(own), _arrays_of(theirs), strict=False)
+                if len(own.hulls) == len(theirs.hulls) and all(np.array_equal(a, b) for a, b in pairs):
+                    found[k] = Lent(file, number)
+                    break
+        return found
+
     @staticmethod
-    def names(header: Mapping[str, Any]) -> tuple[str, ...]:
-        """The arrays that a file with this header holds."""
-        names = [f"holds_{name}" for name in _HOLDS]
-        for k, surface in enumerate(header["surfaces"]):
-            names += [f"surface{k}_vertices", f"surface{k}_faces"]
-            names += [f"surface{k}_hull{j}" for j in range(int(surface["hulls"]))]
-        return tuple(names)
+    def names(header: Mapping[str, Any]) -> dict[str, dict[str, str]]:
+        """File -> the arrays that it holds of a garment with this header -> what they are called there; "" is the
+        garment's own. Raises KeyError, TypeError or ValueError for what is no header."""
+        found = {"": {f"holds_{name}": f"holds_{name}" for name in _HOLDS}}
+        for k, told in enumerate(header["surfaces"]):
+            hulls, file, number = int(told["hulls"]), str(told.get("file", "")), int(told.get("number", k))
+            if file and Path(file).name != file:
+                raise ValueError(f"a surface of {file!r}, which is no file beside it")
+            found.setdefault(file, {}).update(zip(_names(k, hulls), _names(number, hulls), strict=True))
+        return found
 
     @staticmethod
     def of(header: Mapping[str, Any], data: Mapping[str, np.ndarray]) -> Settled:
@@ -99,6 +123,15 @@ class Settled:
             ),
             bool(header["even"]),
         )
+
+
+def _arrays_of(surface: Surface) -> list[np.ndarray]:
+    """Vertices, faces and hulls of a surface, as `_names` calls them."""
+    return [surface.vertices, surface.faces, *surface.hulls]
+
+
+def _names(number: int, hulls: int) -> list[str]:
+    return [f"surface{number}_{name}" for name in ("vertices", "faces", *(f"hull{j}" for j in range(hulls)))]
 
 
 _HOLDS = ("pairs", "spans", "ends", "same", "low", "high", "slaves")

@@ -14,7 +14,7 @@ from PIL import Image
 from plain_garments import Maps, plain_maps
 
 from sim_core import metrics
-from sim_core.body import Beneath
+from sim_core.body import Beneath, Surface
 from sim_core.cloth import Contact, Holds, Phase
 from sim_core.cloth.contact import solid_mesh
 from sim_core.errors import FileProblem, OutlineError, SimCoreError
@@ -109,6 +109,32 @@ def test_garment_file_round_trip(tmp_path: Path) -> None:
     assert Garment.load(tmp_path / "g.npz").origins == ((0.1, -0.25),)
     moved = Garment(**{**garment.__dict__, "positions": garment.positions + 1e-15})
     assert moved.digest() != garment.digest()
+
+
+def test_what_two_layers_lie_on_is_written_once(tmp_path: Path) -> None:
+    ball = trimesh.creation.icosphere(3)
+    body = Surface(
+        np.asarray(ball.vertices, float), np.asarray(ball.faces, np.int32), (np.arange(9, dtype=np.int32),)
+    )
+    other = replace(body, vertices=body.vertices + [1e-12, 0.0, 0.0])
+    inner, outer = (
+        replace(arched(0.05), settled=Settled(Contact(), Phase(1.0), Holds.of(1), Beneath(surfaces)))
+        for surfaces in ((body, other), (other, body))
+    )
+    outer.save(tmp_path / "garment.npz")
+    inner.save(tmp_path / "whole.npz")
+    inner.save(tmp_path / "beneath-1.npz", beside=("garment.npz", outer))
+    assert (tmp_path / "beneath-1.npz").stat().st_size < (tmp_path / "whole.npz").stat().st_size / 2
+    own, back = (Garment.load(tmp_path / name).settled for name in ("whole.npz", "beneath-1.npz"))
+    assert own is not None
+    assert back is not None
+    assert back.beneath.key() == own.beneath.key()
+    (tmp_path / "garment.npz").unlink()
+    with pytest.raises(FileProblem, match=r"garment.npz: no such file – bake the garment again"):
+        Garment.load(tmp_path / "beneath-1.npz")
+    told = own.to_header() | {"surfaces": [{"thicker": 0, "hulls": 0, "file": "../garment.npz", "number": 0}]}
+    with pytest.raises(ValueError, match="no file beside it"):
+        Settled.names(told)
 
 
 def test_bad_garment_files_are_named(tmp_path: Path) -> None:
