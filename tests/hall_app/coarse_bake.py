@@ -13,7 +13,7 @@ STAND, LAYERED = "pibo", "pibo-figure"  # the exhibits that are kept: a scarf on
 
 
 def coarse(place: Path) -> Path:
-    """The shipped content with two coarse outfits that have not been baked, and no others: each takes seconds to check."""
+    """The shipped content with two coarse outfits, not baked, and no others: each takes seconds to check."""
     home = place / "content"
     others = {path.name for path in (ASSETS / "exhibits").iterdir()} - {STAND, LAYERED, "mirror"}
     shutil.copytree(ASSETS, home, ignore=shutil.ignore_patterns("baked", *others))
