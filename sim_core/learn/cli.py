@@ -68,6 +68,8 @@ faces; mean and 95th percentile over frames), normals, strain.
   physics, physics_70, _50, _35    the engine at its quickest, led as the fine film is, on all its vertices or so many
                 of a hundred and the smoothest sheet through them; only where named, over the frames of --floor
 
+Winds that were learned from blow at 2 to 8 m/s; --wind tells how a row fares in another.
+
 A frame counts where its floor is a third or less of every error there; half of every sequence has to (--floor says over
 how many frames that is measured).
 
@@ -79,6 +81,7 @@ examples:
   simcore learn evaluate hanging --data data/hanging
   simcore learn evaluate hanging --data data/hanging --share .6
   simcore learn evaluate flag --data data/flag --rows linear,local_frames --json
+  simcore learn evaluate flag --data data/flag --weights flag.safetensors --wind 12,0,1
 """
 
 INFER = """\
@@ -188,6 +191,12 @@ def add_parser(subparsers: Any) -> None:
         "--frames", type=whole(1, 100_000), metavar="N", help="of every sequence, the first so many (all)"
     )
     evaluate.add_argument(
+        "--wind",
+        type=_wind,
+        metavar="X,Y,Z",
+        help="[m/s] test on a flag in this wind, simulated now (100 frames), instead",
+    )
+    evaluate.add_argument(
         "--floor",
         type=whole(5, 100_000),
         default=40,
@@ -257,6 +266,14 @@ def _share(text: str) -> float:
     if not 0.0 < share <= 1.0:
         raise argparse.ArgumentTypeError(f"{text!r} – above 0, to 1")
     return share
+
+
+def _wind(text: str) -> tuple[float, float, float]:
+    try:
+        x, y, z = (float(speed) for speed in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} – three speeds in m/s, such as 12,0,1") from None
+    return x, y, z
 
 
 def _rows(text: str) -> tuple[str, ...]:

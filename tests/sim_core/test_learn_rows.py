@@ -167,6 +167,26 @@ def test_frames_count_whose_floor_is_a_third_of_every_error() -> None:
     assert counting(floor, [plain, claimed]) == {name: (0, 1)}
 
 
+def test_a_wind_of_ones_own_is_simulated_and_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(DESIGNS, "flag", replace(DESIGNS["flag"], coarse=90, fine=340, run_in=2))
+    generate(tmp_path / "flag", recipes("flag", sequences=3, frames=5))
+    words = ["learn", "evaluate", "flag", "--data", str(tmp_path / "flag"), "--rows", "reference,biharmonic"]
+    assert main([*words, "--wind", "12,0,1", "--frames", "5", "--floor", "5", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["tested"], told["wind"]) == (["flag-01-wind"], [12.0, 0.0, 1.0])
+    assert set(told["gate"]["sequences"]) == {"flag-01-wind"}
+    assert told["rows"]["biharmonic"]["mean_mm"] > 0.0
+    with pytest.raises(SystemExit):
+        main([*words, "--wind", "strong"])
+    assert "'strong' – three speeds in m/s, such as 12,0,1" in capsys.readouterr().err
+    generate(tmp_path / "hanging", [small(case, 5) for case in (1, 2, 3)])
+    words[2], words[4] = "hanging", str(tmp_path / "hanging")
+    assert main([*words, "--wind", "12,0,1"]) == 1
+    assert "no wind blows in the scene hanging" in capsys.readouterr().err
+
+
 def test_quicker_physics_on_the_same_mesh_is_near_the_reference_and_on_fewer_vertices_less_so() -> None:
     takes = [hanging(1)]
     whole, half = led_physics(takes, 1.0, 5), led_physics(takes, 0.5, 5)

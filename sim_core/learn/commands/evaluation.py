@@ -11,7 +11,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import Takes, never_seen, progress, takes_of, weights_of
+from sim_core.learn.commands.parts import Takes, in_wind, never_seen, progress, takes_of, weights_of
 
 if TYPE_CHECKING:
     from sim_core.learn.data import Take
@@ -27,6 +27,7 @@ CURVED = ("curvature_linear", "curvature_biharmonic")  # from what the published
 NETWORKS = ("mfsr", "mesh_conv", "paper", "ours")
 # Physics that is quicker than the reference, on so large a share of its vertices: measured where it is named.
 PHYSICS = {"physics": 1.0, "physics_70": 0.7, "physics_50": 0.5, "physics_35": 0.35}
+IN_WIND = 100  # frames of a flag in a wind of one's own
 ROWS = (*PLAIN, *PHYSICS, *CURVED, *NETWORKS)
 
 Given = dict[str, tuple[Path, "Trained | RivalTrained"]]
@@ -46,6 +47,10 @@ def evaluate(args: argparse.Namespace) -> int:
         if (row == COARSE or row in PHYSICS) and args.share:
             raise SimCoreError(f"--rows {row} – with --share no coarse sheet is simulated: leave it out")
     takes = takes_of(args, frames=args.frames)
+    if args.wind:
+        if args.share:
+            raise SimCoreError("--wind – with --share no coarse sheet is simulated: leave it out")
+        in_wind(takes, args.wind, args.frames or IN_WIND)
     for path, trained in given.values():
         never_seen(path, trained, takes.test)
     makers, told, found = _Makers(args, takes, given), progress(), {}
@@ -71,6 +76,7 @@ def evaluate(args: argparse.Namespace) -> int:
         "scene": args.scene,
         **({"share": args.share} if args.share else {}),
         "tested": [take.name for take in takes.test],
+        **({"wind": list(args.wind)} if args.wind else {}),
         "rows": {name: _facts(name, one, coarse_ms) for name, one in found.items()},
         **({"gate": _gate(found, takes.test)} if REFERENCE in found and _claimed(found) else {}),
     }

@@ -6,6 +6,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,7 +17,10 @@ if TYPE_CHECKING:
     from sim_core.learn.data import Film, Recipe, Take
     from sim_core.learn.inference import RivalTrained, Trained
 
-__all__ = ["Takes", "films_of", "never_seen", "progress", "takes_of", "usual", "weights_of"]
+__all__ = ["Takes", "films_of", "in_wind", "never_seen", "progress", "takes_of", "usual", "weights_of"]
+
+
+BLOWN = 900  # seed of gusts that no data have
 
 
 def films_of(args: argparse.Namespace) -> dict[str, tuple[Recipe, Film]]:
@@ -50,6 +54,20 @@ class Takes:
 def takes_of(args: argparse.Namespace, *, frames: int | None = None) -> Takes:
     """The sequences of --data. Raises what `films_of` does."""
     return Takes(films_of(args), frames)
+
+
+def in_wind(takes: Takes, wind: tuple[float, float, float], frames: int) -> None:
+    """Has takes tested on a flag in another wind [m/s], simulated here and now, so many frames of it.
+
+    Raises SimCoreError where no wind blows.
+    """
+    from sim_core.learn.data import Take, film, recipes
+
+    scene = takes.test[0].recipe.scene
+    (recipe,) = recipes(scene, sequences=1, frames=frames, seed=BLOWN)
+    recipe, told = replace(recipe, wind=wind), progress()
+    takes.test = [Take.of(recipe, film(recipe, lambda share: told(share, recipe.name)))]
+    told(1.0, "")
 
 
 def weights_of(path: Path, scene: str | None = None, share: float | None = None) -> Trained | RivalTrained:

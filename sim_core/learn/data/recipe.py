@@ -48,7 +48,7 @@ PLACES = (
 @dataclass(frozen=True)
 class Recipe:
     """One sequence: scene, case (from 1) and seed of its gusts; frames kept and those before them; vertices of both
-    sheets; courant: the share of the stable step that the fine one takes."""
+    sheets; courant: the share of the stable step that the fine one takes; wind: another than its case's [m/s]."""
 
     scene: str
     case: int
@@ -58,11 +58,12 @@ class Recipe:
     coarse: int
     fine: int
     courant: float = FINE_COURANT
+    wind: tuple[float, float, float] | None = None
 
     @property
     def name(self) -> str:
         """What its file is called."""
-        return f"{self.scene}-{self.case:02d}"
+        return f"{self.scene}-{self.case:02d}" + ("" if self.wind is None else "-wind")
 
     @property
     def length(self) -> int:
@@ -77,6 +78,10 @@ class Recipe:
         The wind of a slowed scene has to be slowed as it blows.
         """
         found = scene(self.scene, self.case, vertices=vertices, frames=self.length)
+        if self.wind is not None:
+            if found.air is None:
+                raise WrongArgument(f"wind – no wind blows in the scene {self.scene}")
+            found = replace(found, air=found.air.blowing(self.wind))
         if self.scene == "flag":
             found = found.gusty(GUSTS, self.seed)
         if self.scene == "teapot":
@@ -106,7 +111,7 @@ class Recipe:
 
     def told(self) -> dict[str, Any]:
         """Its values, as a manifest keeps them."""
-        return asdict(self)
+        return {key: value for key, value in asdict(self).items() if key != "wind" or value is not None}
 
 
 def recipes(
