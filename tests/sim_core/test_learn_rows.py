@@ -183,7 +183,7 @@ def test_a_wind_of_ones_own_is_simulated_and_told(
     assert "'strong' – three speeds in m/s, such as 12,0,1" in capsys.readouterr().err
     generate(tmp_path / "hanging", [small(case, 5) for case in (1, 2, 3)])
     words[2], words[4] = "hanging", str(tmp_path / "hanging")
-    assert main([*words, "--wind", "12,0,1"]) == 1
+    assert main([*words, "--wind", "12,0,1"]) == 2
     assert "no wind blows in the scene hanging" in capsys.readouterr().err
 
 
