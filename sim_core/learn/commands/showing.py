@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim_core.errors import SimCoreError
-from sim_core.learn.commands.parts import films_of, never_seen, progress, usual, weights_of
+from sim_core.learn.commands.parts import films_of, never_seen, progress, weights_of
 from sim_core.validation.files import check_target, written_whole
 
 if TYPE_CHECKING:
@@ -79,8 +79,7 @@ def _written(args: argparse.Namespace, row: Row, recipe: Recipe, film: Film) -> 
     now, net = floor(recipe, TIMED), 1000.0 * float(np.median(spent))
     times = {"coarse": now.coarse_ms, "learned": now.coarse_ms + net, "fine": now.fine_ms}
     sides = [Side(name, colour, shown[name], faces[name]) for name, _, _, colour in (COARSE, LEARNED, FINE)]
-    stands, solid = usual(shown["learned"], shown["fine"]), recipe.on(recipe.coarse).solid
-    model, clip = side_by_side_clip(sides, RATE, stands=stands, solid=solid)
+    model, clip = side_by_side_clip(sides, RATE, solid=recipe.on(recipe.coarse).solid)
     told(1.0, "")
     with written_whole(args.out / "comparison.glb") as stream:
         stream.write(model)

@@ -32,10 +32,9 @@ def side_by_side_clip(
     sides: Sequence[Side],
     rate: float,
     *,
-    stands: int = 0,
     solid: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> tuple[bytes, Clip]:
-    """A GLB of the meshes from left to right, which stands as they are in the frame `stands`, and its clip.
+    """A GLB of the meshes from left to right, which stands as they are where one reaches lowest, and its clip.
 
     They keep their heights over each other, the lowest vertex of all frames at y = 0, the middle over the origin.
     solid: vertices (S, 3) [m] and faces of what each of them lies on, which stands still.
@@ -52,6 +51,7 @@ def side_by_side_clip(
         np.array([step * (number - 0.5 * (len(sides) - 1)), 0.0, 0.0]) - middle
         for number in range(len(sides))
     ]
+    stands = int(np.argmin(np.min([side.frames[:, :, 1].min(1) for side in sides], axis=0)))
     glb, moved = GlbFile(), {}
     for side, shift in zip(sides, shifts, strict=True):
         frames = side.frames.astype(float) + shift
