@@ -13,7 +13,7 @@ from sim_core.gltf import GlbFile
 
 __all__ = ["Side", "side_by_side_clip"]
 
-APART = 1.15  # widths of the widest from one middle to the next
+APART = 1.05  # widths of the widest from one middle to the next
 ROUGH = 0.8
 SOLID = "#6b5d52"
 
