@@ -55,7 +55,7 @@ class Scene:
     def solid(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Vertices (S, 3), or (T, S, 3) after each frame, [m] and faces of what the cloth lies on; None: of nothing."""
         if self.name == "teapot":
-            return teapot_mesh()
+            return teapot_mesh(steps=8)
         if isinstance(self.collider, Cylinder):
             from trimesh.creation import cylinder
 
