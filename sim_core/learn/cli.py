@@ -104,7 +104,7 @@ data, of its first sequence that is held back; the frame is the one whose mean e
 
 examples:
   simcore learn draw --data data/flag --weights flag.safetensors --out flag.png
-  simcore learn draw --data data/flag data/teapot data/hanging --weights *.safetensors --out figure.png
+  simcore learn draw --data data/flag data/teapot data/hanging --weights *.safetensors --out figure.jpg
 """
 
 SHOW = """\
@@ -230,7 +230,7 @@ def _add_draw(actions: Any) -> None:
     draw.add_argument(
         "--weights", type=Path, nargs="+", default=[], metavar="FILE", help="of `simcore learn train`"
     )
-    draw.add_argument("--out", type=Path, required=True, metavar="FILE.png", help="the picture")
+    draw.add_argument("--out", type=Path, required=True, metavar="FILE", help="the picture, .png or .jpg")
     draw.add_argument("--frame", type=whole(1, 100_000), metavar="N", help="another frame")
 
 

@@ -351,6 +351,11 @@ def test_the_command_draws_a_scene_a_row(tmp_path: Path, capsys: pytest.CaptureF
     with Image.open(out) as picture:
         assert picture.width > 3 * picture.height
         assert len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0)) > 200
+    words[words.index(str(out))] = str(out.with_suffix(".jpg"))
+    assert main(words) == 0
+    with Image.open(out.with_suffix(".jpg")) as picture:
+        assert picture.format == "JPEG"
+    capsys.readouterr()
     assert main([*words, "--frame", "7"]) == 1
     assert "--frame: 7 – hanging-03 has 6" in capsys.readouterr().err
     write_weights(

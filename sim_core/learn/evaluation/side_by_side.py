@@ -35,7 +35,7 @@ class Shown:
 
 
 def draw_side_by_side(path: Path, rows: Sequence[Sequence[Shown]]) -> None:
-    """Draws a PNG: a row of meshes each, seen alike, with a scale of their errors in mm at its end.
+    """Draws a PNG, or a JPEG where the name ends so: a row of meshes each, seen alike, with a scale of errors [mm].
 
     The scale ends at the 99th percentile of the row's errors. Raises SimCoreError where there is nothing to draw,
     FileProblem where the file cannot be written.
@@ -54,7 +54,7 @@ def draw_side_by_side(path: Path, rows: Sequence[Sequence[Shown]]) -> None:
     for cells, row in zip(grid, rows, strict=True):
         _row(figure, cells, row)
     with written_whole(path) as stream:
-        figure.savefig(stream, format="png")
+        figure.savefig(stream, format="jpeg" if path.suffix in (".jpg", ".jpeg") else "png")
 
 
 def _row(figure: Any, cells: Any, row: Sequence[Shown]) -> None:
