@@ -235,6 +235,20 @@ def test_the_office_is_for_people_with_a_role(people):
     assert people.sessions.find(token, office=True) is None
 
 
+def test_an_account_that_anybody_may_have_made_is_given_no_role(people):
+    keeper = staff(people, "keeper@example.org", Role.ADMINISTRATOR)
+    squatter = people.accounts.sign_up(ADDRESS, PASSWORD)
+    with refused("not-verified"):
+        people.roles.set(keeper.id, squatter.id, frozenset({Role.CURATOR}))
+    assert not people.accounts.of(squatter.id).roles
+    people.accounts.use_code(people.accounts.code_for(keeper.id, squatter.id), "a password of its owner's")
+    people.roles.set(keeper.id, squatter.id, frozenset({Role.CURATOR}))
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, PASSWORD, office=True)
+    made = people.accounts.make(keeper.id, "new@example.org")  # by the office: nobody has a password yet
+    people.roles.set(keeper.id, made.id, frozenset({Role.EDITOR}))
+
+
 def test_wrong_passwords_and_unknown_addresses_are_told_alike(people):
     people.accounts.sign_up(ADDRESS, PASSWORD)
     told = set()
@@ -532,6 +546,23 @@ def test_the_command_names_the_first_administrator(tmp_path):
     assert "0 sessions ended" in admin(tmp_path, "revoke", ADDRESS).stdout
     with refused("code"):
         people.accounts.holder(code)  # a code that is about would let him in again
+    people.close()
+
+
+@pytest.mark.slow
+def test_the_command_makes_nobody_an_administrator_who_only_knew_the_address(tmp_path):
+    people = People(tmp_path)
+    squatter, secret = people.accounts.sign_up(ADDRESS, PASSWORD), pyotp.random_base32()
+    people.accounts.begin_second_factor(squatter, PASSWORD, secret, pyotp.TOTP(secret).now())
+    token = people.sessions.open(squatter)
+    made = admin(tmp_path, "create", ADDRESS, "--generate")
+    assert "never confirmed" in made.stdout, made.stderr
+    assert people.sessions.find(token) is None
+    with refused("sign-in"):
+        people.sessions.sign_in(ADDRESS, PASSWORD, pyotp.TOTP(secret).at(now().timestamp() + 30))
+    password = made.stdout.strip().splitlines()[-1].strip()
+    person, _ = people.sessions.sign_in(ADDRESS, password, office=True)
+    assert person.roles == {Role.ADMINISTRATOR}
     people.close()
 
 

@@ -129,12 +129,22 @@ def _create(people: People, arguments: argparse.Namespace) -> int:
     wanted = frozenset(Role(name) for name in arguments.role or ["administrator"])
     try:
         person = people.accounts.find(address=address)
-        print(f"{address} has an account: it keeps its password.")
     except PeopleError:
+        person = None
+    if person is not None and person.verified is not None:
+        print(f"{address} has an account: it keeps its password.")
+    else:
         password = made_up = new_password() if arguments.generate else ""
         if not made_up:
             password = checked_password(_asked(), address)
-        person = people.accounts.make(CONSOLE, address, name=arguments.name, language=arguments.language)
+        if person is None:
+            person = people.accounts.make(CONSOLE, address, name=arguments.name, language=arguments.language)
+        else:  # whoever made it never proved that the address is his
+            print(
+                f"{address} had an account that was never confirmed: it gets a new password, its sessions end."
+            )
+            if person.second_factor:
+                people.accounts.drop_second_factor(CONSOLE, person.id)
         people.accounts.use_code(people.accounts.code_for(CONSOLE, person.id), password)
     people.roles.set(CONSOLE, person.id, person.roles | wanted)
     print(f"{address}: {', '.join(sorted(person.roles | wanted))}. Sign in at /office.")

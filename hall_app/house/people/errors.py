@@ -58,6 +58,11 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "There is no such session: it may have ended already.",
     ),
     "role": ("没有这个角色，请从 {roles} 中选择。", "There is no such role: choose one of {roles}."),
+    "not-verified": (
+        "这个账户由他人自行注册，邮箱未经确认：请先给本人一次性代码，用过之后再给角色。",
+        "Whoever made this account never proved that the address is his: hand its owner a one-time code first, and "
+        "give roles once it was used.",
+    ),
     "last-administrator": (
         "这是最后一位管理员，请先任命另一位。",
         "This is the last administrator: name another one first.",
