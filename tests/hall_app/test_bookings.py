@@ -137,6 +137,17 @@ def test_places_that_are_added_go_to_who_waits_and_booked_ones_stay(people):
         people.occasions.change("console", occasion, plan(places=2, party=1))
 
 
+def test_places_are_never_fewer_than_the_largest_party_that_waits(people):
+    """It would stand at the head of the list for ever, and all others behind it, with every place free."""
+    occasion, asking = planned(people, places=6, party=6), visitors(people, 2)
+    for person, size in zip(asking, (1, 6), strict=True):
+        people.bookings.book(person, occasion, size, person)
+    with refused("occasion-places"):
+        people.occasions.change("console", occasion, plan(places=5, party=5))
+    people.bookings.cancel("console", "reservations", people.bookings.of(asking[0])[0].id)
+    assert people.bookings.of(asking[1])[0].place == 0
+
+
 def test_nobody_cancels_anothers_booking(people):
     occasion, (one, other) = planned(people), visitors(people, 2)
     booking = people.bookings.book(one, occasion, 1, "key")

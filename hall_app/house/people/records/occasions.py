@@ -34,15 +34,15 @@ class Plan:
     place_zh: str = ""
     place_en: str = ""
 
-    def checked(self, taken: int = 0) -> Plan:
-        """As it is kept. taken: places that are booked already. Raises PeopleError."""
+    def checked(self, least: int = 1) -> Plan:
+        """As it is kept. least: places that it must have, for who has booked or waits. Raises PeopleError."""
         titles, places = (self.title_zh.strip(), self.title_en.strip()), (self.place_zh, self.place_en)
         if not all(0 < len(title) <= LONGEST_TITLE and title.isprintable() for title in titles):
             raise PeopleError("occasion-title")
         if not self.begins < self.ends:
             raise PeopleError("occasion-times")
-        if not max(1, taken) <= self.places <= MOST_PLACES or not 1 <= self.party <= self.places:
-            raise PeopleError("occasion-places", least=max(1, taken))
+        if not least <= self.places <= MOST_PLACES or not 1 <= self.party <= self.places:
+            raise PeopleError("occasion-places", least=least)
         if (
             max(map(len, (self.text_zh, self.text_en))) > LONGEST_TEXT
             or max(map(len, places)) > LONGEST_TITLE
@@ -110,14 +110,18 @@ class Occasions:
         return tuple(row["id"] for row in rows)
 
     def change(self, who: str, key: str, plan: Plan) -> None:
-        """Who waits gets places that were added. Raises PeopleError, also for fewer places than are booked."""
-        table = tables.occasion
+        """Who waits gets places that were added. Raises PeopleError, also for fewer places than are booked, or than a
+        party that waits needs: the list is served in order, and nobody would ever pass it."""
+        table, waits = tables.occasion, tables.booking
         with self._ledger.change(who, "events", key) as connection:
             lock = update(table).where(table.c.id == key).values(turns=table.c.turns)
             taken = connection.execute(lock.returning(table.c.taken)).scalar_one_or_none()
             if taken is None:
                 raise PeopleError("no-occasion")
-            connection.execute(update(table).where(table.c.id == key).values(**asdict(plan.checked(taken))))
+            mine = (waits.c.occasion == key, waits.c.waiting == 1)
+            party = connection.execute(select(func.max(waits.c.size)).where(*mine)).scalar_one() or 0
+            kept = asdict(plan.checked(max(1, taken, party)))
+            connection.execute(update(table).where(table.c.id == key).values(**kept))
             promote(connection, key)
 
     def call_off(self, who: str, key: str) -> None:
