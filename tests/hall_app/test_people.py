@@ -203,7 +203,10 @@ def test_sessions_end_one_by_one_and_all(people):
     second = people.sessions.find(tokens[1])[1]
     with refused("no-session"):  # nobody ends another's by its number
         people.sessions.end(stranger.id, "sign out", stranger.id, second.id)
+    code = people.accounts.code_for("console", person.id)
     people.accounts.set_password(person, PASSWORD, "another robe, of silk", keep=second.id)
+    with refused("code"):
+        people.accounts.holder(code)  # whoever found the slip of paper
     assert [people.sessions.find(token) is None for token in tokens] == [True, False, True]
     assert people.sessions.end_all("console", "people", person.id) == 1
     assert people.sessions.of(person.id) == ()

@@ -97,7 +97,7 @@ class Accounts:
             _set(connection, person, **values)
 
     def set_password(self, person: Person, old: str, new: str, *, keep: int | None = None) -> None:
-        """Change one's own password; all sessions but `keep` end. Raises PeopleError."""
+        """Change one's own password; all sessions but `keep` end, codes and links are void. Raises PeopleError."""
         self._prove(person.id, "password", old)
         hashed = password_hash(checked_password(new, person.address))
         with self._ledger.change(person.id, "password", person.id) as connection:

@@ -111,15 +111,14 @@ class Sessions:
 
     def end_all(self, who: str, act: str, person: str, *, but: int | None = None) -> int:
         """End all of a person's but one, and any code that would open another. How many there were."""
-        kept = tables.code
         with self._ledger.change(who, act, f"{person} all sessions") as connection:
-            connection.execute(delete(kept).where(kept.c.user == person, kept.c.purpose == "open"))
             return end_all(connection, person, but=but)
 
 
 def end_all(connection: Connection, person: str, *, but: int | None = None) -> int:
     """As Sessions.end_all, within a change."""
-    table = tables.session
+    table, code = tables.session, tables.code
+    connection.execute(delete(code).where(code.c.user == person, code.c.purpose == "open"))
     return connection.execute(delete(table).where(table.c.user == person, table.c.id != (but or 0))).rowcount
 
 
