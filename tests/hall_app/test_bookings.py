@@ -214,6 +214,21 @@ def test_a_deleted_account_leaves_its_places_to_who_waits(people):
     assert (left.person, left.place) == (waiting, 0)
 
 
+def test_a_number_that_was_given_again_is_not_taken_for_who_had_it_before(people):
+    """SQLite gives the number of a cancelled booking to the next one, of whatever occasion."""
+    occasion, other, asking = planned(people), planned(people), visitors(people, 3)
+    seen = people.bookings.book(asking[0], occasion, 1, "first")
+    people.bookings.cancel("console", "reservations", seen.id)
+    place = (seen.occasion, seen.turn)
+    for at, person in ((other, asking[1]), (occasion, asking[2])):
+        now = people.bookings.book(person, at, 1, person)
+        with refused("no-booking"):
+            people.bookings.arrive("console", now.id, here=True, place=place)
+        with refused("no-booking"):
+            people.bookings.cancel("console", "reservations", now.id, place=place)
+        people.bookings.arrive("console", now.id, here=True, place=(at, now.turn))
+
+
 def test_only_who_has_places_is_checked_in(people):
     occasion, asking = planned(people, places=1, party=1), visitors(people, 2)
     first, second = (people.bookings.book(person, occasion, 1, person) for person in asking)

@@ -222,7 +222,11 @@ def test_an_event_from_plan_to_check_in(counter, people):
     one.told(f"events/{key}", EVENT | {"places": 5, "title_en": "A longer talk"})
     told = one.told(f"events/{key}")
     assert (told["title_en"], told["taken"], told["waiting"]) == ("A longer talk", 4, 2)
-    one.told(f"events/{key}/bookings/{made[0].id}/cancel", {})
+    other = one.told("events", EVENT)["id"]
+    for path, given in ((other, {}), (key, {"turn": 99})):
+        for deed in ("arrive", "leave", "cancel"):
+            assert one.api(f"events/{path}/bookings/{made[0].id}/{deed}", given).status == 400
+    one.told(f"events/{key}/bookings/{made[0].id}/cancel", {"turn": told["bookings"][0]["turn"]})
     assert [booking["waiting"] for booking in one.told(f"events/{key}")["bookings"]] == [0, 0]
     day = SOON.astimezone().date()
     assert key in [sheet["id"] for sheet in one.told(f"day?day={day}")]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 
-from sqlalchemy import Connection, delete, func, select, update
+from sqlalchemy import ColumnElement, Connection, delete, func, select, update
 
 from hall_app.house.people.database import Ledger, tables
 from hall_app.house.people.errors import PeopleError
@@ -18,6 +18,8 @@ from survey.store.database import in_utc, now
 __all__ = ["Booking", "Bookings", "promote", "release"]
 
 LONGEST_PARTY = 80
+Place = tuple[str, int]  # an occasion and a turn of it, which no other booking ever has; 0 for any turn
+ANYWHERE: Place = ("", 0)
 
 
 @dataclass(frozen=True)
@@ -78,23 +80,23 @@ class Bookings:
         """In the order of asking."""
         return self._found(tables.booking.c.occasion == occasion)
 
-    def cancel(self, who: str, act: str, booking: int, *, person: str | None = None) -> None:
+    def cancel(self, who: str, act: str, booking: int, *, person: str = "", place: Place = ANYWHERE) -> None:
         """Give places back, to who waits. act: "cancel booking" of one's own (`person`), "reservations" of another's.
 
         Raises PeopleError.
         """
         table = tables.booking
         with self._ledger.change(who, act, f"booking {booking}") as connection:
-            query = select(table.c.occasion).where(table.c.id == booking)
-            query = query if person is None else query.where(table.c.user == person)
+            query = select(table.c.occasion).where(*_named(booking, place))
+            query = query.where(table.c.user == person) if person else query
             occasion = connection.execute(query).scalar_one_or_none()
             if occasion is None or not _give_back(connection, occasion, booking):
                 raise PeopleError("no-booking")
 
-    def arrive(self, who: str, booking: int, *, here: bool) -> None:
+    def arrive(self, who: str, booking: int, *, here: bool, place: Place = ANYWHERE) -> None:
         """Check somebody in who has places, or take that back. Raises PeopleError."""
         table = tables.booking
-        mine = (table.c.id == booking, table.c.waiting == 0)
+        mine = (*_named(booking, place), table.c.waiting == 0)
         with self._ledger.change(
             who, "check-in", f"booking {booking}{'' if here else ' undone'}"
         ) as connection:
@@ -152,6 +154,13 @@ def release(connection: Connection, person: str) -> None:
     mine = select(table.c.occasion, table.c.id).where(table.c.user == person).order_by(table.c.occasion)
     for occasion, booking in connection.execute(mine).all():
         _give_back(connection, occasion, booking)
+
+
+def _named(booking: int, place: Place) -> tuple[ColumnElement[bool], ...]:
+    """The row of that number. SQLite gives the number of a cancelled one again: who saw it says what it was."""
+    table, (occasion, turn) = tables.booking, place
+    where = (table.c.occasion == occasion,) if occasion else ()
+    return (table.c.id == booking, *where, *((table.c.turn == turn,) if turn else ()))
 
 
 def _lock(connection: Connection, occasion: str, *, turn: bool = False):

@@ -30,14 +30,15 @@ def programme_readings(counter: Counter) -> tuple[Reading, ...]:
 def programme_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one, booking = "events/{key}", "events/{key}/bookings/{booking}"
+    seen = {"turn": "of the booking as it was read; refused where its number is another's by now"}
     return (
         Deed("events", "events", rooms.plan, "events/{id}", rooms.all_page),
         Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page),
         Deed(one, "events", rooms.change, one, rooms.one_page),
         Deed(f"{one}/off", "events", rooms.call_off, one, rooms.one_page),
-        Deed(f"{booking}/arrive", "check-in", rooms.arrive, one, rooms.one_page),
-        Deed(f"{booking}/leave", "check-in", rooms.leave, one, rooms.one_page),
-        Deed(f"{booking}/cancel", "reservations", rooms.cancel, one, rooms.one_page),
+        Deed(f"{booking}/arrive", "check-in", rooms.arrive, one, rooms.one_page, fields=seen),
+        Deed(f"{booking}/leave", "check-in", rooms.leave, one, rooms.one_page, fields=seen),
+        Deed(f"{booking}/cancel", "reservations", rooms.cancel, one, rooms.one_page, fields=seen),
     )
 
 
@@ -88,18 +89,18 @@ class _Rooms:
         return {"id": key, "cancelled": True}
 
     def arrive(self, asking: Asking) -> dict[str, Any]:
-        number = number_in(asking.names["booking"])
-        self._people.bookings.arrive(asking.person.id, number, here=True)
+        number, place = _seen(asking)
+        self._people.bookings.arrive(asking.person.id, number, here=True, place=place)
         return {"id": number, "arrived": True}
 
     def leave(self, asking: Asking) -> dict[str, Any]:
-        number = number_in(asking.names["booking"])
-        self._people.bookings.arrive(asking.person.id, number, here=False)
+        number, place = _seen(asking)
+        self._people.bookings.arrive(asking.person.id, number, here=False, place=place)
         return {"id": number, "arrived": False}
 
     def cancel(self, asking: Asking) -> dict[str, Any]:
-        number = number_in(asking.names["booking"])
-        self._people.bookings.cancel(asking.person.id, "reservations", number)
+        number, place = _seen(asking)
+        self._people.bookings.cancel(asking.person.id, "reservations", number, place=place)
         return {"id": number, "cancelled": True}
 
     def all_page(self, asking: Asking) -> Shown:
@@ -198,12 +199,13 @@ class _Rooms:
             person = self._people.accounts.of(made.person)
             name = person.name or person.address
             here = made.arrived is not None
+            seen = {"about": name, "hidden": {"turn": str(made.turn)}}
             check = (
-                button(asking, "leave", f"{at}/leave", word("撤销签到", "Undo"), about=name, hidden={})
+                button(asking, "leave", f"{at}/leave", word("撤销签到", "Undo"), **seen)
                 if here
-                else button(asking, "arrive", f"{at}/arrive", word("签到", "Check in"), about=name, hidden={})
+                else button(asking, "arrive", f"{at}/arrive", word("签到", "Check in"), **seen)
             )
-            away = button(asking, "cancel", f"{at}/cancel", word("取消", "Cancel"), about=name, hidden={})
+            away = button(asking, "cancel", f"{at}/cancel", word("取消", "Cancel"), **seen)
             waits = word(f"候补第 {made.place} 位", f"waiting, {made.place}")
             state = waits if made.place else word("已签到", "here") if here else word("已约", "booked")
             may = asking.person.may("check-in") and not made.place
@@ -226,7 +228,13 @@ class _Rooms:
 
     def _booked(self, made: Booking) -> dict[str, Any]:
         arrived = made.arrived.isoformat() if made.arrived else None
-        kept = {"id": made.id, "person": made.person, "size": made.size, "party": made.party}
+        kept = {
+            "id": made.id,
+            "turn": made.turn,
+            "person": made.person,
+            "size": made.size,
+            "party": made.party,
+        }
         return kept | {"waiting": made.place, "arrived": arrived}
 
     def _on(self, day: date) -> list[Occasion]:
@@ -238,6 +246,12 @@ class _Rooms:
 
 def _kind(asking: Asking, kind: str) -> str:
     return asking.word("参观", "Visit") if kind == "visit" else asking.word("活动", "Activity")
+
+
+def _seen(asking: Asking) -> tuple[int, tuple[str, int]]:
+    """Which booking was meant: its number, and the occasion and turn that the sheet showed it with, if it did."""
+    turn = asking.form.get("turn", "")
+    return number_in(asking.names["booking"]), (asking.names["key"], number_in(turn) if turn else 0)
 
 
 def _day(asking: Asking) -> date:
