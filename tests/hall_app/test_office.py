@@ -24,6 +24,8 @@ EVENT = {
     "party": 2,
 }
 
+HALF_A_LETTER = json.dumps(EVENT | {"text_zh": "\ud83e"}).encode()
+
 # Every address of the office below its two doors, by the act that it takes. GET: to read, POST: to do.
 READ = {
     "draft": ["collection", "collection/{key}", "collection/{key}/text", "collection/{key}/history"],
@@ -202,7 +204,7 @@ def test_no_other_site_acts_for_the_office(counter, people):
     ):
         assert one.ask("POST", "/api/office/events", body, wrong).status == 403
     assert one.ask("POST", "/api/office/events", body, good | {"Content-Type": "text/plain"}).status == 413
-    for odd in (b"[]", b"{", b'{"places": null}', b'{"title_zh": {}}', b"\xff", b"[" * 9000):
+    for odd in (b"[]", b"{", b'{"places": null}', b'{"title_zh": {}}', b"\xff", b"[" * 9000, HALF_A_LETTER):
         assert one.ask("POST", "/api/office/events", odd, good).status in (400, 413)
     assert one.ask("POST", "/api/office/events", body, good).status == 200
 
@@ -231,6 +233,8 @@ def test_an_event_from_plan_to_check_in(counter, people):
     day = SOON.astimezone().date()
     assert key in [sheet["id"] for sheet in one.told(f"day?day={day}")]
     assert "A longer talk" in one.get(f"/office/day?day={day}&lang=en").text
+    for edge in ("0001-01-01", "9999-12-31", "2026-13-01"):
+        assert one.get(f"/office/day?day={edge}").status == 200
     one.told(f"events/{key}/off", {})
     assert f"/activities/{key}" not in Visitor(counter.url).get("/activities").text
 

@@ -263,6 +263,16 @@ def test_an_editor_drafts_and_does_not_publish(counter, chest):
     assert one.told(f"collection/{chest.name}")["draft"] is None
 
 
+def test_a_program_gives_numbers_as_numbers(curator, chest):
+    key, given = chest.name, {"body.radius": 0.75, "tag": tag(curator, chest.name)}
+    assert curator.told(f"collection/{key}/fields", given)["changed"] == ["body.radius"]
+    assert "radius = 0.75" in curator.told(f"collection/{key}/text?file={TOML}")["text"]
+    for odd in (float("nan"), float("inf"), "-inf"):
+        answer = curator.api(f"collection/{key}/fields", {"body.radius": odd})
+        assert answer.status == 400
+        assert "is no number" in answer.text
+
+
 def test_drafts_have_a_quota(counter, curator, chest, monkeypatch):
     noise = io.BytesIO()
     Image.effect_noise((900, 900), 90).convert("RGB").save(noise, "PNG")

@@ -9,7 +9,7 @@ from hall_app.web.platform.counter.asking import Asking, Brought, Download, Gues
 from hall_app.web.platform.counter.cookies import OFFICE, VISITOR
 from hall_app.web.platform.counter.counter import STATUS, Act, Answer, Counter, View
 from hall_app.web.platform.counter.fields import Field, button, form, told_day, told_time
-from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of
+from hall_app.web.platform.counter.guard import PLAIN, Form, Takes, form_of, is_whole
 from hall_app.web.platform.counter.pace import RATES, Pace
 from hall_app.web.platform.counter.signing_in import address_field, sign_in_fields, signed_in
 
@@ -38,6 +38,7 @@ __all__ = [
     "button",
     "form",
     "form_of",
+    "is_whole",
     "sign_in_fields",
     "signed_in",
     "told_day",

@@ -15,7 +15,7 @@ from starlette.requests import Request
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter.asking import Brought
 
-__all__ = ["PLAIN", "SEAL", "Form", "Takes", "check_form", "check_origin", "form_of", "seal_of"]
+__all__ = ["PLAIN", "SEAL", "Form", "Takes", "check_form", "check_origin", "form_of", "is_whole", "seal_of"]
 
 SEAL = "seal"  # the hidden field
 _FIELDS = 200
@@ -90,9 +90,14 @@ async def _with_files(request: Request, takes: Takes) -> Form:
         if isinstance(value, UploadFile)
     ]
     form = Form(_fields(plain), tuple(brought))
-    if any("\ud800" <= c <= "\udfff" for value in form.fields.values() for c in value):
+    if not all(map(is_whole, form.fields.values())):
         raise PeopleError("form-size")
     return form
+
+
+def is_whole(text: str) -> bool:
+    """Whether no letter of it is half of one: that is no text, and no database takes it."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
 async def _bounded(request: Request, takes: Takes) -> AsyncGenerator[bytes, None]:

@@ -26,6 +26,7 @@ from hall_app.web.platform.counter import (
     Takes,
     View,
     form_of,
+    is_whole,
 )
 from hall_app.web.platform.office.deeds import Deed, Reading
 from survey.errors import StoreError
@@ -164,7 +165,7 @@ def _fields(kind: str, body: bytes) -> dict[str, str]:
             value = " ".join(value)
         if isinstance(value, bool):
             value = "on" if value else ""
-        if not isinstance(value, str | int):
+        if not isinstance(value, str | int | float) or not is_whole(str(value)):
             raise PeopleError("form-size")
         fields[name] = str(value)
     return fields

@@ -16,7 +16,7 @@ _JSON = "application/json"
 _VALUE = {
     "anyOf": [
         {"type": "string"},
-        {"type": "integer"},
+        {"type": "number"},
         {"type": "boolean"},
         {"type": "array", "items": {"type": "string"}},
     ]

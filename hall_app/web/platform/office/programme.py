@@ -255,10 +255,12 @@ def _seen(asking: Asking) -> tuple[int, tuple[str, int]]:
 
 
 def _day(asking: Asking) -> date:
+    """The day asked for, today for none. It has one before it and one after."""
     try:
-        return date.fromisoformat(asking.query.get("day", ""))
+        day = date.fromisoformat(asking.query.get("day", ""))
     except ValueError:
-        return datetime.now().astimezone().date()
+        day = date.min
+    return day if date.min < day < date.max else datetime.now().astimezone().date()
 
 
 def _plan(asking: Asking) -> Plan:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
@@ -216,7 +217,7 @@ def _numbers(key: Key, text: str) -> Any:
         found = [float(part) for part in text.replace(",", " ").replace("×", " ").split()]
     except ValueError:
         found = []
-    if len(found) != (1 if key.kind == "number" else 2):
+    if len(found) != (1 if key.kind == "number" else 2) or not all(map(isfinite, found)):
         raise PeopleError("content-file", why=f"{key.name}: {text[:40]!r} is no number – write 1.5, say")
     return found[0] if key.kind == "number" else found
 
