@@ -253,6 +253,24 @@ def test_a_place_that_shuts_others_off_is_told_before_it_is_published(counter, c
     assert "cannot be reached" in curator.get(f"/office/collection/{key}/place?lang=en").text
 
 
+def test_a_walk_that_came_to_nothing_says_so_and_is_begun_anew(counter, chest, monkeypatch):
+    """The draft was saved again while it was looked at, say: its files are gone, and nobody has walked."""
+    from hall_app.house.drafts import Examination, examination
+
+    moved = (chest / TOML).read_bytes().replace(b"x = 0.0", b"x = 0.1")
+    files = {f"exhibits/{chest.name}/{TOML}": moved}
+    examined = Examination(counter.content)
+
+    def gone(*given):
+        raise FileNotFoundError("a file of the shelf")
+
+    for name, act in (("likeness_of", gone), ("beside", lambda *given: None)):
+        with monkeypatch.context() as broken:
+            broken.setattr(examination, name, act)
+            assert [one.file for one in examined.reach(files, wait=True) or ()] == ["plan.toml"]
+    assert examined.reach(files, wait=True) == []
+
+
 def test_an_editor_drafts_and_does_not_publish(counter, chest):
     one = clerk(counter, counter.people, Role.EDITOR)
     one.told(f"collection/{chest.name}/fields", {"title.en": "Drafted"})

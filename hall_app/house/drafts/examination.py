@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from hall_app.house.drafts.beside import beside
 __all__ = ["Examination"]
 
 _KEPT = 24  # findings that are remembered
+_UNWALKED = Problem(
+    "plan.toml", "", "the ways through the hall could not be walked", "try again, or run hall check"
+)
 
 
 class Examination:
@@ -38,14 +42,21 @@ class Examination:
         return [problem for problem in self._quick(files) if problem not in known]
 
     def reach(self, files: Changed, *, wait: bool) -> list[Problem] | None:
-        """Exhibits that nobody could come to any more; None while that is being found out. wait: until it is."""
+        """Exhibits that nobody could come to any more; None while that is being found out. wait: until it is.
+
+        A walk that came to nothing is told as a problem, and begun anew when it is asked for again.
+        """
         with self._lock:
             key = ("reach", *self._state(files))
             walk = self._walks.get(key)
             if walk is None:
                 self._forget(self._walks)
                 walk = self._walks[key] = _Walk(self._content, files)
-        return walk.found(wait=wait)
+        found = walk.found(wait=wait)
+        if found == [_UNWALKED]:
+            with self._lock:
+                self._walks.pop(key, None)
+        return found
 
     def _quick(self, files: Changed) -> list[Problem]:
         key = self._state(files)
@@ -74,7 +85,7 @@ class _Walk:
     """One walk through a hall as it would be, in a process of its own that ends with the server."""
 
     def __init__(self, content: Path, files: Changed) -> None:
-        self._problems: list[Problem] = []
+        self._problems = [_UNWALKED]
         self._thread = threading.Thread(target=self._walk, args=(content, dict(files)), daemon=True)
         self._thread.start()
 
@@ -84,13 +95,10 @@ class _Walk:
         return None if self._thread.is_alive() else self._problems
 
     def _walk(self, content: Path, files: dict[str, Any]) -> None:
-        if _same_floor(content, files):
-            return
-        found = beside(_reached, content, files)
-        if found is None:
-            what = "the ways through the hall could not be walked"
-            found = [Problem("plan.toml", "", what, "try again, or run hall check")]
-        self._problems = found
+        with suppress(OSError):  # the draft was dropped or saved again meanwhile, and its files are gone
+            found = [] if _same_floor(content, files) else beside(_reached, content, files)
+            if found is not None:
+                self._problems = found
 
 
 def _reached(content: Path, files: Mapping[str, Any]) -> list[Problem]:

@@ -9,6 +9,7 @@ from typing import Any
 from hall_app.content.floor.footprints import Footprint, body_footprint, plan_footprints
 from hall_app.content.floor.placement import STANDING
 from hall_app.content.folder import Content
+from hall_app.content.problems import Problem
 from hall_app.web.platform.counter import Asking, Field, Shown, form
 from hall_app.web.platform.office.collection.desk import TOML, Desk, listed_problems, refusal
 from hall_app.web.platform.office.collection.keys import changes_of, fields_of, keys_of
@@ -26,15 +27,19 @@ class Places:
     def where(self, asking: Asking) -> dict[str, Any]:
         """Where it stands in its draft; reached: whether everything can be come to, null while that is found out."""
         key = self._desk.key(asking)
-        place, found = self._desk.table(key).get("place"), self._reach(key)
-        wrong = [one for one in self._desk.problems(key) if one.key.startswith(("place", "body"))]
-        wrong += found or []
+        place, (reached, wrong) = self._desk.table(key).get("place"), self._standing(key)
         return {
             "id": key,
             "place": place if isinstance(place, dict) else {},
-            "reached": None if found is None else not found,
+            "reached": reached,
             "problems": [one.as_json() for one in wrong],
         }
+
+    def _standing(self, key: str) -> tuple[bool | None, list[Problem]]:
+        """Whether everything is reached, as `where` tells it; what is wrong with where it stands."""
+        found = self._reach(key)
+        wrong = [one for one in self._desk.problems(key) if one.key.startswith(("place", "body"))]
+        return None if found is None else not found, wrong + (found or [])
 
     def put(self, asking: Asking) -> dict[str, Any]:
         desk, key = self._desk, self._desk.key(asking)
@@ -81,13 +86,10 @@ class Places:
         return Field(one.name, one.label, "select", one.value, needed=False, choices=choices)
 
     def _reached(self, asking: Asking, key: str) -> str:
-        word, where = asking.word, self.where(asking)
-        found = self._reach(key)
-        wrong = [one for one in self._desk.problems(key) if one.key.startswith(("place", "body"))]
-        wrong += found or []
+        word, (reached, wrong) = asking.word, self._standing(key)
         if wrong:
             return f'<div id="reached" data-state="no">{listed_problems(asking, wrong)}</div>'
-        if where["reached"] is None:
+        if reached is None:
             told = word("正在步行检查全馆通路…", "Walking through the hall to see that all is reached …")
             at, look = f"collection/{key}/place", word("再看一次", "Look again")
             again = f'<a href="{asking.address(f"/office/{at}")}">{look}</a>'
