@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import subprocess
 import sys
 import threading
@@ -108,6 +109,16 @@ def test_every_refusal_is_in_both_languages():
         assert any("\u4e00" <= letter <= "\u9fff" for letter in zh), key
         assert en.isascii(), key
         assert zh.count("{") == en.count("{"), key
+
+
+def test_a_refusal_in_chinese_calls_every_kind_of_file_by_its_chinese_name():
+    from hall_app.house.drafts import LARGEST
+
+    for kind in LARGEST:
+        for key in ("file-size", "file-use"):
+            error = PeopleError(key, name="1", kind=kind, most=40)
+            assert not re.search("[a-z]", error.text("zh")), error.text("zh")
+            assert kind in error.text("en")
 
 
 def test_no_secret_is_kept_as_it_is(people, ledger):

@@ -28,7 +28,6 @@ LARGEST: Mapping[str, int] = {
 _PIXELS = 60_000_000  # of a picture that is decoded
 _EDGE = 3000  # [pixels] of a picture's longer side, as it is kept
 _LINE_ART = 1_500_000  # [bytes] up to which a PNG stays one
-_NAMES = {"picture": "图片", "model": "模型", "scan": "扫描", "film": "影片", "sound": "声音"}
 
 # What a file may be used for, and the kinds that serve.
 USES: Mapping[str, tuple[str, ...]] = {

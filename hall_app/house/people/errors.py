@@ -267,6 +267,15 @@ _MISSING = frozenset(
 )
 
 
+_KINDS: Mapping[str, str] = {
+    "picture": "图片",
+    "model": "模型",
+    "scan": "扫描",
+    "film": "影片",
+    "sound": "声音",
+}
+
+
 class PeopleError(ValueError):
     """A refusal of the table. Its text is English; `text("zh")` is the other."""
 
@@ -281,4 +290,6 @@ class PeopleError(ValueError):
 
     def text(self, language: str) -> str:
         zh, en = REFUSALS[self.key]
-        return (zh if language == "zh" else en).format(**self.figures)
+        kind = self.figures.get("kind")  # of a file
+        told = {"kind": _KINDS.get(str(kind), kind)} if language == "zh" and kind else {}
+        return (zh if language == "zh" else en).format(**(self.figures | told))
