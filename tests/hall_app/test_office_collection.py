@@ -302,6 +302,22 @@ def test_drafts_have_a_quota(counter, curator, chest, monkeypatch):
     assert json.loads(answer.body)["error"] == "quota"
 
 
+def test_what_was_taken_out_of_a_draft_makes_room(counter, curator, chest, monkeypatch):
+    from hall_app.house.drafts import Shelf
+
+    shelf, size, noise = counter.data / "shelf", Shelf.size, [io.BytesIO() for _ in range(3)]
+    for data in noise:
+        Image.effect_noise((200, 200), 90).convert("RGB").save(data, "PNG")
+    full = sum(one.stat().st_size for one in shelf.iterdir()) if shelf.is_dir() else 0
+    full += 2 * len(noise[0].getvalue())
+    monkeypatch.setattr(Shelf, "size", lambda self: size(self) + 50_000_000 - full)
+    for data in noise:
+        answer = curator.bring(chest.name, [("noise.png", data.getvalue())], use="picture")
+        assert answer.status == 200, answer.text
+        (name,) = json.loads(answer.body)["files"]
+        curator.told(f"collection/{chest.name}/remove", {"file": name})
+
+
 def test_every_plain_key_of_the_schema_has_words():
     from hall_app.web.platform.office.collection import WORDS, keys_of
 

@@ -99,7 +99,14 @@ class Desk:
     ) -> None:
         self.people.note(asking.person.id, "draft", key)
         try:
-            self.drafts.set(asking.person.id, key, files, tags)
+            with self.drafts.lock:
+                try:
+                    self.drafts.set(asking.person.id, key, files, tags)
+                except PeopleError as error:
+                    if error.key != "quota":
+                        raise
+                    self.publication.tidy()  # what was replaced or taken out since makes room
+                    self.drafts.set(asking.person.id, key, files, tags)
         except OSError as error:
             raise PeopleError("content-write", why=error.strerror or str(error)) from error
 
