@@ -77,6 +77,17 @@ def test_places_are_booked_waited_for_and_given_back(counter, planned):
     assert "booked · 1 person" in second.get("/me?lang=en").text
 
 
+def test_what_has_begun_or_is_off_offers_nothing_to_book(counter, planned):
+    begun, off = planned(begins=datetime.now(UTC) - timedelta(minutes=1)), planned()
+    counter.people.occasions.call_off("console", off)
+    for visitor in (member(counter)[0], Visitor(counter.url)):
+        for key, told in ((begun, "It has begun"), (off, "Called off")):
+            page = visitor.get(f"/activities/{key}?lang=en").text
+            assert told in page
+            assert "form-book" not in page
+            assert "A booking needs an account" not in page
+
+
 @pytest.mark.parametrize("size", ["0", "3", "-1", "1.5", "two", "", "９"])
 def test_a_number_that_is_none_is_refused_beside_the_form(counter, planned, size):
     visitor, _ = member(counter)

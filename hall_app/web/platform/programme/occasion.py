@@ -18,6 +18,7 @@ from hall_app.web.platform.counter import (
     told_time,
 )
 from hall_app.web.platform.programme.lists import address_of, left_of
+from survey.store.database import now
 
 __all__ = ["OccasionPages"]
 
@@ -59,8 +60,11 @@ class OccasionPages:
         return Shown(Page(title, main, part), path=address_of(one))
 
     def _booking(self, asking: Asking, one: Occasion) -> str:
-        word, at = asking.word, address_of(one)
+        word, at, begun = asking.word, address_of(one), one.plan.begins <= now()
+        closed = word("已开始，不再接受预约。", "It has begun, and nothing can be booked.") if begun else ""
         if asking.guest is None:
+            if begun or one.cancelled:
+                return f"<p>{closed}</p>" if closed else ""
             told = word(
                 "预约需要账户，以便您查看与取消。",
                 "A booking needs an account, so that you can see and cancel it.",
@@ -72,8 +76,8 @@ class OccasionPages:
             if mine.occasion == one.id:
                 cancel = button(asking, "cancel", f"{at}/cancel", word("取消预约", "Cancel it"), hidden={})
                 return f"<p><b>{told_booking(asking, mine)}</b></p>{cancel}"
-        if one.cancelled:
-            return ""
+        if begun or one.cancelled:
+            return f"<p>{closed}</p>" if closed else ""
         party = Field(
             "party",
             word("班级或团体名称（个人不填）", "Name of the class or group (none for yourself)"),
