@@ -104,6 +104,9 @@ def test_a_class_books_a_visit_and_takes_it_out_in_its_copy(counter, planned):
     copy = visitor.send("/me", "/me/copy")
     with zipfile.ZipFile(io.BytesIO(copy.body)) as archive:
         (kept,) = json.loads(archive.read("bookings.json"))
+        (what,) = json.loads(archive.read("occasions.json"))
+    assert (what["id"], what["plan"]["title_zh"]) == (visit, "缂丝工作坊")
+    assert datetime.fromisoformat(what["plan"]["begins"]) == SOON
     assert (kept["occasion"], kept["size"], kept["party"]) == (visit, 32, "三年级二班")
     visitor.send("/me/delete", "form-delete", password=PASSWORD)
     assert "余 40 位" in Visitor(counter.url).get(f"/visit/{visit}?lang=zh").text

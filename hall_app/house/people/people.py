@@ -54,14 +54,15 @@ class People:
         """All that is kept of a person, as a ZIP; that it was taken is written down."""
         with self._ledger.change(person.id, "take copy", person.id):
             pass
-        kept = self.keepsakes
+        kept, booked = self.keepsakes, self.bookings.of(person.id)
         return own_copy(
             person,
             {
                 "sessions": self.sessions.of(person.id),
                 "favourites": kept.favourites(person.id),
                 "visits": kept.looks(person.id),
-                "bookings": self.bookings.of(person.id),
+                "bookings": booked,
+                "occasions": [self.occasions.of(one.occasion) for one in booked],
                 "answers": self.answer_codes.of(person.id),
                 "journal": self.journal.about(person.id),
             },

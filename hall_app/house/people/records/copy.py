@@ -27,6 +27,7 @@ _TOLD = {  # file: zh, en
     "favourites": ("收藏", "favourites"),
     "visits": ("参观记录", "visits that you asked to keep"),
     "bookings": ("预约", "reservations"),
+    "occasions": ("所预约的场次", "what they are for, and when"),
     "answers": ("答卷撤回码", "withdrawal codes of answers that you asked to keep"),
     "journal": ("操作记录", "what was done"),
 }
