@@ -271,6 +271,15 @@ def test_a_walk_that_came_to_nothing_says_so_and_is_begun_anew(counter, chest, m
     assert examined.reach(files, wait=True) == []
 
 
+def test_the_plan_names_what_stands_there_in_the_language_of_the_page(counter, curator, chest, monkeypatch):
+    monkeypatch.setattr(counter.house, "content", load(counter.content))
+    key = f"{chest.name}-2"
+    curator.told("collection", {"id": key, "title.zh": "另一件", "title.en": "Another"})
+    for lang, title in (("zh", "箱"), ("en", "Chest")):
+        assert f"<title>{title}</title>" in curator.get(f"/office/collection/{key}/place?lang={lang}").text
+    curator.told(f"collection/{key}/drop", {})
+
+
 def test_an_editor_drafts_and_does_not_publish(counter, chest):
     one = clerk(counter, counter.people, Role.EDITOR)
     one.told(f"collection/{chest.name}/fields", {"title.en": "Drafted"})

@@ -72,7 +72,7 @@ class Places:
         )
         back = f'<a href="{asking.address(f"/office/collection/{key}")}">{word("回到展品", "Back to the exhibit")}</a>'
         inside = f"""{refusal(asking, "place")}<div class="planned">
-<figure>{drawing(content, key, table, word("平面图", "Plan"))}<figcaption class="quiet">{told}</figcaption></figure>
+<figure>{drawing(content, key, table, asking)}<figcaption class="quiet">{told}</figcaption></figure>
 <div>{self._reached(asking, key)}{sent}</div></div><p class="doors">{back}</p>"""
         title = f"{desk.title(key, asking.lang)} · {word('布置', 'Place')}"
         return office_page(asking, title, inside, path=f"collection/{key}/place", script="book/plan.js")
@@ -99,20 +99,20 @@ class Places:
         return f'<p id="reached" class="done" role="status" data-state="yes">{told}</p>'
 
 
-def drawing(content: Content, key: str, table: dict[str, Any], name: str) -> str:
+def drawing(content: Content, key: str, table: dict[str, Any], asking: Asking) -> str:
     """The plan as SVG; the exhibit of that key can be moved by the script."""
     xs, zs = zip(*content.plan.outline, strict=True)
     low = (min(xs) - _MARGIN, min(zs) - _MARGIN)
     size = (max(xs) + _MARGIN - low[0], max(zs) + _MARGIN - low[1])
     box = f"{low[0]:.2f} {low[1]:.2f} {size[0]:.2f} {size[1]:.2f}"
     others = "".join(
-        _shape(body_footprint(one.id, one.file), "other", one.file.title.zh)
+        _shape(body_footprint(one.id, one.file), "other", getattr(one.file.title, asking.lang))
         for one in content.exhibits
         if one.id != key
     )
     solids = "".join(_shape(one, one.kind, one.id) for one in plan_footprints(content.plan))
     start = content.hall.start
-    return f"""<svg class="plan" id="plan" viewBox="{box}" role="img" aria-label="{escape(name)}">
+    return f"""<svg class="plan" id="plan" viewBox="{box}" role="img" aria-label="{asking.word("平面图", "Plan")}">
 <polygon class="floor" points="{_points(content.plan.outline)}"/>{solids}{others}
 <circle class="start" cx="{start.x:g}" cy="{start.z:g}" r="0.3"/>{_own(table)}</svg>"""
 
