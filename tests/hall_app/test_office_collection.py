@@ -271,6 +271,23 @@ def test_a_walk_that_came_to_nothing_says_so_and_is_begun_anew(counter, chest, m
     assert examined.reach(files, wait=True) == []
 
 
+def test_what_changed_since_it_was_looked_at_is_not_published(counter, curator, chest):
+    key, editor = chest.name, clerk(counter, counter.people, Role.EDITOR)
+    before = (chest / "text.en.md").read_text("utf-8") if (chest / "text.en.md").exists() else None
+    curator.told(f"collection/{key}/text", {"file": "text.en.md", "text": "As the curator saw it."})
+    pages = [curator.get(f"/office/collection/{key}{way}?lang=en") for way in ("", "/preview")]
+    mark = curator.told(f"collection/{key}")["mark"]
+    editor.told(f"collection/{key}/text", {"file": "text.en.md", "text": "As nobody else did."})
+    for page in pages:
+        told = curator.send(page, "form-publish")
+        assert told.status == 409
+        assert "changed since you looked at it" in told.text
+    assert curator.api(f"collection/{key}/publish", {"seen": mark}).status == 409
+    assert ((chest / "text.en.md").read_text("utf-8") if before is not None else None) == before
+    assert curator.send(f"/office/collection/{key}/preview?lang=en", "form-publish").status == 200
+    assert "As nobody else did." in (chest / "text.en.md").read_text("utf-8")
+
+
 def test_the_plan_names_what_stands_there_in_the_language_of_the_page(counter, curator, chest, monkeypatch):
     monkeypatch.setattr(counter.house, "content", load(counter.content))
     key = f"{chest.name}-2"

@@ -6,6 +6,7 @@ with, so that nobody writes over what he has not seen.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import threading
@@ -125,6 +126,12 @@ class Drafts:
         draft, published = self.of(exhibit), self._digest(exhibit, name)
         mine = draft.files.get(name, published) if draft else published
         return f"{mine[:16] or 'none'}-{published[:16] or 'none'}"
+
+    def mark(self, exhibit: str) -> str:
+        """What a page brings back that showed the whole draft, "" for none."""
+        draft = self.of(exhibit)
+        told = json.dumps(dict(draft.files), sort_keys=True) if draft else ""
+        return hashlib.sha256(told.encode()).hexdigest()[:16] if told else ""
 
     def stale(self, exhibit: str) -> tuple[str, ...]:
         """Files of the draft that were changed in the hall since."""

@@ -23,12 +23,17 @@ class Publication:
     def __init__(self, drafts: Drafts, examination: Examination, people: People) -> None:
         self._drafts, self._examination, self._people = drafts, examination, people
 
-    def publish(self, who: str, exhibit: str) -> None:
-        """Put the draft in place. Raises PeopleError, with what the check finds; the draft stays then."""
+    def publish(self, who: str, exhibit: str, seen: str | None = None) -> None:
+        """Put the draft in place. seen: its mark when it was looked at; None: nobody looked.
+
+        Raises PeopleError, with what the check finds, or where it is another draft by now; it stays then.
+        """
         with self._drafts.lock:
             draft = self._drafts.of(exhibit)
             if draft is None:
                 raise PeopleError("no-draft")
+            if seen not in (None, self._drafts.mark(exhibit)):
+                raise PeopleError("draft-changed")
             for name in self._drafts.stale(exhibit):
                 raise PeopleError("changed", name=name)
             self._see(self._drafts.changes(exhibit))

@@ -164,6 +164,10 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} 此后又被改动，无法撤销；请先撤销较新的改动。",
         "{name} was changed again since, so this cannot be undone: undo the newer change first.",
     ),
+    "draft-changed": (
+        "草稿在您查看之后又被改动。下面是现在的草稿，请重新查看后再发布。",
+        "The draft was changed since you looked at it. This is how it is now: look again, and publish then.",
+    ),
     "no-draft": (
         "这件展品没有草稿，可能已经发布或放弃。",
         "This exhibit has no draft: it may have been published or dropped already.",

@@ -65,6 +65,7 @@ STATUS = {
     "file-pixels": 413,
     "quota": 413,
     "changed": 409,
+    "draft-changed": 409,
     "undo-changed": 409,
 }
 _REFUSED = ("请再试一次", "Please try again")

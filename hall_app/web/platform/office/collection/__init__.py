@@ -60,6 +60,7 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
     text = {"file": " or ".join(TEXT_FILES), "text": "the whole file", "tag": _TAG}
     place = {f"place.{name}": f"place.{name} of exhibit.toml" for name in ("x", "z", "facing", "on", "y")}
     upload = {"use": " or ".join(USES), "alt.zh": "what it shows", "alt.en": "what it shows"}
+    seen = {"seen": "the draft's mark as it was read; 409 where it is another by now"}
     deeds = (
         Deed("collection", "draft", listing.make, "collection/{id}", listing.page, fields=titles),
         Deed(
@@ -78,7 +79,7 @@ def collection_rooms(counter: Counter) -> tuple[tuple[Reading, ...], tuple[Deed,
         Deed(
             f"{_ONE}/place", "place", places.put, f"{_ONE}/place", places.page, fields=place | {"tag": _TAG}
         ),
-        Deed(f"{_ONE}/publish", "publish", history.publish, _ONE, exhibits.page),
+        Deed(f"{_ONE}/publish", "publish", history.publish, _ONE, exhibits.page, fields=seen),
         Deed(
             f"{_ONE}/undo",
             "undo",

@@ -12,9 +12,9 @@ from hall_app.content.problems import Problem
 from hall_app.house.drafts import Drafts, Examination, Publication, Shelf
 from hall_app.house.people import PeopleError
 from hall_app.web.collection.table import Change, EditError, edited
-from hall_app.web.platform.counter import Asking, Counter
+from hall_app.web.platform.counter import Asking, Counter, form
 
-__all__ = ["TOML", "Desk", "listed_problems", "refusal"]
+__all__ = ["TOML", "Desk", "listed_problems", "publish_form", "refusal"]
 
 TOML = "exhibit.toml"
 
@@ -126,6 +126,13 @@ def refusal(asking: Asking, *forms: str) -> str:
         if asking.refusal and not beside
         else ""
     )
+
+
+def publish_form(desk: Desk, asking: Asking, key: str) -> str:
+    """It publishes the draft that the page shows, and no later one."""
+    words, hidden = asking.word("发布", "Publish"), {"seen": desk.drafts.mark(key)}
+    way = f"/office/collection/{key}/publish"
+    return form(asking, "publish", way, (), words, hidden=hidden, style="small-act")
 
 
 def language_of(name: str) -> str:

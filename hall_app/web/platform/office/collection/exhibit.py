@@ -11,7 +11,14 @@ from hall_app.house.drafts import TEXT_FILES
 from hall_app.house.people import PeopleError
 from hall_app.web.pages.frame import part
 from hall_app.web.platform.counter import Asking, Field, Shown, button, form
-from hall_app.web.platform.office.collection.desk import TOML, Desk, language_of, listed_problems, refusal
+from hall_app.web.platform.office.collection.desk import (
+    TOML,
+    Desk,
+    language_of,
+    listed_problems,
+    publish_form,
+    refusal,
+)
 from hall_app.web.platform.office.collection.files import TURN, media_part
 from hall_app.web.platform.office.collection.keys import Key, changes_of, fields_of, keys_of, media_keys
 from hall_app.web.platform.office.table import office_page
@@ -33,6 +40,7 @@ class Exhibits:
         return {
             "id": key,
             "draft": {"by": draft.by, "at": draft.at, "files": dict(draft.files)} if draft else None,
+            "mark": drafts.mark(key),
             "stale": list(drafts.stale(key)),
             "problems": [one.as_json() for one in self._desk.problems(key)],
             "files": {
@@ -158,8 +166,7 @@ class Exhibits:
         )
         deeds = button(asking, "drop", f"{at}/drop", word("放弃草稿", "Drop the draft"), hidden={})
         if asking.person.may("publish"):
-            put = form(asking, "publish", f"{at}/publish", (), word("发布", "Publish"), style="small-act")
-            deeds = put + deeds
+            deeds = publish_form(desk, asking, key) + deeds
         told = word("草稿，尚未在展厅中显示：", "A draft, not in the hall yet:")
         return f"""<div class="state drafted"><p><b>{told}</b></p><ul class="names">{names}</ul>{warned}{wrong}
 <div class="deeds">{deeds}{links}</div></div>"""

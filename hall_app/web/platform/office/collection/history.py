@@ -26,7 +26,7 @@ class History:
 
     def publish(self, asking: Asking) -> dict[str, Any]:
         key = self._desk.key(asking)
-        self._desk.publication.publish(asking.person.id, key)
+        self._desk.publication.publish(asking.person.id, key, asking.form.get("seen"))
         return {"id": key}
 
     def undo(self, asking: Asking) -> dict[str, Any]:

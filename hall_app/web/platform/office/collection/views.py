@@ -13,8 +13,8 @@ from hall_app.content.problems import ContentError
 from hall_app.content.schema.exhibit import Record
 from hall_app.content.views.markdown import html_of
 from hall_app.house.people import PeopleError
-from hall_app.web.platform.counter import Asking, Shown, form
-from hall_app.web.platform.office.collection.desk import Desk, listed_problems, refusal
+from hall_app.web.platform.counter import Asking, Shown
+from hall_app.web.platform.office.collection.desk import Desk, listed_problems, publish_form, refusal
 from hall_app.web.platform.office.collection.files import TURN, drawn_model, file_address, shown_medium
 from hall_app.web.platform.office.collection.words import WORDS
 from hall_app.web.platform.office.table import office_page
@@ -53,10 +53,7 @@ class Previews:
         wrong = listed_problems(asking, desk.problems(key))
         deeds = f'<a class="way" href="{asking.address(at)}">{word("回到展品", "Back to the exhibit")}</a>'
         if desk.drafts.of(key) is not None and asking.person.may("publish"):
-            deeds = (
-                form(asking, "publish", f"{at}/publish", (), word("发布", "Publish"), style="small-act")
-                + deeds
-            )
+            deeds = publish_form(desk, asking, key) + deeds
         title = f"{word('预览', 'Preview')} · {desk.title(key, asking.lang)}"
         if exhibit is None:
             told = word("这份草稿还不能展出。", "This draft cannot be shown yet.")
