@@ -96,6 +96,16 @@ def test_a_number_that_is_none_is_refused_beside_the_form(counter, planned, size
     assert 'role="alert">The number of people is a whole number from 1 to 2' in told.text
 
 
+def test_no_form_brings_what_a_database_refuses(counter, planned):
+    """PostgreSQL takes no NUL, and says so by an error."""
+    visitor, _ = member(counter)
+    visit = planned(kind="visit")
+    told = visitor.send(f"/visit/{visit}?lang=en", "form-book", size="1", party="class\0")
+    assert told.status == 413
+    assert "form-cancel" not in told.text
+    assert counter.people.bookings.for_occasion(visit) == ()
+
+
 def test_a_class_books_a_visit_and_takes_it_out_in_its_copy(counter, planned):
     visitor, _ = member(counter)
     visit = planned(kind="visit", places=40, party=40)

@@ -67,7 +67,7 @@ async def form_of(request: Request, takes: Takes = PLAIN) -> Form:
         pairs = parse_qsl(body.decode("utf-8"), keep_blank_values=True, max_num_fields=_FIELDS)
     except ValueError:
         raise PeopleError("form-size") from None
-    return Form(_fields(pairs))
+    return _whole(Form(_fields(pairs)))
 
 
 async def _with_files(request: Request, takes: Takes) -> Form:
@@ -89,15 +89,20 @@ async def _with_files(request: Request, takes: Takes) -> Form:
         for name, value in items
         if isinstance(value, UploadFile)
     ]
-    form = Form(_fields(plain), tuple(brought))
+    return _whole(Form(_fields(plain), tuple(brought)))
+
+
+def _whole(form: Form) -> Form:
+    """Raises PeopleError."""
     if not all(map(is_whole, form.fields.values())):
+        form.close()
         raise PeopleError("form-size")
     return form
 
 
 def is_whole(text: str) -> bool:
-    """Whether no letter of it is half of one: that is no text, and no database takes it."""
-    return not any("\ud800" <= letter <= "\udfff" for letter in text)
+    """Whether no letter of it is half of one, and none is NUL: not every database takes these."""
+    return not any(letter == "\0" or "\ud800" <= letter <= "\udfff" for letter in text)
 
 
 async def _bounded(request: Request, takes: Takes) -> AsyncGenerator[bytes, None]:
