@@ -293,6 +293,7 @@ def test_everything_is_taken_out_and_deleted_is_gone(plain_hall):
     assert json.loads(files["account.json"])["address"] == address
     assert [one["exhibit"] for one in json.loads(files["favourites.json"])] == [exhibit]
     assert in_store(plain_hall, "Zhinu the weaver")
+    assert "backups made before" in visitor.get("/me/delete?lang=en").text
     wrong = visitor.send("/me/delete?lang=en", "form-delete", password="not the one")
     assert "The password is wrong" in wrong.text
     gone = visitor.send("/me/delete?lang=en", "form-delete", password=PASSWORD)

@@ -111,9 +111,9 @@ class Safety:
         word = asking.word
         title = word("删除账户", "Delete the account")
         lead = word(
-            "账户、收藏、参观记录与预约将立即删除，无法恢复。请先导出需要保留的资料。",
-            "The account, favourites, visits and reservations go at once and cannot be brought back. Take a copy first "
-            "of what you want to keep.",
+            "账户、收藏、参观记录与预约将立即删除，无法恢复；此前所做的备份由本馆另行保管与销毁。请先导出需要保留的资料。",
+            "The account, favourites, visits and reservations go at once and cannot be brought back; backups made "
+            "before are kept and destroyed by the house. Take a copy first of what you want to keep.",
         )
         kept = len(self._people.answer_codes.of(asking.person.id))
         codes = word(
