@@ -18,7 +18,8 @@ Write the content folder, the accounts (people, roles, activities, reservations,
 while the hall is open or not. From PostgreSQL, too: the databases are in it as SQLite files, which any program reads.
 The file is a ZIP that holds the digest of each of its parts; it is read back before it appears under its name, and is
 its owner's alone. It holds addresses and hashes of passwords: keep it as you keep the data folder.
-Left out is what is made anew: caches, and what was baked into the data folder."""
+Left out are the office's drafts and the former files of its history: publish what is to be kept; what was published
+before cannot be undone in a restored house. Left out, too, is what is made anew: caches, bakes of the data folder."""
 
 _RESTORE = """\
 Make a house of a file that `hall backup` wrote: content folder, accounts, answers. Nothing is overwritten: the content
