@@ -204,6 +204,20 @@ def test_a_model_is_drawn_for_who_brought_it(counter, curator, chest):
     assert curator.ask("GET", f"/office/collection/{chest.name}/picture?name=media/front.jpg").status == 404
 
 
+def test_drawn_models_are_not_kept_without_end(counter, curator, chest, monkeypatch):
+    from hall_app.web.platform.office.collection import files
+
+    monkeypatch.setattr(files, "MOST_DRAWN", 2)
+    monkeypatch.setattr(files, "beside", lambda make, path, ending: path.read_bytes())
+    for number in range(4):
+        scan = f"v {number} 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n".encode()
+        brought = json.loads(curator.bring(chest.name, [("s.obj", scan)], use="scan").body)
+        (name,) = brought["files"]
+        shown = curator.ask("GET", f"/office/collection/{chest.name}/picture?name={name}")
+        assert shown.body == scan
+    assert len(list((counter.data / "portraits").iterdir())) == 2
+
+
 def test_history_tells_differences_and_undo_takes_them_back(curator, chest):
     key, before = chest.name, (chest / TOML).read_bytes()
     for title in ("First", "Second"):

@@ -24,6 +24,7 @@ from hall_app.web.platform.office.table import office_page
 __all__ = ["MOST_FILES", "TURN", "Uploads", "drawn_model", "file_address", "media_part", "shown_medium"]
 
 MOST_FILES = 12  # at once
+MOST_DRAWN = 300  # pictures and shapes of models that are kept, two megabytes each at most
 TURN = "book/turn.js"  # the script of pages that show models
 _SOLID = (".glb", ".ply", ".obj")
 _DRAWING = threading.Lock()
@@ -118,6 +119,7 @@ class Uploads:
                 with _DRAWING:
                     if not kept.is_file() and (made := beside(make, path, ending)) is not None:
                         replace_file(kept, made)
+                        _keep_newest(kept.parent)
             finally:
                 _ASKED.release()
             if not kept.is_file():
@@ -139,6 +141,13 @@ class Uploads:
         way = f'<p class="doors"><a href="{asking.address(f"/office/collection/{key}")}">{back}</a></p>'
         inside = _upload_form(asking, key) + way
         return office_page(asking, desk.title(key, asking.lang), inside, path=f"collection/{key}")
+
+
+def _keep_newest(folder: Path) -> None:
+    """Let go of what was drawn long ago: it is drawn again for who asks, and counts for no quota."""
+    drawn = sorted(folder.iterdir(), key=lambda path: path.stat().st_mtime_ns)
+    for path in drawn[:-MOST_DRAWN]:
+        path.unlink(missing_ok=True)
 
 
 def _free(one: Taken, names: set[str]) -> str:
