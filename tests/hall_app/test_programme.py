@@ -41,7 +41,9 @@ def test_the_programme_is_open_to_all(counter, planned):
     assert "Tapestry &lt;weaving&gt;" in listed
     assert visit not in listed
     assert f"/visit/{visit}?lang=zh" in stranger.get("/visit?lang=zh").text
+    stranger.get(f"/activities/{activity}.ics")
     shown = stranger.get(f"/activities/{activity}?lang=zh").text
+    assert not stranger.cookies, "nothing of this has a form"
     assert "余 2 位（共 2 位）" in shown
     assert "东厢" in shown
     assert "form-book" not in shown

@@ -172,7 +172,8 @@ class Counter:
             main = f'<h1>{title}</h1><p class="lead">{words}</p>'
             answer = Shown(Page(title, main), 503)
         response = self._response(request, asking, answer)
-        with_seal_key(response, request, key)
+        if isinstance(answer, Shown) and asking.seal and asking.seal in answer.page.main:
+            with_seal_key(response, request, key)  # no cookie before there is a form
         return response
 
     def _asking(self, request: Request, given: Form | PeopleError | None, key: str) -> Asking:
