@@ -34,6 +34,7 @@ from hall_app.web.limits.portions import Portions
 from hall_app.web.pages.catalogue import Small, catalogue_html, schema_records, shown_language
 from hall_app.web.pages.client import viser_client
 from hall_app.web.pages.door import content_security_policy, door_page
+from hall_app.web.pages.lost import lost_answer
 from hall_app.web.pages.static import page_files
 from hall_app.web.pages.still import still_jpeg
 from hall_app.web.pages.thumbnails import Thumbnails
@@ -82,6 +83,7 @@ def create_app(
     app.add_middleware(_HeadToo)
     app.add_middleware(Doorkeeper, addresses=addresses)
     app.add_middleware(Portions)
+    app.add_exception_handler(404, lambda request, error: lost_answer(house.content, request, error))
     answers = Answers()
     _add_page(app, house, answers)
     _add_files(app, house.scene.pieces)

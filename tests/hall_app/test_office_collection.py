@@ -321,6 +321,19 @@ def test_an_editor_drafts_and_does_not_publish(counter, chest):
     assert one.told(f"collection/{chest.name}")["draft"] is None
 
 
+def test_an_editor_does_not_move_what_stands_in_the_hall(counter, chest):
+    """By whichever way into exhibit.toml: to place is a curator's."""
+    key, one, journal = chest.name, clerk(counter, counter.people, Role.EDITOR), counter.people.journal
+    before = journal.entries(most=1)[0].id
+    moved = (chest / TOML).read_text("utf-8").replace("z = 2.0", "z = 2.5")
+    for act, given in (("fields", {"place.z": 2.5}), ("text", {"file": TOML, "text": moved})):
+        assert one.api(f"collection/{key}/{act}", given).status == 403
+        assert one.told(f"collection/{key}")["draft"] is None
+    found = [(one.act, one.refused) for one in journal.entries(most=9) if one.id > before]
+    assert found == [("place", True)] * 2
+    one.told(f"collection/{key}/fields", {"title.en": "Drafted"})
+
+
 def test_a_program_gives_numbers_as_numbers(curator, chest):
     key, given = chest.name, {"body.radius": 0.75, "tag": tag(curator, chest.name)}
     assert curator.told(f"collection/{key}/fields", given)["changed"] == ["body.radius"]

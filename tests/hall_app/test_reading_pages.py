@@ -93,6 +93,24 @@ def test_a_page_that_is_not_there_says_so_and_leads_on(shipped_hall):
         assert 'href="/culture?lang=en"' in answer.read().decode()
 
 
+@pytest.mark.parametrize(("lang", "title"), [("zh", "没有这一页"), ("en", "There is no such page")])
+@pytest.mark.parametrize("path", ["nothing", "culture/glossary/nothing", "research/nothing", "media/nothing"])
+def test_an_address_without_anything_is_a_page_to_a_reader_and_json_to_a_program(
+    shipped_hall, path: str, lang: str, title: str
+):
+    address = f"{shipped_hall.url}/{path}?lang={lang}"
+    found = {}
+    for kind in ("text/html,*/*;q=0.8", "application/json"):
+        with pytest.raises(urllib.error.HTTPError) as lost:
+            urllib.request.urlopen(urllib.request.Request(address, headers={"Accept": kind}), timeout=60)
+        with lost.value as answer:
+            assert answer.code == 404
+            found[answer.headers["content-type"].partition(";")[0]] = answer.read().decode()
+    assert f"<h1>{title}</h1>" in found["text/html"]
+    assert f'href="/catalogue?lang={lang}"' in found["text/html"]
+    assert set(json.loads(found["application/json"])) == {"detail"}
+
+
 @pytest.mark.parametrize(
     "path",
     [

@@ -18,7 +18,7 @@ from hall_app.house.house import House
 from hall_app.web.answers.packed import REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
 from hall_app.web.pages.catalogue import shown_language
-from hall_app.web.pages.frame import Frame
+from hall_app.web.pages.lost import lost_page
 from hall_app.web.reading.culture import Pictures, article_page, culture_page
 from hall_app.web.reading.glossary import glossary_page, weaves_page
 from hall_app.web.reading.research import data_file, method_file, research_page
@@ -31,14 +31,11 @@ LOOK_EVERY = 1.0  # [s] between two looks at what the survey publishes
 Make = Callable[[Content, str, Pictures], str]
 More = Callable[[], tuple[Entry, ...]]
 
-_LOST = {
-    "zh": ("没有这一页", "这篇文章不在这里，也许改了名字，或已撤下。", "看看全部文章"),
-    "en": (
-        "There is no such page",
-        "This article is not here; it may have another name now.",
-        "See all articles",
-    ),
+_NO_ARTICLE = {
+    "zh": "这篇文章不在这里，也许改了名字，或已撤下。",
+    "en": "This article is not here; it may have another name now.",
 }
+_ARTICLES = ("/culture", {"zh": "看看全部文章", "en": "See all articles"})
 
 
 def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures], more: More = tuple) -> None:
@@ -76,7 +73,7 @@ def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures],
         found = house.content.writing.article(article)
         if found is None:
             spoken = shown_language(house.content, lang)
-            return HTMLResponse(_lost(house.content, spoken), 404)
+            return HTMLResponse(lost_page(house.content, spoken, _NO_ARTICLE, (_ARTICLES,)), 404)
         return await told(
             request,
             f"article {article}",
@@ -86,14 +83,6 @@ def add_reading(app: FastAPI, house: House, pictures_of: Callable[[], Pictures],
 
     _add_research(app, house, pictures_of)
     _add_search(app, house, more)
-
-
-def _lost(content: Content, lang: str) -> str:
-    title, words, way = _LOST[lang]
-    return Frame(content.hall, lang, "", "/culture").page(
-        title,
-        f'<h1>{title}</h1><p class="lead">{words}</p><p class="doors"><a href="/culture?lang={lang}">{way}</a></p>',
-    )
 
 
 def _add_research(app: FastAPI, house: House, pictures_of: Callable[[], Pictures]) -> None:

@@ -97,6 +97,7 @@ class Desk:
     def _write(
         self, asking: Asking, key: str, files: Mapping[str, bytes | None], tags: Mapping[str, str]
     ) -> None:
+        self._check_place(asking, key, files.get(TOML))
         self.people.note(asking.person.id, "draft", key)
         try:
             with self.drafts.lock:
@@ -109,6 +110,15 @@ class Desk:
                     self.drafts.set(asking.person.id, key, files, tags)
         except OSError as error:
             raise PeopleError("content-write", why=error.strerror or str(error)) from error
+
+    def _check_place(self, asking: Asking, key: str, toml: bytes | None) -> None:
+        """Raises PeopleError, and writes it down, where someone moves an exhibit who may not."""
+        before = self.table(key)
+        if toml is None or not before or asking.person.may("place"):
+            return
+        if tomllib.loads(toml.decode("utf-8-sig")).get("place") != before.get("place"):
+            self.people.refuse(asking.person.id, "place", asking.path)
+            raise PeopleError("not-allowed")
 
 
 def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:
