@@ -251,6 +251,23 @@ def test_hours_for_visits_are_cut_into_slots(counter, people):
         assert one.api("visits", hours | {"minutes": minutes}).status == 400
 
 
+def test_two_who_change_an_event_at_once_do_not_undo_each_other(counter, people):
+    first, second = clerk(counter, people, Role.CURATOR), clerk(counter, people, Role.CURATOR)
+    key = first.told("events", EVENT)["id"]
+    page, other = (one.get(f"/office/events/{key}?lang=en") for one in (first, second))
+    assert first.send(page, "form-event", title_en="Mine").status == 200
+    refused = second.send(other, "form-event", title_en="Theirs")
+    assert refused.status == 409
+    assert "Somebody changed this since you looked at it" in refused.text
+    assert 'value="Theirs"' in refused.text
+    assert first.told(f"events/{key}")["title_en"] == "Mine"
+    assert second.send(refused, "form-event").status == 200
+    now = first.told(f"events/{key}")
+    assert now["title_en"] == "Theirs"
+    assert first.api(f"events/{key}", EVENT | {"seen": "0" * 16}).status == 409
+    first.told(f"events/{key}", EVENT | {"seen": now["mark"]})
+
+
 @pytest.mark.parametrize(
     "wrong", [{"begins": "tomorrow"}, {"places": 0}, {"places": "many"}, {"party": 9}, {"title_en": ""}]
 )

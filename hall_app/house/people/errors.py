@@ -160,6 +160,11 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} 在此期间已被改动。下面并列两个版本，请合并后再保存。",
         "{name} was changed meanwhile. Both versions stand below: put them together, and save again.",
     ),
+    "occasion-changed": (
+        "在您查看之后，此场已被他人改动。表中仍是您所写的；再保存一次，即以您的为准。",
+        "Somebody changed this since you looked at it. The form keeps what you wrote: save once more to put it in place "
+        "of theirs.",
+    ),
     "undo-changed": (
         "{name} 此后又被改动，无法撤销；请先撤销较新的改动。",
         "{name} was changed again since, so this cannot be undone: undo the newer change first.",

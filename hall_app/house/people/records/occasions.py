@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+import hashlib
+import json
+from dataclasses import asdict, astuple, dataclass, replace
 from datetime import datetime
 
 from sqlalchemy import Connection, func, select, update
@@ -33,6 +35,12 @@ class Plan:
     text_en: str = ""
     place_zh: str = ""
     place_en: str = ""
+
+    @property
+    def mark(self) -> str:
+        """What a form brings back that showed it; another for any change."""
+        told = [value.isoformat() if isinstance(value, datetime) else value for value in astuple(self)]
+        return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]
 
     def checked(self, least: int = 1) -> Plan:
         """As it is kept. least: places that it must have, for who has booked or waits. Raises PeopleError."""
@@ -109,18 +117,23 @@ class Occasions:
             connection.execute(tables.occasion.insert(), rows)
         return tuple(row["id"] for row in rows)
 
-    def change(self, who: str, key: str, plan: Plan) -> None:
-        """Who waits gets places that were added. Raises PeopleError, also for fewer places than are booked, or than a
-        party that waits needs: the list is served in order, and nobody would ever pass it."""
+    def change(self, who: str, key: str, plan: Plan, seen: str = "") -> None:
+        """Who waits gets places that were added. seen: the mark of the plan that was looked at, "" for none.
+
+        Raises PeopleError, also where it is another by now, and for fewer places than are booked, or than a party that
+        waits needs: the list is served in order, and nobody would ever pass it.
+        """
         table, waits = tables.occasion, tables.booking
         with self._ledger.change(who, "events", key) as connection:
             lock = update(table).where(table.c.id == key).values(turns=table.c.turns)
-            taken = connection.execute(lock.returning(table.c.taken)).scalar_one_or_none()
-            if taken is None:
+            row = connection.execute(lock.returning(*table.c)).one_or_none()
+            if row is None:
                 raise PeopleError("no-occasion")
+            if seen not in ("", _occasion(row, 0).plan.mark):
+                raise PeopleError("occasion-changed")
             mine = (waits.c.occasion == key, waits.c.waiting == 1)
             party = connection.execute(select(func.max(waits.c.size)).where(*mine)).scalar_one() or 0
-            kept = asdict(plan.checked(max(1, taken, party)))
+            kept = asdict(plan.checked(max(1, row.taken, party)))
             connection.execute(update(table).where(table.c.id == key).values(**kept))
             promote(connection, key)
 

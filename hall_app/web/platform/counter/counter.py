@@ -66,6 +66,7 @@ STATUS = {
     "quota": 413,
     "changed": 409,
     "draft-changed": 409,
+    "occasion-changed": 409,
     "undo-changed": 409,
 }
 _REFUSED = ("请再试一次", "Please try again")

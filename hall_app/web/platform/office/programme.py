@@ -80,7 +80,8 @@ class _Rooms:
 
     def change(self, asking: Asking) -> dict[str, Any]:
         key = asking.names["key"]
-        self._people.occasions.change(asking.person.id, key, _plan(asking))
+        plan, seen = _plan(asking), asking.form.get("seen", "")
+        self._people.occasions.change(asking.person.id, key, plan, seen)
         return {"id": key}
 
     def call_off(self, asking: Asking) -> dict[str, Any]:
@@ -164,7 +165,8 @@ class _Rooms:
                 if one.cancelled
                 else button(asking, "off", f"{at}/off", word("取消此场", "Call it off"), hidden={})
             )
-            sent = form(asking, "event", at, _fields(asking, one), word("保存", "Save"))
+            words, hidden = word("保存", "Save"), {"seen": one.plan.mark}
+            sent = form(asking, "event", at, _fields(asking, one), words, hidden=hidden)
             changed = f'<h2 class="small">{word("更改", "Change")}</h2><div class="desk">{sent}{off}</div>'
         lead = f"{told_time(one.plan.begins, asking.lang)} · {one.taken} / {one.plan.places}"
         lead += f" · {word('已取消', 'called off')}" if one.cancelled else ""
@@ -329,4 +331,4 @@ def _fields(
 def _told(one: Occasion) -> dict[str, Any]:
     plan = asdict(one.plan) | {"begins": one.plan.begins.isoformat(), "ends": one.plan.ends.isoformat()}
     counts = {"taken": one.taken, "waiting": one.waiting, "cancelled": one.cancelled is not None}
-    return {"id": one.id} | plan | counts
+    return {"id": one.id, "mark": one.plan.mark} | plan | counts
