@@ -162,8 +162,8 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
     ),
     "occasion-changed": (
         "在您查看之后，此场已被他人改动。表中仍是您所写的；再保存一次，即以您的为准。",
-        "Somebody changed this since you looked at it. The form keeps what you wrote: save once more to put it in place "
-        "of theirs.",
+        "Somebody changed this since you looked at it. The form keeps what you wrote: save once more to put it "
+        "in place of theirs.",
     ),
     "undo-changed": (
         "{name} 此后又被改动，无法撤销；请先撤销较新的改动。",
