@@ -127,6 +127,20 @@ def cloth(axes: Axes) -> None:
     axes.legend(frameon=False)
 
 
+def learn(axes: Axes) -> None:
+    """Of the first scene: milliseconds, coarse physics included, against the mean error, a point a row."""
+    scene, found = next(iter(read("learn")["scenes"].items()))
+    for name, rows in found["rows"].items():
+        if name == "coarse":  # its vertices are others
+            continue
+        row = rows[0]
+        colour = RED if name == "ours" else GOLD if name.startswith(("physics", "reference")) else BLUE
+        axes.plot(row["total_ms"], row["mean_mm"], "o", color=colour)
+        axes.annotate(name, (row["total_ms"], row["mean_mm"]), (4, 3), textcoords="offset points", fontsize=7)
+    loglog(axes, "ms", "mm")
+    axes.set_title(scene, fontsize=9)
+
+
 def light(axes: Axes) -> None:
     engines = read("light")["engines"]
     names = list(engines["nearest"])
@@ -150,5 +164,6 @@ def survey(axes: Axes) -> None:
 
 
 PLOTS = {
-    one.__name__: one for one in (walking, crowd, page, look, garments, weave, mesh, cloth, light, survey)
+    one.__name__: one
+    for one in (walking, crowd, page, look, garments, weave, mesh, cloth, learn, light, survey)
 }

@@ -209,6 +209,31 @@ def cloth() -> Rows:
     return lines
 
 
+def learn() -> Rows:
+    """Of each scene ours, the best beside it without a network, and the fine physics both are measured by."""
+    lines: Rows = []
+    names = {"flag": "旗", "teapot": "茶壶", "hanging": "悬布"}
+    for scene, found in read("learn")["scenes"].items():
+        rows = {name: row[0] for name, row in found["rows"].items()}
+        plain = min(
+            (rows[name] for name in ("linear", "biharmonic", "local_frames")), key=lambda r: r["mean_mm"]
+        )
+        figures = "; ".join(
+            f"{row['mean_mm']:.2f} mm, {row['total_ms']:.0f} ms"
+            for row in (rows["ours"], plain, rows["reference"])
+        )
+        lines.append(
+            (
+                both(
+                    f"{names[scene]}：平均误差与每帧用时，学习所得、不学习者之最佳、细网格（半步长之差）",
+                    f"{scene}: mean error, a frame; learned, the best without learning, fine (against half its step)",
+                ),
+                figures,
+            )
+        )
+    return lines
+
+
 def light() -> Rows:
     record, engines = (
         json.loads((ROOT / "assets/room/room.json").read_text("utf-8")),
@@ -387,6 +412,22 @@ SECTIONS = (
         both(
             "横轴：每帧毫秒；纵轴：离最细网格的平均距离（毫米）。两轴皆取对数。",
             "Across: milliseconds a frame; up: mean distance from the finest mesh [mm]; both logarithmic.",
+        ),
+    ),
+    Section(
+        "learn",
+        both("学习所得的布", "Learned cloth"),
+        both(
+            "粗网格模拟，细褶由网络补上；只在没有学过的序列上量，与细网格相比。",
+            "Simulated coarse, finer folds by a network; measured against fine cloth on sequences not learned from.",
+        ),
+        ("python tests/bench/bench_learn.py FOLDER --json docs/figures/learn.json",),
+        learn,
+        ["learn"],
+        both(
+            "横轴：每帧毫秒，含粗网格模拟；纵轴：平均误差（毫米）。两轴皆取对数。红为本馆所学，黄为模拟，蓝为其他。",
+            "Across: milliseconds a frame, coarse physics included; up: mean error [mm]; both logarithmic. Red: ours, "
+            "yellow: physics, blue: others.",
         ),
     ),
     Section(
