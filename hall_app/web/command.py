@@ -178,7 +178,9 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     house.survey_suggestions, house.survey_tokens = survey.suggestions, lambda: survey.store.tokens
     house.survey_standing, house.survey_made = survey.standing, survey.made
     house.survey_answers = survey
-    house.holdings = Holdings(content.folder, arguments.accounts or arguments.data, arguments.data)
+    house.holdings = Holdings(
+        content.folder, arguments.data, arguments.accounts or arguments.data, arguments.data
+    )
     house.quota = int(arguments.quota * 1e9)
     for problem in survey.problems:
         _say(f"  left out: {problem}")

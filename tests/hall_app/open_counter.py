@@ -61,7 +61,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
         survey_standing=survey.standing,
         survey_made=survey.made,
         survey_answers=survey,
-        holdings=Holdings(content, data, data),
+        holdings=Holdings(content, data, data, data),
     )
     counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, suggestions)
     add_platform(app, house, people)

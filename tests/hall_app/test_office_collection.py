@@ -6,6 +6,7 @@ import io
 import json
 import tomllib
 import uuid
+from dataclasses import replace
 
 import pytest
 from content_house import EXHIBIT, add_exhibit
@@ -14,7 +15,9 @@ from PIL import Image
 
 from hall_app.check import check
 from hall_app.content import load
-from hall_app.house.people import Role
+from hall_app.house.drafts import Drafts, Examination, Publication, Shelf
+from hall_app.house.people import People, PeopleError, Role
+from hall_app.house.safekeeping import ArchiveError, Holdings, back_up, restore
 
 TOML = "exhibit.toml"
 
@@ -231,6 +234,41 @@ def test_history_tells_differences_and_undo_takes_them_back(curator, chest):
         curator.told(f"collection/{key}/undo", {"revision": one["id"]})
     assert (chest / TOML).read_bytes() == before
     assert [one["act"] for one in curator.told(f"collection/{key}/history")] == ["undo"] * 2 + ["publish"] * 2
+
+
+def test_a_restored_house_goes_on_drafting_and_undoing(counter, curator, chest, tmp_path):
+    key, before = chest.name, (chest / TOML).read_bytes()
+    curator.told(f"collection/{key}/fields", {"title.en": "Published"})
+    curator.bring(key, [("Front view.png", png())], use="media")
+    publish(curator, key)
+    curator.told(f"collection/{key}/fields", {"title.en": "In a draft"})
+    file, data = tmp_path / "all.zip", tmp_path / "data"
+    back_up(file, counter.house.holdings)
+    house = Holdings(tmp_path / "content", data, data, data)
+    restore(file, house)
+    with pytest.raises(ArchiveError, match="an office has worked there already"):
+        restore(file, replace(house, content=tmp_path / "second", accounts=tmp_path, answers=tmp_path))
+    drafts = Drafts(house.content, data, Shelf(data / "shelf"))
+    assert "In a draft" in drafts.text(key, TOML)
+    drafts.drop(key)
+    people = People(data)
+    try:
+        publication = Publication(drafts, Examination(house.content), people)
+        (one,) = people.revisions.of(key)
+        publication.undo("console", one.id)
+        assert (house.content / "exhibits" / key / TOML).read_bytes() == before
+        publication.undo("console", people.revisions.of(key)[0].id)
+        assert b"Published" in (house.content / "exhibits" / key / TOML).read_bytes()
+
+        inside = drafts.shelf.put(b"not of this exhibit")
+        with people.revisions.adding("console", "publish", key, {"../../evil.txt": (inside, "")}):
+            pass  # as a history would have it that somebody made up
+        with pytest.raises(PeopleError) as refused:
+            publication.undo("console", people.revisions.of(key)[0].id)
+    finally:
+        people.close()
+    assert refused.value.key == "no-file"
+    assert not (house.content / "evil.txt").exists()
 
 
 def test_a_new_exhibit_from_draft_to_hall_and_back(counter, curator):

@@ -151,6 +151,15 @@ def test_a_calendar_takes_it_over(counter, planned):
         assert str(event["url"]).startswith(f"{counter.url}/activities/{activity}")
 
 
+def test_a_calendar_that_has_it_is_told_when_it_is_called_off(counter, planned):
+    activity = planned()
+    counter.people.occasions.call_off("console", activity)
+    answer = Visitor(counter.url).ask("GET", "/activities.ics")
+    found = {str(e["uid"]): str(e["status"]) for e in Calendar.from_ical(answer.body).walk("VEVENT")}
+    assert found[f"{activity}-hall"] == "CANCELLED"
+    assert activity not in Visitor(counter.url).get("/activities").text, "nobody books it any more"
+
+
 @pytest.mark.parametrize("asked", ["缂丝", "工作坊", "tapestry", "WEAVING", "剪刀", "scissors", "东厢"])
 @pytest.mark.parametrize("lang", ["zh", "en"])
 def test_an_activity_is_found_in_either_language(counter, planned, asked, lang):

@@ -74,7 +74,7 @@ def house(database, tmp_path) -> Holdings:
         people.answer_codes.keep(two.id, code)
         store.audit.note("export", "two answers")
         store.tokens.make("for the paper")
-    return Holdings(write_content(tmp_path / "content"), database, database)
+    return Holdings(write_content(tmp_path / "content"), tmp_path / "data", database, database)
 
 
 @pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.slow)])
@@ -82,7 +82,7 @@ def elsewhere(tmp_path, request) -> Holdings:
     """Where nothing is yet, in a database of the same kind as the house's and of the other."""
     data = tmp_path / "other" / "data"
     other = data if request.param == "sqlite" else request.getfixturevalue("postgres")()
-    return Holdings(tmp_path / "other" / "content", other, other)
+    return Holdings(tmp_path / "other" / "content", data, other, other)
 
 
 def told(house: Holdings) -> dict[str, object]:
@@ -132,9 +132,9 @@ def test_what_was_revoked_since_is_not_good_again(tmp_path):
         person = people.accounts.sign_up("one@example.org", PASSWORD)
         _, token = people.sessions.sign_in("one@example.org", PASSWORD, "", office=False)
         code = people.accounts.code_for("console", person.id)
-    back_up(file, Holdings(write_content(tmp_path / "content"), data, data))
+    back_up(file, Holdings(write_content(tmp_path / "content"), data, data, data))
     other = tmp_path / "other"
-    restore(file, Holdings(other / "content", other / "data", other / "data"))
+    restore(file, Holdings(other / "content", other / "data", other / "data", other / "data"))
     with closing(People(other / "data")) as people:
         assert people.sessions.find(token, office=False) is None
         with pytest.raises(PeopleError):
@@ -148,8 +148,8 @@ def small(tmp_path) -> tuple[Path, Holdings]:
     data, file, other = tmp_path / "data", tmp_path / "all.zip", tmp_path / "other"
     with closing(People(data)) as people, closing(Store(data)):
         people.accounts.make("console", "one@example.org")
-    back_up(file, Holdings(write_content(tmp_path / "content"), data, data))
-    return file, Holdings(other / "content", other / "data", other / "data")
+    back_up(file, Holdings(write_content(tmp_path / "content"), data, data, data))
+    return file, Holdings(other / "content", other / "data", other / "data", other / "data")
 
 
 def nothing_came(house: Holdings) -> bool:
@@ -212,7 +212,7 @@ def less(members, manifest) -> None:
 
 
 def later(members, manifest) -> None:
-    manifest["format"] = 2
+    manifest["format"] = 3
 
 
 @pytest.mark.parametrize(
@@ -220,7 +220,19 @@ def later(members, manifest) -> None:
     [
         *map(
             moved,
-            ("content/../../evil", "/evil", "content", "evil.txt", "content\\..\\evil", "content//a", "c:/a"),
+            (
+                "content/../../evil",
+                "/evil",
+                "content",
+                "evil.txt",
+                "content\\..\\evil",
+                "content//a",
+                "c:/a",
+                "drafts/../evil",
+                "shelf/..",
+                "shelf/a/evil",
+                "desk/evil",
+            ),
         ),
         altered,
         longer,
@@ -240,7 +252,8 @@ def test_a_file_that_somebody_made_up_is_refused(small, change):
 
 def test_nothing_is_overwritten(small, tmp_path):
     file, other = small
-    here = Holdings(tmp_path / "content", tmp_path / "data", tmp_path / "data")
+    data = tmp_path / "data"
+    here = Holdings(tmp_path / "content", data, data, data)
     kept = file.read_bytes()
     with pytest.raises(ArchiveError, match="exists already"):
         back_up(file, here)
@@ -280,7 +293,7 @@ def test_a_link_to_a_folder_is_told_and_not_left_out(tmp_path):
         content = write_content(tmp_path / "content")
     (content / "elsewhere").symlink_to(tmp_path)
     with pytest.raises(ArchiveError, match="elsewhere: a link to a folder"):
-        back_up(tmp_path / "all.zip", Holdings(content, data, data))
+        back_up(tmp_path / "all.zip", Holdings(content, data, data, data))
     assert not (tmp_path / "all.zip").exists()
 
 

@@ -19,6 +19,7 @@ from survey.store.database import now
 __all__ = [
     "ANSWERS",
     "CONTENT",
+    "DESK",
     "PEOPLE",
     "ArchiveError",
     "Manifest",
@@ -28,6 +29,7 @@ __all__ = [
 ]
 
 CONTENT, PEOPLE, ANSWERS = "content", "people.sqlite", "survey.sqlite"  # what is in it, below its root
+DESK = ("drafts", "shelf")  # and of the office's, since format 2
 _MANIFEST = "backup.json"
 _LARGEST_MANIFEST = 64 << 20  # [bytes]
 _AT_ONCE = 1 << 20  # [bytes]
@@ -59,7 +61,7 @@ class Manifest(BaseModel):
     """made: when, in UTC; program: its version; people, answers: how many; files: by their names in the archive."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-    format: Literal[1] = 1
+    format: Literal[1, 2] = 2
     made: str
     program: str
     people: int = Field(ge=0)
@@ -154,11 +156,12 @@ def _manifest(archive: zipfile.ZipFile) -> Manifest:
 
 
 def _has_its_place(name: str) -> bool:
-    """Whether it is one of the databases or lies in the content: nothing is ever written elsewhere."""
+    """Whether it is a database or lies in the content or with the office: nothing is ever written elsewhere."""
     path = PurePosixPath(name)
     inside = path.parts[:1] == (CONTENT,) and len(path.parts) > 1 and ".." not in path.parts
+    desk = path.parts[:1] in ((part,) for part in DESK) and len(path.parts) == 2 and path.name != ".."
     plain = name == path.as_posix() and "\\" not in name and ":" not in name and name.isprintable()
-    return plain and (inside or name in (PEOPLE, ANSWERS))
+    return plain and (inside or desk or name in (PEOPLE, ANSWERS))
 
 
 def _put(archive: zipfile.ZipFile, name: str, source: Path) -> Member:

@@ -18,12 +18,13 @@ Write the content folder, the accounts (people, roles, activities, reservations,
 while the hall is open or not. From PostgreSQL, too: the databases are in it as SQLite files, which any program reads.
 The file is a ZIP that holds the digest of each of its parts; it is read back before it appears under its name, and is
 its owner's alone. It holds addresses and hashes of passwords: keep it as you keep the data folder.
-Left out are the office's drafts and the former files of its history: publish what is to be kept; what was published
-before cannot be undone in a restored house. Left out, too, is what is made anew: caches, bakes of the data folder."""
+The office's drafts and its history are in it, so that in a restored house one goes on drafting and undoing. Left out is
+what is made anew: caches, bakes of the data folder."""
 
 _RESTORE = """\
-Make a house of a file that `hall backup` wrote: content folder, accounts, answers. Nothing is overwritten: the content
-folder is new or empty, and so are both databases. The whole file is checked before anything is put anywhere.
+Make a house of a file that `hall backup` wrote: content folder, accounts, answers, the office's drafts and history.
+Nothing is overwritten: the content folder is new or empty, both databases are empty, nobody drafts in --data. The whole
+file is checked before anything is put anywhere.
 Nobody is signed in afterwards, and one-time codes are good no more. What people deleted or withdrew after the backup
 was made is there again: delete it once more."""
 
@@ -83,7 +84,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _holdings(arguments: argparse.Namespace, content: Path) -> Holdings:
     from hall_app.house.safekeeping import Holdings
 
-    return Holdings(content, arguments.accounts or arguments.data, arguments.db or arguments.data)
+    return Holdings(
+        content, arguments.data, arguments.accounts or arguments.data, arguments.db or arguments.data
+    )
 
 
 def _told(file: Path, manifest: Manifest) -> str:

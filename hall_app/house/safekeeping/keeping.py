@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import closing
@@ -13,6 +14,7 @@ from hall_app.house.people import People, existing_people
 from hall_app.house.safekeeping.archive import (
     ANSWERS,
     CONTENT,
+    DESK,
     PEOPLE,
     ArchiveError,
     Manifest,
@@ -27,9 +29,10 @@ __all__ = ["Holdings", "back_up", "restore"]
 
 @dataclass(frozen=True)
 class Holdings:
-    """content: folder; accounts, answers: the data folder, or the URL of a database."""
+    """content, data: folders; accounts, answers: the data folder, or the URL of a database."""
 
     content: Path
+    data: Path
     accounts: Path | str
     answers: Path | str
 
@@ -46,20 +49,32 @@ def back_up(file: Path, house: Holdings) -> Manifest:
             accounts = people.copy_to(people_copy)
         with closing(existing_store(house.answers)) as store:
             answers = store.copy_to(answers_copy)
-        members = [(PEOPLE, people_copy), (ANSWERS, answers_copy), *_content(house.content)]
+        # Drafts before what they need, which stays on the shelf as long as they do.
+        members = [
+            (PEOPLE, people_copy),
+            (ANSWERS, answers_copy),
+            *_desk(house.data),
+            *_content(house.content),
+        ]
         return write_archive(file, members, people=accounts, answers=answers)
 
 
 def restore(file: Path, house: Holdings) -> Manifest:
-    """Make a house of the file. Nothing is overwritten: the content folder is absent or empty, the databases empty.
+    """Make a house of the file. Nothing is overwritten: the content folder is absent or empty, the databases empty, and
+    the data folder without drafts and history.
 
-    The file is checked and unpacked, and all three places are, before anything is put anywhere.
+    The file is checked and unpacked, and all these places are, before anything is put anywhere.
     Raises ArchiveError, StoreError.
     """
     if house.content.exists() and (not house.content.is_dir() or any(house.content.iterdir())):
         raise ArchiveError(
             f"{house.content}: is there already – give --content a folder that is new or empty"
         )
+    for part in DESK:
+        if (house.data / part).is_dir() and any((house.data / part).iterdir()):
+            raise ArchiveError(
+                f"{house.data / part}: an office has worked there already – give --data another folder"
+            )
     house.content.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=house.content.parent, prefix=".restore-") as work:
         folder = Path(work)
@@ -69,6 +84,9 @@ def restore(file: Path, house: Holdings) -> Manifest:
             store.see_that_it_takes(folder / ANSWERS)
             people.take_copy(folder / PEOPLE)
             store.take_copy(folder / ANSWERS)
+        for part in DESK:
+            if (folder / part).is_dir():
+                shutil.copytree(folder / part, house.data / part, dirs_exist_ok=True)
         if house.content.exists():
             house.content.rmdir()
         os.replace(folder / CONTENT, house.content)
@@ -80,6 +98,15 @@ def _see_that_it_is_new(file: Path) -> None:
         raise ArchiveError(f"{file}: exists already – give another name, a backup never overwrites one")
     if not file.parent.is_dir():
         raise ArchiveError(f"{file}: no folder {file.parent} – make it, or give another place")
+
+
+def _desk(data: Path) -> Iterator[tuple[str, Path]]:
+    """Name and file of the office's drafts, and of what they and the history need."""
+    for part in DESK:
+        if (data / part).is_dir():
+            for path in sorted((data / part).iterdir()):
+                if path.is_file() and not path.name.startswith("."):
+                    yield f"{part}/{path.name}", path
 
 
 def _content(folder: Path) -> Iterator[tuple[str, Path]]:

@@ -138,15 +138,6 @@ class Accounts:
             end_all(connection, person.id)
         return person
 
-    def verify(self, person: Person, secret: str) -> None:
-        """Confirm one's own account by the code that was handed out for it. Raises PeopleError."""
-        with self._ledger.change(person.id, "use code", person.id) as connection:
-            row = _open_code(connection, secret)
-            if row is None or row.user != person.id:
-                raise PeopleError("code")
-            connection.execute(delete(tables.code).where(tables.code.c.id == row.id))
-            _set(connection, person.id, verified=now())
-
     def begin_second_factor(self, person: Person, password: str, secret: str, code: str) -> tuple[str, ...]:
         """Share a secret with an app that has just shown a right code. The recovery codes. Raises PeopleError."""
         self._prove(person.id, "second factor", password)

@@ -87,10 +87,14 @@ class Occasions:
     def __init__(self, ledger: Ledger) -> None:
         self._ledger = ledger
 
-    def to_come(self, kind: str = "", *, past: bool = False) -> tuple[Occasion, ...]:
-        """Those that are not over, of that kind or all, the next first; past: over or off, the last first."""
+    def to_come(self, kind: str = "", *, past: bool = False, off: bool = False) -> tuple[Occasion, ...]:
+        """Those that are not over, of that kind or all, the next first; past: over or off, the last first.
+
+        off: those to come that were called off as well, for calendars that have them already.
+        """
         table, moment = tables.occasion, now()
-        open_now = (table.c.ends > moment) & table.c.cancelled.is_(None)
+        open_now = table.c.ends > moment
+        open_now = open_now if off else open_now & table.c.cancelled.is_(None)
         query = select(table).where(~open_now if past else open_now)
         query = query.where(table.c.kind == kind) if kind else query
         order = table.c.begins.desc() if past else table.c.begins

@@ -123,7 +123,8 @@ class _Rooms:
             self._people.note(asking.person.id, "backup", f"restore {path.name}")
             home.mkdir(mode=0o700, parents=True)
             try:
-                made = restore(path, Holdings(home / "content", home / "data", home / "data"))
+                data = home / "data"
+                made = restore(path, Holdings(home / "content", data, data, data))
             except (ArchiveError, SurveyError, OSError) as error:
                 shutil.rmtree(home, ignore_errors=True)
                 raise PeopleError("backup-failed", why=_plain(error, self._folder)) from None
@@ -139,9 +140,9 @@ class _Rooms:
         word = asking.word
         title = word("备份", "Backup")
         told = word(
-            "一个文件含展厅内容、账户与答卷，逐部分校验。其中有邮箱与密码散列，请像数据文件夹一样保管。",
-            "One checked file with content, accounts and answers. It holds addresses and hashes of passwords: "
-            "keep it as you keep the data folder.",
+            "一个文件含展厅内容、草稿与历史、账户与答卷，逐部分校验。其中有邮箱与密码散列，请像数据文件夹一样保管。",
+            "One checked file with content, drafts and history, accounts and answers. It holds addresses and "
+            "hashes of passwords: keep it as you keep the data folder.",
         )
         refused = asking.form.get("of", "") if asking.refusal else ""
         why = (

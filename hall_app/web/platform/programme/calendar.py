@@ -13,7 +13,7 @@ __all__ = ["calendar_file"]
 
 
 def calendar_file(asking: Asking, found: Iterable[Occasion], name: str) -> Download:
-    """In the visitor's language; one that was called off says so."""
+    """In the visitor's language; one that was called off says so, which takes it out of calendars that had it."""
     from icalendar import Calendar, Event
 
     calendar = Calendar()
@@ -21,7 +21,7 @@ def calendar_file(asking: Asking, found: Iterable[Occasion], name: str) -> Downl
     calendar.add("version", "2.0")
     for one in found:
         event = Event()
-        event.add("uid", f"{one.id}@{asking.site.partition('://')[2]}")
+        event.add("uid", f"{one.id}-hall")  # by whatever name the site is reached
         event.add("dtstamp", now())
         event.add("dtstart", one.plan.begins)
         event.add("dtend", one.plan.ends)

@@ -21,7 +21,7 @@ def add_programme(counter: Counter) -> None:
         return visit_page(asking, people.occasions.to_come("visit"))
 
     def all_activities(asking: Asking) -> Download:
-        return calendar_file(asking, people.occasions.to_come("activity"), "activities.ics")
+        return calendar_file(asking, people.occasions.to_come("activity", off=True), "activities.ics")
 
     def one(asking: Asking) -> Download:
         occasion = people.occasions.of(asking.names["key"])
