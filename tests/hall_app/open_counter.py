@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import SimpleNamespace
@@ -39,7 +39,10 @@ class OpenCounter:
 
 
 @contextlib.contextmanager
-def open_counter(work: Path) -> Iterator[OpenCounter]:
+def open_counter(
+    work: Path, around: Callable[[FastAPI], Callable[..., Any]] = lambda app: app
+) -> Iterator[OpenCounter]:
+    """around: what is put round the application."""
     port, app, data = free_port(), FastAPI(), work / "data"
     content = make_house(work / "content")
     (content / "questionnaires").mkdir()
@@ -65,7 +68,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
     )
     counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, suggestions)
     add_platform(app, house, people)
-    server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
+    server = uvicorn.Server(uvicorn.Config(around(app), port=port, log_level="warning"))
     thread = threading.Thread(target=server.run)
     thread.start()
     end = time.monotonic() + OPENING
