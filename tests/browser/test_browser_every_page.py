@@ -9,7 +9,7 @@ from test_browser_office import ANSWERS, OFFICE, PROGRAMME
 from test_browser_reading import ASKING, PAGES
 
 from hall_app.content import load
-from hall_app.house.house import House
+from hall_app.house import House
 from hall_app.house.people import People
 from hall_app.web import create_app
 from hall_app.web.platform.office import access
