@@ -7,6 +7,7 @@ import json
 import event_loop
 import pytest
 from office_clerk import clerk
+from open_counter import open_counter
 
 from hall_app.content import load
 from hall_app.house.baking import Bake, BakingQueue
@@ -58,8 +59,15 @@ def test_nothing_but_backups_is_handed_out(administrator, name):
     assert administrator.api(f"backups/{name}/file").status == 404
 
 
-def test_answers_are_counted_and_handed_out(counter):
-    one = clerk(counter, counter.people, Role.RESEARCHER)
+@pytest.fixture
+def unasked(tmp_path, quick_hashes):
+    """A counter of its own: nobody has answered anything there."""
+    with open_counter(tmp_path) as found:
+        yield found
+
+
+def test_answers_are_counted_and_handed_out(unasked):
+    one = clerk(unasked, unasked.people, Role.RESEARCHER)
     (told,) = one.told("questionnaires")
     assert (told["id"], told["answers"]) == ("garment", 0)
     page = one.get("/office/questionnaires?lang=en").text
