@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from urllib.parse import quote
 
 import event_loop
 import pytest
@@ -10,7 +11,7 @@ from office_clerk import clerk
 from open_counter import open_counter
 
 from hall_app.content import load
-from hall_app.house.baking import Bake, BakingQueue
+from hall_app.house.baking import ROOM, Bake, BakingQueue
 from hall_app.house.people import People, Role
 from hall_app.house.safekeeping import check_archive
 
@@ -106,7 +107,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         builds.append(Slow())
         return builds[-1]
 
-    queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake("room", "2", patient=True))
+    queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake(ROOM, "2", patient=True))
     counter.house.queue = queue
     try:
         event_loop.run(queue.want(wanted))
@@ -118,7 +119,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         event_loop.run(queue.want(wanted))
         assert builds[0].ended
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")} == {
-            "room": "running",
+            ROOM: "running",
             "chest": "failed",
         }
         one.told("bakes/chest/again", {})
@@ -126,5 +127,9 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         event_loop.run(queue.want(wanted))
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
         assert one.api("bakes/nothing/stop", {}).status == 400
+        page = one.get("/office/bakes")
+        assert "展厅灯光" in page.text
+        one.send(page, f"/office/bakes/{quote(ROOM)}/stop")
+        assert [bake.name for bake in queue.stopped()] == [ROOM]
     finally:
         counter.house.queue = None

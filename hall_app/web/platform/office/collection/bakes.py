@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 from typing import Any
+from urllib.parse import quote
 
 from hall_app.content.problems import in_language
 from hall_app.house.baking import ROOM
@@ -59,7 +60,9 @@ class Bakes:
                 if one["state"] == "failed"
                 else ("stop", word("停止", "Stop"))
             )
-            deed = button(asking, act, f"/office/bakes/{one['name']}/{act}", words, about=name, hidden={})
+            deed = button(
+                asking, act, f"/office/bakes/{quote(one['name'])}/{act}", words, about=name, hidden={}
+            )
             line = escape(in_language(one["line"], asking.lang))
             lines.append((escape(name), states[one["state"]], line, deed))
         heads = (
