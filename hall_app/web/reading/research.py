@@ -171,6 +171,7 @@ def _all(one: Measured, lang: str) -> str:
     if not count:
         return ""
     lines = Part(
+        text="",
         head=("Measured", "Figure", "Command"),
         row=tuple((line.what, line.value, line.command) for line in one.line),
     )
