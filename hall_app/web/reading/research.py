@@ -192,7 +192,7 @@ def _table(one: Part, name: str) -> str:
     """A table that scrolls by itself where the page is narrower. A blank is no heading."""
     head = "".join(f'<th scope="col">{escape(cell)}</th>' if cell else "<td></td>" for cell in one.head)
     rows = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in one.row)
-    return f"""<div class="wide" role="region" tabindex="0" aria-label="{escape(name)}"><table class="numbers">
+    return f"""<div class="wide" role="group" tabindex="0" aria-label="{escape(name)}"><table class="numbers">
 <thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"""
 
 
