@@ -36,7 +36,7 @@ def answered(folder: Path) -> dict[str, str]:
         seen.add(data)
         words = [sys.executable, "-m", "sim_core.cli", "weave", str(path), "--json"]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
-        told[str(path)] = "" if done.returncode == 0 else done.stderr.strip()
+        told[str(path)] = "" if done.returncode == 0 else done.stderr.strip().replace(f"{folder}/", "")
     return told
 
 
