@@ -3,6 +3,7 @@
 import warnings
 
 import numpy as np
+from bench.signature import signed
 from exact_delaunay import delaunay_faults
 
 from sim_core.mesh import panel_mesh
@@ -164,7 +165,7 @@ def main() -> int:
     told = {"polygons": args.count, "with_holes": holes, "bad": len(bad), "faults": bad}
     print(f"{args.count} polygons, {holes} with holes: {len(bad)} bad meshes")
     if args.json:
-        args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+        args.json.write_text(json.dumps(signed(told), indent=1) + "\n", "utf-8")
     return 1 if bad else 0
 
 

@@ -142,7 +142,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     from hall_app.house.people import People
     from hall_app.house.safekeeping import Holdings
     from hall_app.web.app import create_app
-    from hall_app.web.platform import KEEP_CODE
+    from hall_app.web.platform import KEEP_CODE, follow_withdrawals
     from survey import Ways, mount
     from survey.web import Running
 
@@ -178,6 +178,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     house.survey_suggestions, house.survey_tokens = survey.suggestions, lambda: survey.store.tokens
     house.survey_standing, house.survey_made = survey.standing, survey.made
     house.survey_answers = survey
+    follow_withdrawals(survey, people)
     house.holdings = Holdings(
         content.folder, arguments.data, arguments.accounts or arguments.data, arguments.data
     )

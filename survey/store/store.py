@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, wait
 from contextlib import contextmanager
 from datetime import date, datetime
@@ -67,6 +67,7 @@ class Store:
         self.tokens = Tokens(self._write, self._read)
         self.audit = Audit(self._write, self._read)
         self.file = self._place.file
+        self.withdrawn: Callable[[str], None] = _nobody_asks  # is told the id of what was taken back
         self._eraser = None if self.file is None else Eraser(self.file, self._alone, self._write)
         if self._eraser is not None and self._left():
             self.settle(OPENING)
@@ -179,6 +180,7 @@ class Store:
             erased = withdraw(connection, questionnaire, submission)
         if erased is False:
             return None
+        self.withdrawn(submission)
         if self._eraser is not None and isinstance(erased, Erased):
             return self._eraser.ask(erased)
         done: Future[bool] = Future()
@@ -327,6 +329,10 @@ def existing_store(where: Path | str) -> Store:
     if file is not None and not file.is_file():
         raise SurveyError(f"{file}: no such store – give --data (or --db) the one that was served")
     return Store(where)
+
+
+def _nobody_asks(submission: str) -> None:
+    """Of an answer that was taken back."""
 
 
 _OPEN = (tables.submission.c.withdrawn.is_(None), tables.submission.c.frozen.is_(None))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import wait
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -105,15 +105,17 @@ class Mounted:
     def suggestions(self) -> list[dict[str, Any]]:
         """What visitors suggested, the newest first: id, questionnaire, its title, the module's, text, received.
 
-        Raises StoreError.
+        id: by the answer's pseudonym, never by the withdrawal code that is its name in the store. Raises StoreError.
         """
+        from survey.export import pseudonym
+
         published, found = Published(self.questionnaires, self.store), []
         for asked in (published.as_asked(one) for one in list(self.questionnaires.values())):
             modules = {module.id: module.title.model_dump() for module in asked.modules}
             for row in self.store.rows(asked):
                 found += [
                     {
-                        "id": f"{row.answer.id}.{module}",
+                        "id": f"{pseudonym(row.answer.id)}.{module}",
                         "questionnaire": asked.id,
                         "title": asked.title.model_dump(),
                         "module": modules[module],
@@ -123,6 +125,12 @@ class Mounted:
                     for module, text in row.answer.suggestions
                 ]
         return sorted(found, key=lambda one: one["received"], reverse=True)
+
+    def when_withdrawn(self, act: Callable[[str], None]) -> None:
+        """Have `act` told the pseudonym of each answer that is taken back here, whichever door it is done by."""
+        from survey.export import pseudonym
+
+        self.store.withdrawn = lambda code: act(pseudonym(code))
 
     def standing(self) -> list[dict[str, Any]]:
         """Every questionnaire with its versions that have answers: id, title, version, asked (whether it asks anything

@@ -21,7 +21,6 @@ Parts, all of them if none is named:
 
 import argparse
 import json
-import platform
 import sys
 import time
 from collections.abc import Callable
@@ -32,6 +31,7 @@ from cloth_curves import plot
 from cloth_machine import second_start, together
 from cloth_measures import Setting, Told, growth, horizon, layers, meshes, timed
 from cloth_runs import simulate
+from signature import processor, signed
 
 from sim_core.cloth.scenes import Scene, hang_edge, scene
 
@@ -103,13 +103,6 @@ def _parts(quick: bool, rounds: int) -> dict[str, Callable[[Told], dict]]:
     }
 
 
-def _processor() -> str:
-    """The processor's name, where the system tells it."""
-    cpus = Path("/proc/cpuinfo")
-    lines = cpus.read_text().splitlines() if cpus.is_file() else []
-    return next((t.split(":")[1].strip() for t in lines if t.startswith("model name")), platform.machine())
-
-
 class Progress:
     """Says on stderr which part of the bench is at what, in one line if it is a terminal."""
 
@@ -160,7 +153,8 @@ def main() -> int:
         progress.enter(name)
         known[name] = part(progress.tell)
         known["quick"] = args.quick or known.get("quick", False)
-        known["processor"] = _processor()
+        known["processor"] = processor()
+        known |= signed(known, [name])
         progress.leave()
         print(f"{name}: {json.dumps(known[name])}" if not args.json else f"{name}: done", flush=True)
         if args.json:

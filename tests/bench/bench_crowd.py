@@ -28,6 +28,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from crowd_attack import KINDS  # noqa: E402
 from running_hall import RunningHall, running_hall  # noqa: E402
+from signature import signed  # noqa: E402
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -190,7 +191,7 @@ def main() -> int:
                 rows[name]["attacks"].append(found)
                 print_attack(f"{name:6} {kind:11}", found)
     if arguments.json:
-        arguments.json.write_text(json.dumps(rows, indent=1))
+        arguments.json.write_text(json.dumps(signed(rows), indent=1))
     return 0
 
 

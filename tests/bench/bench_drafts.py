@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 from peers import add_peers, peer_python
+from signature import signed
 
 HERE = Path(__file__).parent
 FOLDER = HERE.parent / "sim_core" / "drafts"
@@ -35,7 +36,7 @@ def answered(folder: Path) -> dict[str, str]:
         seen.add(data)
         words = [sys.executable, "-m", "sim_core.cli", "weave", str(path), "--json"]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
-        told[str(path)] = "" if done.returncode == 0 else done.stderr.strip()
+        told[str(path)] = "" if done.returncode == 0 else done.stderr.strip().replace(f"{folder}/", "")
     return told
 
 
@@ -162,7 +163,7 @@ def main() -> None:
             f"{name}: read {row['read']:.2f} s, told {row['facts']:.2f} s, {row['memory'] / 1e6:.0f} MB{same}"
         )
     if args.json:
-        args.json.write_text(json.dumps(found, indent=2) + "\n", "utf-8")
+        args.json.write_text(json.dumps(signed(found), indent=2) + "\n", "utf-8")
 
 
 if __name__ == "__main__":

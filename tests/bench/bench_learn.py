@@ -27,6 +27,8 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from signature import signed
+
 SCENES = ("flag", "teapot", "hanging")
 RIVALS = ("mfsr", "mesh_conv", "paper")
 STEPS = ("data", "train", "evaluate", "more", "reconstruct")
@@ -241,9 +243,10 @@ def main() -> int:
     found = summary(course, scenes)
     print(table(found))
     if args.json:
-        before = json.loads(args.json.read_text("utf-8"))["scenes"] if args.json.is_file() else {}
-        known = before | found["scenes"]
-        told = {"scenes": {scene: known[scene] for scene in SCENES if scene in known}}
+        told = json.loads(args.json.read_text("utf-8")) if args.json.is_file() else {"scenes": {}}
+        known = told["scenes"] | found["scenes"]
+        told |= {"scenes": {scene: known[scene] for scene in SCENES if scene in known}}
+        told = signed(told, found["scenes"])
         args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
     return 0
 

@@ -26,6 +26,7 @@ import trimesh
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numba import njit
+from signature import signed
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -228,7 +229,7 @@ def main() -> int:
                 f"{engine:<16}{row['build_s']:>6.2f} s{row['rays_per_s'] / 1e6:>10.2f}{ratio:>8.2f}   {told}"
             )
     if args.json:
-        args.json.write_text(json.dumps(found, indent=1) + "\n", "utf-8")
+        args.json.write_text(json.dumps(signed(found), indent=1) + "\n", "utf-8")
     return 0
 
 

@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from bench.browser import enter, open_browser  # noqa: E402
+from bench.signature import signed  # noqa: E402
 from running_hall import running_hall  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
@@ -147,7 +148,7 @@ def silk(rounds: int, seconds: float, path: Path | None) -> int:
     text, numbers = table(found)
     print(f"\nbest of {rounds}\n{text}")
     if path:
-        path.write_text(json.dumps({"summary": numbers, "rounds": found}, indent=1))
+        path.write_text(json.dumps(signed({"summary": numbers, "rounds": found}), indent=1))
     return 0
 
 
@@ -171,7 +172,7 @@ def main() -> int:
     for other, share in result["share"].items():
         print(f"{'shipped / ' + other:34}{share:10.2f}{'asked':>10} {MOST[other]:.2f}")
     if arguments.json:
-        arguments.json.write_text(json.dumps({"summary": result, "rounds": found}, indent=1))
+        arguments.json.write_text(json.dumps(signed({"summary": result, "rounds": found}), indent=1))
     return 0
 
 

@@ -31,6 +31,7 @@ from mesh_cases import PANELS, PointSet, edge_for, errors, shape
 from mesh_figures import added, exponent, growing_exponents
 from peers import Peers, add_peers, peer_python
 from scipy.spatial import Delaunay
+from signature import signed
 
 from sim_core.mesh import panel_mesh, triangulate
 
@@ -251,8 +252,10 @@ def main() -> int:
     if peers:
         peers.close()
     if args.json:
+        made = list(figures)
         if args.add and args.json.is_file():
             figures = added(json.loads(args.json.read_text("utf-8")), figures)
+        figures = signed(figures, made)
         args.json.parent.mkdir(parents=True, exist_ok=True)
         args.json.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
     if args.plot:

@@ -23,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from bench.browser import open_browser  # noqa: E402
 from bench.door import BITS, ROUND_TRIP, longest_stand, slow_visit  # noqa: E402
+from bench.signature import signed  # noqa: E402
 from bench.track import latencies, watch  # noqa: E402
 from bench.wire import Wire, wire  # noqa: E402
 from running_hall import running_hall  # noqa: E402
@@ -148,7 +149,7 @@ def main() -> int:
             for name, rows in summary["slow"].items():
                 show(f"1.6 Mbit/s, 300 ms, {name}", rows)
     if arguments.json:
-        arguments.json.write_text(json.dumps(told, indent=1))
+        arguments.json.write_text(json.dumps(signed(told), indent=1))
     return 0
 
 

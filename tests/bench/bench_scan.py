@@ -25,6 +25,7 @@ from typing import Any
 
 sys.path[:0] = [str(Path(__file__).parents[1]), str(Path(__file__).parents[1] / "hall_app")]
 
+from bench.signature import signed  # noqa: E402
 from content_house import add_exhibit, edit, make_house  # noqa: E402
 from scan_like import scan_of, with_flakes, with_holes, write_glb, write_obj, write_ply  # noqa: E402
 
@@ -142,7 +143,7 @@ def main() -> int:
             print(rows(found[-1]), flush=True)
             if arguments.json:  # after every size: the last takes long
                 told = {"form": arguments.form, "scans": found}
-                arguments.json.write_text(json.dumps(told, indent=1), "utf-8")
+                arguments.json.write_text(json.dumps(signed(told), indent=1), "utf-8")
     return 0
 
 

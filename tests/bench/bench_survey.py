@@ -25,6 +25,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
 
+from signature import signed  # noqa: E402
 from survey_service import ASSETS, Service, stored, submission  # noqa: E402
 
 from survey import read_questionnaire  # noqa: E402
@@ -280,7 +281,8 @@ def main() -> int:
             sys.stdout.flush()
     earlier = json.loads(args.json.read_text("utf-8")) if args.json.is_file() else {}
     args.json.parent.mkdir(parents=True, exist_ok=True)
-    args.json.write_text(json.dumps(earlier | found, ensure_ascii=False, indent=1) + "\n", "utf-8")
+    whole = signed(earlier | found, found)
+    args.json.write_text(json.dumps(whole, ensure_ascii=False, indent=1) + "\n", "utf-8")
     for problem in failed(found):
         print(f"survey bench: {problem}", file=sys.stderr)
     return 1 if failed(found) else 0

@@ -23,6 +23,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from signature import signed
 from survey_exports import KEY, content, fill
 
 from survey import read_questionnaire
@@ -189,7 +190,7 @@ def main() -> int:
         )
     told = {"targets": found, "beside_factor_analyzer": rows}
     args.json.parent.mkdir(parents=True, exist_ok=True)
-    args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+    args.json.write_text(json.dumps(signed(told), indent=1) + "\n", "utf-8")
     bad = failed(found, rows)
     for problem in bad:
         print(f"survey bench: {problem}", file=sys.stderr)

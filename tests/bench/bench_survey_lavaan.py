@@ -21,6 +21,8 @@ import tempfile
 from pathlib import Path
 from time import perf_counter
 
+from signature import signed
+
 from survey.cli import main as survey
 from survey.demonstration import sample_file
 
@@ -98,7 +100,7 @@ def main() -> int:
         "differences": rows,
     }
     args.json.parent.mkdir(parents=True, exist_ok=True)
-    args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+    args.json.write_text(json.dumps(signed(told), indent=1) + "\n", "utf-8")
     bad = [
         f"{name}: {key} {value:.1e} apart"
         for name, row in rows.items()

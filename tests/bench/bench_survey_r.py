@@ -29,6 +29,7 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+from signature import signed
 
 from survey.analysis import (
     adequacy_of,
@@ -228,7 +229,7 @@ def main() -> int:
     told = {key: made[key] for key in ("R", "psych", "GPArotation")}
     told |= {"r_seconds": seconds, "our_seconds": mine, "differences": rows, "scales": scales}
     args.json.parent.mkdir(parents=True, exist_ok=True)
-    args.json.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+    args.json.write_text(json.dumps(signed(told), indent=1) + "\n", "utf-8")
     bad = [*failed(rows), *failed_scales(whole, scales)]
     for problem in bad:
         print(f"survey bench: {problem}", file=sys.stderr)

@@ -31,6 +31,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import shapely  # noqa: E402
 from bench.browser import NoBrowserError, open_browser  # noqa: E402
 from bench.free_walk import measure_all  # noqa: E402
+from bench.signature import signed  # noqa: E402
 from walk_moves import FLOOR, dense_floor, random_walk, room  # noqa: E402
 from walk_page import Page, hold  # noqa: E402
 
@@ -182,9 +183,8 @@ def main() -> int:
     except NoBrowserError as error:
         print(f"grid errors and free walks not measured: {error}")
     if args.json:
-        args.json.write_text(
-            json.dumps({"moves": moves, "frame_us": frames, "grids": grids, "walks": walks}, indent=1)
-        )
+        told = {"moves": moves, "frame_us": frames, "grids": grids, "walks": walks}
+        args.json.write_text(json.dumps(signed(told), indent=1))
     return 1 if any(row["penetrations"] for row in moves) else 0
 
 

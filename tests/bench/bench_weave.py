@@ -22,6 +22,7 @@ import weave_sheet
 import weave_silk
 from peers import add_peers
 from scipy.optimize import nnls
+from signature import signed
 
 from sim_core.weave import Weave, Yarn, plain, relax, satin, twill
 from sim_core.weave.draft import Draft
@@ -143,7 +144,7 @@ def main() -> int:
     if args.plot:
         weave_sheet.plot(particles, args.plot)
     if args.json:
-        rows = {"closed": closed, "dense": dense_results, **particles, **silk}
+        rows = signed({"closed": closed, "dense": dense_results, **particles, **silk})
         args.json.write_text(json.dumps(rows, indent=2) + "\n", "utf-8")
     sound = all(row["error"] < 1e-5 for row in closed)
     return 0 if sound else 1

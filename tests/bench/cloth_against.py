@@ -32,6 +32,7 @@ import numpy as np
 from cloth_figures import deciding, summary
 from cloth_sweeps import ENGINES, NAMES, Compared, Own, compared, given, told
 from peers import FOLDER, Peers, add_peers, peer_python
+from signature import parts, signed
 
 PROGRAM = Path(__file__).with_name("cloth_peers") / "program.py"
 DEAR = 1000.0  # [ms a frame] what costs more has one turn, as a limit has
@@ -154,9 +155,10 @@ def told_finite(value: Any) -> Any:
 def added(path: Path, results: dict) -> dict:
     """Writes the results of some scenes into a file of figures, whose other scenes stay; returns them all."""
     old = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    whole = signed({**old, **results}, results)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({**old, **results}, indent=1) + "\n", "utf-8")
-    return {**old, **results}
+    path.write_text(json.dumps(whole, indent=1) + "\n", "utf-8")
+    return parts(whole)
 
 
 def one_core() -> None:

@@ -21,6 +21,7 @@ import numpy as np
 from cloth_cases import EDGES, FRAMES, KINDS, Case, Kept, drawn, ran, training
 from cloth_fit import fitted, limit_known, own_error
 from cloth_flags import COARSE, FINE, compared, told
+from signature import parts, signed
 
 from sim_core.cloth.scenes import FILE, TRIAL_EDGES, apart, choose, gap
 from sim_core.cloth.step import FRAME
@@ -188,13 +189,13 @@ def check(seed: int) -> int:
         "edges_mm": [round(f(r["edge_mm"] for r in rows), 2) for f in (min, max)],
         "missed": [{"told": r["told"], "budget_mm": r["budget"]} for r in rows if not r["kept"]],
     }
-    CHECKED.write_text(json.dumps(known, indent=1) + "\n", "utf-8")
+    CHECKED.write_text(json.dumps(signed(known, [str(seed)]), indent=1) + "\n", "utf-8")
     return kept
 
 
 def checks() -> list[str]:
     """A line for every seed whose 20 scenes were checked."""
-    known = json.loads(CHECKED.read_text("utf-8"))
+    known = parts(json.loads(CHECKED.read_text("utf-8")))
     return [
         f"- `--check --seed {seed}`: kept in {row['kept']} of {row['of']}; cost over the cheapest mesh that would do: "
         f"median {row['cost_ratio']['median']:.1f}, largest {row['cost_ratio']['largest']:.1f}"

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-__all__ = ["added", "exponent", "growing_exponents", "summary"]
+__all__ = ["added", "details", "exponent", "growing_exponents", "summary"]
 
 ROOT = Path(__file__).parents[2]
 FIGURES, POLYGONS = ROOT / "docs/figures/mesh.json", ROOT / "docs/figures/mesh-polygons.json"
@@ -209,20 +209,17 @@ def _cloth_table(found: dict) -> list[str]:
     return [*lines, "", floor]
 
 
-def main() -> int:
+def details() -> str:
+    """The tables that the room's README has beside the summary."""
     found = json.loads(FIGURES.read_text("utf-8"))
-    parts = [
-        [
-            "| What | Measured | Command |",
-            "|---|---|---|",
-            *("| " + " | ".join(row) + " |" for row in summary()),
-        ],
-        _growth_table(found),
-        _panels_table(found),
-        _corners_table(found),
-        _cloth_table(found),
-    ]
-    text = "\n\n".join("\n".join(lines) for lines in parts)
+    tables = (_growth_table, _panels_table, _corners_table, _cloth_table)
+    return "\n\n".join("\n".join(table(found)) for table in tables)
+
+
+def main() -> int:
+    lines = ["| What | Measured | Command |", "|---|---|---|"]
+    lines += ["| " + " | ".join(row) + " |" for row in summary()]
+    text = "\n".join(lines) + "\n\n" + details()
     before, rest = README.read_text("utf-8").split(BEGIN)
     README.write_text(before + BEGIN + "\n\n" + text + "\n\n" + END + rest.split(END)[1], "utf-8")
     print(text)

@@ -8,6 +8,8 @@ import json
 import sys
 from pathlib import Path
 
+from signature import parts
+
 ROOT = Path(__file__).parents[2]
 ROOM = ROOT / "sim_core/cloth"
 BEGIN, END = "<!-- figures: python tests/bench/readme_cloth.py -->", "<!-- end of measured -->"
@@ -195,7 +197,7 @@ def figures() -> dict:
     found, choose = (
         json.loads((folder / f"{name}.json").read_text("utf-8")) for name in ("cloth", "cloth-choose")
     )
-    return found | {"choose": choose}
+    return found | {"choose": parts(choose)}
 
 
 def main() -> int:

@@ -89,14 +89,17 @@ def rows(found: dict) -> list[tuple[str, str, str]]:
     return made
 
 
-def main() -> int:
-    found = json.loads((ROOT / "docs/figures/weave.json").read_text("utf-8"))
+def table(found: dict) -> str:
     lines = ["| What | Aim | Measured |", "|---|---|---|"]
-    lines += [f"| {what} | {aim} | {value} |" for what, aim, value in rows(found)]
+    return "\n".join([*lines, *(f"| {what} | {aim} | {value} |" for what, aim, value in rows(found))])
+
+
+def main() -> int:
+    made = table(json.loads((ROOT / "docs/figures/weave.json").read_text("utf-8")))
     path = ROOT / "sim_core/weave/README.md"
     before, rest = path.read_text("utf-8").split(BEGIN)
-    path.write_text(before + BEGIN + "\n\n" + "\n".join(lines) + "\n\n" + END + rest.split(END)[1], "utf-8")
-    print("\n".join(lines))
+    path.write_text(before + BEGIN + "\n\n" + made + "\n\n" + END + rest.split(END)[1], "utf-8")
+    print(made)
     return 0
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from research_sections import GARMENTS, bake, read
+from research_figures import GARMENTS, bake, read
 
 INK, RED, GOLD, GREEN, BLUE, QUIET = "#201c1a", "#9e2b25", "#b98a2f", "#4a6b4f", "#3d5a78", "#8d8272"
 COLOURS = (RED, BLUE, GOLD, GREEN, INK)
@@ -40,7 +41,7 @@ def loglog(axes: Axes, across: str, up: str) -> None:
     axes.set_ylabel(up)
 
 
-def bars(axes: Axes, labels: list[str], series: dict[str, list[float]], up: str) -> None:
+def bars(axes: Axes, labels: list[str], series: Mapping[str, Sequence[float]], up: str) -> None:
     """Bars beside each other, one colour a series."""
     wide = 0.8 / len(series)
     for k, (name, values) in enumerate(series.items()):
@@ -87,6 +88,22 @@ def garments(axes: Axes) -> None:
     errors = {en: bake(exhibit)["errors"] for exhibit, (_, en) in GARMENTS.items()}
     series = {k: [1000 * e[f"hall_hausdorff_{k}"] for e in errors.values()] for k in ("mean", "p99", "max")}
     bars(axes, list(errors), series, "mm")
+
+
+def scan(axes: Axes) -> None:
+    rows = {
+        f"{one['triangles']:,}, {model}": [
+            1000 * one[model]["deviation"][f"{k}_m"] for k in ("mean", "p99", "max")
+        ]
+        for one in read("scan")["scans"]
+        for model in ("close", "hall")
+    }
+    bars(
+        axes,
+        list(rows),
+        dict(zip(("mean", "p99", "max"), zip(*rows.values(), strict=True), strict=True)),
+        "mm",
+    )
 
 
 def weave(axes: Axes) -> None:
@@ -165,5 +182,5 @@ def survey(axes: Axes) -> None:
 
 PLOTS = {
     one.__name__: one
-    for one in (walking, crowd, page, look, garments, weave, mesh, cloth, learn, light, survey)
+    for one in (walking, crowd, page, look, garments, scan, weave, mesh, cloth, learn, light, survey)
 }

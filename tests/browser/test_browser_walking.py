@@ -1,5 +1,6 @@
 """Walking as it is seen: on plain boxes, with and without latency, in both modes."""
 
+import itertools
 import math
 import statistics
 
@@ -133,6 +134,22 @@ def test_minimap_goes_there(visit):
     box = plan.bounding_box()
     visit.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + box["height"] * 0.8)
     soon(visit, lambda: pose(visit)["x"] < -2 and pose(visit)["z"] > 2)
+
+
+def test_dots_of_a_crowded_plan_lie_apart(visit):
+    """Those with room stay where they are; of the others none goes far."""
+    placed = [("a", 0.0, 0.0), ("b", 1.0, 0.0), ("c", -1.0, 0.0), ("d", 9.0, 9.0), ("e", 0.0, 0.0)]
+    moved = visit.evaluate(
+        """async (placed) => { const {spreadApart} = await import("/static/ui/map/geometry.js");
+        return spreadApart(placed.map(([id, x, z]) => ({id, x, z})), 3); }""",
+        placed,
+    )
+    assert [one["id"] for one in moved] == [one[0] for one in placed]
+    ways = [math.dist((x, z), (one["x"], one["z"])) for (_, x, z), one in zip(placed, moved, strict=True)]
+    assert ways[3] == 0
+    assert max(ways) < 5  # four in a line, 3 m from one another
+    places = [(one["x"], one["z"]) for one in moved]
+    assert min(math.dist(a, b) for a, b in itertools.combinations(places, 2)) >= 2.99
 
 
 @pytest.mark.nightly

@@ -7,35 +7,16 @@ import json
 import re
 import uuid
 import zipfile
-from pathlib import Path
 
 import pytest
 from form_visitor import Visitor
+from open_counter import ASKED, SAID, answered
 from test_me import PASSWORD, member
 
 from hall_app.house.people.records import MOST_CODES
-from survey import read_questionnaire
 from survey.web.form import form_page
 
-ASKED = read_questionnaire(Path(__file__).parents[2] / "assets" / "questionnaires" / "garment.toml")
 NEW = "/me/answers/new?lang=en"
-SAID = "sleeves a little longer, please"
-
-
-def answered(counter) -> str:
-    """Somebody has sent the questionnaire; the code he got."""
-    code, visitor = str(uuid.uuid4()), Visitor(counter.url)
-    told = {"id": code, "version": ASKED.version, "language": "zh", "consent": True}
-    module = next(one.id for one in ASKED.modules if one.suggestion)
-    told |= {"scores": dict.fromkeys(ASKED.item_ids, 4), "suggestions": {module: SAID}}
-    sent = visitor.ask(
-        "POST",
-        f"/api/v1/questionnaires/{ASKED.id}/submissions",
-        json.dumps(told).encode(),
-        {"Content-Type": "application/json"},
-    )
-    assert sent.status == 201, sent.text
-    return code
 
 
 def stored(counter) -> set[str]:

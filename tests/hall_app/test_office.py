@@ -6,12 +6,15 @@ import itertools
 import json
 import re
 from datetime import UTC, datetime, timedelta
+from html import escape
 
 import pytest
 from form_visitor import Visitor
 from office_clerk import PASSWORD, clerk
+from open_counter import ASKED, SAID, answered
 
 from hall_app.house.people import People, Role
+from survey.export import pseudonym
 
 NUMBERS = itertools.count()
 SOON = (datetime.now(UTC) + timedelta(days=5)).replace(microsecond=0)
@@ -314,18 +317,34 @@ def test_tokens_are_made_shown_once_and_revoked(counter, people):
     assert one.api("tokens", {"label": " "}).status == 400
 
 
-def test_a_suggestion_is_followed_up(counter, people):
-    title = {"zh": "平台", "en": "The platform"}
-    written = {"id": "a1.culture", "title": title, "module": title, "text": "更大的字 <b>"}
-    counter.suggestions.append(written)
+def test_a_suggestion_is_followed_up_and_tells_no_withdrawal_code(counter, people):
     one = clerk(counter, people, Role.RESEARCHER)
-    (told,) = one.told("suggestions")
-    assert (told["state"], told["by"]) == ("open", "")
+    before = {said["id"] for said in one.told("suggestions")}  # of tests that share the house
+    code, other = answered(counter), answered(counter)
+    mine = [said for said in one.told("suggestions") if said["id"] not in before]
+    assert {(said["text"], said["state"], said["by"]) for said in mine} == {(SAID, "open", "")}
+    named = {said["id"].partition(".")[0]: said["id"] for said in mine}
+    withdrawn, left = named[pseudonym(code)], named[pseudonym(other)]
     page = one.get("/office/suggestions?lang=en")
-    assert "更大的字 &lt;b&gt;" in page.text
-    done = one.send(page, "form-follow-0", state="done", note="Letters of 18 px")
-    assert "Letters of 18 px" in done.text
-    (told,) = one.told("suggestions")
-    assert (told["state"], told["note"], told["by"]) == ("done", "Letters of 18 px", one.person)
-    for key, state in (("nothing", "done"), ("a1.culture", "shelved")):
+    assert escape(SAID) in page.text
+    done = one.send(page, "form-follow-0", state="done", note="Longer by 2 cm")
+    assert "Longer by 2 cm" in done.text
+    (told,) = [said for said in one.told("suggestions") if said["id"] in named.values() and said["note"]]
+    assert (told["state"], told["note"], told["by"]) == ("done", "Longer by 2 cm", one.person)
+    for key, state in (("nothing", "done"), (left, "shelved")):
         assert one.api(f"suggestions/{key}", {"state": state}).status == 400
+    for key in (withdrawn, left):
+        one.told(f"suggestions/{key}", {"state": "answered"})
+
+    keeper = clerk(counter, people, Role.ADMINISTRATOR)
+    told = [one.get("/office/suggestions"), one.api("suggestions"), keeper.get("/office/audit")]
+    told += [keeper.api("audit"), keeper.get("/office")]
+    rows = " ".join(map(str, people.followups.all().values()))
+    for secret in (code, other):
+        assert not any(secret in answer.text for answer in told), "who has it can take the answer back"
+        assert secret not in rows
+    assert one.ask("DELETE", f"/api/v1/questionnaires/{ASKED.id}/submissions/{code}").status in (202, 204)
+    kept = set(people.followups.all())
+    assert withdrawn not in kept, "what was noted of a withdrawn answer goes with it"
+    assert left in kept
+    assert withdrawn not in {said["id"] for said in one.told("suggestions")}

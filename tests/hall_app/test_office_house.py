@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from urllib.parse import quote
 
 import event_loop
 import pytest
 from office_clerk import clerk
 from office_stock import Slow
+from open_counter import open_counter
 
 from hall_app.content import load
-from hall_app.house.baking import Bake, BakingQueue
+from hall_app.house.baking import ROOM, Bake, BakingQueue
 from hall_app.house.people import People, Role
 from hall_app.house.safekeeping import check_archive
 
@@ -59,8 +61,15 @@ def test_nothing_but_backups_is_handed_out(administrator, name):
     assert administrator.api(f"backups/{name}/file").status == 404
 
 
-def test_answers_are_counted_and_handed_out(counter):
-    one = clerk(counter, counter.people, Role.RESEARCHER)
+@pytest.fixture
+def unasked(tmp_path, quick_hashes):
+    """A counter of its own: nobody has answered anything there."""
+    with open_counter(tmp_path) as found:
+        yield found
+
+
+def test_answers_are_counted_and_handed_out(unasked):
+    one = clerk(unasked, unasked.people, Role.RESEARCHER)
     (told,) = one.told("questionnaires")
     assert (told["id"], told["answers"]) == ("garment", 0)
     page = one.get("/office/questionnaires?lang=en").text
@@ -83,7 +92,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         builds.append(Slow())
         return builds[-1]
 
-    queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake("room", "2", patient=True))
+    queue, wanted = BakingQueue(begin), (Bake("chest", "1"), Bake(ROOM, "2", patient=True))
     counter.house.queue = queue
     try:
         event_loop.run(queue.want(wanted))
@@ -95,7 +104,7 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         event_loop.run(queue.want(wanted))
         assert builds[0].ended
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")} == {
-            "room": "running",
+            ROOM: "running",
             "chest": "failed",
         }
         one.told("bakes/chest/again", {})
@@ -103,5 +112,9 @@ def test_a_bake_is_told_stopped_and_tried_again(counter):
         event_loop.run(queue.want(wanted))
         assert {bake["name"]: bake["state"] for bake in one.told("bakes")}["chest"] == "running"
         assert one.api("bakes/nothing/stop", {}).status == 400
+        page = one.get("/office/bakes")
+        assert "展厅灯光" in page.text
+        one.send(page, f"/office/bakes/{quote(ROOM)}/stop")
+        assert [bake.name for bake in queue.stopped()] == [ROOM]
     finally:
         counter.house.queue = None

@@ -22,6 +22,7 @@ from hall_app.house.people import ACTS, OWN_ACTS, People, PeopleError, Role, exi
 from hall_app.house.people.database import HEAD, Ledger, tables
 from hall_app.house.people.records import OFFICE_HOURS, RECOVERY_CODES
 from survey.errors import StoreError, SurveyError
+from survey.export import pseudonym
 from survey.store.database import now
 
 ADDRESS, PASSWORD = "lan.yi@example.org", "a robe of blue ramie"
@@ -476,6 +477,29 @@ def test_a_house_of_an_older_schema_is_brought_up_and_keeps_its_people(database,
     again.answer_codes.keep(person.id, code)
     assert [one.code for one in again.answer_codes.of(person.id)] == [code]
     assert again.revisions.of("gown") == ()
+    again.close()
+
+
+def test_withdrawal_codes_leave_a_house_of_an_older_schema(database):
+    code = "0b2c7e7e-8f0e-4e1c-9d0a-3f5b6a7c8d9e"
+    first = People(database)
+    for key in (f"{code}.fabric", "a1.culture"):
+        first.followups.set("console", key, "done", "Longer by 2 cm")
+    first.close()
+    engine = create_engine(
+        database if isinstance(database, str) else f"sqlite:///{database / 'people.sqlite'}"
+    )
+    space = "people." if isinstance(database, str) else ""
+    with engine.begin() as connection:
+        connection.execute(text(f"UPDATE {space}alembic_version SET version_num = '0005'"))
+    engine.dispose()
+    again = People(database)
+    named = f"{pseudonym(code)}.fabric"
+    assert {one.id: one.note for one in again.followups.all().values()} == dict.fromkeys(
+        (named, "a1.culture"), "Longer by 2 cm"
+    )
+    subjects = [entry.subject for entry in again.journal.entries() if entry.act == "answers"]
+    assert sorted(subjects) == sorted((f"{named} done", "a1.culture done"))
     again.close()
 
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 import urllib.error
 import urllib.request
 from html.parser import HTMLParser
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -129,41 +127,3 @@ def test_files_that_are_not_for_visitors_stay_where_they_are(shipped_hall, path:
         got(f"{shipped_hall.url}/{path}")
     with refused.value as answer:
         assert answer.code == 404
-
-
-def test_the_numbers_are_those_measured_last():
-    """A bench whose figures were not carried over fails here: python tests/bench/research_page.py."""
-    sys.path.insert(0, str(ROOT / "tests" / "bench"))
-    try:
-        made = import_module("research_page").numbers()
-    finally:
-        sys.path.pop(0)
-        for name in (
-            "research_page",
-            "research_sections",
-            "research_plots",
-            "readme_figures",
-            "readme_survey",
-            "readme_weave",
-            "mesh_figures",
-        ):
-            sys.modules.pop(name, None)
-    kept = json.loads((ROOT / "assets/research/numbers.json").read_text("utf-8"))["section"]
-    for one in (*made, *kept):
-        assert re.fullmatch(r"\d{4}-\d\d-\d\d", one.pop("date"))
-    assert kept == made
-    for one in kept:
-        for path in one["data"]:
-            name = Path(path).name
-            assert (ROOT / "assets/research" / path).read_bytes() == (
-                ROOT / "docs/figures" / name
-            ).read_bytes()
-
-
-def test_the_research_page_tells_what_the_survey_publishes(shipped_hall):
-    page = got(f"{shipped_hall.url}/research?lang=en").decode()
-    for entry in json.loads(got(f"{shipped_hall.url}/api/v1/questionnaires")):
-        told = json.loads(got(f"{shipped_hall.url}/api/v1/questionnaires/{entry['id']}"))
-        asked = any(module["items"] for module in told["modules"])
-        assert (f"/api/v1/questionnaires/{entry['id']}/results" in page) == asked
-    assert "There are fewer than ten answers" in page

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from hall_app.content.files import remove_file, replace_file
-from hall_app.content.problems import Problem
+from hall_app.content.problems import Problems
 from hall_app.house.drafts.drafts import Drafts
 from hall_app.house.drafts.examination import Examination
 from hall_app.house.people import People, PeopleError
@@ -73,7 +73,7 @@ class Publication:
     def _see(self, files: Mapping[str, bytes | Path | None]) -> None:
         found = self._examination.problems(files) or self._examination.reach(files, wait=True) or []
         if found:
-            raise PeopleError("content-check", problems=_told(found))
+            raise PeopleError("content-check", problems=Problems(tuple(found), _TOLD))
 
     def _put(self, who: str, act: str, exhibit: str, files: Mapping[str, tuple[str, str]]) -> None:
         """Where one file cannot be written, those before it are put back and nothing is written down."""
@@ -93,11 +93,6 @@ class Publication:
                     with suppress(OSError):
                         _write(home / name, data, home.parent)
                 raise PeopleError("content-write", why=error.strerror or str(error)) from error
-
-
-def _told(problems: list[Problem]) -> str:
-    more = f" (+{len(problems) - _TOLD})" if len(problems) > _TOLD else ""
-    return "; ".join(str(problem) for problem in problems[:_TOLD]) + more
 
 
 def _write(path: Path, data: bytes | None, root: Path) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from hall_app.content.problems import Problems, in_language
+
 __all__ = ["REFUSALS", "PeopleError"]
 
 REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
@@ -299,6 +301,14 @@ class PeopleError(ValueError):
 
     def text(self, language: str) -> str:
         zh, en = REFUSALS[self.key]
-        kind = self.figures.get("kind")  # of a file
-        told = {"kind": _KINDS.get(str(kind), kind)} if language == "zh" and kind else {}
-        return (zh if language == "zh" else en).format(**(self.figures | told))
+        told = {name: _told(name, value, language) for name, value in self.figures.items()}
+        return (zh if language == "zh" else en).format(**told)
+
+
+def _told(name: str, value: object, language: str) -> object:
+    """A figure in that language, where it is more than a number or a name."""
+    if isinstance(value, Problems):
+        return value.text(language)
+    if name == "why":
+        return in_language(str(value), language)
+    return _KINDS.get(str(value), value) if name == "kind" and language == "zh" else value

@@ -6,6 +6,6 @@ programme: activities and visits, booked; office: what the staff have.
 
 from hall_app.web.platform.me import KEEP_CODE
 from hall_app.web.platform.programme import programme_entries
-from hall_app.web.platform.routes import NoteLook, add_platform
+from hall_app.web.platform.routes import NoteLook, add_platform, follow_withdrawals
 
-__all__ = ["KEEP_CODE", "NoteLook", "add_platform", "programme_entries"]
+__all__ = ["KEEP_CODE", "NoteLook", "add_platform", "follow_withdrawals", "programme_entries"]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
 from fastapi import FastAPI, Request
 
@@ -13,8 +15,12 @@ from hall_app.web.platform.counter import OFFICE, VISITOR, Counter, Pace
 from hall_app.web.platform.me import add_me
 from hall_app.web.platform.office import add_office
 from hall_app.web.platform.programme import add_programme
+from survey.errors import StoreError
 
-__all__ = ["NoteLook", "add_platform"]
+if TYPE_CHECKING:
+    from survey import Mounted
+
+__all__ = ["NoteLook", "add_platform", "follow_withdrawals"]
 
 NoteLook = Callable[[Request, str], None]  # an exhibit was looked at
 
@@ -38,3 +44,13 @@ def add_platform(app: FastAPI, house: House, people: People) -> NoteLook:
             people.keepsakes.note_look(guest.person.id, exhibit)
 
     return note
+
+
+def follow_withdrawals(survey: Mounted, people: People) -> None:
+    """With an answer goes what the office noted of its suggestions."""
+
+    def withdrawn(answer: str) -> None:
+        with suppress(StoreError):  # it is withdrawn all the same
+            people.followups.forget(answer)
+
+    survey.when_withdrawn(withdrawn)

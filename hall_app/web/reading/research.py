@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hall_app.content.folder import Content
-from hall_app.content.schema.research import Line, Measured, Paper
+from hall_app.content.schema.research import Measured, Paper, Part, Sheet
 from hall_app.content.views.writing import image_html, plot_picture
 from hall_app.web.pages.frame import Frame, part
 from hall_app.web.reading.culture import Pictures
@@ -45,18 +45,21 @@ _WORDS = {
     "zh": {
         "title": "研究",
         "lead": "这座展厅公布的每一个数字，都由一条命令量得。"
-        "下面逐项列出数字、命令、机器、日期与原始数据，谁都可以重做。",
+        "下面逐项列出数字、命令、机器、日期与原始数据，谁都可以重做。数据里没有记下日子的，写的是发布日期。",
         "contents": "本页",
         "numbers": "数字",
         "what": "量了什么",
         "value": "结果",
         "command": "命令",
         "machine": "机器",
-        "date": "日期",
+        "measured": "量得日期",
+        "published": "发布日期",
         "data": "数据",
         "all": "全部数字（{n} 行，英文，与项目说明相同）",
         "figures": "要点",
-        "papers": "论文",
+        "papers": "可读的论文",
+        "papers_lead": "许可允许转载的附 PDF，其余只给出处与链接，不附原文。",
+        "bib": "引文（BibTeX）",
         "methods": "方法说明",
         "methods_lead": "各部分的方法写在程序旁边，英文纯文本，可直接下载。",
         "results": "问卷结果",
@@ -75,18 +78,22 @@ _WORDS = {
     "en": {
         "title": "Research",
         "lead": "Every figure this hall publishes is measured by a command. Here are the figures with their commands, "
-        "machines, dates and data, so that anybody can measure them again.",
+        "machines, dates and data, so that anybody can measure them again. Where the data do not tell their day, "
+        "the date is that of publication.",
         "contents": "On this page",
         "numbers": "Figures",
         "what": "Measured",
         "value": "Figure",
         "command": "Command",
         "machine": "Machine",
-        "date": "Date",
+        "measured": "Measured on",
+        "published": "Published on",
         "data": "Data",
-        "all": "All figures ({n} lines, as in the project's README)",
+        "all": "All figures ({n} lines, as in the project's READMEs)",
         "figures": "In short",
-        "papers": "Papers",
+        "papers": "Papers to read",
+        "papers_lead": "Where a licence allows it a PDF is here; of all others, where to read them and no copy.",
+        "bib": "Citations (BibTeX)",
         "methods": "Methods",
         "methods_lead": "Each part's method is written beside its code, as plain text in English, to download.",
         "results": "What visitors answered",
@@ -134,14 +141,20 @@ def _measured(content: Content, one: Measured, lang: str, pictures: Pictures) ->
         f'<a href="/research/{escape(path)}">{escape(Path(path).name)}</a>' for path in one.data
     )
     facts = [("command", commands), ("machine", escape(getattr(one.machine, lang)))]
-    facts += [("date", f'<time datetime="{one.date}">{one.date}</time>'), ("data", files)]
+    facts += [(one.dated, _days(one)), ("data", files)]
     how = "".join(f"<dt>{words[key]}</dt><dd>{value}</dd>" for key, value in facts if value)
     inside = f"""<p>{escape(getattr(one.about, lang))}</p>
 <table class="numbers"><caption class="unseen">{words["figures"]}</caption>
 <thead><tr><th scope="col">{words["what"]}</th>
 <th scope="col">{words["value"]}</th></tr></thead><tbody>{rows}</tbody></table>
-{_plot(content, one, lang, pictures)}<dl class="how">{how}</dl>{_all(one.line, lang)}"""
+{_plot(content, one, lang, pictures)}<dl class="how">{how}</dl>{_all(one, lang)}"""
     return part(escape(one.id), escape(getattr(one.title, lang)), inside, style="measured")
+
+
+def _days(one: Measured) -> str:
+    """The day, or the first and the last of several."""
+    days = [one.date] if one.since is None else [one.since, one.date]
+    return " – ".join(f'<time datetime="{day}">{day}</time>' for day in days)
 
 
 def _plot(content: Content, one: Measured, lang: str, pictures: Pictures) -> str:
@@ -152,17 +165,35 @@ def _plot(content: Content, one: Measured, lang: str, pictures: Pictures) -> str
     return f"<figure>{image_html(url, alt, pictures.size_of(url))}<figcaption>{alt}</figcaption></figure>"
 
 
-def _all(lines: tuple[Line, ...], lang: str) -> str:
-    if not lines:
+def _all(one: Measured, lang: str) -> str:
+    """Every row that the READMEs publish, folded."""
+    count = len(one.line) + sum(len(part.row) for sheet in one.sheet for part in sheet.part)
+    if not count:
         return ""
-    name = _WORDS[lang]["all"].format(n=len(lines))
-    rows = "".join(
-        f"<tr><td>{escape(one.what)}</td><td>{escape(one.value)}</td><td><code>{escape(one.command)}</code></td></tr>"
-        for one in lines
+    lines = Part(
+        text="",
+        head=("Measured", "Figure", "Command"),
+        row=tuple((line.what, line.value, line.command) for line in one.line),
     )
-    return f"""<details><summary>{name}</summary><table class="numbers" lang="en">
-<thead><tr><th scope="col">Measured</th>
-<th scope="col">Figure</th><th scope="col">Command</th></tr></thead><tbody>{rows}</tbody></table></details>"""
+    inside = _table(lines, "README.md") if one.line else ""
+    inside += "".join(map(_sheet, one.sheet))
+    return f"""<details><summary>{_WORDS[lang]["all"].format(n=count)}</summary>
+<div lang="en">{inside}</div></details>"""
+
+
+def _sheet(one: Sheet) -> str:
+    parts = "".join(
+        _table(part, one.file) if part.head else f"<p>{escape(part.text)}</p>" for part in one.part
+    )
+    return f"<h3>{escape(one.file)}</h3><p><code>{escape(one.command)}</code></p>{parts}"
+
+
+def _table(one: Part, name: str) -> str:
+    """A table that scrolls by itself where the page is narrower. A blank is no heading."""
+    head = "".join(f'<th scope="col">{escape(cell)}</th>' if cell else "<td></td>" for cell in one.head)
+    rows = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in one.row)
+    return f"""<div class="wide" role="group" tabindex="0" aria-label="{escape(name)}"><table class="numbers">
+<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"""
 
 
 def _results(results: list[dict[str, Any]], lang: str) -> str:
@@ -204,14 +235,17 @@ def _bar(module: dict[str, Any], points: int) -> str:
 def _papers(papers: tuple[Paper, ...], lang: str) -> str:
     words = _WORDS[lang]
     lines = "".join(_paper(paper, lang) for paper in papers)
-    inside = f'<ul class="sources">{lines}</ul><p>{words["cite"]}</p>'
+    cited = any(paper.cite is not None for paper in papers)
+    bib = f'<p class="doors"><a href="/research/papers.bib">{words["bib"]}</a></p>' if cited else ""
+    inside = f"""<p>{words["papers_lead"]}</p><ul class="sources">{lines}</ul>{bib}<p>{words["cite"]}</p>"""
     return part("papers", words["papers"], inside, style="measured")
 
 
 def _paper(paper: Paper, lang: str) -> str:
-    address = escape(paper.url or f"/research/{paper.file}")
     title, where, about = (escape(getattr(told, lang)) for told in (paper.title, paper.where, paper.about))
-    return f'<li><a href="{address}" rel="noopener noreferrer">{title}</a><br>{where}<br>{about}</li>'
+    address = escape(paper.url or (f"/research/{paper.file}" if paper.file else ""))
+    way = f'<a href="{address}" rel="noopener noreferrer">{title}</a>' if address else f"<b>{title}</b>"
+    return f"<li>{way}<br>{where}<br>{about}</li>"
 
 
 def _methods(lang: str) -> str:

@@ -19,6 +19,7 @@ from hall_app.web.answers.packed import REVALIDATED, Packed
 from hall_app.web.answers.work import SLOW, Answers
 from hall_app.web.pages.catalogue import shown_language
 from hall_app.web.pages.lost import lost_page
+from hall_app.web.reading.bibliography import bibliography
 from hall_app.web.reading.culture import Pictures, article_page, culture_page
 from hall_app.web.reading.glossary import glossary_page, weaves_page
 from hall_app.web.reading.research import data_file, method_file, research_page
@@ -106,6 +107,12 @@ def _add_research(app: FastAPI, house: House, pictures_of: Callable[[], Pictures
         return FileResponse(
             found, media_type="text/plain; charset=utf-8", headers={"Cache-Control": REVALIDATED}
         )
+
+    @app.get("/research/papers.bib", include_in_schema=False)
+    async def papers() -> Response:
+        text = bibliography(house.content.writing.papers)
+        named = {"Content-Disposition": 'attachment; filename="papers.bib"', "Cache-Control": REVALIDATED}
+        return Response(text, media_type="application/x-bibtex; charset=utf-8", headers=named)
 
     @app.get("/research/{path:path}", include_in_schema=False)
     async def data(path: str) -> FileResponse:

@@ -156,7 +156,8 @@ booking = Table(
     UniqueConstraint("occasion", "user", name="booking_once"),
 )
 
-# What became of a suggestion of the questionnaires. `id` names the text, not who wrote it; `by` is a person's id.
+# What became of a suggestion of the questionnaires. `id` is its answer's pseudonym and the module: never the withdrawal
+# code, by which whoever reads this could take the answer back; `by` is a person's id.
 followup = Table(
     "followup",
     metadata,

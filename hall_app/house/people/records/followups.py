@@ -7,7 +7,7 @@ from datetime import datetime
 
 from sqlalchemy import delete, select
 
-from hall_app.house.people.database import Ledger, tables
+from hall_app.house.people.database import NOBODY, Ledger, tables
 from hall_app.house.people.errors import PeopleError
 from survey.store.database import in_utc, now
 
@@ -48,3 +48,15 @@ class FollowUps:
         with self._ledger.change(who, "answers", f"{key} {state}") as connection:
             connection.execute(delete(table).where(table.c.id == key))
             connection.execute(table.insert().values(id=key, state=state, note=told, by=who, at=now()))
+
+    def forget(self, answer: str) -> None:
+        """What was noted of suggestions whose answer was withdrawn: a note may repeat them. answer: its pseudonym."""
+        table = tables.followup
+        with self._ledger.read() as connection:
+            mine = table.c.id.startswith(f"{answer}.", autoescape=True)
+            known = connection.execute(select(table.c.id).where(mine)).scalars().all()
+        for key in known:
+            with self._ledger.change(NOBODY, "answers", f"{key} withdrawn") as connection:
+                connection.execute(delete(table).where(table.c.id == key))
+        if known:
+            self._ledger.scrub()

@@ -66,6 +66,35 @@ export function bayAt(point, bays) {
   return bays.find((bay) => insidePolygon(point, bay.polygon)) ?? null;
 }
 
+const TURNS = 60; // of pushing apart: a dozen crowded dots rest after ten
+
+/**
+ * Places [{id, x, z}] moved no farther than it takes for each two to lie `least` [m] apart: what is drawn of them is
+ * pressed with a finger. Those that have room stay where they are.
+ */
+export function spreadApart(places, least) {
+  const moved = places.map(({ id, x, z }) => ({ id, x, z }));
+  for (let turn = 0, crowded = true; crowded && turn < TURNS; turn += 1) {
+    crowded = false;
+    for (let i = 0; i < moved.length; i += 1) {
+      for (let j = 0; j < i; j += 1) {
+        const [a, b] = [moved[i], moved[j]];
+        const [dx, dz] = [a.x - b.x, a.z - b.z];
+        const distance = Math.hypot(dx, dz);
+        if (distance >= least - 1e-3) continue;
+        crowded = true;
+        const [x, z] = distance > 0 ? [dx / distance, dz / distance] : [1, 0];
+        const push = (least - distance) / 2;
+        a.x += push * x;
+        a.z += push * z;
+        b.x -= push * x;
+        b.z -= push * z;
+      }
+    }
+  }
+  return moved;
+}
+
 /** The exhibit nearest to [x, z] within `reach` [m], or null. */
 export function nearestExhibit([x, z], exhibits, reach) {
   let best = null;

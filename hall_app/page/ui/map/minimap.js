@@ -2,9 +2,11 @@
 
 import { el, setAttribute, svg } from "../elements.js";
 import { icon } from "../icons.js";
-import { bayAt, nearestExhibit, planBounds, standBefore } from "./geometry.js";
+import { bayAt, nearestExhibit, planBounds, spreadApart, standBefore } from "./geometry.js";
 
 const REACH = 24; // [px] how far from a dot a tap still means that dot: targets of 48 px that share crowded ground
+const NARROWEST = 200; // [px] that the open plan is drawn on, on any screen
+const APART = 26; // [px] between two dots on it: a finger needs 24
 const BAY_EVERY = 200; // [ms] between two looks at which room the visitor is in
 
 const points = (polygon) => polygon.map((corner) => corner.join(",")).join(" ");
@@ -49,6 +51,7 @@ export function createMinimap({ words, scene, goTo, onBay }) {
   let bounds = null;
   let drawn = null;
   let dots = new Map();
+  let places = []; // of the dots
   let bay;
   let lookedAt = 0;
   let later = 0;
@@ -69,16 +72,17 @@ export function createMinimap({ words, scene, goTo, onBay }) {
     bounds = planBounds(current.outline);
     drawn = drawPlan(current, bounds);
     plan.style.setProperty("--plan-ratio", bounds.width / bounds.depth);
-    dots = new Map(current.exhibits.map((exhibit) => [exhibit.id, dot(exhibit)]));
+    places = spreadApart(current.exhibits, (APART * bounds.width) / NARROWEST);
+    dots = new Map(current.exhibits.map((exhibit, at) => [exhibit.id, dot(exhibit, places[at])]));
     plan.replaceChildren(drawn.drawing, ...dots.values());
     bay = undefined;
     shown = "";
   }
 
-  function dot(exhibit) {
+  function dot(exhibit, place) {
     const button = el("button", { type: "button", class: "dot", testid: `dot-${exhibit.id}` });
-    button.style.left = `${(100 * (exhibit.x - bounds.x)) / bounds.width}%`;
-    button.style.top = `${(100 * (exhibit.z - bounds.z)) / bounds.depth}%`;
+    button.style.left = `${(100 * (place.x - bounds.x)) / bounds.width}%`;
+    button.style.top = `${(100 * (place.z - bounds.z)) / bounds.depth}%`;
     button.addEventListener("focus", () => showTip(exhibit));
     button.addEventListener("blur", () => showTip(null));
     return button;
@@ -124,7 +128,8 @@ export function createMinimap({ words, scene, goTo, onBay }) {
       bounds.x + (event.clientX - box.left) * metres,
       bounds.z + (event.clientY - box.top) * metres,
     ];
-    return { point, exhibit: nearestExhibit(point, current.exhibits, REACH * metres) };
+    const meant = nearestExhibit(point, places, REACH * metres);
+    return { point, exhibit: meant && current.exhibits.find(({ id }) => id === meant.id) };
   }
 
   function choose(event) {

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from html import escape
 from typing import Any
+from urllib.parse import quote
 
+from hall_app.content.problems import in_language
+from hall_app.house.baking import ROOM
 from hall_app.house.people import PeopleError
 from hall_app.web.platform.counter import Asking, Shown, button
 from hall_app.web.platform.office.collection.desk import Desk, refusal
@@ -49,7 +52,7 @@ class Bakes:
         for one in self.all(asking):
             name = (
                 word("展厅灯光", "The room's light")
-                if one["name"] == "room"
+                if one["name"] == ROOM
                 else self._desk.title(one["name"], asking.lang)
             )
             act, words = (
@@ -57,8 +60,11 @@ class Bakes:
                 if one["state"] == "failed"
                 else ("stop", word("停止", "Stop"))
             )
-            deed = button(asking, act, f"/office/bakes/{one['name']}/{act}", words, about=name, hidden={})
-            lines.append((escape(name), states[one["state"]], escape(one["line"]), deed))
+            deed = button(
+                asking, act, f"/office/bakes/{quote(one['name'])}/{act}", words, about=name, hidden={}
+            )
+            line = escape(in_language(one["line"], asking.lang))
+            lines.append((escape(name), states[one["state"]], line, deed))
         heads = (
             word("什么", "What"),
             word("状态", "State"),

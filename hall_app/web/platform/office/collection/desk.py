@@ -123,7 +123,7 @@ class Desk:
 
 def listed_problems(asking: Asking, found: Iterable[Problem]) -> str:
     """Under a heading of their own; "" for none."""
-    lines = "".join(f"<li>{escape(str(one))}</li>" for one in found)
+    lines = "".join(f"<li>{escape(one.text(asking.lang))}</li>" for one in found)
     title = asking.word("展厅检查指出", "The hall's check says")
     return f'<div class="faults"><p><b>{title}</b></p><ul>{lines}</ul></div>' if lines else ""
 

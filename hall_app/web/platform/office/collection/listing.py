@@ -102,13 +102,20 @@ class Listing:
             "改动先成草稿，检查无误后由策展人发布；展厅在两秒内更新。",
             "Changes are a draft first; a curator publishes them, checked, and the hall shows them within two seconds.",
         )
+        by_hand = word(
+            "这里只编辑展品。文章、词语、论文与全馆设置请直接改内容文件夹里的 articles/、glossary.toml、"
+            "research/papers.toml 与 hall.toml，写法见同一文件夹 README.md 里以文件名为题的各节；存盘即见。",
+            "Exhibits alone are edited here. Articles, glossary, papers and the hall's settings are edited by hand, in "
+            "the content folder: articles/, glossary.toml, research/papers.toml and hall.toml. Its README.md has a "
+            "section under each file's name; what is saved is shown at once.",
+        )
         bakes = (
             f'<p class="doors"><a href="{asking.address("/office/bakes")}">{word("烘焙队列", "Bakes")}</a></p>'
             if asking.person.may("bake")
             else ""
         )
         inside = f"""<ul class="pieces">{cards}</ul>{bakes}<h2 class="small">{word("新展品", "A new exhibit")}</h2>
-<div class="desk">{new}</div>"""
+<div class="desk">{new}</div><p class="quiet">{by_hand}</p>"""
         return office_page(asking, word("藏品", "Collection"), inside, path="collection", lead=told)
 
     def _card(self, asking: Asking, one: dict[str, Any]) -> str:
