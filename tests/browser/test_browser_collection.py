@@ -7,9 +7,7 @@ import pytest
 from bench.axe import violations
 from bench.browser import soon
 from full_matrix import by_day
-from plain_hall import write_plain_hall
 from read_pages import read_whole
-from running_hall import running_hall
 from test_browser_me import SMALL, page_of, press_to
 from test_browser_office import clerk
 
@@ -18,15 +16,12 @@ from hall_app.house.people import Role
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SHOWN_WITHIN = 5.0  # [s] of being published: what a curator is promised
+COLLECTION = (
+    *("/office/collection", "/office/collection/box", "/office/collection/box/text?file=exhibit.toml"),
+    *(f"/office/collection/box/{part}" for part in ("preview", "place", "history")),
+    *("/office/bakes", "/office/questionnaires", "/office/backups", "/office/collection/nothing"),
+)
 PLACED = "document.getElementById('place-place.x').value"
-
-
-@pytest.fixture(scope="module")
-def hall(tmp_path_factory):
-    """One of its own: what is published here is seen by nobody else's test."""
-    work = tmp_path_factory.mktemp("collection")
-    with running_hall(write_plain_hall(work / "content"), work) as running:
-        yield running
 
 
 def exhibits(hall) -> dict[str, str]:
@@ -69,11 +64,12 @@ def turned_by_hand(page) -> None:
     assert page.evaluate(f"{touched}.every((box) => box.width >= 44 && box.height >= 44)")
 
 
-def test_a_curator_s_day(hall, chromium, tmp_path):
+def test_a_curator_s_day(office_hall, chromium, tmp_path):
     from PIL import Image
 
     Image.new("RGB", (1600, 900), "#31506b").save(tmp_path / "Front view.jpg")
     Image.new("RGB", (900, 900), "#7a4b2e").save(tmp_path / "back.png")
+    hall = office_hall
     page = page_of(chromium, clerk(hall, Role.CURATOR)[0], 1280)
     page.set_default_timeout(120_000)  # a walk through the hall takes a while where others work
     page.goto(f"{hall.url}/office/collection?lang=en")
@@ -153,7 +149,8 @@ def drag(page) -> None:
 
 @pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))
 @pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
-def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
+def test_the_collection_is_clean_and_fits(office_hall, chromium, lang, width):
+    hall = office_hall
     clerks, _ = clerk(hall, Role.ADMINISTRATOR)
     seal = json.loads(clerks.ask("GET", "/api/office/me").body)["seal"]
     told = {"Content-Type": "application/json", "Origin": hall.url, "X-Seal": seal}
@@ -166,20 +163,13 @@ def test_the_collection_is_clean_and_fits(hall, chromium, lang, width):
         clerks.get("/office/collection/box/picture?name=box.glb").status == 200
     )  # drawn before the pages ask
     page = page_of(chromium, clerks, width)
-    box = "/collection/box"
-    parts = (
-        "/collection",
-        box,
-        f"{box}/text?file=exhibit.toml",
-        f"{box}/preview",
-        f"{box}/place",
-        f"{box}/history",
-    )
-    page.goto(f"{hall.url}/office{box}/place?lang={lang}")  # which shows itself again once the walk is done
+    page.goto(
+        f"{hall.url}/office/collection/box/place?lang={lang}"
+    )  # which shows itself again once the walk is done
     page.locator("#reached:not([data-state=wait])").wait_for(timeout=240_000)
-    for path in (*parts, "/bakes", "/questionnaires", "/backups"):
+    for path in COLLECTION:
         mark = "&" if "?" in path else "?"
-        read_whole(page, f"{hall.url}/office{path}{mark}lang={lang}", width, SMALL)
+        read_whole(page, f"{hall.url}{path}{mark}lang={lang}", width, SMALL)
         assert page.evaluate("document.activeElement.id") == "main", path
     clerks.ask("POST", "/api/office/collection/box/drop", b"{}", told)
     page.context.close()

@@ -4,12 +4,13 @@ import itertools
 import json
 import uuid
 
+import pyotp
 import pytest
 from bench.axe import violations
 from bench.browser import enter
 from form_visitor import Visitor
 from full_matrix import by_day
-from read_pages import read_whole
+from read_pages import read_whole, see_whole
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -37,18 +38,21 @@ def member(hall) -> tuple[Visitor, str]:
     return visitor, address
 
 
-def answered(visitor: Visitor) -> str:
-    """A questionnaire was sent; its code."""
+def answered(visitor: Visitor, number: int = 0, *, said: str = "") -> str:
+    """A questionnaire was sent; its code. number: by which one answer differs from another; said: a suggestion."""
     asked = json.loads(visitor.get("/api/v1/questionnaires/garment").text)
     items = [item["id"] for module in asked["modules"] for item in module["items"]]
     code = str(uuid.uuid4())
     told = {"id": code, "version": asked["version"], "language": "zh", "consent": True}
-    visitor.ask(
+    told["scores"] = {item: 1 + (3 + number * (1 + at % 4)) % 5 for at, item in enumerate(items)}
+    told["suggestions"] = {asked["modules"][0]["id"]: said} if said else {}
+    sent = visitor.ask(
         "POST",
         "/api/v1/questionnaires/garment/submissions",
-        json.dumps(told | {"scores": dict.fromkeys(items, 4)}).encode(),
+        json.dumps(told).encode(),
         {"Content-Type": "application/json"},
     )
+    assert sent.status < 300, sent.text
     return code
 
 
@@ -76,6 +80,25 @@ def test_pages_are_clean_and_fit(plain_hall, chromium, lang, width, signed_in):
         address = f"{plain_hall.url}{path.format(exhibit=found)}{mark}lang={lang}"
         read_whole(page, address, width, SMALL)
         assert page.evaluate("document.activeElement.id") == "main", path
+    page.context.close()
+
+
+@pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))
+@pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
+def test_recovery_codes_and_the_page_with_a_second_factor_are_clean_and_fit(
+    plain_hall, chromium, lang, width
+):
+    page = page_of(chromium, member(plain_hall)[0], width)
+    page.goto(f"{plain_hall.url}/me/second-factor?lang={lang}")
+    secret = page.locator("#form-second-factor [name=secret]").get_attribute("value")
+    page.fill("#second-factor-code", pyotp.TOTP(secret).now())
+    page.fill("#second-factor-password", PASSWORD)
+    with page.expect_navigation() as came:
+        page.locator("#form-second-factor button").press("Enter")
+    assert came.value.status == 200
+    assert page.locator(".codes li").count() > 0
+    see_whole(page, width, SMALL)
+    read_whole(page, f"{plain_hall.url}/me?lang={lang}", width, SMALL)
     page.context.close()
 
 

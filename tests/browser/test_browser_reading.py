@@ -1,24 +1,33 @@
 """The pages to read in a browser: clean to axe, whole on a phone, words explained by mouse, key and touch."""
 
 import urllib.parse
+from pathlib import Path
 
 import pytest
 from bench.axe import violations
 from full_matrix import by_day
-from read_pages import read_whole
+from read_pages import read_whole, see_whole
 
+ROOT = Path(__file__).parents[2]
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
+ARTICLES = tuple(sorted(f"/culture/{one.name}" for one in (ROOT / "assets" / "articles").iterdir()))
+QUESTIONNAIRES = tuple(
+    sorted(f"/questionnaires/{one.stem}" for one in (ROOT / "assets" / "questionnaires").glob("*.toml"))
+)
 PAGES = (
     "/culture",
-    "/culture/gauze-gown",
+    *ARTICLES,
     "/culture/glossary",
     "/culture/weaves",
     "/research",
     "/search?q=褙子",
     "/search?q=nothing-of-the-kind",
     "/culture/not-there",
+    "/not-there",
 )
+# What the survey shows has a frame of its own, without the way past the navigation, of which it has none.
+ASKING = ("/questionnaires", *QUESTIONNAIRES, "/questionnaires/not-there", "/privacy")
 # Targets that stand by themselves; links within sentences are as high as their line (WCAG 2.5.8).
 SMALL = """
 () => [...document.querySelectorAll(".site a, .site input, .site button, footer a, .cards a, .beside a, summary")]
@@ -39,6 +48,16 @@ def test_a_page_is_clean_and_fits(shipped_hall, chromium, path, lang, width):
     page = chromium.new_page(viewport={"width": width, "height": 800})
     read_whole(page, address(shipped_hall, path, lang), width, SMALL)
     assert page.evaluate("document.activeElement.id") == "main"
+    page.close()
+
+
+@pytest.mark.parametrize("width", by_day([390], [320, 390, 1280]))
+@pytest.mark.parametrize("lang", by_day(["zh"], ["zh", "en"]))
+@pytest.mark.parametrize("path", ASKING)
+def test_what_is_asked_is_clean_and_fits(shipped_hall, chromium, path, lang, width):
+    page = chromium.new_page(viewport={"width": width, "height": 800})
+    page.goto(address(shipped_hall, path, lang))
+    see_whole(page, width, SMALL)
     page.close()
 
 

@@ -7,34 +7,107 @@ import json
 import subprocess
 import sys
 import urllib.request
+from collections import Counter as Tally
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from fastapi import FastAPI
 from office_clerk import clerk
-from open_counter import OpenCounter
+from office_stock import OWN, Stock
+from open_counter import open_counter
+from starlette.concurrency import run_in_threadpool
 
 from hall_app.house.people import Role
 
-# What would end the session that asks is left out, and what is only there to be waited for.
-KEPT_OUT = ("/api/office/people/{key}/close", "/api/office/people/{key}/sign-out")
 CHECKS = "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance"
+PHASES = "examples,coverage,fuzzing"
+OFFICE = "/api/office/"
 
 
-def conform(counter: OpenCounter, work: Path, examples: int) -> tuple[int, str]:
-    """Exit status of schemathesis, and what it says; examples: of each operation."""
-    one = clerk(counter, counter.people, Role.ADMINISTRATOR)
-    document = one.told("openapi.json")
-    for path in KEPT_OUT:
-        del document["paths"][path]
-    work.mkdir(parents=True, exist_ok=True)
-    for operations in document["paths"].values():
-        for operation in operations.values():
-            operation["parameters"] = [
-                given for given in operation["parameters"] if "$ref" not in given
-            ]  # sent with every request
-    cookie = "; ".join(f"{name}={value}" for name, value in one.cookies.items())
-    seal = ("-H", f"Cookie: {cookie}", "-H", f"Origin: {counter.url}", "-H", f"X-Seal: {one.seal}")
-    return _run(document, counter.url, work, examples, seal)
+@dataclass
+class Watch:
+    """Round the application: counts what is answered, and has the stock put back before a deed."""
+
+    app: FastAPI
+    stock: Stock | None = None
+    answered: dict[str, Tally[int]] = field(default_factory=dict)
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        own = any(name == OWN.lower().encode() for name, _ in scope.get("headers", ()))
+        if self.stock is None or own or not scope.get("path", "").startswith(OFFICE):
+            return await self.app(scope, receive, send)
+        if scope["method"] == "POST":
+            await run_in_threadpool(self.stock.refresh, scope["path"].removeprefix(OFFICE))
+
+        async def counted(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                where = getattr(scope.get("route"), "path", scope["path"])
+                tally = self.answered.setdefault(f"{scope['method']} {where}", Tally())
+                tally[message["status"]] += 1
+            await send(message)
+
+        return await self.app(scope, receive, counted)
+
+
+def conform(work: Path, examples: int, phases: str = PHASES) -> tuple[int, str, dict[str, Tally[int]]]:
+    """Exit status of schemathesis, what it says, and operation -> status -> how often the office answered so.
+
+    examples: of each operation, beside one that the house's stock can do; phases: of schemathesis.
+    """
+    watch: list[Watch] = []
+
+    def around(app: FastAPI) -> Callable[..., Any]:
+        watch.append(Watch(app))
+        return watch[0]
+
+    with open_counter(work / "counter", around) as counter:
+        one = clerk(counter, counter.people, Role.ADMINISTRATOR)
+        document, stock = one.told("openapi.json"), Stock.of(counter, one)
+        described(document, stock)
+        cookie = "; ".join(f"{name}={value}" for name, value in one.cookies.items())
+        seal = ("-H", f"Cookie: {cookie}", "-H", f"Origin: {counter.url}", "-H", f"X-Seal: {one.seal}")
+        watch[0].stock = stock
+        asked = work / "asked"
+        asked.mkdir()
+        status, said = _run(document, counter.url, asked, examples, seal, phases)
+        watch[0].stock = None
+    listed = {f"{method.upper()} {path}" for path, entry in document["paths"].items() for method in entry}
+    return status, said, {name: watch[0].answered.get(name, Tally()) for name in sorted(listed)}
+
+
+def described(document: dict[str, Any], stock: Stock) -> None:
+    """Write into the description what there is: an example of each operation, and ids among other words."""
+    for path, entry in document["paths"].items():
+        for method, operation in entry.items():
+            name = f"{method.upper()} {path.removeprefix(OFFICE)}"
+            there = stock.names.get(name, {}) | stock.asked.get(name, {})
+            # What is left out is a reference: the seal and the origin, which are sent with every request.
+            operation["parameters"] = [given for given in operation["parameters"] if "$ref" not in given]
+            for given in operation["parameters"]:
+                if words := there.get(given["name"]):
+                    _offer(given, words)
+            for kind, body in operation.get("requestBody", {}).get("content", {}).items():
+                _offer_body(kind, body, stock.given.get(name, {}))
+
+
+def _offer(given: dict[str, Any], words: list[str]) -> None:
+    given["schema"] = {"anyOf": [{"enum": words}, given["schema"]]}
+    given["example"] = words[0]
+
+
+def _offer_body(kind: str, body: dict[str, Any], example: Mapping[str, Any]) -> None:
+    """Fields that need a file are an example of a form alone."""
+    if ("file" in body["schema"].get("required", ())) != (kind == "multipart/form-data"):
+        return
+    if kind == "application/json" and "use" in example:
+        return
+    body["example"] = dict(example)
+    for name, value in example.items():
+        properties = body["schema"]["properties"]
+        if kind == "application/json":
+            properties[name] = {"anyOf": [{"enum": [value]}, properties.get(name, {"type": "string"})]}
 
 
 def conform_open(url: str, work: Path, examples: int) -> tuple[int, str]:
@@ -59,12 +132,14 @@ def conform_open(url: str, work: Path, examples: int) -> tuple[int, str]:
     return _run(document, url, work, examples, ())
 
 
-def _run(document: dict, url: str, work: Path, examples: int, sent: tuple[str, ...]) -> tuple[int, str]:
+def _run(
+    document: dict, url: str, work: Path, examples: int, sent: tuple[str, ...], phases: str = PHASES
+) -> tuple[int, str]:
     (work / "api.json").write_text(json.dumps(document), "utf-8")
     command = [
         *(str(Path(sys.executable).with_name("schemathesis")), "run", "api.json"),
         *("--url", url, "--checks", CHECKS, "--seed", "20", "--max-examples", str(examples)),
-        *("--continue-on-failure", "--no-color", "--phases", "examples,coverage,fuzzing"),
+        *("--continue-on-failure", "--no-color", "--phases", phases, "--request-timeout", "300"),
         *sent,
     ]
     done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=False)

@@ -7,7 +7,7 @@ import json
 import threading
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -46,7 +46,10 @@ class OpenCounter:
 
 
 @contextlib.contextmanager
-def open_counter(work: Path) -> Iterator[OpenCounter]:
+def open_counter(
+    work: Path, around: Callable[[FastAPI], Callable[..., Any]] = lambda app: app
+) -> Iterator[OpenCounter]:
+    """around: what is put round the application."""
     port, app, data = free_port(), FastAPI(), work / "data"
     content = make_house(work / "content")
     (content / "questionnaires").mkdir()
@@ -71,7 +74,7 @@ def open_counter(work: Path) -> Iterator[OpenCounter]:
     counter = OpenCounter(f"http://127.0.0.1:{port}", data, content, people, app, house, survey)
     add_platform(app, house, people)
     follow_withdrawals(survey, people)
-    server = uvicorn.Server(uvicorn.Config(app, port=port, log_level="warning"))
+    server = uvicorn.Server(uvicorn.Config(around(app), port=port, log_level="warning"))
     thread = threading.Thread(target=server.run)
     thread.start()
     end = time.monotonic() + OPENING

@@ -8,6 +8,7 @@ from urllib.parse import quote
 import event_loop
 import pytest
 from office_clerk import clerk
+from office_stock import Slow
 from open_counter import open_counter
 
 from hall_app.content import load
@@ -82,22 +83,6 @@ def test_answers_are_counted_and_handed_out(unasked):
     assert json.loads(refused.body)["error"] == "survey-refused"
     assert one.api("questionnaires/nothing/analysis").status == 404
     assert one.ask("GET", "/office/questionnaires/garment/export?kind=exe").status == 404
-
-
-class Slow:
-    """A bake that never ends by itself."""
-
-    def poll(self) -> None:
-        return None
-
-    def line(self) -> str:
-        return " 40% cloth <b>"
-
-    def outcome(self) -> str:
-        return ""
-
-    def end(self) -> None:
-        self.ended = True
 
 
 def test_a_bake_is_told_stopped_and_tried_again(counter):

@@ -40,6 +40,7 @@ def _parser() -> MarkdownIt:
     parser.validateLink = link_allowed
     parser.add_render_rule("image", _image)
     parser.add_render_rule("link_open", _link_open)
+    parser.add_render_rule("th_open", _head_open)
     return parser
 
 
@@ -62,6 +63,13 @@ def _link_open(self: RendererHTML, tokens: Sequence[Token], index: int, options:
     if str(tokens[index].attrGet("href") or "").lower().startswith("http"):
         tokens[index].attrSet("target", "_blank")
         tokens[index].attrSet("rel", "noopener noreferrer")
+    return self.renderToken(tokens, index, options, env)
+
+
+def _head_open(self: RendererHTML, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
+    """The corner of a table that nothing is written in heads nothing: who hears the page is told of no such head."""
+    if not tokens[index + 1].content.strip():
+        tokens[index].tag = tokens[index + 2].tag = "td"
     return self.renderToken(tokens, index, options, env)
 
 
@@ -95,7 +103,6 @@ def html_of(
         _set_beneath(tokens, top)
     if figures:
         _set_apart(tokens)
-    _leave_corners(tokens)
     return _parser().renderer.render(tokens, _parser().options, env)
 
 
@@ -119,13 +126,6 @@ def _set_apart(tokens: Sequence[Token]) -> None:
     for before, line, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
         if before.type == "paragraph_open" and [one.type for one in line.children or ()] == ["image"]:
             before.tag = after.tag = "figure"
-
-
-def _leave_corners(tokens: Sequence[Token]) -> None:
-    """An empty cell of a table's head, its corner mostly, heads nothing: a reader for the blind would announce it."""
-    for before, line, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
-        if before.type == "th_open" and not line.content.strip():
-            before.tag = after.tag = "td"
 
 
 def references_in(markdown: str) -> Iterator[tuple[str, str]]:

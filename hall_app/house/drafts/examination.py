@@ -101,10 +101,13 @@ class _Walk:
                 self._problems = found
 
 
-def _reached(content: Path, files: Mapping[str, Any]) -> list[Problem]:
-    """What a walk finds that one through the hall as it is does not."""
-    with likeness_of(content, files) as whole:
-        found = check(whole, STANDING)
+def _reached(content: Path, files: Mapping[str, Any]) -> list[Problem] | None:
+    """What a walk finds that one through the hall as it is does not; None where the draft is gone meanwhile."""
+    try:
+        with likeness_of(content, files) as whole:
+            found = check(whole, STANDING)
+    except FileNotFoundError:
+        return None
     if found:
         known = set(check(content, STANDING))
         found = [problem for problem in found if problem not in known]

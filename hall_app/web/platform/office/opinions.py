@@ -26,9 +26,20 @@ def opinion_readings(counter: Counter) -> tuple[Reading, ...]:
 
 def opinion_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
+    after = {"state": "open, answered or done", "note": "what was done, or nothing"}
+    label = {"label": f"what it is for, {LONGEST_LABEL} characters at most"}
     return (
-        Deed("suggestions/{key}", "answers", rooms.follow_up, "suggestions", rooms.suggestions_page),
-        Deed("tokens", "tokens", rooms.make_token, "tokens", rooms.tokens_page, rooms.token_page),
+        Deed(
+            "suggestions/{key}",
+            "answers",
+            rooms.follow_up,
+            "suggestions",
+            rooms.suggestions_page,
+            fields=after,
+        ),
+        Deed(
+            "tokens", "tokens", rooms.make_token, "tokens", rooms.tokens_page, rooms.token_page, fields=label
+        ),
         Deed("tokens/{key}/revoke", "tokens", rooms.revoke_token, "tokens", rooms.tokens_page),
     )
 

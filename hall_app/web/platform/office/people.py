@@ -28,9 +28,11 @@ def people_readings(counter: Counter) -> tuple[Reading, ...]:
 def people_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one = "people/{key}"
+    account = {"address": "its e-mail address", "name": "how its owner is called, or nothing"}
+    roles = {"roles": f"all that it is to have: {', '.join(Role)}; none for a visitor"}
     return (
-        Deed("people", "people", rooms.make, "people/{id}", rooms.everybody_page),
-        Deed(f"{one}/roles", "roles", rooms.set_roles, one, rooms.one_page),
+        Deed("people", "people", rooms.make, "people/{id}", rooms.everybody_page, fields=account),
+        Deed(f"{one}/roles", "roles", rooms.set_roles, one, rooms.one_page, fields=roles),
         Deed(f"{one}/code", "people", rooms.code, one, rooms.one_page, rooms.code_page),
         Deed(f"{one}/close", "people", rooms.close, one, rooms.one_page),
         Deed(f"{one}/open", "people", rooms.reopen, one, rooms.one_page),
@@ -83,7 +85,7 @@ class _Rooms:
         return {"id": asking.names["key"], "closed": False}
 
     def end_sessions(self, asking: Asking) -> dict[str, Any]:
-        key = asking.names["key"]
+        key = self._people.accounts.of(asking.names["key"]).id  # of nobody none is ended
         return {"id": key, "ended": self._people.sessions.end_all(asking.person.id, "people", key)}
 
     def drop_factor(self, asking: Asking) -> dict[str, Any]:

@@ -16,6 +16,19 @@ from hall_app.web.platform.office.table import office_page, rows
 __all__ = ["programme_deeds", "programme_readings"]
 
 MOST_SLOTS = 60  # planned at once
+_PLAN = {
+    "title_zh": "its title in Chinese",
+    "title_en": "its title in English",
+    "begins": "date and time as of ISO 8601, without an offset on the house's own clock",
+    "ends": "the same of its end",
+    "places": "how many people it is for",
+    "party": "how many one booking may be for",
+    "place_zh": "where, or nothing",
+    "place_en": "where, or nothing",
+    "text_zh": "what is told of it, or nothing",
+    "text_en": "what is told of it, or nothing",
+    "kind": "activity or visit",
+}
 
 
 def programme_readings(counter: Counter) -> tuple[Reading, ...]:
@@ -31,10 +44,12 @@ def programme_deeds(counter: Counter) -> tuple[Deed, ...]:
     rooms = _Rooms(counter)
     one, booking = "events/{key}", "events/{key}/bookings/{booking}"
     seen = {"turn": "of the booking as it was read; refused where its number is another's by now"}
+    slots = {"minutes": f"of each slot, five at least; {MOST_SLOTS} slots at once"}
+    change = {"seen": "the plan's mark as it was read; 409 where it is another by now"}
     return (
-        Deed("events", "events", rooms.plan, "events/{id}", rooms.all_page),
-        Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page),
-        Deed(one, "events", rooms.change, one, rooms.one_page),
+        Deed("events", "events", rooms.plan, "events/{id}", rooms.all_page, fields=_PLAN),
+        Deed("visits", "events", rooms.plan_visits, "events", rooms.all_page, fields=_PLAN | slots),
+        Deed(one, "events", rooms.change, one, rooms.one_page, fields=_PLAN | change),
         Deed(f"{one}/off", "events", rooms.call_off, one, rooms.one_page),
         Deed(f"{booking}/arrive", "check-in", rooms.arrive, one, rooms.one_page, fields=seen),
         Deed(f"{booking}/leave", "check-in", rooms.leave, one, rooms.one_page, fields=seen),
