@@ -39,13 +39,14 @@ class OpenCounter:
 
 
 @contextlib.contextmanager
-def open_counter(work: Path) -> Iterator[OpenCounter]:
+def open_counter(work: Path, accounts: str | None = None) -> Iterator[OpenCounter]:
+    """accounts: URL of the people's database, else it lies with the data."""
     port, app, data = free_port(), FastAPI(), work / "data"
     content = make_house(work / "content")
     (content / "questionnaires").mkdir()
     asked = Path(__file__).parents[2] / "assets" / "questionnaires" / "garment.toml"
     (content / "questionnaires" / "garment.toml").write_bytes(asked.read_bytes())
-    people, survey = People(data), mount(app, content=content, data=data, problems=[])
+    people, survey = People(accounts or data), mount(app, content=content, data=data, problems=[])
     suggestions: list[dict[str, Any]] = []
     house: Any = SimpleNamespace(
         content=load(content),
