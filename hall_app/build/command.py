@@ -31,8 +31,8 @@ _EPILOG = """\
 Each outfit (exhibit.toml: outfit = "outfits/….toml") is baked into baked/ beside the exhibit: the simulated garments,
 both models, film and pictures. Each scan (exhibit.toml: scan = "….glb") becomes both models, whose deviation is
 measured. The room is raised from plan.toml and its light computed, into room/. What is up to date is left alone; where
-only [show] changed, the garment is not dressed again. An interrupted build goes on where it stopped. Films need the
-extra 'bake' (pip install '.[bake]'); without it they are left out.
+only [show] changed, the garment is not dressed again. An interrupted build goes on where it stopped. Without
+PyAV films are left out.
 
 examples:
   hall build                      everything that changed, in ./assets

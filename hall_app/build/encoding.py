@@ -48,7 +48,7 @@ class FilmUnavailableError(RuntimeError):
 
 
 def film_possible() -> bool:
-    """True when the extra 'bake' (PyAV) is installed."""
+    """True when PyAV is installed, as it is unless somebody left it out."""
     from importlib.util import find_spec
 
     return find_spec("av") is not None
@@ -68,7 +68,7 @@ def encode_film(
     at all. Raises FilmUnavailableError without PyAV.
     """
     if not film_possible():
-        raise FilmUnavailableError("films need PyAV – install the extra: pip install '.[bake]'")
+        raise FilmUnavailableError("films need PyAV – pip install av")
     import av
 
     codecs = _CODECS[path.suffix]

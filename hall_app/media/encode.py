@@ -1,4 +1,4 @@
-"""Sound to files every browser plays, with PyAV (extra `bake`): no ffmpeg on the system is needed."""
+"""Sound to files every browser plays, with PyAV: no ffmpeg on the system is needed."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ WEAVE, PATTERN = "media/weave.jpg", "media/pattern.jpg"
 def make_media(folder: Path, progress: Progress = lambda fraction, label: None) -> None:
     """Write the media of hall, garments and mirror into the content folder; the same bytes from the same sources.
 
-    progress: called with a fraction 0..1 and a label. Raises ImportError without the extra `bake`.
+    progress: called with a fraction 0..1 and a label. Raises ImportError without PyAV.
     """
     steps: tuple[tuple[str, Callable[[Path], None]], ...] = (
         ("music of the hall", _hall_music),

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.web.app import create_app
+    from hall_app.web.command import OFFERS
     from hall_app.web.progress_line import ProgressLine
 
-__all__ = ["ProgressLine", "create_app"]
+__all__ = ["OFFERS", "ProgressLine", "create_app"]
 
 _HOME = {
+    "OFFERS": "command",
     "ProgressLine": "progress_line",
     "create_app": "app",
 }

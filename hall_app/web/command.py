@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from hall_app.house.house import House
     from survey import Clip
 
-__all__ = ["add_parser", "run"]
+__all__ = ["OFFERS", "add_parser", "run"]
 
 _POLL = 1.0  # [s] between two looks at the content folder, and at what is being baked
 _TICK = 0.25  # [s] between two ticks of the hall's clock
@@ -85,7 +85,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         type=gigabytes,
         default=2.0,
         metavar="GB",
-        help="what drafts and the history of the office may take up in --data (default 2)",
+        help="what drafts and the history of the office may take up in --data (default 2); backups, restored houses "
+        "and bakes are not counted",
     )
     add_accounts(parser)
     add_limits(parser)

@@ -5,11 +5,11 @@ import urllib.request
 
 import pytest
 from bench.axe import violations
-from bench.browser import soon
+from bench.browser import PATIENCE, alive, enter, soon
 from full_matrix import by_day
 from read_pages import read_whole
-from test_browser_me import SMALL, page_of, press_to
-from test_browser_office import clerk
+from test_browser_me import PASSWORD, SMALL, page_of, press_to
+from test_browser_office import clerk, engaged
 
 from hall_app.house.people import Role
 
@@ -32,6 +32,24 @@ def exhibits(hall) -> dict[str, str]:
 def until_shown(hall, page, key: str, title: str | None) -> None:
     """What the hall shows under that name, within what is promised; None: nothing."""
     soon(page, lambda: exhibits(hall).get(key) == title, patience=SHOWN_WITHIN)
+
+
+# What a visitor's page draws under that name, and what its list of exhibits calls it.
+DRAWN = """(key) => {
+  let meshes = 0;
+  window.__viserMutable.nodeRefFromName[`/exhibits/${key}`]?.traverse((one) => { meshes += one.isMesh ? 1 : 0; });
+  return meshes > 0;
+}"""
+LISTED = "(key) => document.querySelector(`[data-testid=list-item-${key}]`)?.textContent ?? null"
+
+
+def until_seen(visitor, key: str, title: str | None) -> None:
+    """By who stands in the hall all the while and loads nothing anew; a page may take its time to draw."""
+    if not visitor.locator("[data-testid=list-item-box]").count():
+        visitor.click("[data-testid=list]")
+    alive(visitor, lambda: visitor.evaluate(DRAWN, key) == (title is not None), PATIENCE / 1000)
+    alive(visitor, lambda: (title or "") in (visitor.evaluate(LISTED, key) or ""), PATIENCE / 1000)
+    assert title is not None or visitor.evaluate(LISTED, key) is None
 
 
 # Pixels of the canvas as text, by which one view is told from another.
@@ -70,9 +88,16 @@ def test_a_curator_s_day(office_hall, chromium, tmp_path):
     Image.new("RGB", (1600, 900), "#31506b").save(tmp_path / "Front view.jpg")
     Image.new("RGB", (900, 900), "#7a4b2e").save(tmp_path / "back.png")
     hall = office_hall
-    page = page_of(chromium, clerk(hall, Role.CURATOR)[0], 1280)
+    visitor = chromium.new_context(viewport={"width": 480, "height": 270}).new_page()
+    enter(visitor, f"{hall.url}/?lang=en")
+    until_seen(visitor, "box", "Plain box")
+    page = chromium.new_context(viewport={"width": 1280, "height": 800}).new_page()
     page.set_default_timeout(120_000)  # a walk through the hall takes a while where others work
-    page.goto(f"{hall.url}/office/collection?lang=en")
+    page.goto(f"{hall.url}/office?lang=en")
+    page.fill("#sign-in-address", engaged(hall, Role.CURATOR)[0])
+    page.fill("#sign-in-password", PASSWORD)
+    page.get_by_role("button", name="Sign in").click()
+    page.get_by_role("link", name="Collection").first.click()
     page.fill("#exhibit-id", "blue-box")
     page.fill("[id='exhibit-title.zh']", "蓝匣")
     page.fill("[id='exhibit-title.en']", "Blue box")
@@ -113,6 +138,7 @@ def test_a_curator_s_day(office_hall, chromium, tmp_path):
     page.get_by_role("button", name="Publish").click()
     page.get_by_role("status").wait_for(timeout=120_000)
     until_shown(hall, page, "blue-box", "Blue box")
+    until_seen(visitor, "blue-box", "Blue box")
 
     page.goto(f"{hall.url}/office/collection/box?lang=en")
     press_to(page, "Save")  # the first form's, by key alone
@@ -124,14 +150,18 @@ def test_a_curator_s_day(office_hall, chromium, tmp_path):
     page.get_by_role("button", name="Publish").click()
     page.get_by_text("there is no draft").wait_for(timeout=120_000)
     until_shown(hall, page, "box", "A box renamed")
+    until_seen(visitor, "box", "A box renamed")
     page.get_by_role("link", name="History").click()
     page.get_by_role("button", name="Undo this change").click()
     page.get_by_text("Undone").wait_for(timeout=120_000)
     until_shown(hall, page, "box", "Plain box")
+    until_seen(visitor, "box", "Plain box")
     page.goto(f"{hall.url}/office/collection/blue-box/history?lang=en")
     page.get_by_role("button", name="Undo this change").click()
     page.get_by_text("Undone").wait_for(timeout=120_000)
     until_shown(hall, page, "blue-box", None)
+    until_seen(visitor, "blue-box", None)
+    visitor.context.close()
     page.context.close()
 
 

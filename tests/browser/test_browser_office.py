@@ -40,15 +40,21 @@ def plan(hall, kind: str) -> str:
         return people.occasions.plan("console", Plan(begins=SOON, ends=SOON + timedelta(hours=1), **whole))[0]
 
 
-def clerk(hall, role: Role) -> tuple[Visitor, str]:
-    """Somebody of the staff, signed in; his id."""
-    visitor, address = Visitor(hall.url), f"clerk{next(NUMBERS)}@example.org"
+def engaged(hall, role: Role) -> tuple[str, str]:
+    """Somebody of the staff: his address, for which PASSWORD opens, and id."""
+    address = f"clerk{next(NUMBERS)}@example.org"
     with people_of(hall) as people:
         person = people.accounts.make("console", address)
         people.accounts.use_code(people.accounts.code_for("console", person.id), PASSWORD)
         people.roles.set("console", person.id, frozenset({role}))
+    return address, person.id
+
+
+def clerk(hall, role: Role) -> tuple[Visitor, str]:
+    """Somebody of the staff, signed in; his id."""
+    visitor, (address, person) = Visitor(hall.url), engaged(hall, role)
     visitor.send("/office", "form-sign-in", address=address, password=PASSWORD)
-    return visitor, person.id
+    return visitor, person
 
 
 # Of this hall's activity, visit and account.

@@ -13,7 +13,7 @@ import event_loop
 from office_clerk import Clerk
 from open_counter import OpenCounter, answered
 
-from hall_app.house.baking import ROOM, Bake, BakingQueue
+from hall_app.house.baking import Bake, BakingQueue
 from hall_app.house.people.records import Plan
 
 OWN = "X-Stock"  # header of what the stock asks for itself: neither counted nor prepared
@@ -176,8 +176,8 @@ class Stock:
             self.names[f"GET questionnaires/{{key}}/{path}"] = {"key": ["garment"]}
         self.asked["GET questionnaires/{key}/export"] = {"kind": ["csv"]}
         answered(self.counter)
-        said = [one["id"] for one in self._tell("suggestions")]
-        self.names["POST suggestions/{key}"] = {"key": said}
+        (said, *_) = self.counter.survey.suggestions()
+        self.names["POST suggestions/{key}"] = {"key": [said["id"]]}
         self.given["POST suggestions/{key}"] = {"state": "answered", "note": "Letters of 18 px"}
         for number in range(POOL):
             self._tell("tokens", {"label": f"of number {number}"})
@@ -195,9 +195,9 @@ class Stock:
     def _bakes(self) -> None:
         """One that runs, which may be stopped, and one that failed, which may be tried again."""
         queue = BakingQueue(lambda _: Slow())
-        event_loop.run(queue.want((Bake("chest", "1"), Bake(ROOM, "2", patient=True))))
-        queue.ask("stop", ROOM)
+        event_loop.run(queue.want((Bake("chest", "1"), Bake("room", "2", patient=True))))
+        queue.ask("stop", "room")
         queue.stopped()
         self.counter.house.queue = queue
         self.names["POST bakes/{key}/stop"] = {"key": ["chest"]}
-        self.names["POST bakes/{key}/again"] = {"key": [ROOM]}
+        self.names["POST bakes/{key}/again"] = {"key": ["room"]}

@@ -47,14 +47,16 @@ class OpenCounter:
 
 @contextlib.contextmanager
 def open_counter(
-    work: Path, around: Callable[[FastAPI], Callable[..., Any]] = lambda app: app
+    work: Path,
+    accounts: str | None = None,
+    around: Callable[[FastAPI], Callable[..., Any]] = lambda app: app,
 ) -> Iterator[OpenCounter]:
-    """around: what is put round the application."""
+    """accounts: URL of the people's database, else it lies with the data; around: what is put round the application."""
     port, app, data = free_port(), FastAPI(), work / "data"
     content = make_house(work / "content")
     (content / "questionnaires").mkdir()
     (content / "questionnaires" / "garment.toml").write_bytes(QUESTIONS.read_bytes())
-    people, survey = People(data), mount(app, content=content, data=data, problems=[])
+    people, survey = People(accounts or data), mount(app, content=content, data=data, problems=[])
     house: Any = SimpleNamespace(
         content=load(content),
         data=data,

@@ -192,7 +192,7 @@ def test_layers_are_baked_from_the_skin_outwards_and_measured_again(coarse_layer
 
 
 @pytest.mark.nightly
-@pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")
+@pytest.mark.skipif(not film_possible(), reason="films need PyAV")
 def test_the_film_shows_the_outermost_layer_over_what_is_worn_beneath(coarse_layers, tmp_path):
     folder = tmp_path / "content"
     shutil.copytree(coarse_layers[0], folder, ignore=shutil.ignore_patterns("baked"))
@@ -225,7 +225,7 @@ def test_what_is_not_worn_yet_is_not_in_the_picture(tmp_path):
 
 
 @pytest.mark.nightly
-@pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")
+@pytest.mark.skipif(not film_possible(), reason="films need PyAV")
 def test_the_film_of_a_belted_dress_shows_every_frame_of_both(tmp_path):
     import av
 
@@ -301,7 +301,7 @@ def test_cloth_that_lies_under_what_it_should_lie_over_fails_a_bake(coarse_scarf
         refuse_disorder([scarf, scarf.noted(errors=errors)])
 
 
-@pytest.mark.skipif(not film_possible(), reason="films need PyAV (extra 'bake')")
+@pytest.mark.skipif(not film_possible(), reason="films need PyAV")
 @pytest.mark.parametrize(("ending", "codecs"), [(".webm", ("vp9", "opus")), (".mp4", ("h264", "aac"))])
 def test_films_are_what_browsers_play(tmp_path, ending, codecs):
     import av

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +14,9 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
+from form_visitor import Answer, Visitor
 from full_matrix import by_day
+from open_counter import OpenCounter, open_counter
 
 from hall_app.house.people import People, PeopleError
 from hall_app.house.people.records import Plan
@@ -94,6 +97,58 @@ def test_two_hundred_ask_for_twenty_places_at_once(people, database):
     assert people.bookings.for_occasion(occasion) == found
     for house in houses[1:]:
         house.close()
+
+
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=[pytest.mark.slow, pytest.mark.nightly])])
+def house(request, tmp_path, quick_hashes) -> Iterator[OpenCounter]:
+    """Open on a port, its pace as it ships: nobody else's tries count here."""
+    accounts = None if request.param == "sqlite" else request.getfixturevalue("postgres")()
+    with open_counter(tmp_path, accounts) as found:
+        yield found
+
+
+@pytest.mark.slow
+def test_two_hundred_send_the_form_for_twenty_places_at_once(house):
+    """As browsers do: each signed in, each form with the seal and the key that its own page gave it."""
+    occasion, people = planned(house.people), house.people
+    way = f"/activities/{occasion}?lang=en"
+
+    def enter(number: int) -> tuple[Visitor, Answer]:
+        visitor, address = Visitor(house.url), f"asking{number}@example.org"
+        people.accounts.sign_up(address, PASSWORD)
+        assert address in visitor.send("/me?lang=en", "form-sign-in", address=address, password=PASSWORD).text
+        return visitor, visitor.get(way)
+
+    start = threading.Barrier(40)
+
+    def ask(number: int) -> str:
+        if number < 40:
+            start.wait()
+        return send(number)
+
+    def send(number: int) -> str:
+        visitor, page = entered[number]
+        told = visitor.send(page, "form-book", size="1")
+        assert told.status == 200
+        (standing,) = re.findall(r"booked · 1 person|number \d+ on the waiting list", told.text)
+        return standing
+
+    with ThreadPoolExecutor(40) as pool:
+        entered = list(pool.map(enter, range(ASKED)))
+        forms = [page.form("form-book") for _, page in entered]
+        assert all(len({form[name] for form in forms}) == ASKED for name in ("seal", "key"))
+        told = list(pool.map(ask, range(ASKED)))
+    found = people.bookings.for_occasion(occasion)
+    assert len(found) == len({one.person for one in found}) == ASKED
+    assert [one.place for one in found] == [0] * PLACES + list(range(1, ASKED - PLACES + 1))
+    assert in_order(people, occasion)
+    waiting = [f"number {number} on the waiting list" for number in range(1, ASKED - PLACES + 1)]
+    assert sorted(told) == sorted(["booked · 1 person"] * PLACES + waiting), "and everybody is told"
+    booked = [number for number, standing in enumerate(told) if standing.startswith("booked")]
+    twice = [*booked[:10], *(number for number in range(ASKED) if number not in booked)][:20]
+    with ThreadPoolExecutor(20) as pool:
+        assert list(pool.map(send, twice)) == [told[number] for number in twice]
+    assert people.bookings.for_occasion(occasion) == found, "the same form once more books nothing"
 
 
 def test_one_form_sent_twenty_times_at_once_books_once(people):

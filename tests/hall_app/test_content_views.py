@@ -75,12 +75,6 @@ def test_a_backslash_does_not_lead_to_another_host():
     )
 
 
-def test_the_empty_corner_of_a_table_heads_nothing():
-    made = html_of("| | Length |\n|-|-|\n| Skirt | |\n", lambda path: None)
-    assert made.count("<th") - made.count("<thead") == 1
-    assert "<td></td>" in made.partition("</thead>")[0]
-
-
 def test_links_outside_open_elsewhere():
     html = html_of("[x](https://example.org) [y](/catalogue)", lambda src: None)
     assert html.count('rel="noopener noreferrer"') == 1

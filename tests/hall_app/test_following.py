@@ -138,6 +138,43 @@ def test_an_edit_whose_showing_failed_is_shown_at_the_next_look(tmp_path: Path, 
         house.close()
 
 
+def test_a_bake_that_somebody_stops_ends_and_is_told(tmp_path: Path):
+    """The office asks from its threads; the open hall does it at its next look, and again when it is asked to."""
+    house, log = House(load(with_scarf(tmp_path / "content")), tmp_path / "data"), []
+
+    class Endless(Build):
+        def __init__(self, bake: Bake) -> None:
+            log.append(f"begin {bake.name}")
+
+        def poll(self) -> int | None:
+            return None
+
+        def end(self) -> None:
+            log.append("end")
+
+    queue, said = BakingQueue(Endless), []
+    follow = Following(house, queue, light=False, say=said.append)
+
+    async def story() -> None:
+        await follow.look()
+        assert (log, house.preparing) == (["begin scarf"], ("scarf",))
+        queue.ask("stop", "scarf")
+        for _ in range(3):
+            await follow.look()
+        assert (log, house.preparing, queue.running) == (["begin scarf", "end"], (), None)
+        assert [line for line in said if "stopped in the office" in line] == said[-1:]
+        assert any("stopped in the office" in problem.what for problem in house.problems)
+        queue.ask("again", "scarf")
+        await follow.look()
+        assert (log[2:], house.preparing) == (["begin scarf"], ("scarf",))
+
+    try:
+        event_loop.run(story())
+    finally:
+        queue.close()
+        house.close()
+
+
 def aged(folder: Path, seconds: float) -> Path:
     """As if nothing in the folder had been written for that long."""
     then = time.time() - seconds

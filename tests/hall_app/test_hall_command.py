@@ -5,13 +5,15 @@ from __future__ import annotations
 import asyncio
 import io
 import threading
+import tomllib
+from pathlib import Path
 
 import event_loop
 import pytest
 
 from hall_app import cli
 from hall_app.house import in_thread
-from hall_app.web import ProgressLine
+from hall_app.web import OFFERS, ProgressLine
 
 ORDERS = (["--debug", "check", "x"], ["check", "--debug", "x"], ["check", "x", "--debug"])
 
@@ -39,6 +41,23 @@ def test_without_debug_an_error_is_one_line(
 def test_every_command_takes_debug(command: str):
     assert cli._parser().parse_args([command, "--debug"]).debug is True
     assert cli._parser().parse_args([command]).debug is False
+
+
+def test_the_quota_is_two_gigabytes_and_help_says_of_what(capsys: pytest.CaptureFixture[str]):
+    assert cli._parser().parse_args(["serve"]).quota == 2
+    with pytest.raises(SystemExit):
+        cli.main(["serve", "--help"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert "(default 2); backups, restored houses and bakes are not counted" in told
+
+
+def test_the_hall_offers_every_page_that_its_questionnaires_ask_about():
+    needed = set()
+    for path in (Path(__file__).parents[2] / "assets/questionnaires").glob("*.toml"):
+        told = tomllib.loads(path.read_text("utf-8"))
+        needed |= {module["needs"] for module in told["module"] if "needs" in module}
+    assert "office" in needed
+    assert needed <= OFFERS
 
 
 def test_ctrl_c_while_the_program_is_loaded(monkeypatch: pytest.MonkeyPatch):

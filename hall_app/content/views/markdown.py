@@ -95,7 +95,6 @@ def html_of(
         _set_beneath(tokens, top)
     if figures:
         _set_apart(tokens)
-    _leave_corners(tokens)
     return _parser().renderer.render(tokens, _parser().options, env)
 
 
@@ -119,13 +118,6 @@ def _set_apart(tokens: Sequence[Token]) -> None:
     for before, line, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
         if before.type == "paragraph_open" and [one.type for one in line.children or ()] == ["image"]:
             before.tag = after.tag = "figure"
-
-
-def _leave_corners(tokens: Sequence[Token]) -> None:
-    """An empty cell of a table's head, its corner mostly, heads nothing: a reader for the blind would announce it."""
-    for before, line, after in zip(tokens, tokens[1:], tokens[2:], strict=False):
-        if before.type == "th_open" and not line.content.strip():
-            before.tag = after.tag = "td"
 
 
 def references_in(markdown: str) -> Iterator[tuple[str, str]]:

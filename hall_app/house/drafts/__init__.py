@@ -2,10 +2,10 @@
 
 shelf: files by their digest; drafts: what is to become of an exhibit's files; intake: what is brought from outside, by
 what it holds; portrait: a model drawn; shape: the same to be turned; examination: the hall's check of a draft;
-publication: in place, whole or not at all, and back again; beside: in a process of its own.
+publication: in place, whole or not at all, and back again.
 """
 
-from hall_app.house.drafts.beside import beside
+from hall_app.house.beside import beside
 from hall_app.house.drafts.drafts import LONGEST_ID, TEXT_FILES, Draft, Drafts
 from hall_app.house.drafts.examination import Examination
 from hall_app.house.drafts.intake import LARGEST, USES, Taken, take_in

@@ -13,7 +13,7 @@ from hall_app.content.files import revision, whole_digest
 from hall_app.content.floor.footprints import solids_of
 from hall_app.content.loading import load
 from hall_app.content.problems import ContentError, Problem
-from hall_app.house.drafts.beside import beside
+from hall_app.house.beside import beside
 
 __all__ = ["Examination"]
 

@@ -1,10 +1,14 @@
-"""What is brought from outside: known by what it holds and never by its name, limited, pictures drawn anew."""
+"""What is brought from outside: known by what it holds and never by its name, limited, pictures drawn anew.
+
+Film and sound are decoded, and kept without their metadata (`recording`).
+"""
 
 from __future__ import annotations
 
 import io
 import re
 import tempfile
+import threading
 import unicodedata
 import warnings
 from collections.abc import Mapping
@@ -13,7 +17,9 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 
 from hall_app.content.models.glb import GlbError, read_glb
+from hall_app.house.beside import beside
 from hall_app.house.people import PeopleError
+from hall_app.house.recording import Refused, keep
 
 __all__ = ["LARGEST", "USES", "Taken", "take_in"]
 
@@ -38,6 +44,8 @@ USES: Mapping[str, tuple[str, ...]] = {
     "film": ("film",),
     "sound": ("sound", "film"),
 }
+_WITHIN = 90.0  # [s] that film or sound may take to be read, and encoded where it has to be
+_READING = threading.BoundedSemaphore(2)  # who waits keeps a thread, and there are few
 _FORMATS = ("JPEG", "PNG", "WEBP", "TIFF")
 _ARCHIVES = (
     b"PK\x03\x04",
@@ -79,6 +87,8 @@ def take_in(name: str, file: BinaryIO, size: int, use: str) -> Taken:
         data, ending, told = _picture(shown, data)
     elif ending == ".glb":
         told = _model(shown, data)
+    elif kind in ("film", "sound"):
+        data, ending, told = _recording(shown, data, ending, kind)
     return Taken(kind, _safe(name, kind) + ending, data, told)
 
 
@@ -174,6 +184,26 @@ def _model(shown: str, data: bytes) -> str:
             raise PeopleError("file-broken", name=shown, why=str(error)) from None
     size = " × ".join(f"{high - low:.2f}" for low, high in zip(info.low, info.high, strict=True))
     return f"{info.triangles} △ · {size} m · {len(data) / MB:.2f} MB"
+
+
+def _recording(shown: str, data: bytes, ending: str, kind: str) -> tuple[bytes, str, str]:
+    """What is kept of a film or sound. Raises PeopleError."""
+    if not _READING.acquire(blocking=False):
+        raise PeopleError("too-often", seconds=10)
+    try:
+        with tempfile.TemporaryDirectory(prefix="hall-") as folder:
+            source, target = Path(folder, f"source{ending}"), Path(folder, "target")
+            source.write_bytes(data)
+            found = beside(keep, str(source), str(target), ending, kind, within=_WITHIN)
+            if found is None:
+                raise PeopleError("file-slow", name=shown, seconds=int(_WITHIN))
+            if isinstance(found, Refused):
+                raise PeopleError(found.key, name=shown, **found.facts)
+            if target.stat().st_size > LARGEST[kind]:
+                raise PeopleError("file-size", name=shown, kind=kind, most=LARGEST[kind] // MB)
+            return target.read_bytes(), found.ending, found.told
+    finally:
+        _READING.release()
 
 
 def _safe(name: str, kind: str) -> str:

@@ -232,6 +232,23 @@ REFUSALS: Mapping[str, tuple[str, str]] = {  # key: zh, en
         "{name} 像素过多：最多 {most} 百万像素，请缩小。",
         "{name} has too many pixels, {most} million at most: scale it down.",
     ),
+    "file-codec": (
+        "{name} 的编码 {codec} 浏览器不能播放，此处也无法转换；请导出为 MP4（H.264、AAC）或 WebM。",
+        "{name} holds {codec}, which browsers do not play and which is not converted here: "
+        "export it as MP4 (H.264, AAC) or WebM.",
+    ),
+    "file-silent": (
+        "{name} 没有声音；请另选文件，或作为影片上传。",
+        "{name} holds no sound: choose another file, or bring it as a film.",
+    ),
+    "file-long": (
+        "{name} 过长：{kind}最多 {most} 分钟，请剪短后再上传。",
+        "{name} is too long: a {kind} lasts {most} minutes at most. Cut it and send it again.",
+    ),
+    "file-slow": (
+        "{name} 未能在 {seconds} 秒内读完；请缩短或缩小，或导出为 MP4（H.264、AAC）。",
+        "{name} could not be read within {seconds} s: make it shorter or smaller, or export it as MP4 (H.264, AAC).",
+    ),
     "quota": (
         "草稿与历史已占满 {most} GB，请删去草稿，或由管理员以 --quota 增加。",
         "Drafts and history fill the {most} GB there are: drop a draft, or have an administrator raise --quota.",

@@ -19,7 +19,7 @@ _CLOTH, _SOLID = (0.55, 0.66, 0.72), (0.72, 0.66, 0.58)
 def film_needs() -> None:
     """Raises SimCoreError where films cannot be made."""
     if find_spec("av") is None:
-        raise SimCoreError("--video needs PyAV – install the extra: pip install '.[bake]'")
+        raise SimCoreError("--video needs PyAV – pip install av")
 
 
 def write_film(

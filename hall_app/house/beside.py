@@ -12,10 +12,10 @@ __all__ = ["beside"]
 T = TypeVar("T")
 
 
-def beside(act: Callable[..., T], *given: object) -> T | None:
+def beside(act: Callable[..., T], *given: object, within: float | None = None) -> T | None:
     """What `act(*given)` gives; None where the process ended without. For a thread that may wait.
 
-    act: at the top of a module, as everything is that goes to another process.
+    act: at the top of a module, as everything is that goes to another process; within: [s] after which it is ended.
     """
     context = get_context("spawn")
     here, there = context.Pipe(duplex=False)
@@ -24,7 +24,10 @@ def beside(act: Callable[..., T], *given: object) -> T | None:
         process.start()
         there.close()
         try:
-            return here.recv()
+            if here.poll(within):
+                return here.recv()
+            process.kill()
+            return None
         except EOFError:
             return None
         finally:
