@@ -20,7 +20,16 @@ TEXTS = """
     if (document.querySelector("dialog[open]") && document.querySelector("#hall-ui") && !parent.closest("dialog[open]"))
       continue;
     range.selectNodeContents(node);
-    const boxes = [...range.getClientRects()].map((b) => [b.left, b.top, b.right, b.bottom].map(Math.round));
+    const seen = [0, 0, innerWidth, innerHeight]; // of what scrolls, the part that shows
+    for (let e = parent; e; e = e.parentElement) {
+      if (getComputedStyle(e).overflow === "visible") continue;
+      const b = e.getBoundingClientRect();
+      [b.left, b.top].forEach((edge, i) => { seen[i] = Math.max(seen[i], edge); });
+      [b.right, b.bottom].forEach((edge, i) => { seen[i + 2] = Math.min(seen[i + 2], edge); });
+    }
+    const boxes = [...range.getClientRects()].filter((b) => b.right <= innerWidth && b.bottom <= innerHeight)
+      .map((b) => [Math.max(b.left, seen[0]), Math.max(b.top, seen[1]),
+        Math.min(b.right, seen[2]), Math.min(b.bottom, seen[3])].map(Math.round));
     const inside = boxes.filter(([l, t, r, b]) => l >= 0 && t >= 0 && r <= innerWidth && b <= innerHeight
       && r > l && b > t && parent.contains(document.elementFromPoint((l + r) / 2, (t + b) / 2)));
     if (inside.length) found.push({text: node.data.trim().slice(0, 40), colour: getComputedStyle(parent).color,
@@ -68,7 +77,7 @@ CROWDED = """
     if (across && p.top < q.bottom - 1 && q.top < p.bottom - 1) over.push(`${a} | ${b}`);
   }
   const wide = [...document.querySelectorAll("#hall-ui, #hall-ui :is(.enter, .dialog-body, .panel-body, .tools, "
-    + ".hints, .panel-foot, .button, .segment, .tool, .caption, .tabs)")].filter(shown)
+    + ".hints, .panel-foot, .button, .segment, .tool, .caption, .tabs, kbd)")].filter(shown)
     .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.className || e.id);
   const inside = (p) => p.left > -1 && p.right < innerWidth + 1 && p.top > -1 && p.bottom < innerHeight + 1;
   const out = parts.filter(([, p]) => !inside(p)).map(([name]) => name);
