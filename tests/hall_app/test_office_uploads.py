@@ -11,11 +11,16 @@ import av
 import pytest
 from brought_films import MADE_BY, encodes, held, recording, turned_by_hand
 from content_house import EXHIBIT, add_exhibit
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
 from hostile_files import HTML, hostile_files
 from office_clerk import clerk
 
+from hall_app.content import load
 from hall_app.house.drafts import beside
+from hall_app.house.house import House
 from hall_app.house.people import Role
+from hall_app.web import create_app
 
 SHOWN = {"image/jpeg", "image/png", "image/webp", "video/mp4", "audio/mpeg", "audio/ogg", "model/gltf-binary"}
 NAMES = [f"{number}-{use}" for number, (_, _, use) in enumerate(hostile_files())]
@@ -165,6 +170,35 @@ def test_a_hostile_file_harms_nobody(counter, curator, name, data, use):
     assert curator.api("collection/hostile").status == 200
     if curator.told("collection/hostile")["draft"]:
         curator.told("collection/hostile/drop", {})
+
+
+def test_what_was_taken_in_and_published_is_served_to_everybody_as_what_it_is(counter, curator):
+    kept = []
+    for name, data, use in hostile_files():
+        if use == "scan":
+            continue  # what is no scan within is refused when it is to be published, by reading all of it
+        answer = curator.bring("hostile", [(name, data)], use=use, **{"alt.zh": "图", "alt.en": "A picture"})
+        kept += json.loads(answer.body).get("files", ()) if answer.status == 200 else ()
+    assert kept, "some of them are harmless once they are made anew"
+    curator.told("collection/hostile/publish", {})
+    house = House(load(counter.content), counter.data)
+    try:
+        served = [answered_by(create_app(house), f"/media/hostile/{name}") for name in kept]
+    finally:
+        house.close()
+    assert 200 in {status for status, _, _ in served}
+    for status, headers, body in served:
+        assert status in (200, 404), "what no page shows is nobody's to fetch"
+        if status == 200:
+            assert headers["content-type"].partition(";")[0] in SHOWN
+            assert headers["x-content-type-options"] == "nosniff"
+            assert b"<script" not in body
+
+
+def answered_by(app: FastAPI, path: str) -> tuple[int, dict[str, str], bytes]:
+    """What a stranger gets there."""
+    answer = TestClient(app).get(path)
+    return answer.status_code, dict(answer.headers), answer.content
 
 
 def test_a_form_that_is_none_is_refused(curator):
