@@ -159,7 +159,7 @@ def _has_its_place(name: str) -> bool:
     """Whether it is a database or lies in the content or with the office: nothing is ever written elsewhere."""
     path = PurePosixPath(name)
     inside = path.parts[:1] == (CONTENT,) and len(path.parts) > 1 and ".." not in path.parts
-    desk = path.parts[:1] in ((part,) for part in DESK) and len(path.parts) == 2 and path.name != ".."
+    desk = len(path.parts) == 2 and path.parts[0] in DESK and path.name != ".."
     plain = name == path.as_posix() and "\\" not in name and ":" not in name and name.isprintable()
     return plain and (inside or desk or name in (PEOPLE, ANSWERS))
 
