@@ -62,7 +62,7 @@ def conform(work: Path, examples: int, phases: str = PHASES) -> tuple[int, str, 
         watch.append(Watch(app))
         return watch[0]
 
-    with open_counter(work / "counter", around) as counter:
+    with open_counter(work / "counter", around=around) as counter:
         one = clerk(counter, counter.people, Role.ADMINISTRATOR)
         document, stock = one.told("openapi.json"), Stock.of(counter, one)
         described(document, stock)

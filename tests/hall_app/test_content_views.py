@@ -80,6 +80,12 @@ def test_links_outside_open_elsewhere():
     assert html.count('rel="noopener noreferrer"') == 1
 
 
+def test_the_empty_corner_of_a_table_heads_nothing():
+    html = html_of("| | Length |\n|---|---|\n| a skirt | 93 |\n", lambda src: None)
+    assert "<td></td>\n<th>Length</th>" in html
+    assert "<td>a skirt</td>" in html
+
+
 @settings(max_examples=150, deadline=None)
 @given(some.text(alphabet="<>&\"'()[]!`*_#-: \n/\\ascriptonjvhf=x", max_size=60))
 def test_no_text_makes_a_tag_of_its_own(markdown: str):

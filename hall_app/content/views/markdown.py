@@ -40,6 +40,7 @@ def _parser() -> MarkdownIt:
     parser.validateLink = link_allowed
     parser.add_render_rule("image", _image)
     parser.add_render_rule("link_open", _link_open)
+    parser.add_render_rule("th_open", _head_open)
     return parser
 
 
@@ -62,6 +63,13 @@ def _link_open(self: RendererHTML, tokens: Sequence[Token], index: int, options:
     if str(tokens[index].attrGet("href") or "").lower().startswith("http"):
         tokens[index].attrSet("target", "_blank")
         tokens[index].attrSet("rel", "noopener noreferrer")
+    return self.renderToken(tokens, index, options, env)
+
+
+def _head_open(self: RendererHTML, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
+    """The corner of a table that nothing is written in heads nothing: who hears the page is told of no such head."""
+    if not tokens[index + 1].content.strip():
+        tokens[index].tag = tokens[index + 2].tag = "td"
     return self.renderToken(tokens, index, options, env)
 
 
