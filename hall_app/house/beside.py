@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from typing import TypeVar
 
-__all__ = ["beside"]
+__all__ = ["beside", "end_all"]
 
 T = TypeVar("T")
+_AT_WORK: set[BaseProcess] = set()
 
 
 def beside(act: Callable[..., T], *given: object, within: float | None = None) -> T | None:
@@ -22,6 +24,7 @@ def beside(act: Callable[..., T], *given: object, within: float | None = None) -
     with here:
         process = context.Process(target=_run, args=(there, act, given), daemon=True)
         process.start()
+        _AT_WORK.add(process)
         there.close()
         try:
             if here.poll(within):
@@ -32,6 +35,13 @@ def beside(act: Callable[..., T], *given: object, within: float | None = None) -
             return None
         finally:
             process.join()
+            _AT_WORK.discard(process)
+
+
+def end_all() -> None:
+    """End what is under way, for a server that ends: it would wait for the threads that wait for this."""
+    for process in tuple(_AT_WORK):
+        process.kill()
 
 
 def _run(answer: Connection, act: Callable[..., object], given: tuple[object, ...]) -> None:

@@ -139,6 +139,7 @@ def _back_to(language: str, exhibit: str | None) -> str:
 
 
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
+    from hall_app.house.beside import end_all
     from hall_app.house.house import House
     from hall_app.house.people import People
     from hall_app.house.safekeeping import Holdings
@@ -158,6 +159,7 @@ def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses)
     house.expect(wanted_bakes(content, arguments.data, light=arguments.light))
 
     def close() -> None:
+        end_all()
         survey.close()
         people.close()
 

@@ -6,6 +6,7 @@ import io
 import json
 import random
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import av
 import pytest
@@ -17,7 +18,7 @@ from hostile_files import HTML, hostile_files
 from office_clerk import clerk
 
 from hall_app.content import load
-from hall_app.house.drafts import beside
+from hall_app.house.beside import beside, end_all
 from hall_app.house.house import House
 from hall_app.house.people import Role
 from hall_app.web import create_app
@@ -137,6 +138,12 @@ def test_each_is_brought_for_what_it_is(bring):
 def test_what_does_not_come_to_an_end_is_ended():
     begin = time.monotonic()
     assert beside(time.sleep, 600, within=0.2) is None
+    with ThreadPoolExecutor(1) as one:  # as a request waits while the server ends
+        waiting = one.submit(beside, time.sleep, 600)
+        while not waiting.done():
+            end_all()
+            time.sleep(0.05)
+    assert waiting.result() is None
     assert time.monotonic() - begin < 300
 
 

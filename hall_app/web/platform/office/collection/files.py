@@ -25,6 +25,7 @@ __all__ = ["MOST_FILES", "TURN", "Uploads", "drawn_model", "file_address", "medi
 
 MOST_FILES = 12  # at once
 MOST_DRAWN = 300  # pictures and shapes of models that are kept, two megabytes each at most
+_DRAWN_WITHIN = 120.0  # [s] a scan of five million triangles takes a minute of a busy machine
 TURN = "book/turn.js"  # the script of pages that show models
 _SOLID = (".glb", ".ply", ".obj")
 _DRAWING = threading.Lock()
@@ -117,7 +118,10 @@ class Uploads:
                 raise PeopleError("too-often", seconds=10)
             try:
                 with _DRAWING:
-                    if not kept.is_file() and (made := beside(make, path, ending)) is not None:
+                    if (
+                        not kept.is_file()
+                        and (made := beside(make, path, ending, within=_DRAWN_WITHIN)) is not None
+                    ):
                         replace_file(kept, made)
                         _keep_newest(kept.parent)
             finally:
