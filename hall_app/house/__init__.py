@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hall_app.house.background import Latest, in_thread
+    from hall_app.house.beside import end_all
     from hall_app.house.edits import Following
     from hall_app.house.floor_grid import grid_beside, ready_grid
     from hall_app.house.house import House
 
-__all__ = ["Following", "House", "Latest", "grid_beside", "in_thread", "ready_grid"]
+__all__ = ["Following", "House", "Latest", "end_all", "grid_beside", "in_thread", "ready_grid"]
 
 _HOME = {
     "Following": "edits",
     "House": "house",
     "Latest": "background",
+    "end_all": "beside",
     "grid_beside": "floor_grid",
     "in_thread": "background",
     "ready_grid": "floor_grid",

@@ -139,7 +139,7 @@ def _back_to(language: str, exhibit: str | None) -> str:
 
 
 def _open(content: Content, arguments: argparse.Namespace, addresses: Addresses) -> FastAPI:
-    from hall_app.house.beside import end_all
+    from hall_app.house import end_all
     from hall_app.house.house import House
     from hall_app.house.people import People
     from hall_app.house.safekeeping import Holdings

@@ -18,8 +18,8 @@ from hostile_files import HTML, hostile_files
 from office_clerk import clerk
 
 from hall_app.content import load
-from hall_app.house.beside import beside, end_all
-from hall_app.house.house import House
+from hall_app.house import House, end_all
+from hall_app.house.drafts import beside
 from hall_app.house.people import Role
 from hall_app.web import create_app
 
