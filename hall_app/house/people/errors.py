@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-
-from hall_app.content.problems import Problems, in_language
+from typing import Any
 
 __all__ = ["REFUSALS", "PeopleError"]
 
@@ -322,10 +321,12 @@ class PeopleError(ValueError):
         return (zh if language == "zh" else en).format(**told)
 
 
-def _told(name: str, value: object, language: str) -> object:
-    """A figure in that language, where it is more than a number or a name."""
-    if isinstance(value, Problems):
+def _told(name: str, value: Any, language: str) -> object:
+    """A figure in that language, where it is more than a number or a name. problems: `content.problems.Problems`."""
+    if name == "problems":
         return value.text(language)
-    if name == "why":
+    if name == "why" and language == "zh":
+        from hall_app.content.problems import in_language  # the content's loading comes with it
+
         return in_language(str(value), language)
     return _KINDS.get(str(value), value) if name == "kind" and language == "zh" else value
