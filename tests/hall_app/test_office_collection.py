@@ -211,7 +211,7 @@ def test_drawn_models_are_not_kept_without_end(counter, curator, chest, monkeypa
     from hall_app.web.platform.office.collection import files
 
     monkeypatch.setattr(files, "MOST_DRAWN", 2)
-    monkeypatch.setattr(files, "beside", lambda make, path, ending: path.read_bytes())
+    monkeypatch.setattr(files, "beside", lambda make, path, ending, within: path.read_bytes())
     for number in range(4):
         scan = f"v {number} 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n".encode()
         brought = json.loads(curator.bring(chest.name, [("s.obj", scan)], use="scan").body)
