@@ -364,7 +364,7 @@ def test_a_record_that_says_other_than_its_files_is_told_from_the_command(shippe
     assert broken["pibo-figure", "robe_inside_vertices"]["value"] == 0
     assert "says 900" in broken["pibo-figure", "robe_inside_vertices"]["limit"]
     assert broken["pibo-figure", "robe_self_intersections"]["value"] == 0
-    assert "holds no 'beizi'" in broken["beizi", "files"]["limit"]
+    assert "holds no 'moxiong'" in broken["beizi", "files"]["limit"]
 
 
 def test_the_robe_in_a_model_is_welded_whole():
